@@ -1,0 +1,335 @@
+//! The diagnostic and its builder.
+
+use crate::Span;
+use std::borrow::Cow;
+use std::fmt;
+use std::ops::{Deref, DerefMut};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing; nothing is wrong.
+    Note,
+    /// Probably not what was meant; the result stands.
+    Warning,
+    /// Something could not be done.
+    Error,
+}
+
+impl Severity {
+    /// The word that is printed: `error`, `warning` or `note`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        }
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+/// A place with a few words about it; the words may be empty.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Label {
+    /// Where.
+    pub span: Span,
+    /// What is to be said about it.
+    pub text: String,
+}
+
+/// A change of the source text that would mend the fault.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Edit {
+    /// What to replace; empty to insert.
+    pub span: Span,
+    /// The new text.
+    pub replacement: String,
+    /// What the change does, for a menu.
+    pub title: String,
+}
+
+/// The fields of a [`Diagnostic`].
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Body {
+    /// Stable name of the kind of fault, in kebab-case.
+    pub id: Cow<'static, str>,
+    /// How bad it is.
+    pub severity: Severity,
+    /// One line that stands alone: lower case, no full stop.
+    pub message: String,
+    /// The place at fault.
+    pub primary: Option<Label>,
+    /// Other places that explain it.
+    pub secondary: Vec<Label>,
+    /// What would have been right.
+    pub expected: Option<String>,
+    /// What stood there instead.
+    pub found: Option<String>,
+    /// Background: the path of parents, residuals, the last guess.
+    pub notes: Vec<String>,
+    /// How to mend it.
+    pub help: Vec<String>,
+    /// A change of the text that mends it.
+    pub edit: Option<Edit>,
+    /// The named object it is about.
+    pub object: Option<String>,
+}
+
+/// One fault, warning or remark, as data.
+///
+/// The fields ([`Body`]) are reached through `Deref`; they live on the heap so that `Result<T, Diagnostic>` stays
+/// small.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Diagnostic(Box<Body>);
+
+impl Diagnostic {
+    /// A diagnostic of any severity.
+    pub fn new(
+        severity: Severity,
+        id: impl Into<Cow<'static, str>>,
+        message: impl Into<String>,
+    ) -> Self {
+        Diagnostic(Box::new(Body {
+            id: id.into(),
+            severity,
+            message: message.into(),
+            primary: None,
+            secondary: Vec::new(),
+            expected: None,
+            found: None,
+            notes: Vec::new(),
+            help: Vec::new(),
+            edit: None,
+            object: None,
+        }))
+    }
+
+    /// An error.
+    pub fn error(id: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
+        Self::new(Severity::Error, id, message)
+    }
+
+    /// A warning.
+    pub fn warning(id: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
+        Self::new(Severity::Warning, id, message)
+    }
+
+    /// A remark.
+    pub fn remark(id: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
+        Self::new(Severity::Note, id, message)
+    }
+
+    /// Sets the place at fault. An unknown place is not recorded.
+    #[must_use]
+    pub fn at(mut self, span: Span) -> Self {
+        if span.is_known() {
+            let text = self
+                .0
+                .primary
+                .take()
+                .map(|label| label.text)
+                .unwrap_or_default();
+            self.0.primary = Some(Label { span, text });
+        }
+        self
+    }
+
+    /// Sets the place at fault only if there is none yet: for callers further out, who know a coarser place.
+    #[must_use]
+    pub fn or_at(self, span: Span) -> Self {
+        if self.0.primary.is_some() {
+            self
+        } else {
+            self.at(span)
+        }
+    }
+
+    /// Sets the words printed under the place at fault (else `expected …, found …` stands there).
+    #[must_use]
+    pub fn label(mut self, text: impl Into<String>) -> Self {
+        if let Some(primary) = &mut self.0.primary {
+            primary.text = text.into();
+        }
+        self
+    }
+
+    /// Sets the place at fault and the words printed under it.
+    #[must_use]
+    pub fn labelled(self, span: Span, text: impl Into<String>) -> Self {
+        self.at(span).label(text)
+    }
+
+    /// Adds a place that explains the fault. An unknown place is not recorded.
+    #[must_use]
+    pub fn note_at(mut self, span: Span, text: impl Into<String>) -> Self {
+        if span.is_known() {
+            self.0.secondary.push(Label {
+                span,
+                text: text.into(),
+            });
+        }
+        self
+    }
+
+    /// Says what would have been right.
+    #[must_use]
+    pub fn expected(mut self, text: impl Into<String>) -> Self {
+        self.0.expected = Some(text.into());
+        self
+    }
+
+    /// Says what stood there instead.
+    #[must_use]
+    pub fn found(mut self, text: impl Into<String>) -> Self {
+        self.0.found = Some(text.into());
+        self
+    }
+
+    /// Adds background.
+    #[must_use]
+    pub fn note(mut self, text: impl Into<String>) -> Self {
+        self.0.notes.push(text.into());
+        self
+    }
+
+    /// Adds a way to mend it.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.0.help.push(text.into());
+        self
+    }
+
+    /// Adds a way to mend it, if there is one.
+    #[must_use]
+    pub fn maybe_help(self, text: Option<impl Into<String>>) -> Self {
+        match text {
+            Some(text) => self.help(text),
+            None => self,
+        }
+    }
+
+    /// Proposes the nearest of `candidates`, if one is near enough to `name` to be what was meant.
+    #[must_use]
+    pub fn suggest<'a>(self, name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
+        let near =
+            crate::nearest(name, candidates).map(|near| format!("a similar name exists: `{near}`"));
+        self.maybe_help(near)
+    }
+
+    /// Sets the change of the text that mends it.
+    #[must_use]
+    pub fn edit(
+        mut self,
+        span: Span,
+        replacement: impl Into<String>,
+        title: impl Into<String>,
+    ) -> Self {
+        self.0.edit = Some(Edit {
+            span,
+            replacement: replacement.into(),
+            title: title.into(),
+        });
+        self
+    }
+
+    /// Names the object it is about.
+    #[must_use]
+    pub fn object(mut self, name: impl Into<String>) -> Self {
+        self.0.object = Some(name.into());
+        self
+    }
+
+    /// Whether it is an error (and not a warning or a remark).
+    pub fn is_error(&self) -> bool {
+        self.0.severity == Severity::Error
+    }
+
+    /// The place at fault, or the unknown place.
+    pub fn span(&self) -> Span {
+        self.0
+            .primary
+            .as_ref()
+            .map_or(Span::UNKNOWN, |label| label.span)
+    }
+}
+
+impl Deref for Diagnostic {
+    type Target = Body;
+    fn deref(&self) -> &Body {
+        &self.0
+    }
+}
+
+impl DerefMut for Diagnostic {
+    fn deref_mut(&mut self) -> &mut Body {
+        &mut self.0
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    /// The line without its place: `error[id]: message`, followed by expected and found.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}[{}]: {}", self.severity, self.id, self.message)?;
+        if let Some(text) = self.expectation() {
+            write!(f, " ({text})")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+impl Body {
+    /// `expected X, found Y`, as far as both are known.
+    pub fn expectation(&self) -> Option<String> {
+        match (&self.expected, &self.found) {
+            (Some(expected), Some(found)) => Some(format!("expected {expected}, found {found}")),
+            (Some(expected), None) => Some(format!("expected {expected}")),
+            (None, Some(found)) => Some(format!("found {found}")),
+            (None, None) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::FileId;
+
+    #[test]
+    fn builds_and_displays() {
+        let span = Span::new(FileId(0), 1, 2);
+        let d = Diagnostic::error("bad-thing", "a thing is bad")
+            .at(span)
+            .label("here")
+            .expected("a")
+            .found("b");
+        assert_eq!(
+            d.to_string(),
+            "error[bad-thing]: a thing is bad (expected a, found b)"
+        );
+        assert_eq!(d.span(), span);
+        assert!(d.is_error());
+        assert!(std::mem::size_of::<Result<f64, Diagnostic>>() <= 16);
+    }
+
+    #[test]
+    fn unknown_places_are_left_out() {
+        let d = Diagnostic::warning("w", "m")
+            .at(Span::UNKNOWN)
+            .note_at(Span::UNKNOWN, "x");
+        assert!(d.primary.is_none() && d.secondary.is_empty());
+        assert_eq!(d.or_at(Span::new(FileId(1), 0, 1)).span().file, FileId(1));
+    }
+
+    #[test]
+    fn suggests_the_nearest_name() {
+        let d = Diagnostic::error("unknown-name", "no `hul`").suggest("hul", ["keel", "hull"]);
+        assert_eq!(d.help, ["a similar name exists: `hull`"]);
+    }
+}
