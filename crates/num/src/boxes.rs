@@ -1,0 +1,67 @@
+use crate::Vec3;
+
+/// An axis-aligned box; empty until a point is put in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Box3 {
+    /// Low corner.
+    pub low: Vec3,
+    /// High corner.
+    pub high: Vec3,
+}
+
+impl Box3 {
+    /// The box that contains nothing.
+    pub const EMPTY: Self = Self {
+        low: Vec3 { x: f64::INFINITY, y: f64::INFINITY, z: f64::INFINITY },
+        high: Vec3 { x: f64::NEG_INFINITY, y: f64::NEG_INFINITY, z: f64::NEG_INFINITY },
+    };
+
+    /// The smallest box around the points.
+    pub fn around(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::including)
+    }
+
+    /// The smallest box around this one and `p`.
+    pub fn including(self, p: Vec3) -> Self {
+        let pick = |f: fn(f64, f64) -> f64, a: Vec3| Vec3 {
+            x: f(a.x, p.x),
+            y: f(a.y, p.y),
+            z: f(a.z, p.z),
+        };
+        Self { low: pick(f64::min, self.low), high: pick(f64::max, self.high) }
+    }
+
+    /// The smallest box around both.
+    pub fn union(self, o: Self) -> Self {
+        if o.is_empty() { self } else { self.including(o.low).including(o.high) }
+    }
+
+    /// True when the box contains nothing.
+    pub fn is_empty(self) -> bool {
+        self.low.x > self.high.x
+    }
+
+    /// The centre; the origin for the empty box.
+    pub fn centre(self) -> Vec3 {
+        if self.is_empty() { Vec3::zero() } else { (self.low + self.high) * 0.5 }
+    }
+
+    /// Length of the diagonal; 0 for the empty box. The size from which tolerances are derived.
+    pub fn diagonal(self) -> f64 {
+        if self.is_empty() { 0.0 } else { self.low.distance(self.high) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grows_around_points() {
+        let b = Box3::around([Vec3::of(1.0, 5.0, 0.0), Vec3::of(-2.0, 1.0, 0.0)]);
+        assert_eq!((b.low, b.high), (Vec3::of(-2.0, 1.0, 0.0), Vec3::of(1.0, 5.0, 0.0)));
+        assert_eq!(b.diagonal(), 5.0);
+        assert!(Box3::EMPTY.is_empty() && Box3::EMPTY.diagonal() == 0.0);
+        assert_eq!(Box3::EMPTY.union(b), b);
+    }
+}

@@ -1,0 +1,35 @@
+//! Numbers, vectors and the promises of shapes.
+//!
+//! Everything that evaluates geometry in Moldloft is generic over one scalar trait, [`Real`], with
+//! that one bound. Plain runs use `f64`; a run with derivatives uses [`Dual`], a number that carries
+//! its exact derivative in a few directions. Derivatives by the shape parameters `t`, `u`, `v` are
+//! *jets* ([`Jet`]): truncated Taylor numbers over the scalar, so a shape is written once, as a
+//! formula, and yields its tangents and curvatures by the same code.
+//!
+//! `scalar -> vector -> jet -> Curve, Surface, Field`
+//!
+//! Invariant: this crate knows no entity, no file and no language; it performs no input or output.
+//! Transcendental functions come from `libm`, so results are the same bits on every platform.
+
+mod boxes;
+mod dual;
+mod frame;
+mod jet;
+mod linear;
+mod quadrature;
+mod real;
+mod roots;
+mod shape;
+pub mod trace;
+mod vec3;
+
+pub use boxes::Box3;
+pub use dual::{Dual, Dual4};
+pub use frame::{Axis, Frame, Plane};
+pub use jet::{Bi1, Bi2, Jet, Uni1, Uni2, lift_curve, lift_surface};
+pub use linear::{Banded, SingularMatrix, solve_dense};
+pub use quadrature::{gauss_legendre, integrate};
+pub use real::Real;
+pub use roots::{NoRoot, find_root};
+pub use shape::{Curve, CurveJet, Field, Order, SurfJet, Surface};
+pub use vec3::{Vec2, Vec3};

@@ -1,0 +1,148 @@
+use crate::{Real, Vec3};
+
+/// The matrix of a linear system is singular to working precision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SingularMatrix {
+    /// The row at which elimination found no pivot.
+    pub row: usize,
+}
+
+/// Solves the dense n x n system `a x = b` in place by elimination with partial pivoting;
+/// `a` is row-major. `b` holds the solution afterwards.
+///
+/// # Errors
+/// [`SingularMatrix`] when a pivot is zero.
+pub fn solve_dense<T: Real>(a: &mut [T], b: &mut [T]) -> Result<(), SingularMatrix> {
+    let n = b.len();
+    assert_eq!(a.len(), n * n, "the matrix of {n} unknowns is {n} by {n}");
+    for k in 0..n {
+        let size = |r: usize| a[r * n + k].re().abs();
+        let pivot = (k..n).fold(k, |best, r| if size(r) > size(best) { r } else { best });
+        if size(pivot) == 0.0 {
+            return Err(SingularMatrix { row: k });
+        }
+        if pivot != k {
+            for c in 0..n {
+                a.swap(k * n + c, pivot * n + c);
+            }
+            b.swap(k, pivot);
+        }
+        for r in k + 1..n {
+            let factor = a[r * n + k] / a[k * n + k];
+            for c in k..n {
+                let upper = a[k * n + c];
+                a[r * n + c] -= factor * upper;
+            }
+            let upper = b[k];
+            b[r] -= factor * upper;
+        }
+    }
+    for k in (0..n).rev() {
+        let mut x = b[k];
+        for (c, &solved) in b.iter().enumerate().skip(k + 1) {
+            x -= a[k * n + c] * solved;
+        }
+        b[k] = x / a[k * n + k];
+    }
+    Ok(())
+}
+
+/// A square matrix of which only the entries with |row - column| <= `width` are not zero, solved
+/// without pivoting (for the diagonally dominant or totally positive systems of splines).
+#[derive(Clone, Debug)]
+pub struct Banded<T> {
+    n: usize,
+    width: usize,
+    rows: Vec<T>,
+}
+
+impl<T: Real> Banded<T> {
+    /// The zero matrix of `n` rows and half band width `width`.
+    pub fn zero(n: usize, width: usize) -> Self {
+        Self { n, width, rows: vec![T::zero(); n * (2 * width + 1)] }
+    }
+
+    /// The entry at (`row`, `column`), which must lie in the band.
+    pub fn entry(&mut self, row: usize, column: usize) -> &mut T {
+        debug_assert!(row < self.n && column < self.n && row.abs_diff(column) <= self.width);
+        &mut self.rows[row * (2 * self.width + 1) + column + self.width - row]
+    }
+
+    fn get(&self, row: usize, column: usize) -> T {
+        self.rows[row * (2 * self.width + 1) + column + self.width - row]
+    }
+
+    /// Solves for vectors on the right-hand side, in place, in O(n width^2).
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] when a pivot is zero.
+    pub fn solve(mut self, b: &mut [Vec3<T>]) -> Result<(), SingularMatrix> {
+        assert_eq!(b.len(), self.n);
+        for k in 0..self.n {
+            let pivot = self.get(k, k);
+            if pivot.re() == 0.0 {
+                return Err(SingularMatrix { row: k });
+            }
+            let end = (k + self.width + 1).min(self.n);
+            for r in k + 1..end {
+                let factor = self.get(r, k) / pivot;
+                if factor == T::zero() {
+                    continue;
+                }
+                for c in k..end {
+                    let upper = self.get(k, c);
+                    *self.entry(r, c) -= factor * upper;
+                }
+                let upper = b[k];
+                b[r] -= upper * factor;
+            }
+        }
+        for k in (0..self.n).rev() {
+            let end = (k + self.width + 1).min(self.n);
+            let mut x = b[k];
+            for (c, &solved) in b.iter().enumerate().take(end).skip(k + 1) {
+                x -= solved * self.get(k, c);
+            }
+            b[k] = x / self.get(k, k);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dense_needs_its_pivot() {
+        let mut a = [0.0, 2.0, 1.0, 3.0, 1.0, -1.0, 1.0, 1.0, 1.0];
+        let mut b = [7.0, 2.0, 6.0];
+        solve_dense(&mut a, &mut b).unwrap();
+        for (x, e) in b.iter().zip([1.0, 2.0, 3.0]) {
+            assert!((x - e).abs() < 1e-14);
+        }
+        let err = solve_dense(&mut [1.0, 2.0, 2.0, 4.0], &mut [1.0, 1.0]);
+        assert_eq!(err, Err(SingularMatrix { row: 1 }));
+    }
+
+    #[test]
+    fn banded_equals_dense() {
+        let n = 7;
+        let mut banded = Banded::zero(n, 2);
+        let mut dense = vec![0.0; n * n];
+        for r in 0..n {
+            for c in r.saturating_sub(2)..(r + 3).min(n) {
+                let x = if r == c { 5.0 } else { 1.0 / (1.0 + (2 * r + c) as f64) };
+                *banded.entry(r, c) = x;
+                dense[r * n + c] = x;
+            }
+        }
+        let mut b: Vec<_> = (0..n).map(|i| Vec3::of(i as f64, 1.0, -2.0)).collect();
+        let mut x: Vec<f64> = b.iter().map(|v| v.x).collect();
+        banded.solve(&mut b).unwrap();
+        solve_dense(&mut dense, &mut x).unwrap();
+        for (p, q) in b.iter().zip(x) {
+            assert!((p.x - q).abs() < 1e-14);
+        }
+    }
+}

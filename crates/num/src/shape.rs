@@ -1,0 +1,145 @@
+use crate::jet::{Jet, lift_curve, lift_surface};
+use crate::trace::{Edges, Trace};
+use crate::{Real, Vec3};
+
+/// How many derivatives by the shape parameters are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// Position only.
+    Zero,
+    /// Position and first derivatives.
+    First,
+    /// Position, first and second derivatives.
+    Second,
+}
+
+/// Position, first and second derivative of a curve; entries above the asked order are zero.
+pub type CurveJet<T> = [Vec3<T>; 3];
+
+/// Position and derivatives of a surface; entries above the asked order are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfJet<T> {
+    /// Position.
+    pub p: Vec3<T>,
+    /// Derivative by u.
+    pub u: Vec3<T>,
+    /// Derivative by v.
+    pub v: Vec3<T>,
+    /// Second derivative by u.
+    pub uu: Vec3<T>,
+    /// Mixed second derivative.
+    pub uv: Vec3<T>,
+    /// Second derivative by v.
+    pub vv: Vec3<T>,
+}
+
+impl<T: Real> SurfJet<T> {
+    /// The unit normal along S_u x S_v, or zero where the surface is singular.
+    pub fn normal(&self) -> Vec3<T> {
+        self.u.cross(self.v).normalized().unwrap_or_default()
+    }
+}
+
+/// A curve C(t) for t in [0, 1]; outside that range the natural continuation of its formula.
+pub trait Curve<T: Real>: Send + Sync {
+    /// Position and derivatives by t at `t`, to `order`.
+    fn jet(&self, t: T, order: Order) -> CurveJet<T>;
+
+    /// Positions at many parameters. `out` has the length of `ts`.
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        for (x, &t) in out.iter_mut().zip(ts) {
+            *x = self.jet(T::from(t), Order::Zero)[0];
+        }
+    }
+
+    /// Interior parameters at which a derivative up to the second may jump, ascending.
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// What the curve runs along, for joins: itself, or a part of other curves.
+    fn trace(&self) -> Trace<T> {
+        Trace::own()
+    }
+
+    /// The curve in the parameter plane of the surface it lies on: (u(t), v(t), 0), for snakes.
+    fn on_surface(&self, _t: T, _order: Order) -> Option<CurveJet<T>> {
+        None
+    }
+
+    /// How many shapes deep this one is nested; bounds recursion.
+    fn depth(&self) -> u32 {
+        1
+    }
+}
+
+/// A surface S(u, v) for u, v in [0, 1]; its natural normal is S_u x S_v.
+pub trait Surface<T: Real>: Send + Sync {
+    /// Position and derivatives at (`u`, `v`), to `order`.
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T>;
+
+    /// Positions, and unit normals if asked, on the tensor grid `us` x `vs`, in the order
+    /// `[i * vs.len() + j]`. Normals are zero where the surface is singular.
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        mut normals: Option<&mut [Vec3<T>]>,
+    ) {
+        for (i, &u) in us.iter().enumerate() {
+            for (j, &v) in vs.iter().enumerate() {
+                let k = i * vs.len() + j;
+                let order = if normals.is_some() { Order::First } else { Order::Zero };
+                let jet = self.jet(T::from(u), T::from(v), order);
+                points[k] = jet.p;
+                if let Some(normals) = normals.as_deref_mut() {
+                    normals[k] = jet.normal();
+                }
+            }
+        }
+    }
+
+    /// Interior parameters u and v at which a derivative up to the second may jump, ascending.
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        [Vec::new(), Vec::new()]
+    }
+
+    /// What the four edges run along, for joins: v = 0, u = 1, v = 1, u = 0, each in the
+    /// direction of increasing parameter.
+    fn edges(&self) -> Edges<T> {
+        Edges::own()
+    }
+
+    /// How many shapes deep this one is nested; bounds recursion.
+    fn depth(&self) -> u32 {
+        1
+    }
+}
+
+/// An implicit function f(x, y, z): negative inside, zero on the surface, positive outside.
+pub trait Field<T: Real>: Send + Sync {
+    /// The value and the gradient at `p`.
+    fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>);
+
+    /// The value at `p`.
+    fn value(&self, p: Vec3<T>) -> T {
+        self.value_and_gradient(p).0
+    }
+}
+
+impl<T: Real> dyn Curve<T> + '_ {
+    /// The position at a parameter that is a jet of the caller's own parameters.
+    #[inline(always)]
+    pub fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        lift_curve(&self.jet(t.value(), J::ORDER), t)
+    }
+}
+
+impl<T: Real> dyn Surface<T> + '_ {
+    /// The position at parameters that are jets of the caller's own parameters.
+    #[inline(always)]
+    pub fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        lift_surface(&self.jet(u.value(), v.value(), J::ORDER), u, v)
+    }
+}

@@ -1,0 +1,139 @@
+//! What a curve or an edge runs along: the identities that let meshes join exactly.
+//!
+//! An edge of a surface is a chain of pieces of *root* curves. Two patches share the vertices of a
+//! piece when root, ends and division are the same objects; never because numbers look equal.
+//! Sub-curves, edge snakes and the like are aliases: they pass on the trace of what they lie on.
+
+use crate::Real;
+use smallvec::{SmallVec, smallvec};
+
+/// The identity of a named object, given out by the model. Opaque here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Key(pub u32);
+
+/// The identity of a root: an object itself, or one of the four edges of a surface object that
+/// has no curve of its own there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Root {
+    /// A curve object.
+    Curve(Key),
+    /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) of a surface object.
+    Edge(Key, u8),
+    /// The mirror image of edge 0..4 of surface object `of`, in the mirror surface object `by`.
+    MirrorEdge {
+        /// The surface that is mirrored.
+        of: Key,
+        /// Its edge.
+        edge: u8,
+        /// The mirror-surface object.
+        by: Key,
+    },
+}
+
+/// Where a piece begins or ends on its root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark<T> {
+    /// Parameter on the root.
+    pub t: T,
+    /// The point object there (a bead, or the point that the root ends at), if there is one.
+    pub point: Option<Key>,
+}
+
+/// A part of a root, run from `from` to `to` (which may be backwards), linearly in its parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece<T> {
+    /// What it is part of.
+    pub root: Root,
+    /// Where it begins.
+    pub from: Mark<T>,
+    /// Where it ends.
+    pub to: Mark<T>,
+    /// The share of the alias's own parameter range at which this piece ends (the last: 1).
+    pub until: T,
+}
+
+/// What a curve runs along.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Trace<T> {
+    /// The curve is a root of its own; the point objects at its ends, where it has them.
+    Own([Option<Key>; 2]),
+    /// The curve is an alias of pieces of roots.
+    Pieces(SmallVec<[Piece<T>; 1]>),
+    /// The curve is a single point object.
+    Point(Option<Key>),
+}
+
+impl<T: Real> Trace<T> {
+    /// A root of its own without known end points.
+    pub fn own() -> Self {
+        Trace::Own([None, None])
+    }
+
+    /// The chain of pieces of a curve with this trace, whose object is `root`.
+    pub fn pieces(&self, root: Root) -> SmallVec<[Piece<T>; 1]> {
+        match self {
+            Trace::Own(ends) => smallvec![Piece {
+                root,
+                from: Mark { t: T::zero(), point: ends[0] },
+                to: Mark { t: T::one(), point: ends[1] },
+                until: T::one(),
+            }],
+            Trace::Pieces(pieces) => pieces.clone(),
+            Trace::Point(_) => SmallVec::new(),
+        }
+    }
+
+    /// The trace of the part between two marks given in the alias's own parameter, when it lies
+    /// in one piece; otherwise the part is a root of its own.
+    pub fn part(&self, root: Root, from: Mark<T>, to: Mark<T>) -> Self {
+        let pieces = self.pieces(root);
+        let [whole] = pieces.as_slice() else {
+            return Trace::Own([from.point, to.point]);
+        };
+        let along = |mark: Mark<T>| Mark {
+            t: whole.from.t + (whole.to.t - whole.from.t) * mark.t,
+            point: mark.point,
+        };
+        let whole = *whole;
+        Trace::Pieces(smallvec![Piece {
+            root: whole.root,
+            from: along(from),
+            to: along(to),
+            until: T::one(),
+        }])
+    }
+}
+
+/// One edge of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edge<T> {
+    /// The surface's own edge.
+    Own,
+    /// Along a chain of pieces.
+    Pieces(SmallVec<[Piece<T>; 1]>),
+    /// A single point, with its object where it has one.
+    Pole(Option<Key>),
+}
+
+/// The four edges of a surface (v = 0, u = 1, v = 1, u = 0, each in increasing parameter), and the
+/// point objects at its corners (u,v) = (0,0), (1,0), (1,1), (0,1), where they are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edges<T> {
+    /// The edges.
+    pub edges: [Edge<T>; 4],
+    /// The corners.
+    pub corners: [Option<Key>; 4],
+}
+
+impl<T: Real> Edges<T> {
+    /// Four edges of the surface's own.
+    pub fn own() -> Self {
+        Edges { edges: [Edge::Own, Edge::Own, Edge::Own, Edge::Own], corners: [None; 4] }
+    }
+
+    /// The same with edge `k` (0..4) replaced.
+    pub fn with(mut self, k: usize, edge: Edge<T>) -> Self {
+        self.edges[k] = edge;
+        self
+    }
+}
