@@ -31,5 +31,5 @@ pub use linear::{Banded, SingularMatrix, solve_dense};
 pub use quadrature::{gauss_legendre, integrate};
 pub use real::Real;
 pub use roots::{NoRoot, find_root};
-pub use shape::{Curve, CurveJet, Field, Order, SurfJet, Surface};
+pub use shape::{Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula};
 pub use vec3::{Vec2, Vec3};

@@ -66,11 +66,6 @@ pub trait Curve<T: Real>: Send + Sync {
     fn on_surface(&self, _t: T, _order: Order) -> Option<CurveJet<T>> {
         None
     }
-
-    /// How many shapes deep this one is nested; bounds recursion.
-    fn depth(&self) -> u32 {
-        1
-    }
 }
 
 /// A surface S(u, v) for u, v in [0, 1]; its natural normal is S_u x S_v.
@@ -110,11 +105,6 @@ pub trait Surface<T: Real>: Send + Sync {
     fn edges(&self) -> Edges<T> {
         Edges::own()
     }
-
-    /// How many shapes deep this one is nested; bounds recursion.
-    fn depth(&self) -> u32 {
-        1
-    }
 }
 
 /// An implicit function f(x, y, z): negative inside, zero on the surface, positive outside.
@@ -141,5 +131,61 @@ impl<T: Real> dyn Surface<T> + '_ {
     #[inline(always)]
     pub fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
         lift_surface(&self.jet(u.value(), v.value(), J::ORDER), u, v)
+    }
+}
+
+/// A curve given by a formula that is generic over jets: all its derivatives follow from it.
+pub trait CurveFormula<T: Real>: Send + Sync {
+    /// The position at `t`.
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J>;
+
+    /// See [`Curve::breaks`].
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// See [`Curve::trace`].
+    fn trace(&self) -> Trace<T> {
+        Trace::own()
+    }
+}
+
+impl<T: Real, F: CurveFormula<T>> Curve<T> for F {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        crate::curve_jet_of!(self, F::at, t, order)
+    }
+    fn breaks(&self) -> Vec<f64> {
+        CurveFormula::breaks(self)
+    }
+    fn trace(&self) -> Trace<T> {
+        CurveFormula::trace(self)
+    }
+}
+
+/// A surface given by a formula that is generic over jets: all its derivatives follow from it.
+pub trait SurfaceFormula<T: Real>: Send + Sync {
+    /// The position at (`u`, `v`).
+    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J>;
+
+    /// See [`Surface::breaks`].
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        [Vec::new(), Vec::new()]
+    }
+
+    /// See [`Surface::edges`].
+    fn edges(&self) -> Edges<T> {
+        Edges::own()
+    }
+}
+
+impl<T: Real, F: SurfaceFormula<T>> Surface<T> for F {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        crate::surface_jet_of!(self, F::at, u, v, order)
+    }
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        SurfaceFormula::breaks(self)
+    }
+    fn edges(&self) -> Edges<T> {
+        SurfaceFormula::edges(self)
     }
 }

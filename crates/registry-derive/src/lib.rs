@@ -1,0 +1,271 @@
+//! `#[derive(Kind)]`: a documented struct becomes a row of the registry.
+//!
+//! ```text
+//! /// Straight rulings between two curves: S(u,v) = (1-v) C1(u) + v C2(u).
+//! #[derive(Kind)]
+//! #[kind(class = Surface, shape, columns = "relabel c1 c2", example = "...")]
+//! pub struct RuledSurf<T: Real> {
+//!     /// Edge v = 0.
+//!     c1: CurveRef<T>,
+//!     /// Edge v = 1.
+//!     c2: CurveRef<T>,
+//! }
+//! ```
+//!
+//! Struct: `class` (a `Class`), `columns` (model-file columns), `example` (language text that runs
+//! by itself), `function` (a function instead of a kind), `name` (when it differs from the
+//! struct's), `shape` (the struct is itself the curve or surface: no `Build` is written).
+//! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`.
+
+use proc_macro::TokenStream;
+use proc_macro2::TokenStream as Tokens;
+use quote::quote;
+use syn::punctuated::Punctuated;
+use syn::{
+    Attribute, Data, DeriveInput, Expr, Fields, Lit, LitStr, Meta, Token, parse_macro_input,
+};
+
+/// Declares a kind or function of the registry; see the crate's documentation.
+#[proc_macro_derive(Kind, attributes(kind, field))]
+pub fn derive_kind(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    expand(&input).unwrap_or_else(|error| error.to_compile_error()).into()
+}
+
+#[derive(Default)]
+struct KindOptions {
+    class: Option<Expr>,
+    columns: Option<Expr>,
+    example: Option<Expr>,
+    name: Option<Expr>,
+    function: bool,
+    shape: bool,
+}
+
+#[derive(Default)]
+struct FieldOptions {
+    default: Option<Tokens>,
+    min: Option<Expr>,
+    max: Option<Expr>,
+    min_items: Option<Expr>,
+    angle: bool,
+}
+
+fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
+    let options = kind_options(input)?;
+    let ident = &input.ident;
+    let Data::Struct(data) = &input.data else {
+        return Err(syn::Error::new_spanned(ident, "a kind is a struct"));
+    };
+    let Fields::Named(fields) = &data.fields else {
+        return Err(syn::Error::new_spanned(ident, "a kind has named fields"));
+    };
+    let doc = doc_text(&input.attrs);
+    if doc.is_empty() {
+        return Err(syn::Error::new_spanned(ident, "a kind needs a doc comment"));
+    }
+    let class = options
+        .class
+        .ok_or_else(|| syn::Error::new_spanned(ident, "a kind needs `class = ...`"))?;
+    let example = options
+        .example
+        .ok_or_else(|| syn::Error::new_spanned(ident, "a kind needs `example = ...`"))?;
+    let columns = match options.columns {
+        Some(columns) => quote!(Some(#columns)),
+        None => quote!(None),
+    };
+    let name = match options.name {
+        Some(name) => quote!(#name),
+        None => {
+            let text = LitStr::new(&ident.to_string(), ident.span());
+            quote!(#text)
+        }
+    };
+    let is_kind = !options.function;
+
+    let mut infos = Vec::new();
+    let mut reads = Vec::new();
+    for (k, field) in fields.named.iter().enumerate() {
+        let field_ident = field.ident.as_ref().expect("named fields have names");
+        let ty = &field.ty;
+        let help = doc_text(&field.attrs);
+        if help.is_empty() {
+            return Err(syn::Error::new_spanned(field_ident, "a field needs a doc comment"));
+        }
+        let o = field_options(&field.attrs)?;
+        let text = LitStr::new(&field_ident.to_string(), field_ident.span());
+        let optional = quote!(<#ty as ::moldloft_registry::FromValue<S>>::OPTIONAL);
+        let default = match &o.default {
+            Some(default) => quote!(Some(#default)),
+            None => quote!(if #optional {
+                Some(::moldloft_registry::DefaultValue::Unset)
+            } else {
+                None
+            }),
+        };
+        let bound = |e: &Option<Expr>| match e {
+            Some(e) => quote!(Some((#e) as f64)),
+            None => quote!(None),
+        };
+        let (min, max) = (bound(&o.min), bound(&o.max));
+        let min_items = o.min_items.map_or(quote!(0), |e| quote!(#e));
+        let unit = if o.angle { quote!(Angle) } else { quote!(None) };
+        infos.push(quote!(::moldloft_registry::Field {
+            name: #text,
+            help: #help,
+            class: <#ty as ::moldloft_registry::FromValue<S>>::CLASS,
+            many: <#ty as ::moldloft_registry::FromValue<S>>::MANY,
+            default: #default,
+            unit: ::moldloft_registry::Unit::#unit,
+            min: #min,
+            max: #max,
+            min_items: #min_items,
+        }));
+        reads.push(quote!(
+            #field_ident: <#ty as ::moldloft_registry::FromValue<T>>::from_value(&args[#k])
+                .map_err(|fault| fault.in_field(#k))?
+        ));
+    }
+    // The table entry is filled for one scalar; classes do not depend on it.
+    let infos: Vec<Tokens> = infos
+        .into_iter()
+        .map(|info| quote!({ type T = f64; type S = f64; let _ = ::core::marker::PhantomData::<(T, S)>; #info }))
+        .collect();
+
+    let wrap = if options.shape {
+        let make = match quote!(#class).to_string().as_str() {
+            "Curve" => quote!(::moldloft_registry::Value::Curve(
+                ::moldloft_registry::CurveRef::new(self, context.nesting)
+            )),
+            "Surface" => quote!(::moldloft_registry::Value::Surface(
+                ::moldloft_registry::SurfaceRef::new(self, context.nesting)
+            )),
+            _ => return Err(syn::Error::new_spanned(&class, "`shape` is for Curve and Surface")),
+        };
+        quote!(
+            impl<T: ::moldloft_registry::export::Real> ::moldloft_registry::Build<T> for #ident<T> {
+                fn build(
+                    self,
+                    context: &::moldloft_registry::Context,
+                ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::Fault> {
+                    Ok(#make)
+                }
+            }
+        )
+    } else {
+        quote!()
+    };
+
+    Ok(quote!(
+        impl<T: ::moldloft_registry::Scalar> #ident<T> {
+            fn call(
+                args: &[::moldloft_registry::Value<T>],
+                context: &::moldloft_registry::Context,
+            ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::Fault> {
+                let this = Self { #(#reads),* };
+                let nesting = args.iter().map(::moldloft_registry::Value::depth).max().unwrap_or(0);
+                let context = ::moldloft_registry::Context { nesting, ..*context };
+                ::moldloft_registry::Build::build(this, &context)
+            }
+        }
+
+        impl ::moldloft_registry::export::StaticRow for #ident<f64> {
+            fn row() -> ::moldloft_registry::Row {
+                ::moldloft_registry::Row {
+                    name: #name.into(),
+                    doc: #doc.into(),
+                    class: ::moldloft_registry::Class::#class,
+                    fields: ::std::vec![#(#infos),*].into(),
+                    kind: #is_kind,
+                    columns: #columns,
+                    example: #example.into(),
+                    body: ::moldloft_registry::Body::Native {
+                        plain: #ident::<f64>::call,
+                        dual: #ident::<::moldloft_registry::export::Dual4>::call,
+                    },
+                }
+            }
+        }
+
+        #wrap
+    ))
+}
+
+fn metas(attr: &Attribute) -> syn::Result<Punctuated<Meta, Token![,]>> {
+    attr.parse_args_with(Punctuated::parse_terminated)
+}
+
+fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
+    let mut options = KindOptions::default();
+    for attr in input.attrs.iter().filter(|a| a.path().is_ident("kind")) {
+        for meta in metas(attr)? {
+            match &meta {
+                Meta::NameValue(nv) if nv.path.is_ident("class") => {
+                    options.class = Some(nv.value.clone());
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("columns") => {
+                    options.columns = Some(nv.value.clone());
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("example") => {
+                    options.example = Some(nv.value.clone());
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("name") => {
+                    options.name = Some(nv.value.clone());
+                }
+                Meta::Path(path) if path.is_ident("function") => options.function = true,
+                Meta::Path(path) if path.is_ident("shape") => options.shape = true,
+                other => return Err(syn::Error::new_spanned(other, "unknown option of a kind")),
+            }
+        }
+    }
+    Ok(options)
+}
+
+fn field_options(attrs: &[Attribute]) -> syn::Result<FieldOptions> {
+    let mut options = FieldOptions::default();
+    for attr in attrs.iter().filter(|a| a.path().is_ident("field")) {
+        for meta in metas(attr)? {
+            match &meta {
+                Meta::Path(path) if path.is_ident("default") => {
+                    options.default = Some(quote!(::moldloft_registry::DefaultValue::Unset));
+                }
+                Meta::Path(path) if path.is_ident("angle") => options.angle = true,
+                Meta::NameValue(nv) if nv.path.is_ident("default") => {
+                    let value = &nv.value;
+                    options.default = Some(match value {
+                        Expr::Lit(l) if matches!(l.lit, Lit::Str(_)) => {
+                            quote!(::moldloft_registry::DefaultValue::Text(#value))
+                        }
+                        _ => quote!(::moldloft_registry::DefaultValue::Number((#value) as f64)),
+                    });
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("min") => {
+                    options.min = Some(nv.value.clone())
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("max") => {
+                    options.max = Some(nv.value.clone())
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("min_items") => {
+                    options.min_items = Some(nv.value.clone());
+                }
+                other => return Err(syn::Error::new_spanned(other, "unknown option of a field")),
+            }
+        }
+    }
+    Ok(options)
+}
+
+/// The text of the doc comments, one blank stripped from the front of each line.
+fn doc_text(attrs: &[Attribute]) -> String {
+    let mut lines = Vec::new();
+    for attr in attrs.iter().filter(|a| a.path().is_ident("doc")) {
+        if let Meta::NameValue(nv) = &attr.meta
+            && let Expr::Lit(lit) = &nv.value
+            && let Lit::Str(text) = &lit.lit
+        {
+            let text = text.value();
+            lines.push(text.strip_prefix(' ').unwrap_or(&text).trim_end().to_string());
+        }
+    }
+    lines.join("\n").trim().to_string()
+}

@@ -1,0 +1,192 @@
+use crate::{Class, Fault, Field, Head, Place, Row, Value};
+use moldloft_num::Real;
+use moldloft_num::trace::Key;
+
+/// The arguments of a call as they were written.
+#[derive(Clone, Debug)]
+pub struct Given<'a, T: Real> {
+    /// In order.
+    pub positional: Vec<Value<T>>,
+    /// `name = value`.
+    pub named: Vec<(&'a str, Value<T>)>,
+}
+
+/// Puts arguments in the order of the row's fields, fills in defaults and checks count, names,
+/// classes and ranges; `class_of` tells the class of an object that was not read yet. Named
+/// arguments that belong to the head go there.
+///
+/// # Errors
+/// A [`Fault`] with its place. A place beyond the fields, `fields.len() + k`, is the k-th named
+/// argument.
+pub fn arrange<T: Real>(
+    row: &Row,
+    given: Given<T>,
+    class_of: impl Fn(Key) -> Class,
+) -> Result<(Vec<Value<T>>, Head), Fault> {
+    let fields = &row.fields;
+    let mut head = Head::of(row.class);
+    if given.positional.len() > fields.len() {
+        let names: Vec<_> = fields.iter().map(|f| f.name).collect();
+        return Err(Fault::new(
+            "too-many-arguments",
+            format!("{} takes at most {} arguments", row.name, fields.len()),
+        )
+        .expected(format!("{}({})", row.name, names.join(", ")))
+        .found(format!("{} arguments", given.positional.len()))
+        .in_field(fields.len()));
+    }
+    let mut args: Vec<Option<Value<T>>> = given.positional.into_iter().map(Some).collect();
+    args.resize(fields.len(), None);
+    for (k, (name, value)) in given.named.into_iter().enumerate() {
+        match row.field(name) {
+            Some(at) if args[at].is_none() => args[at] = Some(value),
+            Some(at) => {
+                return Err(Fault::new(
+                    "argument-twice",
+                    format!("`{name}` of {} is given twice", row.name),
+                )
+                .help(format!("`{name}` is already the argument number {}", at + 1))
+                .in_field(fields.len() + k));
+            }
+            None if row.kind => {
+                let set = head.set(name, &value).map_err(|f| f.in_field(fields.len() + k))?;
+                if !set {
+                    return Err(unknown_argument(row, name).in_field(fields.len() + k));
+                }
+            }
+            None => return Err(unknown_argument(row, name).in_field(fields.len() + k)),
+        }
+    }
+    let mut filled = Vec::with_capacity(fields.len());
+    for (at, (field, arg)) in fields.iter().zip(args).enumerate() {
+        let arg = match (arg, field.default) {
+            (None | Some(Value::Unset), Some(default)) => default.value(),
+            (Some(arg), _) => arg,
+            (None, None) => {
+                return Err(Fault::new(
+                    "missing-argument",
+                    format!("{} needs `{}`: {}", row.name, field.name, lower(field.help)),
+                )
+                .expected(expectation(field))
+                .in_field(at));
+            }
+        };
+        check(field, &arg, &class_of).map_err(|fault| fault.in_field(at))?;
+        filled.push(arg);
+    }
+    Ok((filled, head))
+}
+
+fn lower(help: &str) -> String {
+    let mut chars = help.trim_end_matches('.').chars();
+    match chars.next() {
+        Some(first) => first.to_lowercase().chain(chars).collect(),
+        None => String::new(),
+    }
+}
+
+fn expectation(field: &Field) -> String {
+    if field.many {
+        format!("a list {{...}} of {}s", field.class.name())
+    } else {
+        field.class.a().to_string()
+    }
+}
+
+fn unknown_argument(row: &Row, name: &str) -> Fault {
+    let heads = if row.kind { &crate::HEAD[..] } else { &[] };
+    let known = || row.fields.iter().chain(heads).map(|f| f.name);
+    let fault = Fault::new("unknown-argument", format!("{} has no argument `{name}`", row.name))
+        .expected(known().collect::<Vec<_>>().join(", "));
+    match moldloft_diag::nearest(name, known()) {
+        Some(near) => fault.help(format!("did you mean `{near}`?")),
+        None => fault,
+    }
+}
+
+fn check<T: Real>(
+    field: &Field,
+    arg: &Value<T>,
+    class_of: &impl Fn(Key) -> Class,
+) -> Result<(), Fault> {
+    let one = |value: &Value<T>| -> Result<(), Fault> {
+        let found = match value {
+            Value::Object(key) => class_of(*key),
+            Value::Unset if field.default.is_some() => return Ok(()),
+            other => other.class(),
+        };
+        if !field.class.accepts(found) {
+            return Err(Fault::wrong_class(field.class, found));
+        }
+        if let Value::Number(x) = value {
+            range(field, x.re())?;
+        }
+        Ok(())
+    };
+    if !field.many {
+        return one(arg);
+    }
+    let length = match arg {
+        Value::List(items) => {
+            for (k, item) in items.iter().enumerate() {
+                one(item).map_err(|fault| fault.in_item(k))?;
+            }
+            items.len()
+        }
+        Value::Vector(_) if matches!(field.class, Class::Number | Class::Integer) => 3,
+        Value::Numbers(a) => a.items.len(),
+        Value::Vectors(a) => a.items.len(),
+        Value::Unset if field.default.is_some() => return Ok(()),
+        Value::Object(_) | Value::Unset => 0,
+        other => {
+            return Err(Fault::new(
+                "not-a-list",
+                format!("expected a list of {}s, found {}", field.class.name(), other.class().a()),
+            )
+            .expected(expectation(field))
+            .found(other.class().a())
+            .help("write the items in braces: {a, b}"));
+        }
+    };
+    if length < field.min_items {
+        return Err(Fault::new(
+            "too-few-items",
+            format!("`{}` needs at least {} items, found {length}", field.name, field.min_items),
+        )
+        .expected(format!("at least {} {}s", field.min_items, field.class.name()))
+        .found(format!("{length}")));
+    }
+    Ok(())
+}
+
+fn range(field: &Field, x: f64) -> Result<(), Fault> {
+    if !x.is_finite() {
+        return Err(Fault::new(
+            "not-finite",
+            format!("`{}` is {x}, which is no number", field.name),
+        )
+        .expected("a finite number")
+        .found(x.to_string()));
+    }
+    let low = field.min.is_some_and(|low| x < low);
+    let high = field.max.is_some_and(|high| x > high);
+    if !low && !high {
+        return Ok(());
+    }
+    let expected = match (field.min, field.max) {
+        (Some(low), Some(high)) => format!("a number from {low} to {high}"),
+        (Some(low), None) => format!("a number of at least {low}"),
+        (None, Some(high)) => format!("a number of at most {high}"),
+        (None, None) => unreachable!("a bound was exceeded"),
+    };
+    Err(Fault::new("out-of-range", format!("`{}` = {x} is out of range", field.name))
+        .expected(expected)
+        .found(x.to_string()))
+}
+
+impl Place {
+    /// The place of a whole argument.
+    pub fn of(field: usize) -> Self {
+        Self { field, item: None }
+    }
+}

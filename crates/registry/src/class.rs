@@ -1,0 +1,184 @@
+use std::fmt;
+
+/// What kind of thing a value is, or an argument must be. Classes are data: a bead is a point that
+/// also knows its curve, so it is accepted wherever a point is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Class {
+    /// Anything.
+    Any,
+    /// A number.
+    Number,
+    /// A whole number.
+    Integer,
+    /// A text.
+    Text,
+    /// A vector {a, b, c}.
+    Vector,
+    /// A row or grid of numbers (`farray`).
+    Numbers,
+    /// A row or grid of vectors (the language's `curve` and `surface`).
+    Vectors,
+    /// A point in space.
+    Point,
+    /// A point on a curve.
+    Bead,
+    /// A point on a surface.
+    Magnet,
+    /// A point on a snake.
+    Ring,
+    /// A parametric curve.
+    Curve,
+    /// A curve on a surface.
+    Snake,
+    /// A parametric surface.
+    Surface,
+    /// A plane.
+    Plane,
+    /// What things are mirrored in or projected to: a plane, line, point or "x=0", "y=0", "z=0".
+    Mirror,
+    /// A frame of three axes.
+    Frame,
+    /// A family of plane sections.
+    Contours,
+    /// A law that redistributes a parameter.
+    Relabel,
+    /// An implicit function of space.
+    Field,
+    /// A list.
+    List,
+}
+
+impl Class {
+    /// All classes, in the order of the reference.
+    pub const ALL: [Class; 21] = [
+        Class::Any,
+        Class::Number,
+        Class::Integer,
+        Class::Text,
+        Class::Vector,
+        Class::Numbers,
+        Class::Vectors,
+        Class::Point,
+        Class::Bead,
+        Class::Magnet,
+        Class::Ring,
+        Class::Curve,
+        Class::Snake,
+        Class::Surface,
+        Class::Plane,
+        Class::Mirror,
+        Class::Frame,
+        Class::Contours,
+        Class::Relabel,
+        Class::Field,
+        Class::List,
+    ];
+
+    /// The class's name, as in the reference.
+    pub fn name(self) -> &'static str {
+        match self {
+            Class::Any => "value",
+            Class::Number => "number",
+            Class::Integer => "integer",
+            Class::Text => "text",
+            Class::Vector => "vector",
+            Class::Numbers => "farray",
+            Class::Vectors => "row of vectors",
+            Class::Point => "point",
+            Class::Bead => "bead",
+            Class::Magnet => "magnet",
+            Class::Ring => "ring",
+            Class::Curve => "curve",
+            Class::Snake => "snake",
+            Class::Surface => "surface",
+            Class::Plane => "plane",
+            Class::Mirror => "mirror",
+            Class::Frame => "frame",
+            Class::Contours => "contours",
+            Class::Relabel => "relabel",
+            Class::Field => "field",
+            Class::List => "list",
+        }
+    }
+
+    /// The name with its article, for messages: "a curve".
+    pub fn a(self) -> &'static str {
+        match self {
+            Class::Any => "a value",
+            Class::Number => "a number",
+            Class::Integer => "a whole number",
+            Class::Text => "a text",
+            Class::Vector => "a vector",
+            Class::Numbers => "an farray",
+            Class::Vectors => "a row of vectors",
+            Class::Point => "a point",
+            Class::Bead => "a bead (a point on a curve)",
+            Class::Magnet => "a magnet (a point on a surface)",
+            Class::Ring => "a ring (a point on a snake)",
+            Class::Curve => "a curve",
+            Class::Snake => "a snake (a curve on a surface)",
+            Class::Surface => "a surface",
+            Class::Plane => "a plane",
+            Class::Mirror => "a plane, line or point to mirror in",
+            Class::Frame => "a frame",
+            Class::Contours => "contours",
+            Class::Relabel => "a relabel",
+            Class::Field => "a field",
+            Class::List => "a list",
+        }
+    }
+
+    /// True when a value of class `found` may stand where this class is asked for.
+    pub fn accepts(self, found: Class) -> bool {
+        use Class::*;
+        match self {
+            Any => true,
+            _ if self == found || found == Any => true,
+            Number => found == Integer,
+            Integer => found == Number,
+            Vector => matches!(found, Point | Bead | Magnet | Ring),
+            Point => matches!(found, Bead | Magnet | Ring | Vector),
+            Bead | Magnet => found == Ring,
+            Curve => found == Snake,
+            Vectors => found == List,
+            Numbers => found == List,
+            List => matches!(found, Numbers | Vectors),
+            Plane => found == Text,
+            Mirror => {
+                matches!(found, Plane | Point | Bead | Magnet | Ring | Vector | Curve | Text)
+            }
+            _ => false,
+        }
+    }
+
+    /// True for the classes of shapes that are meshed or drawn: they take divisions.
+    pub fn dimension(self) -> Option<usize> {
+        match self {
+            Class::Point | Class::Bead | Class::Magnet | Class::Ring => Some(0),
+            Class::Curve | Class::Snake => Some(1),
+            Class::Surface => Some(2),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Class {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_are_magnets_beads_and_points() {
+        for wanted in [Class::Ring, Class::Magnet, Class::Bead, Class::Point] {
+            assert!(wanted.accepts(Class::Ring));
+        }
+        assert!(!Class::Ring.accepts(Class::Magnet));
+        assert!(!Class::Bead.accepts(Class::Magnet));
+        assert!(Class::Curve.accepts(Class::Snake) && !Class::Snake.accepts(Class::Curve));
+    }
+}

@@ -1,0 +1,36 @@
+//! The one registry: everything that can be called is a row of pure functions
+//! `arguments -> Value`.
+//!
+//! An entity kind, an array intrinsic, an implicit primitive, a user's Python function: each is a
+//! [`Row`] with a name, documented [`Field`]s and a body. `Kind name(...)` in the language calls a
+//! row and keeps the result under a name; `f(...)` calls one and does not.
+//!
+//! `struct + #[derive(Kind)] -> Row -> { language, model files, Python, reference page }`
+//!
+//! Invariant: this crate knows no particular kind, no graph and no file; it builds without them.
+
+mod args;
+mod class;
+mod fault;
+mod head;
+mod read;
+mod refs;
+mod row;
+mod value;
+
+pub use args::{Given, arrange};
+pub use class::Class;
+pub use fault::{Fault, Place};
+pub use head::{HEAD, Head};
+pub use moldloft_registry_derive::Kind;
+pub use read::{FromValue, Mirror, many};
+pub use refs::{CurveRef, FieldRef, Point, SurfaceRef};
+pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
+pub use value::{Array, ArrayShape, Contours, Value};
+
+/// What the derive macro's output refers to.
+#[doc(hidden)]
+pub mod export {
+    pub use crate::row::StaticRow;
+    pub use moldloft_num::{Dual4, Real};
+}

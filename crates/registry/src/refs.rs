@@ -1,0 +1,189 @@
+use moldloft_num::trace::{Key, Piece, Root, Trace};
+use moldloft_num::{
+    Curve, CurveJet, Field, Jet, Order, Real, Surface, Vec3, lift_curve, lift_surface,
+};
+use smallvec::SmallVec;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// A point in space that may also know its place on a curve and on a surface: so a bead, a magnet
+/// or a ring is a point with more to tell.
+#[derive(Clone, Debug)]
+pub struct Point<T: Real> {
+    /// Position.
+    pub xyz: Vec3<T>,
+    /// The object, once it has a name.
+    pub key: Option<Key>,
+    /// The curve and parameter t it lies at, for beads and rings.
+    pub on_curve: Option<Arc<(CurveRef<T>, T)>>,
+    /// The surface and parameters (u, v) it lies at, for magnets and rings.
+    pub on_surface: Option<Arc<(SurfaceRef<T>, [T; 2])>>,
+}
+
+impl<T: Real> Point<T> {
+    /// A free point.
+    pub fn free(xyz: Vec3<T>) -> Self {
+        Self { xyz, key: None, on_curve: None, on_surface: None }
+    }
+
+    /// The point of `curve` at `t`; on a snake it also knows its place on the surface.
+    pub fn on_curve(curve: CurveRef<T>, t: T) -> Self {
+        let xyz = curve.jet(t, Order::Zero)[0];
+        let on_surface = curve.surface.as_ref().and_then(|surface| {
+            let w = curve.on_surface(t, Order::Zero)?[0];
+            Some(Arc::new((SurfaceRef::clone(surface), [w.x, w.y])))
+        });
+        Self { xyz, key: None, on_curve: Some(Arc::new((curve, t))), on_surface }
+    }
+
+    /// The point of `surface` at (`u`, `v`).
+    pub fn on_surface(surface: SurfaceRef<T>, u: T, v: T) -> Self {
+        let xyz = surface.jet(u, v, Order::Zero).p;
+        Self { xyz, key: None, on_curve: None, on_surface: Some(Arc::new((surface, [u, v]))) }
+    }
+
+    /// How deep the shapes are nested that this point holds on to.
+    pub fn depth(&self) -> u32 {
+        let curve = self.on_curve.as_ref().map_or(0, |p| p.0.depth);
+        curve.max(self.on_surface.as_ref().map_or(0, |p| p.0.depth))
+    }
+
+    /// True when position and places are the same bits and the same shapes.
+    pub fn same(&self, o: &Self) -> bool {
+        let curves = match (&self.on_curve, &o.on_curve) {
+            (Some(a), Some(b)) => a.1.bits_eq(b.1) && a.0.same(&b.0),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        let surfaces = match (&self.on_surface, &o.on_surface) {
+            (Some(a), Some(b)) => {
+                a.1[0].bits_eq(b.1[0]) && a.1[1].bits_eq(b.1[1]) && a.0.same(&b.0)
+            }
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        self.xyz.bits_eq(o.xyz) && self.key == o.key && curves && surfaces
+    }
+}
+
+/// A curve with the identity of its object.
+#[derive(Clone)]
+pub struct CurveRef<T: Real> {
+    shape: Arc<dyn Curve<T>>,
+    /// The object, once it has a name.
+    pub key: Option<Key>,
+    /// The surface it lies on, for snakes.
+    pub surface: Option<Box<SurfaceRef<T>>>,
+    /// How deep shapes are nested in it, itself included.
+    pub depth: u32,
+}
+
+/// A surface with the identity of its object.
+#[derive(Clone)]
+pub struct SurfaceRef<T: Real> {
+    shape: Arc<dyn Surface<T>>,
+    /// The object, once it has a name.
+    pub key: Option<Key>,
+    /// How deep shapes are nested in it, itself included.
+    pub depth: u32,
+}
+
+/// An implicit function.
+#[derive(Clone)]
+pub struct FieldRef<T: Real> {
+    shape: Arc<dyn Field<T>>,
+}
+
+macro_rules! shape_ref {
+    ($name:ident, $shape:ident) => {
+        impl<T: Real> Deref for $name<T> {
+            type Target = dyn $shape<T>;
+            fn deref(&self) -> &Self::Target {
+                &*self.shape
+            }
+        }
+
+        impl<T: Real> $name<T> {
+            /// True when both are the very same shape under the same name.
+            pub fn same(&self, o: &Self) -> bool {
+                Arc::ptr_eq(&self.shape, &o.shape)
+            }
+        }
+
+        impl<T: Real> std::fmt::Debug for $name<T> {
+            fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str(stringify!($name))
+            }
+        }
+    };
+}
+shape_ref!(CurveRef, Curve);
+shape_ref!(SurfaceRef, Surface);
+shape_ref!(FieldRef, Field);
+
+impl<T: Real> CurveRef<T> {
+    /// A curve that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    pub fn new(shape: impl Curve<T> + 'static, nesting: u32) -> Self {
+        Self { shape: Arc::new(shape), key: None, surface: None, depth: nesting + 1 }
+    }
+
+    /// A snake on `surface`.
+    pub fn snake(shape: impl Curve<T> + 'static, surface: SurfaceRef<T>, nesting: u32) -> Self {
+        let depth = nesting.max(surface.depth) + 1;
+        Self { shape: Arc::new(shape), key: None, surface: Some(Box::new(surface)), depth }
+    }
+
+    /// The position at a parameter that is a jet.
+    #[inline(always)]
+    pub fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        lift_curve(&self.shape.jet(t.value(), J::ORDER), t)
+    }
+
+    /// Position and derivatives at `t`.
+    #[inline(always)]
+    pub fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        self.shape.jet(t, order)
+    }
+
+    /// The position at the end `t` = 0 or 1.
+    pub fn end(&self, t: f64) -> Vec3<T> {
+        self.shape.jet(T::from(t), Order::Zero)[0]
+    }
+
+    /// The roots it runs along; a nameless curve that is no alias has none.
+    pub fn pieces(&self) -> SmallVec<[Piece<T>; 1]> {
+        match (self.shape.trace(), self.key) {
+            (Trace::Own(_), None) => SmallVec::new(),
+            (trace, key) => trace.pieces(Root::Curve(key.unwrap_or(Key(u32::MAX)))),
+        }
+    }
+
+    /// The point objects at its two ends, where they are known.
+    pub fn end_points(&self) -> [Option<Key>; 2] {
+        match self.shape.trace() {
+            Trace::Own(ends) => ends,
+            Trace::Point(point) => [point, point],
+            Trace::Pieces(pieces) => {
+                [pieces.first().and_then(|p| p.from.point), pieces.last().and_then(|p| p.to.point)]
+            }
+        }
+    }
+}
+
+impl<T: Real> SurfaceRef<T> {
+    /// A surface that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    pub fn new(shape: impl Surface<T> + 'static, nesting: u32) -> Self {
+        Self { shape: Arc::new(shape), key: None, depth: nesting + 1 }
+    }
+
+    /// The position at parameters that are jets.
+    #[inline(always)]
+    pub fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        lift_surface(&self.shape.jet(u.value(), v.value(), J::ORDER), u, v)
+    }
+}
+
+impl<T: Real> FieldRef<T> {
+    /// An implicit function.
+    pub fn new(shape: impl Field<T> + 'static) -> Self {
+        Self { shape: Arc::new(shape) }
+    }
+}

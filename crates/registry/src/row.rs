@@ -1,0 +1,228 @@
+use crate::{Class, Fault, FromValue, Value};
+use indexmap::IndexMap;
+use moldloft_num::{Dual4, Real};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// The closed list of scalars that models are evaluated with.
+pub trait Scalar: Real + FromValue<Self> {
+    /// The body of `row` for this scalar, called.
+    ///
+    /// # Errors
+    /// What the body reports.
+    fn call(row: &Row, args: &[Value<Self>], context: &Context) -> Result<Value<Self>, Fault>;
+}
+
+impl Scalar for f64 {
+    fn call(row: &Row, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, Fault> {
+        match &row.body {
+            Body::Native { plain, .. } => plain(args, context),
+            Body::Foreign(f) => f.call_plain(args, context),
+        }
+    }
+}
+
+impl Scalar for Dual4 {
+    fn call(row: &Row, args: &[Value<Dual4>], context: &Context) -> Result<Value<Dual4>, Fault> {
+        match &row.body {
+            Body::Native { dual, .. } => dual(args, context),
+            Body::Foreign(f) => f.call_dual(args, context),
+        }
+    }
+}
+
+/// What a call may know besides its arguments.
+#[derive(Clone, Copy, Debug)]
+pub struct Context {
+    /// The model's tolerance: the distance below which two points count as one.
+    pub tolerance: f64,
+    /// How deep shapes are nested in the arguments.
+    pub nesting: u32,
+}
+
+impl Default for Context {
+    fn default() -> Self {
+        Self { tolerance: 1e-6, nesting: 0 }
+    }
+}
+
+/// Makes the value of a call from its arguments, which were read into `Self`.
+pub trait Build<T: Real> {
+    /// The value.
+    ///
+    /// # Errors
+    /// A [`Fault`] when the arguments make no such thing.
+    fn build(self, context: &Context) -> Result<Value<T>, Fault>;
+}
+
+/// The unit of a number, where language and model files differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// A plain number or a length in the model's unit.
+    None,
+    /// An angle: radians in the language and in Python, degrees in model files.
+    Angle,
+}
+
+/// What an argument is when it is not given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DefaultValue {
+    /// Absent: the kind does without it.
+    Unset,
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(&'static str),
+}
+
+impl DefaultValue {
+    /// The default as a value.
+    pub fn value<T: Real>(self) -> Value<T> {
+        match self {
+            DefaultValue::Unset => Value::Unset,
+            DefaultValue::Number(x) => Value::Number(x.into()),
+            DefaultValue::Text(text) => Value::text(text),
+        }
+    }
+}
+
+/// One argument of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Field {
+    /// Its name, as in a named argument.
+    pub name: &'static str,
+    /// A line of help.
+    pub help: &'static str,
+    /// The class it must have (each item, when `many`).
+    pub class: Class,
+    /// True for a list.
+    pub many: bool,
+    /// What it is when it is not given; `None` when it must be.
+    pub default: Option<DefaultValue>,
+    /// Its unit.
+    pub unit: Unit,
+    /// Least value of a number.
+    pub min: Option<f64>,
+    /// Greatest value of a number.
+    pub max: Option<f64>,
+    /// Least length of a list.
+    pub min_items: usize,
+}
+
+/// A function that is made at run time, such as a user's Python function.
+pub trait Foreign: Send + Sync {
+    /// The value for plain numbers.
+    ///
+    /// # Errors
+    /// What the function reports.
+    fn call_plain(&self, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, Fault>;
+    /// The value for numbers with derivatives.
+    ///
+    /// # Errors
+    /// What the function reports.
+    fn call_dual(&self, args: &[Value<Dual4>], context: &Context) -> Result<Value<Dual4>, Fault>;
+}
+
+type Call<T> = fn(&[Value<T>], &Context) -> Result<Value<T>, Fault>;
+
+/// How a row is computed.
+#[derive(Clone)]
+pub enum Body {
+    /// Rust code, for each scalar.
+    Native {
+        /// For `f64`.
+        plain: Call<f64>,
+        /// For dual numbers.
+        dual: Call<Dual4>,
+    },
+    /// A function from outside.
+    Foreign(Arc<dyn Foreign>),
+}
+
+/// A callable of the registry.
+#[derive(Clone)]
+pub struct Row {
+    /// Its name: a kind's starts with a capital letter, a function's does not.
+    pub name: Cow<'static, str>,
+    /// Its documentation; the first line is a summary.
+    pub doc: Cow<'static, str>,
+    /// The class of its value.
+    pub class: Class,
+    /// Its arguments, in positional order.
+    pub fields: Cow<'static, [Field]>,
+    /// True for a kind of entity: it is declared under a name.
+    pub kind: bool,
+    /// The fields in the order of a model file's columns, by name, blank-separated; `relabel` may
+    /// stand for a column that is only ever `*`. `None` when model files have no such entity.
+    pub columns: Option<&'static str>,
+    /// An example in the language that runs by itself.
+    pub example: Cow<'static, str>,
+    /// How it is computed.
+    pub body: Body,
+}
+
+impl Row {
+    /// The first line of the documentation.
+    pub fn summary(&self) -> &str {
+        self.doc.lines().next().unwrap_or("")
+    }
+
+    /// Position of the field called `name`.
+    pub fn field(&self, name: &str) -> Option<usize> {
+        self.fields.iter().position(|f| f.name == name)
+    }
+}
+
+impl std::fmt::Debug for Row {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "Row({})", self.name)
+    }
+}
+
+/// What the derive macro knows of a kind.
+#[doc(hidden)]
+pub trait StaticRow {
+    fn row() -> Row;
+}
+
+/// All rows, in the order of the reference.
+#[derive(Clone, Debug, Default)]
+pub struct Registry {
+    rows: IndexMap<String, Arc<Row>>,
+}
+
+impl Registry {
+    /// A registry of these rows.
+    ///
+    /// # Panics
+    /// When two rows have the same name.
+    pub fn new(rows: impl IntoIterator<Item = Row>) -> Self {
+        let mut registry = Self::default();
+        for row in rows {
+            let name = row.name.to_string();
+            let old = registry.rows.insert(name, Arc::new(row));
+            assert!(old.is_none(), "two rows are called {}", old.unwrap().name);
+        }
+        registry
+    }
+
+    /// Adds a row made at run time, replacing one of the same name.
+    pub fn add(&mut self, row: Row) {
+        self.rows.insert(row.name.to_string(), Arc::new(row));
+    }
+
+    /// The row called `name`.
+    pub fn get(&self, name: &str) -> Option<&Arc<Row>> {
+        self.rows.get(name)
+    }
+
+    /// All rows in order.
+    pub fn rows(&self) -> impl Iterator<Item = &Arc<Row>> {
+        self.rows.values()
+    }
+
+    /// All names in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.rows.keys().map(String::as_str)
+    }
+}

@@ -1,0 +1,214 @@
+use crate::{Class, CurveRef, FieldRef, Point, SurfaceRef};
+use moldloft_num::trace::Key;
+use moldloft_num::{Frame, Plane, Real, Vec3};
+use std::sync::Arc;
+
+/// A row `[n]` or a grid `[m, n]` of numbers or vectors; the first index runs fastest in meaning
+/// (i) and slowest in memory, as in NumPy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Array<E> {
+    /// The extents; one or two of them.
+    pub shape: ArrayShape,
+    /// The elements, `[i * n + j]`.
+    pub items: Vec<E>,
+}
+
+/// The extents of an [`Array`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArrayShape {
+    /// `[n]`.
+    Row(usize),
+    /// `[m, n]`.
+    Grid(usize, usize),
+}
+
+impl<E> Array<E> {
+    /// A row.
+    pub fn row(items: Vec<E>) -> Self {
+        Self { shape: ArrayShape::Row(items.len()), items }
+    }
+
+    /// A grid of `m` by `items.len() / m`.
+    pub fn grid(m: usize, n: usize, items: Vec<E>) -> Self {
+        assert_eq!(m * n, items.len());
+        Self { shape: ArrayShape::Grid(m, n), items }
+    }
+}
+
+impl std::fmt::Display for ArrayShape {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            ArrayShape::Row(n) => write!(f, "[{n}]"),
+            ArrayShape::Grid(m, n) => write!(f, "[{m},{n}]"),
+        }
+    }
+}
+
+/// A family of parallel plane sections.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contours<T> {
+    /// Axis of the sections' common normal: 0, 1, 2 for X, Y, Z.
+    pub axis: usize,
+    /// The coordinates of the sections along that axis.
+    pub values: Vec<T>,
+}
+
+/// Anything that an expression, an argument or an object can be.
+#[derive(Clone, Debug)]
+pub enum Value<T: Real> {
+    /// An argument that was not given and has no default (`*` in a model file).
+    Unset,
+    /// A number.
+    Number(T),
+    /// A text.
+    Text(Arc<str>),
+    /// A vector.
+    Vector(Vec3<T>),
+    /// A row or grid of numbers.
+    Numbers(Arc<Array<T>>),
+    /// A row or grid of vectors.
+    Vectors(Arc<Array<Vec3<T>>>),
+    /// A list.
+    List(Arc<[Value<T>]>),
+    /// A declared object, not read yet.
+    Object(Key),
+    /// A point, bead, magnet or ring.
+    Point(Box<Point<T>>),
+    /// A curve or snake.
+    Curve(CurveRef<T>),
+    /// A surface.
+    Surface(SurfaceRef<T>),
+    /// A plane.
+    Plane(Arc<Plane<T>>),
+    /// A frame.
+    Frame(Arc<Frame<T>>),
+    /// Plane sections.
+    Contours(Arc<Contours<T>>),
+    /// An implicit function.
+    Field(FieldRef<T>),
+}
+
+impl<T: Real> Value<T> {
+    /// A text.
+    pub fn text(text: &str) -> Self {
+        Value::Text(text.into())
+    }
+
+    /// A list.
+    pub fn list(items: impl IntoIterator<Item = Value<T>>) -> Self {
+        Value::List(items.into_iter().collect())
+    }
+
+    /// The class of the value; of an object that was not read yet, `Any`.
+    pub fn class(&self) -> Class {
+        match self {
+            Value::Unset | Value::Object(_) => Class::Any,
+            Value::Number(_) => Class::Number,
+            Value::Text(_) => Class::Text,
+            Value::Vector(_) => Class::Vector,
+            Value::Numbers(_) => Class::Numbers,
+            Value::Vectors(_) => Class::Vectors,
+            Value::List(_) => Class::List,
+            Value::Point(p) => match (&p.on_curve, &p.on_surface) {
+                (Some(_), Some(_)) => Class::Ring,
+                (Some(_), None) => Class::Bead,
+                (None, Some(_)) => Class::Magnet,
+                (None, None) => Class::Point,
+            },
+            Value::Curve(c) if c.surface.is_some() => Class::Snake,
+            Value::Curve(_) => Class::Curve,
+            Value::Surface(_) => Class::Surface,
+            Value::Plane(_) => Class::Plane,
+            Value::Frame(_) => Class::Frame,
+            Value::Contours(_) => Class::Contours,
+            Value::Field(_) => Class::Field,
+        }
+    }
+
+    /// True when both are the same bits, the same objects and the very same shapes.
+    pub fn same(&self, o: &Self) -> bool {
+        match (self, o) {
+            (Value::Unset, Value::Unset) => true,
+            (Value::Number(a), Value::Number(b)) => a.bits_eq(*b),
+            (Value::Text(a), Value::Text(b)) => a == b,
+            (Value::Vector(a), Value::Vector(b)) => a.bits_eq(*b),
+            (Value::Numbers(a), Value::Numbers(b)) => {
+                Arc::ptr_eq(a, b)
+                    || a.shape == b.shape
+                        && a.items.iter().zip(&b.items).all(|(x, y)| x.bits_eq(*y))
+            }
+            (Value::Vectors(a), Value::Vectors(b)) => {
+                Arc::ptr_eq(a, b)
+                    || a.shape == b.shape
+                        && a.items.iter().zip(&b.items).all(|(x, y)| x.bits_eq(*y))
+            }
+            (Value::List(a), Value::List(b)) => {
+                a.len() == b.len() && a.iter().zip(b.iter()).all(|(x, y)| x.same(y))
+            }
+            (Value::Object(a), Value::Object(b)) => a == b,
+            (Value::Point(a), Value::Point(b)) => a.same(b),
+            (Value::Curve(a), Value::Curve(b)) => a.same(b),
+            (Value::Surface(a), Value::Surface(b)) => a.same(b),
+            (Value::Plane(a), Value::Plane(b)) => {
+                a.point.bits_eq(b.point) && a.normal.bits_eq(b.normal)
+            }
+            (Value::Frame(a), Value::Frame(b)) => {
+                a.origin.bits_eq(b.origin) && a.axes.iter().zip(&b.axes).all(|(x, y)| x.bits_eq(*y))
+            }
+            (Value::Contours(a), Value::Contours(b)) => {
+                a.axis == b.axis
+                    && a.values.len() == b.values.len()
+                    && a.values.iter().zip(&b.values).all(|(x, y)| x.bits_eq(*y))
+            }
+            (Value::Field(a), Value::Field(b)) => a.same(b),
+            _ => false,
+        }
+    }
+
+    /// Calls `f` with every object that the value refers to, in order.
+    pub fn for_each_object(&self, f: &mut impl FnMut(Key)) {
+        match self {
+            Value::Object(key) => f(*key),
+            Value::List(items) => items.iter().for_each(|item| item.for_each_object(f)),
+            _ => {}
+        }
+    }
+
+    /// How deep shapes are nested in it.
+    pub fn depth(&self) -> u32 {
+        match self {
+            Value::Point(p) => p.depth(),
+            Value::Curve(c) => c.depth,
+            Value::Surface(s) => s.depth,
+            Value::List(items) => items.iter().map(Value::depth).max().unwrap_or(0),
+            _ => 0,
+        }
+    }
+
+    /// The value under the name of an object: shapes and points remember whose they are.
+    pub fn named(mut self, key: Key) -> Self {
+        match &mut self {
+            Value::Point(p) => p.key = Some(key),
+            Value::Curve(c) => c.key = Some(key),
+            Value::Surface(s) => s.key = Some(key),
+            _ => {}
+        }
+        self
+    }
+
+    /// True when every number in it, derivatives included, is finite.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Value::Number(a) => a.is_finite(),
+            Value::Vector(v) => v.is_finite(),
+            Value::Numbers(a) => a.items.iter().all(|x| x.is_finite()),
+            Value::Vectors(a) => a.items.iter().all(|x| x.is_finite()),
+            Value::List(items) => items.iter().all(Value::is_finite),
+            Value::Point(p) => p.xyz.is_finite(),
+            Value::Plane(p) => p.point.is_finite() && p.normal.is_finite(),
+            Value::Frame(f) => f.origin.is_finite() && f.axes.iter().all(|a| a.is_finite()),
+            Value::Contours(c) => c.values.iter().all(|x| x.is_finite()),
+            _ => true,
+        }
+    }
+}
