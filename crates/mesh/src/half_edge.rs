@@ -1,0 +1,94 @@
+//! The directed sides of the faces, matched by their pair of vertices.
+
+use crate::{Topology, is_triangle};
+
+/// A side of a face, from one corner to the next in the face's own direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct HalfEdge {
+    pub from: u32,
+    pub to: u32,
+    /// Four times the face plus the corner `from`.
+    pub corner: u32,
+}
+
+impl HalfEdge {
+    pub fn face(self) -> usize {
+        self.corner as usize / 4
+    }
+
+    /// The corner of the same face at `to`.
+    pub fn next_corner(self, faces: &[[u32; 4]]) -> u32 {
+        let sides = if is_triangle(faces[self.face()]) { 3 } else { 4 };
+        let base = self.corner & !3;
+        base + (self.corner - base + 1) % sides
+    }
+
+    fn ends(self) -> (u32, u32) {
+        (self.from.min(self.to), self.from.max(self.to))
+    }
+}
+
+/// All half edges, those between the same two vertices next to each other; edges ordered by their
+/// lower vertex, then their higher one; within an edge by face.
+///
+/// A counting sort by the lower vertex and small sorts inside: linear time for bounded valence.
+pub(crate) fn half_edges(topology: &Topology) -> Vec<HalfEdge> {
+    let faces = topology.faces();
+    let sides = || {
+        faces.iter().enumerate().flat_map(|(f, &face)| {
+            let n = if is_triangle(face) { 3 } else { 4 };
+            (0..n).map(move |k| HalfEdge {
+                from: face[k],
+                to: face[(k + 1) % n],
+                corner: (4 * f + k) as u32,
+            })
+        })
+    };
+    let mut start = vec![0usize; topology.vertex_count() + 1];
+    for side in sides() {
+        start[side.ends().0 as usize + 1] += 1;
+    }
+    for v in 1..start.len() {
+        start[v] += start[v - 1];
+    }
+    let empty = HalfEdge { from: 0, to: 0, corner: 0 };
+    let mut sorted = vec![empty; *start.last().unwrap_or(&0)];
+    let mut free = start.clone();
+    for side in sides() {
+        let slot = &mut free[side.ends().0 as usize];
+        sorted[*slot] = side;
+        *slot += 1;
+    }
+    for bucket in start.windows(2) {
+        sorted[bucket[0]..bucket[1]].sort_unstable_by_key(|e| (e.ends().1, e.corner));
+    }
+    sorted
+}
+
+/// The runs of half edges that lie between the same two vertices.
+pub(crate) fn edges(sorted: &[HalfEdge]) -> impl Iterator<Item = &[HalfEdge]> {
+    sorted.chunk_by(|a, b| a.ends() == b.ends())
+}
+
+/// Sets joined pair by pair; the root of a set is its lowest member.
+pub(crate) struct Joined(Vec<u32>);
+
+impl Joined {
+    pub fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    pub fn root(&mut self, mut k: u32) -> u32 {
+        while self.0[k as usize] != k {
+            let up = self.0[self.0[k as usize] as usize];
+            self.0[k as usize] = up;
+            k = up;
+        }
+        k
+    }
+
+    pub fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}

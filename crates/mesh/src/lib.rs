@@ -1,0 +1,47 @@
+//! Panel meshes: what they are, how large, how good, and how they float.
+//!
+//! `vertices and blocks -> Topology (+ positions) = Mesh -> report, measures, quality, hydrostatics`
+//!
+//! The connectivity ([`Topology`]) stands apart from the positions, so the same panels are measured
+//! with plain numbers or with dual numbers. Everything that measures is generic over
+//! [`moldloft_num::Real`]; the report of a topology, the quality and the sections look at real parts.
+//!
+//! Conventions: panels are counter-clockwise seen from outside, so their normals point from the solid
+//! to the air or water; z points up; lengths are in the model's unit. A triangle is a face whose
+//! last index is repeated.
+//!
+//! ```
+//! use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
+//! use moldloft_num::Vec3;
+//!
+//! let mut builder = TopologyBuilder::new();
+//! builder.add_vertices(6)?;
+//! builder.add_block(PatchInfo::new("plate"), 3, 2, (0..6).collect(), false)?;
+//! let positions = (0..6).map(|k| Vec3::of((k / 2) as f64, (k % 2) as f64, 0.0)).collect();
+//! let plate = Mesh::<f64>::new(builder.build().into(), positions)?;
+//! assert_eq!(measure(&plate).area, 2.0);
+//! assert_eq!(plate.report().open_loops.len(), 1);
+//! # Ok::<(), moldloft_mesh::MeshError>(())
+//! ```
+//!
+//! Invariant: this crate knows vertices by number only, never by the entity they came from; it opens
+//! no files. Sums run over fixed chunks in fixed order, so their bits do not depend on threads.
+
+mod error;
+mod half_edge;
+
+mod measure;
+mod mesh;
+mod panel;
+
+mod report;
+
+mod sum;
+mod topology;
+
+pub use error::MeshError;
+pub use measure::{Measures, measure, measure_patch};
+pub use mesh::Mesh;
+pub use panel::Panel;
+pub use report::{OpenLoop, TopologyReport};
+pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};
