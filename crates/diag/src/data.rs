@@ -115,24 +115,13 @@ mod tests {
         let data = d.to_data(&sources);
         let primary = data.primary.unwrap();
         assert_eq!(
-            (
-                primary.line,
-                primary.column,
-                primary.end_line,
-                primary.end_column
-            ),
+            (primary.line, primary.column, primary.end_line, primary.end_column),
             (2, 5, 2, 10)
         );
         let both = &data.secondary[0];
-        assert_eq!(
-            (both.line, both.column, both.end_line, both.end_column),
-            (1, 1, 2, 4)
-        );
+        assert_eq!((both.line, both.column, both.end_line, both.end_column), (1, 1, 2, 4));
         assert_eq!(data.edit.unwrap().replacement, "four");
-        assert_eq!(
-            (data.severity, data.object.as_deref()),
-            ("error", Some("P"))
-        );
+        assert_eq!((data.severity, data.object.as_deref()), ("error", Some("P")));
         assert!(data.rendered.starts_with("error[e]: m\n --> a.sdl:2:5\n"));
     }
 }

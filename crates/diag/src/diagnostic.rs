@@ -128,12 +128,7 @@ impl Diagnostic {
     #[must_use]
     pub fn at(mut self, span: Span) -> Self {
         if span.is_known() {
-            let text = self
-                .0
-                .primary
-                .take()
-                .map(|label| label.text)
-                .unwrap_or_default();
+            let text = self.0.primary.take().map(|label| label.text).unwrap_or_default();
             self.0.primary = Some(Label { span, text });
         }
         self
@@ -142,11 +137,7 @@ impl Diagnostic {
     /// Sets the place at fault only if there is none yet: for callers further out, who know a coarser place.
     #[must_use]
     pub fn or_at(self, span: Span) -> Self {
-        if self.0.primary.is_some() {
-            self
-        } else {
-            self.at(span)
-        }
+        if self.0.primary.is_some() { self } else { self.at(span) }
     }
 
     /// Sets the words printed under the place at fault (else `expected …, found …` stands there).
@@ -168,10 +159,7 @@ impl Diagnostic {
     #[must_use]
     pub fn note_at(mut self, span: Span, text: impl Into<String>) -> Self {
         if span.is_known() {
-            self.0.secondary.push(Label {
-                span,
-                text: text.into(),
-            });
+            self.0.secondary.push(Label { span, text: text.into() });
         }
         self
     }
@@ -229,11 +217,7 @@ impl Diagnostic {
         replacement: impl Into<String>,
         title: impl Into<String>,
     ) -> Self {
-        self.0.edit = Some(Edit {
-            span,
-            replacement: replacement.into(),
-            title: title.into(),
-        });
+        self.0.edit = Some(Edit { span, replacement: replacement.into(), title: title.into() });
         self
     }
 
@@ -251,10 +235,7 @@ impl Diagnostic {
 
     /// The place at fault, or the unknown place.
     pub fn span(&self) -> Span {
-        self.0
-            .primary
-            .as_ref()
-            .map_or(Span::UNKNOWN, |label| label.span)
+        self.0.primary.as_ref().map_or(Span::UNKNOWN, |label| label.span)
     }
 }
 
@@ -309,10 +290,7 @@ mod tests {
             .label("here")
             .expected("a")
             .found("b");
-        assert_eq!(
-            d.to_string(),
-            "error[bad-thing]: a thing is bad (expected a, found b)"
-        );
+        assert_eq!(d.to_string(), "error[bad-thing]: a thing is bad (expected a, found b)");
         assert_eq!(d.span(), span);
         assert!(d.is_error());
         assert!(std::mem::size_of::<Result<f64, Diagnostic>>() <= 16);
@@ -320,9 +298,7 @@ mod tests {
 
     #[test]
     fn unknown_places_are_left_out() {
-        let d = Diagnostic::warning("w", "m")
-            .at(Span::UNKNOWN)
-            .note_at(Span::UNKNOWN, "x");
+        let d = Diagnostic::warning("w", "m").at(Span::UNKNOWN).note_at(Span::UNKNOWN, "x");
         assert!(d.primary.is_none() && d.secondary.is_empty());
         assert_eq!(d.or_at(Span::new(FileId(1), 0, 1)).span().file, FileId(1));
     }

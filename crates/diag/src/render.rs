@@ -13,11 +13,7 @@ const LINE_LIMIT: usize = 160;
 /// A place that spans several lines is marked on its first line, up to that line's end, with a trailing `…`.
 pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let mut out = String::new();
-    let _ = writeln!(
-        out,
-        "{}[{}]: {}",
-        diagnostic.severity, diagnostic.id, diagnostic.message
-    );
+    let _ = writeln!(out, "{}[{}]: {}", diagnostic.severity, diagnostic.id, diagnostic.message);
 
     let expectation = diagnostic.expectation();
     let primary = diagnostic.primary.as_ref().map(|label| {
@@ -26,14 +22,9 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
         } else {
             label.text.clone()
         };
-        Label {
-            span: label.span,
-            text,
-        }
+        Label { span: label.span, text }
     });
-    let said = primary
-        .as_ref()
-        .is_some_and(|label| Some(&label.text) == expectation.as_ref());
+    let said = primary.as_ref().is_some_and(|label| Some(&label.text) == expectation.as_ref());
 
     let places: Vec<Place> = primary
         .iter()
@@ -41,11 +32,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
         .chain(diagnostic.secondary.iter().map(|label| (label, '-')))
         .filter_map(|(label, mark)| Place::find(label, mark, sources))
         .collect();
-    let gutter = places
-        .iter()
-        .map(|place| digits(place.start.line))
-        .max()
-        .unwrap_or(1);
+    let gutter = places.iter().map(|place| digits(place.start.line)).max().unwrap_or(1);
 
     let mut shown: Option<&Place> = None;
     for place in &places {
@@ -53,11 +40,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
         if !same_file {
             let arrow = if shown.is_none() { "-->" } else { ":::" };
             let (name, at) = (place.name, place.start);
-            let _ = writeln!(
-                out,
-                "{:gutter$}{arrow} {name}:{}:{}",
-                "", at.line, at.column
-            );
+            let _ = writeln!(out, "{:gutter$}{arrow} {name}:{}:{}", "", at.line, at.column);
         }
         let same_line = same_file
             && shown.is_some_and(|last| last.start.line == place.start.line && !last.clipped);
@@ -69,11 +52,8 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
         let _ = writeln!(out, "note: {text}");
     }
     if places.is_empty() && diagnostic.object.is_some() {
-        let _ = writeln!(
-            out,
-            "note: this is about `{}`",
-            diagnostic.object.as_deref().unwrap_or("")
-        );
+        let _ =
+            writeln!(out, "note: this is about `{}`", diagnostic.object.as_deref().unwrap_or(""));
     }
     for text in &diagnostic.notes {
         let _ = writeln!(out, "note: {text}");
@@ -89,10 +69,8 @@ pub fn render_all<'a>(
     diagnostics: impl IntoIterator<Item = &'a Diagnostic>,
     sources: &Sources,
 ) -> String {
-    let texts: Vec<String> = diagnostics
-        .into_iter()
-        .map(|diagnostic| render(diagnostic, sources))
-        .collect();
+    let texts: Vec<String> =
+        diagnostics.into_iter().map(|diagnostic| render(diagnostic, sources)).collect();
     texts.join("\n")
 }
 
@@ -117,15 +95,7 @@ impl<'a> Place<'a> {
         let end = sources.locate(span.file, span.end.max(span.start))?;
         let line = sources.line(span.file, start.line)?;
         let clipped = line.chars().count() > LINE_LIMIT;
-        Some(Place {
-            label,
-            mark,
-            name: sources.name(span.file)?,
-            line,
-            start,
-            end,
-            clipped,
-        })
+        Some(Place { label, mark, name: sources.name(span.file)?, line, start, end, clipped })
     }
 
     fn print(&self, out: &mut String, gutter: usize, line_is_shown: bool) {
@@ -138,16 +108,8 @@ impl<'a> Place<'a> {
         };
 
         // The piece of the line that is shown, in characters.
-        let from = if self.clipped {
-            first.saturating_sub(LINE_LIMIT / 4)
-        } else {
-            0
-        };
-        let to = if self.clipped {
-            (from + LINE_LIMIT).min(line_chars)
-        } else {
-            line_chars
-        };
+        let from = if self.clipped { first.saturating_sub(LINE_LIMIT / 4) } else { 0 };
+        let to = if self.clipped { (from + LINE_LIMIT).min(line_chars) } else { line_chars };
 
         let mut text = String::new();
         let mut before_mark = 0;
@@ -178,15 +140,9 @@ impl<'a> Place<'a> {
             let _ = writeln!(out, "{}", shown.trim_end());
         }
         let underline: String = std::iter::repeat_n(self.mark, marks.max(1)).collect();
-        let more = if self.end.line > self.start.line || last > to {
-            "…"
-        } else {
-            ""
-        };
-        let marked = format!(
-            "{:gutter$} | {:before_mark$}{underline}{more} {}",
-            "", "", self.label.text
-        );
+        let more = if self.end.line > self.start.line || last > to { "…" } else { "" };
+        let marked =
+            format!("{:gutter$} | {:before_mark$}{underline}{more} {}", "", "", self.label.text);
         let _ = writeln!(out, "{}", marked.trim_end());
     }
 }
@@ -209,24 +165,12 @@ mod tests {
         let file = sources.add("boat.srf", text);
         let defined = span_of(&sources, file, "hull =");
         let used = span_of(&sources, file, "hull, 0.5");
-        let d = Diagnostic::error(
-            "wrong-parent",
-            "a bead needs a curve, but `hull` is a surface",
-        )
-        .at(Span {
-            end: used.start + 4,
-            ..used
-        })
-        .note_at(
-            Span {
-                end: defined.start + 4,
-                ..defined
-            },
-            "`hull` is defined here",
-        )
-        .expected("a curve")
-        .found("a surface")
-        .help("for a point on a surface write `magnet b1 = on(hull, 0.5, v)`");
+        let d = Diagnostic::error("wrong-parent", "a bead needs a curve, but `hull` is a surface")
+            .at(Span { end: used.start + 4, ..used })
+            .note_at(Span { end: defined.start + 4, ..defined }, "`hull` is defined here")
+            .expected("a curve")
+            .found("a surface")
+            .help("for a point on a surface write `magnet b1 = on(hull, 0.5, v)`");
         assert_eq!(
             render(&d, &sources),
             "\
@@ -287,23 +231,16 @@ note: expected equal shapes
     #[test]
     fn long_lines_are_cut_and_no_place_is_fine() {
         let mut sources = Sources::new();
-        let file = sources.add(
-            "long.sdl",
-            format!("{}@{}", "a".repeat(5000), "b".repeat(5000)),
-        );
+        let file = sources.add("long.sdl", format!("{}@{}", "a".repeat(5000), "b".repeat(5000)));
         let d = Diagnostic::error("odd", "odd character").at(Span::new(file, 5000, 5001));
         let text = render(&d, &sources);
-        assert!(
-            text.lines().all(|line| line.chars().count() < 200),
-            "{text}"
-        );
+        assert!(text.lines().all(|line| line.chars().count() < 200), "{text}");
         let lines: Vec<&str> = text.lines().collect();
         let at = lines[2].chars().position(|c| c == '@').unwrap();
         assert_eq!(lines[3].chars().nth(at), Some('^'));
 
-        let bare = Diagnostic::error("no-file", "there is no such file")
-            .object("hull")
-            .help("look again");
+        let bare =
+            Diagnostic::error("no-file", "there is no such file").object("hull").help("look again");
         assert_eq!(
             render(&bare, &sources),
             "error[no-file]: there is no such file\nnote: this is about `hull`\nhelp: look again\n"

@@ -23,14 +23,8 @@ struct Source {
 impl Source {
     fn line_starts(&self) -> &[u32] {
         self.line_starts.get_or_init(|| {
-            let newlines = self
-                .text
-                .bytes()
-                .enumerate()
-                .filter(|(_, byte)| *byte == b'\n');
-            std::iter::once(0)
-                .chain(newlines.map(|(at, _)| at as u32 + 1))
-                .collect()
+            let newlines = self.text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+            std::iter::once(0).chain(newlines.map(|(at, _)| at as u32 + 1)).collect()
         })
     }
 }
@@ -85,9 +79,7 @@ impl Sources {
 
     /// The shown name of a file.
     pub fn name(&self, file: FileId) -> Option<&str> {
-        self.files
-            .get(file.0 as usize)
-            .map(|source| source.name.as_str())
+        self.files.get(file.0 as usize).map(|source| source.name.as_str())
     }
 
     /// The text of a file.
@@ -97,17 +89,12 @@ impl Sources {
 
     /// The file of this name, the latest if there are several.
     pub fn find(&self, name: &str) -> Option<FileId> {
-        self.files
-            .iter()
-            .rposition(|source| source.name == name)
-            .map(|at| FileId(at as u32))
+        self.files.iter().rposition(|source| source.name == name).map(|at| FileId(at as u32))
     }
 
     /// The text a span covers; empty if the span lies outside.
     pub fn slice(&self, span: Span) -> &str {
-        self.text(span.file)
-            .and_then(|text| text.get(span.range()))
-            .unwrap_or("")
+        self.text(span.file).and_then(|text| text.get(span.range())).unwrap_or("")
     }
 
     /// Line and column of a byte. Offsets past the end count as the end; `None` for an unknown file.
@@ -115,24 +102,16 @@ impl Sources {
         let source = self.files.get(file.0 as usize)?;
         let offset = floor_char_boundary(&source.text, offset as usize);
         let starts = source.line_starts();
-        let line = starts
-            .partition_point(|start| *start as usize <= offset)
-            .max(1);
+        let line = starts.partition_point(|start| *start as usize <= offset).max(1);
         let start = starts[line - 1] as usize;
         let column = source.text[start..offset].chars().count() as u32 + 1;
-        Some(Location {
-            line: line as u32,
-            column,
-        })
+        Some(Location { line: line as u32, column })
     }
 
     /// The byte offset of a location; past the end of a line it is the line's end.
     pub fn offset(&self, file: FileId, at: Location) -> Option<u32> {
-        let start = *self
-            .files
-            .get(file.0 as usize)?
-            .line_starts()
-            .get(at.line.checked_sub(1)? as usize)?;
+        let start =
+            *self.files.get(file.0 as usize)?.line_starts().get(at.line.checked_sub(1)? as usize)?;
         let line = self.line(file, at.line)?;
         let within = line
             .char_indices()
@@ -147,9 +126,7 @@ impl Sources {
         let starts = source.line_starts();
         let index = line.checked_sub(1)? as usize;
         let start = *starts.get(index)? as usize;
-        let end = starts
-            .get(index + 1)
-            .map_or(source.text.len(), |next| *next as usize);
+        let end = starts.get(index + 1).map_or(source.text.len(), |next| *next as usize);
         let text = &source.text[start..end];
         let text = text.strip_suffix('\n').unwrap_or(text);
         Some(text.strip_suffix('\r').unwrap_or(text))
@@ -173,12 +150,7 @@ mod tests {
     fn lines_and_columns() {
         let mut sources = Sources::new();
         let file = sources.add("a.sdl", "ab\r\n\tçd\nend");
-        let at = |offset| {
-            sources
-                .locate(file, offset)
-                .map(|l| (l.line, l.column))
-                .unwrap()
-        };
+        let at = |offset| sources.locate(file, offset).map(|l| (l.line, l.column)).unwrap();
         assert_eq!(at(0), (1, 1));
         assert_eq!(at(4), (2, 1));
         assert_eq!(at(5), (2, 2));
@@ -190,35 +162,17 @@ mod tests {
         assert_eq!(sources.line(file, 2), Some("\tçd"));
         assert_eq!(sources.line(file, 3), Some("end"));
         assert_eq!(sources.line(file, 4), None);
-        assert_eq!(
-            sources.offset(file, Location { line: 2, column: 3 }),
-            Some(7)
-        );
-        assert_eq!(
-            sources.offset(
-                file,
-                Location {
-                    line: 2,
-                    column: 99
-                }
-            ),
-            Some(8)
-        );
+        assert_eq!(sources.offset(file, Location { line: 2, column: 3 }), Some(7));
+        assert_eq!(sources.offset(file, Location { line: 2, column: 99 }), Some(8));
     }
 
     #[test]
     fn replaced_text_has_new_lines() {
         let mut sources = Sources::new();
         let file = sources.add("a", "x\ny");
-        assert_eq!(
-            sources.locate(file, 2),
-            Some(Location { line: 2, column: 1 })
-        );
+        assert_eq!(sources.locate(file, 2), Some(Location { line: 2, column: 1 }));
         sources.replace(file, "xxy");
-        assert_eq!(
-            sources.locate(file, 2),
-            Some(Location { line: 1, column: 3 })
-        );
+        assert_eq!(sources.locate(file, 2), Some(Location { line: 1, column: 3 }));
         assert_eq!(sources.find("a"), Some(file));
         assert_eq!(sources.locate(FileId::UNKNOWN, 0), None);
     }

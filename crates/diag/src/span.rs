@@ -28,11 +28,7 @@ pub struct Span {
 
 impl Span {
     /// The place of things that have no source text.
-    pub const UNKNOWN: Span = Span {
-        file: FileId::UNKNOWN,
-        start: 0,
-        end: 0,
-    };
+    pub const UNKNOWN: Span = Span { file: FileId::UNKNOWN, start: 0, end: 0 };
 
     /// The bytes `start..end` of `file`.
     pub const fn new(file: FileId, start: u32, end: u32) -> Self {
@@ -41,11 +37,7 @@ impl Span {
 
     /// The empty place before the byte `at`.
     pub const fn point(file: FileId, at: u32) -> Self {
-        Span {
-            file,
-            start: at,
-            end: at,
-        }
+        Span { file, start: at, end: at }
     }
 
     /// Whether the place lies in a source text.
@@ -62,11 +54,7 @@ impl Span {
         if !self.is_known() {
             return other;
         }
-        Span {
-            file: self.file,
-            start: self.start.min(other.start),
-            end: self.end.max(other.end),
-        }
+        Span { file: self.file, start: self.start.min(other.start), end: self.end.max(other.end) }
     }
 
     /// Number of bytes.

@@ -1,0 +1,29 @@
+//! The languages of Moldloft: texts into syntax trees and back.
+//!
+//! `text -> tokens -> tree (+ diagnostics)`. Parsing never fails and never panics: it gives a whole tree and a list of
+//! what was wrong with the text. Nothing here knows about geometry.
+//!
+//! - [`sdl`]: the language of `.sdl` programs (grammar in `docs/grammar.ebnf`), with its formatter.
+//! - [`number`]: the shortest spelling of a double.
+//! - [`decode`]: bytes into text, telling binary files apart.
+
+mod decode;
+pub mod number;
+pub mod sdl;
+
+pub use decode::{MAX_BYTES, decode};
+
+use moldloft_diag::Span;
+
+/// The text with pieces replaced; `edits` are in the order of the text and do not overlap.
+pub(crate) fn splice(text: &str, edits: &[(Span, String)]) -> String {
+    let mut out = String::with_capacity(text.len() + 16 * edits.len());
+    let mut from = 0;
+    for (span, replacement) in edits {
+        out.push_str(&text[from..span.start as usize]);
+        out.push_str(replacement);
+        from = span.end as usize;
+    }
+    out.push_str(&text[from..]);
+    out
+}

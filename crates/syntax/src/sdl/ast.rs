@@ -1,0 +1,498 @@
+//! The syntax tree: small nodes in tables, referred to by typed ids.
+
+use super::interner::Symbol;
+use moldloft_diag::Span;
+use std::marker::PhantomData;
+
+/// A number that stands in the text. A sign directly before a number belongs to it (`{-1, 2}`), except before `^`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Literal {
+    /// The value, finite.
+    pub value: f64,
+    /// Whether it is spelled with digits only.
+    pub is_int: bool,
+    /// Where it stands in the text that was parsed, sign included.
+    pub span: Span,
+    /// Whether the value was set after parsing.
+    pub edited: bool,
+    /// Whether a negative value must be written in parentheses here (before `^`).
+    pub(crate) wrap_negative: bool,
+}
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub u32);
+    )*};
+}
+
+ids! {
+    /// A number of the text, see [`Literal`].
+    LiteralId;
+    /// A quoted text, its escapes resolved.
+    TextId;
+    /// An expression.
+    ExprId;
+    /// A statement.
+    StmtId;
+    /// A subroutine or function.
+    RoutineId;
+}
+
+/// A run of neighbours in one of the program's tables; `program[list]` is the slice.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub struct List<T> {
+    pub(crate) start: u32,
+    pub(crate) count: u32,
+    marker: PhantomData<fn() -> T>,
+}
+
+impl<T> Clone for List<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for List<T> {}
+
+impl<T> List<T> {
+    pub(crate) fn new(start: usize, count: usize) -> Self {
+        List { start: start as u32, count: count as u32, marker: PhantomData }
+    }
+
+    /// Number of elements.
+    pub fn len(self) -> usize {
+        self.count as usize
+    }
+
+    /// Whether there is no element.
+    pub fn is_empty(self) -> bool {
+        self.count == 0
+    }
+}
+
+/// A name and where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ident {
+    /// The name.
+    pub symbol: Symbol,
+    /// Where.
+    pub span: Span,
+}
+
+/// An operator between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`: difference of numbers, vectors or sets
+    Sub,
+    /// `*`
+    Mul,
+    /// `/`
+    Div,
+    /// `^`: power of numbers, symmetric difference of sets
+    Caret,
+    /// `.`: dot product
+    Dot,
+    /// `.*`: cross product
+    Cross,
+    /// `|` between operands: union of sets
+    Union,
+    /// `&`: intersection of sets
+    Intersection,
+    /// `or`, `||`
+    Or,
+    /// `and`, `&&`
+    And,
+    /// `<`
+    Lt,
+    /// `>`
+    Gt,
+    /// `<=`
+    Le,
+    /// `>=`
+    Ge,
+    /// `==`
+    Eq,
+    /// `!=`
+    Ne,
+}
+
+impl BinaryOp {
+    /// The operator as it is written.
+    pub fn spelling(self) -> &'static str {
+        match self {
+            BinaryOp::Add => "+",
+            BinaryOp::Sub => "-",
+            BinaryOp::Mul => "*",
+            BinaryOp::Div => "/",
+            BinaryOp::Caret => "^",
+            BinaryOp::Dot => ".",
+            BinaryOp::Cross => ".*",
+            BinaryOp::Union => "|",
+            BinaryOp::Intersection => "&",
+            BinaryOp::Or => "or",
+            BinaryOp::And => "and",
+            BinaryOp::Lt => "<",
+            BinaryOp::Gt => ">",
+            BinaryOp::Le => "<=",
+            BinaryOp::Ge => ">=",
+            BinaryOp::Eq => "==",
+            BinaryOp::Ne => "!=",
+        }
+    }
+}
+
+/// An operator before its operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum UnaryOp {
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+    /// `not`, `!`
+    Not,
+}
+
+impl UnaryOp {
+    /// The operator as it is written.
+    pub fn spelling(self) -> &'static str {
+        match self {
+            UnaryOp::Plus => "+",
+            UnaryOp::Minus => "-",
+            UnaryOp::Not => "not",
+        }
+    }
+}
+
+/// A link of a flat operator chain, see [`ExprKind::Chain`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChainItem {
+    /// An operand.
+    Operand(ExprId),
+    /// A sign before the next operand.
+    Prefix(UnaryOp, Span),
+    /// An operator between operands.
+    Infix(BinaryOp, Span),
+}
+
+/// An argument of a call or an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arg {
+    /// The name in `name = value`.
+    pub name: Option<Ident>,
+    /// The value.
+    pub value: ExprId,
+}
+
+/// One subscript.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subscript {
+    /// Nothing, or `:` alone: the whole dimension.
+    Whole,
+    /// `i`: one index, drops the dimension.
+    At(ExprId),
+    /// `from:to:step`, each part optional.
+    Range {
+        /// First index.
+        from: Option<ExprId>,
+        /// Last index, included.
+        to: Option<ExprId>,
+        /// Step.
+        step: Option<ExprId>,
+    },
+}
+
+/// An expression with its place.
+#[derive(Clone, Copy, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The kinds of expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExprKind {
+    /// A number.
+    Number(LiteralId),
+    /// A quoted text.
+    Text(TextId),
+    /// A name.
+    Name(Symbol),
+    /// `(e)`: the same as `e`.
+    Paren(ExprId),
+    /// `{a, b, …}` of any length, also empty: a vector, a curve or a list, by its elements and its use.
+    List(List<ExprId>),
+    /// `|e|`
+    Magnitude(ExprId),
+    /// A sign or `not`.
+    Unary {
+        /// The operator.
+        op: UnaryOp,
+        /// What it stands before.
+        operand: ExprId,
+    },
+    /// Two operands whose grouping is the same whatever their values are.
+    Binary {
+        /// The operator.
+        op: BinaryOp,
+        /// Left operand.
+        left: ExprId,
+        /// Right operand.
+        right: ExprId,
+    },
+    /// A chain with `^` among other operators or signs, whose grouping depends on whether a set takes part:
+    /// [`Program::grouped`](super::Program::grouped) gives either order.
+    Chain(List<ChainItem>),
+    /// `base[subscripts]`
+    Index {
+        /// What is indexed.
+        base: ExprId,
+        /// One or two subscripts, or the values of loop variables in a name made in loops.
+        subs: List<Subscript>,
+    },
+    /// `base.name`
+    Member {
+        /// Left of the dot.
+        base: ExprId,
+        /// The member's name, never reserved. It ends where the expression ends.
+        name: Symbol,
+        /// Whether it can also be read as a dot product of `base` with the variable `name`: for every name but
+        /// the components `x y z d1 d2`. A member wins if `base` owns the name.
+        or_dot: bool,
+    },
+    /// `callee(args)`
+    Call {
+        /// What is called.
+        callee: ExprId,
+        /// The arguments, positional ones first.
+        args: List<Arg>,
+    },
+    /// Text that could not be understood; reported.
+    Error,
+}
+
+/// The type in a declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Type {
+    /// `int`
+    Int,
+    /// `float`
+    Float,
+    /// `string`
+    String,
+    /// `file`
+    File,
+    /// `vector`
+    Vector,
+    /// `farray`
+    Farray,
+    /// `curve`
+    Curve,
+    /// `surface`
+    Surface,
+    /// `pcurve`
+    Pcurve,
+    /// `psurface`
+    Psurface,
+    /// `field`
+    Field,
+    /// `set`
+    Set,
+    /// Any other word: a class of objects, or a misspelled type.
+    Other(Symbol),
+}
+
+impl Type {
+    /// The ten types of the 1992 language, in the order of their reserved words.
+    pub(crate) const CLASSIC: [Type; 10] = [
+        Type::Int,
+        Type::Float,
+        Type::String,
+        Type::File,
+        Type::Vector,
+        Type::Farray,
+        Type::Curve,
+        Type::Surface,
+        Type::Pcurve,
+        Type::Psurface,
+    ];
+}
+
+/// One variable of a declaration: `name[m, n] = value`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Declarator {
+    /// The variable.
+    pub name: Ident,
+    /// Its dimensions, none, one or two.
+    pub dims: List<ExprId>,
+    /// Its first value.
+    pub value: Option<ExprId>,
+}
+
+/// How an assignment combines the old value with the new.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AssignOp {
+    /// `=`
+    Set,
+    /// `+=` and its like.
+    With(BinaryOp),
+}
+
+/// A statement with its place.
+#[derive(Clone, Copy, Debug)]
+pub struct Stmt {
+    /// What it is.
+    pub kind: StmtKind,
+    /// Where it stands, the `;` included.
+    pub span: Span,
+}
+
+/// The kinds of statements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StmtKind {
+    /// `{ … }`; also the empty statement.
+    Block(List<StmtId>),
+    /// `load "path";`
+    Load(TextId),
+    /// A subroutine or function.
+    Routine(RoutineId),
+    /// `[global] type name…;`
+    Declare {
+        /// Whether `global` stands before it.
+        global: bool,
+        /// The type and where it stands.
+        ty: (Type, Span),
+        /// The variables.
+        items: List<Declarator>,
+    },
+    /// `param [type] name = value [in [low, high]];`
+    Param {
+        /// The type, `float` if none is written.
+        ty: Option<(Type, Span)>,
+        /// Its name.
+        name: Ident,
+        /// Its default value.
+        value: ExprId,
+        /// Its range.
+        range: Option<(ExprId, ExprId)>,
+    },
+    /// `Kind name(args);`, an object or a named subroutine call.
+    Object {
+        /// The entity kind or subroutine.
+        kind: Ident,
+        /// The new object's name.
+        name: Ident,
+        /// The arguments.
+        args: List<Arg>,
+    },
+    /// `target = value;` and its like. The target is a name with subscripts and members.
+    Assign {
+        /// Where to.
+        target: ExprId,
+        /// How.
+        op: AssignOp,
+        /// What.
+        value: ExprId,
+    },
+    /// A call for its effect.
+    Call(ExprId),
+    /// `if (condition) then else otherwise`
+    If {
+        /// The condition.
+        condition: ExprId,
+        /// Done if it holds.
+        then: StmtId,
+        /// Done if not.
+        otherwise: Option<StmtId>,
+    },
+    /// `while (condition) body`
+    While {
+        /// The condition.
+        condition: ExprId,
+        /// The body.
+        body: StmtId,
+    },
+    /// `for (variable = from:to:step) body`, both ends included.
+    ForRange {
+        /// The loop variable.
+        variable: Ident,
+        /// First value.
+        from: ExprId,
+        /// Last value.
+        to: ExprId,
+        /// Step, 1 if not written.
+        step: Option<ExprId>,
+        /// The body.
+        body: StmtId,
+    },
+    /// `for (start; condition; step) body`
+    For {
+        /// Done once before.
+        start: Option<StmtId>,
+        /// Asked before each turn; holds if not written.
+        condition: Option<ExprId>,
+        /// Done after each turn.
+        step: Option<StmtId>,
+        /// The body.
+        body: StmtId,
+    },
+    /// `foreach (variable in list) body`
+    Foreach {
+        /// The loop variable.
+        variable: Ident,
+        /// What is walked through.
+        list: ExprId,
+        /// The body.
+        body: StmtId,
+    },
+    /// `print values;`
+    Print(List<ExprId>),
+    /// `assert condition, message;`
+    Assert {
+        /// What must hold.
+        condition: ExprId,
+        /// What to say if it does not.
+        message: Option<ExprId>,
+    },
+    /// `break;`
+    Break,
+    /// `continue;`
+    Continue,
+    /// `return value;`
+    Return(Option<ExprId>),
+    /// Text that could not be understood; reported.
+    Error,
+}
+
+/// A formal argument: `[returned] type name[...]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Formal {
+    /// Whether it is passed by reference.
+    pub returned: bool,
+    /// Its type and where it stands.
+    pub ty: (Type, Span),
+    /// Its name.
+    pub name: Ident,
+    /// Whether it takes all remaining arguments.
+    pub multiple: bool,
+}
+
+/// A subroutine, or a function with a result type.
+#[derive(Clone, Copy, Debug)]
+pub struct Routine {
+    /// Result type of a function; `None` for a subroutine.
+    pub result: Option<(Type, Span)>,
+    /// Its name.
+    pub name: Ident,
+    /// Its arguments.
+    pub formals: List<Formal>,
+    /// Its statements.
+    pub body: List<StmtId>,
+    /// From its first word to its closing brace.
+    pub span: Span,
+}

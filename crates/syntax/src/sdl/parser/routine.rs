@@ -1,0 +1,93 @@
+//! Subroutines and functions.
+
+use super::super::ast::*;
+use super::super::token::{FIELD, Kind, SET, Token};
+use super::{Parse, Parser};
+use moldloft_diag::{Diagnostic, Span};
+
+impl Parser {
+    pub(super) fn routine(&mut self, depth: u32) -> Parse<StmtId> {
+        let word = self.next();
+        let outer = (self.in_routine, self.loops);
+        let nested = self.nesting > 1;
+        if nested {
+            let message = "subroutines and functions stand at the top of a file, not inside blocks";
+            self.report(Diagnostic::error("misplaced-routine", message).at(self.span(word)));
+        }
+        let result =
+            if word.kind == Kind::Function { Some(self.type_word("a result type")?) } else { None };
+        let name = self.ident("the name of the routine")?;
+        self.mark(self.at, super::Role::Applied);
+        let open = self.expect(Kind::LParen, "`(`")?;
+        let formals = self.formals()?;
+        self.expect_close(Kind::RParen, open, "`,` or `)`")?;
+        if self.kind() != Kind::LBrace {
+            return Err(self.unexpected("`{`"));
+        }
+        self.in_routine = true;
+        self.loops = 0;
+        let body = self.block(depth);
+        (self.in_routine, self.loops) = outer;
+        let span = self.span_from(word.start);
+        let id = RoutineId(self.program.routines.len() as u32);
+        self.program.routines.push(Routine { result, name, formals, body: body?, span });
+        Ok(self.push_stmt(StmtKind::Routine(id), span))
+    }
+
+    fn formals(&mut self) -> Parse<List<Formal>> {
+        let mut formals: Vec<Formal> = Vec::new();
+        if self.kind() != Kind::RParen {
+            loop {
+                let returned = self.eat(Kind::Returned);
+                let ty = self.type_word("a type")?;
+                let name = self.ident("the name of the argument")?;
+                self.mark(self.at, super::Role::Plain);
+                let multiple = self.eat(Kind::Ellipsis);
+                if let Some(before) = formals.last().filter(|formal| formal.multiple) {
+                    let message = "only the last argument can be multiple";
+                    let place = before.name.span;
+                    self.report(Diagnostic::error("misplaced-multiple", message).at(place));
+                }
+                if let Some(same) = formals.iter().find(|formal| formal.name.symbol == name.symbol)
+                {
+                    let message =
+                        format!("there are two arguments `{}`", self.symbol_text(name.symbol));
+                    let diagnostic = Diagnostic::error("duplicate-argument", message)
+                        .at(name.span)
+                        .note_at(same.name.span, "the other one");
+                    self.report(diagnostic);
+                }
+                formals.push(Formal { returned, ty, name, multiple });
+                if formals.len() > usize::from(u8::MAX) {
+                    return Err(self.unexpected("at most 255 arguments"));
+                }
+                if !self.eat(Kind::Comma) {
+                    break;
+                }
+            }
+        }
+        let list = List::new(self.program.formal_lists.len(), formals.len());
+        self.program.formal_lists.extend_from_slice(&formals);
+        Ok(list)
+    }
+
+    /// A type: a reserved one, or any name, which the interpreter judges.
+    pub(super) fn type_word(&mut self, expected: &str) -> Parse<(Type, Span)> {
+        let token = self.token();
+        if !matches!(token.kind, Kind::TypeWord | Kind::Ident) {
+            return Err(self.unexpected(expected));
+        }
+        self.next();
+        Ok((type_of(token), self.span(token)))
+    }
+}
+
+/// The type that a word names.
+fn type_of(token: Token) -> Type {
+    match (token.kind, token.symbol()) {
+        (Kind::TypeWord, symbol) => Type::CLASSIC[symbol.0 as usize],
+        (_, FIELD) => Type::Field,
+        (_, SET) => Type::Set,
+        (_, symbol) => Type::Other(symbol),
+    }
+}
