@@ -27,21 +27,27 @@
 //! Invariant: this crate knows vertices by number only, never by the entity they came from; it opens
 //! no files. Sums run over fixed chunks in fixed order, so their bits do not depend on threads.
 
+mod clip;
 mod error;
 mod half_edge;
-
+mod hydrostatics;
 mod measure;
 mod mesh;
 mod panel;
-
+mod quality;
 mod report;
-
+mod section;
 mod sum;
 mod topology;
 
 pub use error::MeshError;
+pub use hydrostatics::{
+    FloatOptions, FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane, hydrostatics,
+};
 pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;
+pub use quality::{PatchQuality, Spread, WorstPanel, quality};
 pub use report::{OpenLoop, TopologyReport};
+pub use section::{Polyline, section};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};

@@ -71,7 +71,6 @@ impl<T: Real> Mesh<T> {
     }
 }
 
-
 fn report<T: Real>(mesh: &Mesh<T>) -> TopologyReport {
     let topology = mesh.topology();
     let faces = topology.faces();

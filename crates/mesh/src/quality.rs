@@ -1,0 +1,205 @@
+use crate::panel::length;
+use crate::{Mesh, Panel};
+use moldloft_num::Vec3;
+
+/// Lowest, highest and mean value of a measure over the panels of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Lowest.
+    pub min: f64,
+    /// Highest.
+    pub max: f64,
+    /// Mean.
+    pub mean: f64,
+}
+
+/// The panel where a measure is worst.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstPanel {
+    /// Its index in the mesh.
+    pub face: usize,
+    /// Mean of its corners.
+    pub centre: Vec3,
+}
+
+/// How well shaped the panels of a patch are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchQuality {
+    /// Quads.
+    pub quads: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Panel size, the square root of the area.
+    pub size: Spread,
+    /// Aspect ratio, 1 or more. Quads: the longer over the shorter of the two lines that join the
+    /// middles of opposite sides (Robinson 1987, "CRE method of element testing", Eng. Comput.
+    /// 4:113). Triangles: the longest side over its height, scaled to 1 for equal sides.
+    pub aspect: Spread,
+    /// Equiangular skewness, 0 (best) to 1: the largest of (a - e) / (180 - e) and (e - a) / e over
+    /// the corner angles a, with e = 90 degrees for quads and 60 for triangles (Ansys Fluent User's
+    /// Guide, "Mesh Quality").
+    pub skew: Spread,
+    /// Warp: the distance of the corners from the plane parallel to both diagonals half-way between
+    /// them, over the panel size. 0 for plane panels.
+    pub warp: Spread,
+    /// The panels of greatest aspect, skew and warp.
+    pub worst: [WorstPanel; 3],
+    /// Panels without area although their corners have different numbers; they count in `size` only.
+    pub without_area: usize,
+}
+
+/// Quality of one patch by its index; `None` when it has no faces.
+///
+/// # Panics
+/// When there is no such patch.
+pub fn quality(mesh: &Mesh, patch: usize) -> Option<PatchQuality> {
+    let faces = mesh.patches()[patch].faces.clone();
+    let first = WorstPanel { face: faces.start, centre: mesh.bounds().centre() };
+    let mut size = Tally::new(first);
+    let mut shape = [Tally::new(first); 3];
+    let (mut quads, mut triangles, mut without_area) = (0, 0, 0);
+    for face in faces.clone() {
+        let panel = mesh.panel(face);
+        match panel {
+            Panel::Quad(_) => quads += 1,
+            Panel::Triangle(_) => triangles += 1,
+        }
+        let here = WorstPanel { face, centre: panel.centre() };
+        let side = panel.area().sqrt();
+        size.take(side, here);
+        if side == 0.0 {
+            without_area += 1;
+            continue;
+        }
+        for (tally, value) in shape.iter_mut().zip([aspect(&panel), skew(&panel), warp(&panel)]) {
+            tally.take(value, here);
+        }
+    }
+    (!faces.is_empty()).then(|| PatchQuality {
+        quads,
+        triangles,
+        size: size.spread(),
+        aspect: shape[0].spread(),
+        skew: shape[1].spread(),
+        warp: shape[2].spread(),
+        worst: shape.map(|tally| tally.worst),
+        without_area,
+    })
+}
+
+#[derive(Clone, Copy)]
+struct Tally {
+    min: f64,
+    max: f64,
+    sum: f64,
+    count: usize,
+    worst: WorstPanel,
+}
+
+impl Tally {
+    fn new(worst: WorstPanel) -> Self {
+        Self { min: f64::INFINITY, max: f64::NEG_INFINITY, sum: 0.0, count: 0, worst }
+    }
+
+    fn take(&mut self, value: f64, here: WorstPanel) {
+        self.min = self.min.min(value);
+        if value > self.max {
+            self.max = value;
+            self.worst = here;
+        }
+        self.sum += value;
+        self.count += 1;
+    }
+
+    /// The spread; all zero when nothing was taken.
+    fn spread(&self) -> Spread {
+        if self.count == 0 {
+            return Spread { min: 0.0, max: 0.0, mean: 0.0 };
+        }
+        Spread { min: self.min, max: self.max, mean: self.sum / self.count as f64 }
+    }
+}
+
+fn aspect(panel: &Panel<f64>) -> f64 {
+    match *panel {
+        Panel::Quad([a, b, c, d]) => {
+            let along = length(b + c - a - d);
+            let across = length(c + d - a - b);
+            along.max(across) / along.min(across)
+        }
+        Panel::Triangle([a, b, c]) => {
+            let longest_sq = (b - a).norm_sq().max((c - b).norm_sq()).max((a - c).norm_sq());
+            longest_sq / (2.0 * panel.area()) * (3f64.sqrt() / 2.0)
+        }
+    }
+}
+
+fn skew(panel: &Panel<f64>) -> f64 {
+    let corners = panel.corners();
+    let n = corners.len();
+    let best = std::f64::consts::PI * (1.0 - 2.0 / n as f64);
+    let angles = (0..n).map(|k| {
+        let (to_next, to_last) =
+            (corners[(k + 1) % n] - corners[k], corners[(k + n - 1) % n] - corners[k]);
+        libm::atan2(length(to_next.cross(to_last)), to_next.dot(to_last))
+    });
+    angles.fold(0.0, |worst: f64, angle| {
+        worst.max((angle - best) / (std::f64::consts::PI - best)).max((best - angle) / best)
+    })
+}
+
+fn warp(panel: &Panel<f64>) -> f64 {
+    let &Panel::Quad([a, b, c, d]) = panel else { return 0.0 };
+    let normal = (c - a).cross(d - b);
+    let size = length(normal);
+    if size == 0.0 {
+        return 0.0;
+    }
+    // Half the distance between the diagonals.
+    let height = 0.5 * (b - a).dot(normal).abs() / size;
+    height / panel.area().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixtures::{grid, sphere};
+
+    fn quad(corners: [[f64; 3]; 4]) -> Panel<f64> {
+        Panel::Quad(corners.map(Vec3::from))
+    }
+
+    #[test]
+    fn known_shapes() {
+        let rectangle = quad([[0.0; 3], [10.0, 0.0, 0.0], [10.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
+        assert_eq!((aspect(&rectangle), skew(&rectangle), warp(&rectangle)), (10.0, 0.0, 0.0));
+        let h = 3f64.sqrt() / 2.0;
+        let equal = Panel::Triangle([[0.0; 3], [1.0, 0.0, 0.0], [0.5, h, 0.0]].map(Vec3::from));
+        assert!((aspect(&equal) - 1.0).abs() < 1e-15 && skew(&equal) < 1e-15);
+        // A rhombus of 60 and 120 degrees.
+        let rhombus = quad([[0.0; 3], [1.0, 0.0, 0.0], [1.5, h, 0.0], [0.5, h, 0.0]]);
+        assert!((skew(&rhombus) - 1.0 / 3.0).abs() < 1e-15);
+        // A unit square with corners lifted by 0.1, -0.1, 0.1, -0.1.
+        let lift = quad([[0.0, 0.0, 0.1], [1.0, 0.0, -0.1], [1.0, 1.0, 0.1], [0.0, 1.0, -0.1]]);
+        assert!((warp(&lift) - 0.1 / lift.area().sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_patch_names_its_worst_panel() {
+        let mesh = grid(5, 3, |u, v| Vec3::of(u * u, v, 0.0));
+        let q = quality(&mesh, 0).unwrap();
+        assert_eq!((q.quads, q.triangles, q.without_area), (8, 0, 0));
+        assert!((q.aspect.max - 8.0).abs() < 1e-14);
+        assert_eq!((q.worst[0].face, q.worst[0].centre), (0, Vec3::of(0.03125, 0.25, 0.0)));
+        assert!((q.size.min - (0.0625f64 * 0.5).sqrt()).abs() < 1e-15);
+        let ball = quality(&sphere(6, 1.0, Vec3::zero()), 0).unwrap();
+        assert_eq!((ball.quads, ball.triangles), (48, 24));
+    }
+
+    #[test]
+    fn panels_without_area_do_no_harm() {
+        let flat = grid(3, 3, |u, _| Vec3::of(u, 0.0, 0.0));
+        let q = quality(&flat, 0).unwrap();
+        assert_eq!((q.without_area, q.size.max, q.aspect.max), (4, 0.0, 0.0));
+    }
+}
