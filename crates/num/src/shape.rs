@@ -135,9 +135,15 @@ impl<T: Real> dyn Surface<T> + '_ {
 }
 
 /// A curve given by a formula that is generic over jets: all its derivatives follow from it.
-pub trait CurveFormula<T: Real>: Send + Sync {
+///
+/// The scalar is an associated type so that a generic type of another crate may implement
+/// [`Curve`] itself, with its own jets and grid, instead.
+pub trait CurveFormula: Send + Sync {
+    /// The scalar of the curve.
+    type Scalar: Real;
+
     /// The position at `t`.
-    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J>;
+    fn at<J: Jet<Self::Scalar>>(&self, t: J) -> Vec3<J>;
 
     /// See [`Curve::breaks`].
     fn breaks(&self) -> Vec<f64> {
@@ -145,27 +151,30 @@ pub trait CurveFormula<T: Real>: Send + Sync {
     }
 
     /// See [`Curve::trace`].
-    fn trace(&self) -> Trace<T> {
+    fn trace(&self) -> Trace<Self::Scalar> {
         Trace::own()
     }
 }
 
-impl<T: Real, F: CurveFormula<T>> Curve<T> for F {
-    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+impl<F: CurveFormula> Curve<F::Scalar> for F {
+    fn jet(&self, t: F::Scalar, order: Order) -> CurveJet<F::Scalar> {
         crate::curve_jet_of!(self, F::at, t, order)
     }
     fn breaks(&self) -> Vec<f64> {
         CurveFormula::breaks(self)
     }
-    fn trace(&self) -> Trace<T> {
+    fn trace(&self) -> Trace<F::Scalar> {
         CurveFormula::trace(self)
     }
 }
 
-/// A surface given by a formula that is generic over jets: all its derivatives follow from it.
-pub trait SurfaceFormula<T: Real>: Send + Sync {
+/// A surface given by a formula that is generic over jets; see [`CurveFormula`].
+pub trait SurfaceFormula: Send + Sync {
+    /// The scalar of the surface.
+    type Scalar: Real;
+
     /// The position at (`u`, `v`).
-    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J>;
+    fn at<J: Jet<Self::Scalar>>(&self, u: J, v: J) -> Vec3<J>;
 
     /// See [`Surface::breaks`].
     fn breaks(&self) -> [Vec<f64>; 2] {
@@ -173,19 +182,19 @@ pub trait SurfaceFormula<T: Real>: Send + Sync {
     }
 
     /// See [`Surface::edges`].
-    fn edges(&self) -> Edges<T> {
+    fn edges(&self) -> Edges<Self::Scalar> {
         Edges::own()
     }
 }
 
-impl<T: Real, F: SurfaceFormula<T>> Surface<T> for F {
-    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+impl<F: SurfaceFormula> Surface<F::Scalar> for F {
+    fn jet(&self, u: F::Scalar, v: F::Scalar, order: Order) -> SurfJet<F::Scalar> {
         crate::surface_jet_of!(self, F::at, u, v, order)
     }
     fn breaks(&self) -> [Vec<f64>; 2] {
         SurfaceFormula::breaks(self)
     }
-    fn edges(&self) -> Edges<T> {
+    fn edges(&self) -> Edges<F::Scalar> {
         SurfaceFormula::edges(self)
     }
 }

@@ -22,7 +22,8 @@ struct Segment<T: Real> {
 
 struct Straight<T>([Vec3<T>; 2]);
 
-impl<T: Real> moldloft_num::CurveFormula<T> for Straight<T> {
+impl<T: Real> moldloft_num::CurveFormula for Straight<T> {
+    type Scalar = T;
     fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         let [a, b] = self.0.map(|p| p.map(J::fixed));
         a.lerp(b, t)
