@@ -1,5 +1,5 @@
 use crate::jet::{Jet, lift_curve, lift_surface};
-use crate::trace::{Edges, Trace};
+use crate::trace::{Edges, Key, Trace};
 use crate::{Real, Vec3};
 
 /// How many derivatives by the shape parameters are wanted.
@@ -105,6 +105,13 @@ pub trait Surface<T: Real>: Send + Sync {
     fn edges(&self) -> Edges<T> {
         Edges::own()
     }
+
+    /// The surface object of which this is the image, point by point at equal parameters, under a
+    /// map of space; and whether the map turns the natural normal round. For joins: images of
+    /// joined surfaces under one map are joined, and so are points that are their own images.
+    fn image_of(&self) -> Option<(Key, bool)> {
+        None
+    }
 }
 
 /// An implicit function f(x, y, z): negative inside, zero on the surface, positive outside.
@@ -185,6 +192,11 @@ pub trait SurfaceFormula: Send + Sync {
     fn edges(&self) -> Edges<Self::Scalar> {
         Edges::own()
     }
+
+    /// See [`Surface::image_of`].
+    fn image_of(&self) -> Option<(Key, bool)> {
+        None
+    }
 }
 
 impl<F: SurfaceFormula> Surface<F::Scalar> for F {
@@ -196,5 +208,8 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
     }
     fn edges(&self) -> Edges<F::Scalar> {
         SurfaceFormula::edges(self)
+    }
+    fn image_of(&self) -> Option<(Key, bool)> {
+        SurfaceFormula::image_of(self)
     }
 }

@@ -111,6 +111,8 @@ pub enum Edge<T> {
     Own,
     /// Along a chain of pieces.
     Pieces(SmallVec<[Piece<T>; 1]>),
+    /// The very same line as edge 0..4 of this surface, in the same direction (a closed surface).
+    SameAs(u8),
     /// A single point, with its object where it has one.
     Pole(Option<Key>),
 }

@@ -1,0 +1,139 @@
+//! Plane sections of the exact surfaces: stations, waterlines, buttocks.
+
+use moldloft_num::{Vec3, find_root};
+use moldloft_registry::{Head, SurfaceRef};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// One line of a section: points on the surface and in the plane, to rounding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polyline {
+    /// Points in order along the line.
+    pub points: Vec<Vec3>,
+    /// Their parameters (u, v) on the surface.
+    pub uv: Vec<[f64; 2]>,
+    /// True when the line closes; the first point is not repeated.
+    pub closed: bool,
+}
+
+/// The grid on which a surface is searched for sections: a line that stays inside one cell is not
+/// seen.
+pub struct Sectioned<'s> {
+    surface: &'s SurfaceRef<f64>,
+    us: Vec<f64>,
+    vs: Vec<f64>,
+    points: Vec<Vec3>,
+}
+
+/// An edge of the search grid: from (i, j) along u or along v.
+type GridEdge = (usize, usize, bool);
+
+impl<'s> Sectioned<'s> {
+    /// Tabulates `surface` at least four times as fine as its panels, 32 steps at least.
+    pub fn new(surface: &'s SurfaceRef<f64>, head: &Head) -> Self {
+        let steps = |k: usize| {
+            let n = head.divisions[k].saturating_mul(head.subdivisions[k]).saturating_mul(4);
+            let n = n.clamp(32, 512);
+            (0..=n).map(|i| f64::from(i) / f64::from(n)).collect::<Vec<f64>>()
+        };
+        let (us, vs) = (steps(0), steps(1));
+        let mut points = vec![Vec3::zero(); us.len() * vs.len()];
+        surface.grid(&us, &vs, &mut points, None);
+        Self { surface, us, vs, points }
+    }
+
+    /// The lines in which the plane `coordinate[axis] = value` cuts the surface, those that begin
+    /// at an edge first, each from the edge point of lowest grid index.
+    pub fn section(&self, axis: usize, value: f64) -> Vec<Polyline> {
+        let nv = self.vs.len();
+        let above = |i: usize, j: usize| self.points[i * nv + j][axis] >= value;
+        let mut crossings: BTreeMap<GridEdge, [f64; 2]> = BTreeMap::new();
+        for i in 0..self.us.len() {
+            for j in 0..nv {
+                if i + 1 < self.us.len() && above(i, j) != above(i + 1, j) {
+                    let at = |u: f64| self.height(u, self.vs[j], axis, value);
+                    if let Ok(u) = find_root(at, self.us[i], self.us[i + 1]) {
+                        crossings.insert((i, j, true), [u, self.vs[j]]);
+                    }
+                }
+                if j + 1 < nv && above(i, j) != above(i, j + 1) {
+                    let at = |v: f64| self.height(self.us[i], v, axis, value);
+                    if let Ok(v) = find_root(at, self.vs[j], self.vs[j + 1]) {
+                        crossings.insert((i, j, false), [self.us[i], v]);
+                    }
+                }
+            }
+        }
+        let mut links: BTreeMap<GridEdge, Vec<GridEdge>> = BTreeMap::new();
+        let cells: BTreeSet<(usize, usize)> =
+            crossings.keys().flat_map(|&e| self.cells(e)).collect();
+        for (i, j) in cells {
+            let edges = [(i, j, true), (i + 1, j, false), (i, j + 1, true), (i, j, false)];
+            let cut: Vec<GridEdge> =
+                edges.into_iter().filter(|e| crossings.contains_key(e)).collect();
+            let pairs: &[(usize, usize)] = match cut.len() {
+                2 => &[(0, 1)],
+                4 => {
+                    // A saddle: the middle tells which corners are connected.
+                    let (u, v) =
+                        (0.5 * (self.us[i] + self.us[i + 1]), 0.5 * (self.vs[j] + self.vs[j + 1]));
+                    let middle = self.height(u, v, axis, value) >= 0.0;
+                    if middle == above(i, j) { &[(0, 1), (2, 3)] } else { &[(0, 3), (1, 2)] }
+                }
+                _ => &[],
+            };
+            for &(a, b) in pairs {
+                links.entry(cut[a]).or_default().push(cut[b]);
+                links.entry(cut[b]).or_default().push(cut[a]);
+            }
+        }
+        self.chains(&crossings, links)
+    }
+
+    fn height(&self, u: f64, v: f64, axis: usize, value: f64) -> f64 {
+        self.surface.jet(u, v, moldloft_num::Order::Zero).p[axis] - value
+    }
+
+    fn cells(&self, (i, j, along_u): GridEdge) -> Vec<(usize, usize)> {
+        let (nu, nv) = (self.us.len() - 1, self.vs.len() - 1);
+        let before =
+            if along_u { (Some(i), j.checked_sub(1)) } else { (i.checked_sub(1), Some(j)) };
+        let mut cells = Vec::with_capacity(2);
+        if i < nu && j < nv {
+            cells.push((i, j));
+        }
+        if let (Some(i), Some(j)) = before
+            && i < nu
+            && j < nv
+        {
+            cells.push((i, j));
+        }
+        cells
+    }
+
+    fn chains(
+        &self,
+        crossings: &BTreeMap<GridEdge, [f64; 2]>,
+        links: BTreeMap<GridEdge, Vec<GridEdge>>,
+    ) -> Vec<Polyline> {
+        let mut seen = BTreeSet::new();
+        let mut lines = Vec::new();
+        let ends = links.iter().filter(|(_, l)| l.len() == 1).map(|(&e, _)| e);
+        let starts: Vec<GridEdge> = ends.chain(links.keys().copied()).collect();
+        for start in starts {
+            if !seen.insert(start) {
+                continue;
+            }
+            let mut chain = vec![start];
+            let mut at = start;
+            while let Some(&next) = links[&at].iter().find(|&e| seen.insert(*e)) {
+                chain.push(next);
+                at = next;
+            }
+            let uv: Vec<[f64; 2]> = chain.iter().map(|e| crossings[e]).collect();
+            let point = |&[u, v]: &[f64; 2]| self.surface.jet(u, v, moldloft_num::Order::Zero).p;
+            let closed = chain.len() > 2 && links[&start].len() == 2 && links[&at].contains(&start);
+            lines.push(Polyline { points: uv.iter().map(point).collect(), uv, closed });
+        }
+        lines
+    }
+}

@@ -1,0 +1,606 @@
+use crate::memo::Memo;
+use crate::object::{Failure, Object, State};
+use indexmap::IndexMap;
+use moldloft_diag::nearest;
+use moldloft_num::trace::Key;
+use moldloft_registry::{Class, Context, Fault, Head, Row, Scalar, Value};
+use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashSet};
+use std::sync::Arc;
+
+/// Shapes nested deeper than this are refused, so that evaluating one never exhausts the stack.
+pub const DEEPEST_NESTING: u32 = 100;
+
+/// Fewer pending objects than this are evaluated on the calling thread.
+const WORTH_A_THREAD: usize = 64;
+
+/// The named objects of a model and what depends on what, evaluated with one scalar.
+///
+/// There is one way to change it: [`Graph::apply`]. What was declared with the same name, kind,
+/// data bits and parents keeps its shape; the rest, and what depends on it, is evaluated again,
+/// until results come out bitwise equal.
+#[derive(Debug, Default)]
+pub struct Graph<T: Scalar> {
+    /// By key; `None` where an object has gone.
+    objects: Vec<Option<Object<T>>>,
+    names: IndexMap<Arc<str>, Key>,
+    /// Objects that must be evaluated, by rank, then key.
+    pending: BinaryHeap<Reverse<(u32, Key)>>,
+    /// Counts applications.
+    clock: u64,
+    declared: u32,
+    evaluated: usize,
+    failed: usize,
+    memo: Memo<T>,
+    context: Context,
+}
+
+/// Whether an application states the whole model or changes part of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// A run: objects that it does not declare disappear.
+    Whole,
+    /// An edit: objects that it does not mention stay.
+    Edit,
+}
+
+/// What an application did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Applied {
+    /// How many objects were evaluated.
+    pub evaluated: usize,
+    /// How many objects there are now.
+    pub objects: usize,
+    /// How many of them failed or are blocked.
+    pub failed: usize,
+}
+
+/// An object as a producer declares it.
+#[derive(Clone, Debug)]
+pub struct Declaration<'a, T: Scalar> {
+    /// Its name.
+    pub name: &'a str,
+    /// The row it is a call of.
+    pub row: &'a Arc<Row>,
+    /// The arguments in the order of the row's fields, checked.
+    pub args: Vec<Value<T>>,
+    /// How it is drawn and divided.
+    pub head: Head,
+    /// Where it was declared, in the producer's own numbering.
+    pub origin: u32,
+}
+
+/// An application under way: declares, reads and removes objects.
+#[derive(Debug)]
+pub struct Run<'g, T: Scalar> {
+    graph: &'g mut Graph<T>,
+    extent: Extent,
+}
+
+impl<T: Scalar> Graph<T> {
+    /// An empty model.
+    pub fn new(context: Context) -> Self {
+        Self { context, ..Default::default() }
+    }
+
+    /// Changes the model: `produce` declares (or edits) objects, reading others as it goes; what
+    /// it left pending is evaluated at the end.
+    pub fn apply<R>(
+        &mut self,
+        extent: Extent,
+        produce: impl FnOnce(&mut Run<'_, T>) -> R,
+    ) -> (R, Applied) {
+        self.clock += 1;
+        self.evaluated = 0;
+        if extent == Extent::Whole {
+            self.declared = 0;
+        }
+        let produced = produce(&mut Run { graph: self, extent });
+        if extent == Extent::Whole {
+            self.remove_undeclared();
+        }
+        self.evaluate_pending();
+        self.memo.forget_unused(self.clock);
+        let applied =
+            Applied { evaluated: self.evaluated, objects: self.names.len(), failed: self.failed };
+        (produced, applied)
+    }
+
+    /// The object called `name`.
+    pub fn find(&self, name: &str) -> Option<Key> {
+        self.names.get(name).copied()
+    }
+
+    /// The object of a key.
+    pub fn get(&self, key: Key) -> Option<&Object<T>> {
+        self.objects.get(key.0 as usize)?.as_ref()
+    }
+
+    fn object(&self, key: Key) -> &Object<T> {
+        self.get(key).expect("the key of a living object")
+    }
+
+    fn object_mut(&mut self, key: Key) -> &mut Object<T> {
+        self.objects[key.0 as usize].as_mut().expect("the key of a living object")
+    }
+
+    /// All objects in the order of declaration.
+    pub fn objects(&self) -> impl Iterator<Item = &Object<T>> {
+        let mut keys: Vec<_> = self.objects.iter().flatten().map(|o| (o.order, o.key)).collect();
+        keys.sort_unstable();
+        keys.into_iter().map(|(_, key)| self.object(key))
+    }
+
+    /// How many objects there are.
+    pub fn len(&self) -> usize {
+        self.names.len()
+    }
+
+    /// True when there is no object.
+    pub fn is_empty(&self) -> bool {
+        self.names.is_empty()
+    }
+
+    /// The name most like `name`.
+    pub fn nearest_name(&self, name: &str) -> Option<&str> {
+        nearest(name, self.names.keys().map(|n| &**n))
+    }
+
+    /// Counts applications: a value remembered for one clock may be stale at the next.
+    pub fn clock(&self) -> u64 {
+        self.clock
+    }
+
+    /// Everything that depends on `key`, directly or not, in the order of declaration.
+    pub fn dependents(&self, key: Key) -> Vec<Key> {
+        self.closure(key, |o| &o.children)
+    }
+
+    /// Everything that `key` depends on, directly or not, in the order of declaration.
+    pub fn ancestors(&self, key: Key) -> Vec<Key> {
+        self.closure(key, |o| &o.parents)
+    }
+
+    fn closure(&self, key: Key, next: impl Fn(&Object<T>) -> &[Key]) -> Vec<Key> {
+        let mut seen = HashSet::from([key]);
+        let mut stack = vec![key];
+        let mut found = Vec::new();
+        while let Some(key) = stack.pop() {
+            for &other in next(self.object(key)) {
+                if seen.insert(other) {
+                    found.push(other);
+                    stack.push(other);
+                }
+            }
+        }
+        found.sort_unstable_by_key(|&k| self.object(k).order);
+        found
+    }
+
+    fn remove_undeclared(&mut self) {
+        let clock = self.clock;
+        let gone: Vec<Key> = self
+            .objects
+            .iter()
+            .flatten()
+            .filter(|o| o.declared_at != clock)
+            .map(|o| o.key)
+            .collect();
+        self.remove(&gone);
+    }
+
+    fn remove(&mut self, gone: &[Key]) {
+        let mut bereft: Vec<Key> = Vec::new();
+        for key in gone {
+            let object = self.objects[key.0 as usize].take().expect("a living object");
+            self.names.swap_remove(&object.name);
+            self.failed -= usize::from(object.state.is_failure());
+            bereft.extend(object.parents);
+        }
+        bereft.sort_unstable();
+        bereft.dedup();
+        let objects = &mut self.objects;
+        for parent in bereft {
+            if let Some(mut parent) = objects[parent.0 as usize].take() {
+                parent.children.retain(|child| objects[child.0 as usize].is_some());
+                let at = parent.key.0 as usize;
+                objects[at] = Some(parent);
+            }
+        }
+    }
+
+    fn mark_pending(&mut self, key: Key) {
+        let object = self.object_mut(key);
+        if !object.pending {
+            object.pending = true;
+            let rank = object.rank;
+            self.pending.push(Reverse((rank, key)));
+        }
+    }
+
+    /// Evaluates all that is pending, rank by rank: objects of one rank do not depend on each
+    /// other, so they may be evaluated at once, in any order, with the same bits.
+    fn evaluate_pending(&mut self) {
+        let mut batch = Vec::new();
+        while let Some(&Reverse((rank, _))) = self.pending.peek() {
+            batch.clear();
+            while let Some(&Reverse((r, key))) = self.pending.peek() {
+                if r != rank {
+                    break;
+                }
+                self.pending.pop();
+                // The heap may still hold objects that were forced, re-ranked or removed since.
+                if self.get(key).is_some_and(|o| o.pending && o.rank == rank) {
+                    batch.push(key);
+                }
+            }
+            batch.dedup();
+            let states: Vec<State<T>> = if batch.len() < WORTH_A_THREAD {
+                batch.iter().map(|&key| self.evaluated_state(key)).collect()
+            } else {
+                let graph = &*self;
+                batch.par_iter().with_min_len(16).map(|&key| graph.evaluated_state(key)).collect()
+            };
+            for (&key, state) in batch.iter().zip(states) {
+                self.store(key, state);
+            }
+        }
+    }
+
+    /// Evaluates `key` and what it depends on, as far as pending.
+    fn force(&mut self, key: Key) {
+        let mut wanted = vec![key];
+        let mut seen = HashSet::from([key]);
+        let mut at = 0;
+        while at < wanted.len() {
+            let object = self.object(wanted[at]);
+            at += 1;
+            if object.verified_at == self.clock && !object.pending {
+                continue;
+            }
+            let parents = object.parents.clone();
+            wanted.extend(parents.into_iter().filter(|&parent| seen.insert(parent)));
+        }
+        // Parents have a lower rank, so this order meets each after all that may change it.
+        wanted.sort_unstable_by_key(|&k| (self.object(k).rank, k));
+        for key in wanted {
+            if self.object(key).pending {
+                let state = self.evaluated_state(key);
+                self.store(key, state);
+            }
+            let clock = self.clock;
+            self.object_mut(key).verified_at = clock;
+        }
+    }
+
+    fn evaluated_state(&self, key: Key) -> State<T> {
+        let object = self.object(key);
+        let mut args = Vec::with_capacity(object.args.len());
+        for arg in &object.args {
+            match self.resolved(arg) {
+                Ok(arg) => args.push(arg),
+                Err(by) => return State::Failed(Failure::Blocked { by }),
+            }
+        }
+        let call = || T::call(&object.row, &args, &self.context);
+        // A kind that panics is our fault, but it must not take the model with it.
+        let called = std::panic::catch_unwind(std::panic::AssertUnwindSafe(call));
+        let value = match called {
+            Ok(Ok(value)) => value,
+            Ok(Err(fault)) => return State::Failed(Failure::Fault(fault)),
+            Err(_) => {
+                let message = format!("{} failed unexpectedly", object.row.name);
+                let fault = Fault::new("internal-error", message)
+                    .help("this is a fault of the program, not of the model: please report it");
+                return State::Failed(Failure::Fault(fault));
+            }
+        };
+        if !value.is_finite() {
+            let fault = Fault::new("not-finite", "the result is not a finite number")
+                .expected("finite coordinates")
+                .found("NaN or infinity")
+                .help("look for a division by zero or a number far too large in its data");
+            return State::Failed(Failure::Fault(fault));
+        }
+        if value.depth() > DEEPEST_NESTING {
+            let fault = Fault::new("nested-too-deep", "too many shapes are built on one another")
+                .expected(format!("at most {DEEPEST_NESTING} levels of curves and surfaces"))
+                .found(format!("{} levels", value.depth()))
+                .help("build on an earlier shape instead");
+            return State::Failed(Failure::Fault(fault));
+        }
+        State::Ok(value.named(key))
+    }
+
+    /// The argument with every object replaced by its value, or the failed object it waits for.
+    fn resolved(&self, arg: &Value<T>) -> Result<Value<T>, Key> {
+        match arg {
+            Value::Object(key) => match &self.object(*key).state {
+                State::Ok(value) => Ok(value.clone()),
+                State::Failed(Failure::Blocked { by }) => Err(*by),
+                State::Failed(Failure::Fault(_)) | State::New => Err(*key),
+            },
+            Value::List(items) => {
+                let items: Result<Vec<_>, _> = items.iter().map(|v| self.resolved(v)).collect();
+                Ok(Value::list(items?))
+            }
+            other => Ok(other.clone()),
+        }
+    }
+
+    fn store(&mut self, key: Key, state: State<T>) {
+        self.evaluated += 1;
+        let clock = self.clock;
+        let object = self.object_mut(key);
+        object.pending = false;
+        object.verified_at = clock;
+        if object.state.same(&state) {
+            return;
+        }
+        let (was, is) = (object.state.is_failure(), state.is_failure());
+        object.state = state;
+        object.changed_at = clock;
+        self.failed = self.failed + usize::from(is) - usize::from(was);
+        for at in 0..self.object(key).children.len() {
+            let child = self.object(key).children[at];
+            self.mark_pending(child);
+        }
+    }
+
+    fn connect(&mut self, key: Key, args: Vec<Value<T>>) {
+        let mut parents: Vec<Key> = Vec::new();
+        args.iter().for_each(|arg| arg.for_each_object(&mut |parent| parents.push(parent)));
+        if parents.len() <= 16 {
+            for at in (1..parents.len()).rev() {
+                if parents[..at].contains(&parents[at]) {
+                    parents.remove(at);
+                }
+            }
+        } else {
+            let mut seen = HashSet::with_capacity(parents.len());
+            parents.retain(|&parent| seen.insert(parent));
+        }
+        let old = std::mem::take(&mut self.object_mut(key).parents);
+        if old.as_slice() != parents.as_slice() {
+            for parent in old {
+                if let Some(parent) = &mut self.objects[parent.0 as usize] {
+                    parent.children.retain(|&child| child != key);
+                }
+            }
+            for &parent in &parents {
+                self.object_mut(parent).children.push(key);
+            }
+        }
+        let object = self.object_mut(key);
+        object.args = args;
+        object.parents = parents.into();
+        self.rank(key);
+    }
+
+    /// Sets the rank of `key` above its parents', and those of its dependents above it.
+    fn rank(&mut self, key: Key) {
+        let mut stack = vec![key];
+        while let Some(key) = stack.pop() {
+            let object = self.object(key);
+            let rank = object.parents.iter().map(|&p| self.object(p).rank + 1).max().unwrap_or(0);
+            if rank == object.rank {
+                continue;
+            }
+            let object = self.object_mut(key);
+            object.rank = rank;
+            let children = object.children.clone();
+            if std::mem::take(&mut object.pending) {
+                self.mark_pending(key);
+            }
+            stack.extend(children);
+        }
+    }
+}
+
+impl<T: Scalar> Run<'_, T> {
+    /// Declares an object. What the previous run declared alike keeps its shape.
+    ///
+    /// # Errors
+    /// A [`Fault`] when this run has declared the name before, or when the object would depend on
+    /// itself.
+    pub fn declare(&mut self, declaration: Declaration<'_, T>) -> Result<Key, Fault> {
+        let Declaration { name, row, args, head, origin } = declaration;
+        let clock = self.graph.clock;
+        let order = self.graph.declared;
+        let Some(key) = self.graph.find(name) else {
+            return Ok(self.insert(name, row, args, head, origin));
+        };
+        let object = self.graph.object_mut(key);
+        if object.declared_at == clock {
+            return Err(Fault::new("duplicate-name", format!("`{name}` is declared twice"))
+                .help("give one of them another name"));
+        }
+        if !Arc::ptr_eq(&object.row, row) && object.row.name != row.name {
+            // Another kind of the same name: a new object, so that nothing of the old one stays.
+            if self.extent == Extent::Whole {
+                let children = std::mem::take(&mut object.children);
+                self.graph.remove(&[key]);
+                // They were declared on the old object; in this run they come again or go.
+                for child in children {
+                    if let Some(child) = &mut self.graph.objects[child.0 as usize] {
+                        child.parents.retain(|p| *p != key);
+                    }
+                }
+                return Ok(self.insert(name, row, args, head, origin));
+            }
+            return Err(Fault::new("duplicate-name", format!("`{name}` exists already")));
+        }
+        object.declared_at = clock;
+        object.origin = origin;
+        if self.extent == Extent::Whole {
+            object.order = order;
+            object.read_by_program = false;
+            self.graph.declared += 1;
+        }
+        let object = self.graph.object_mut(key);
+        if object.head != head {
+            object.head = head;
+            object.head_changed_at = clock;
+        }
+        let same_row = Arc::ptr_eq(&object.row, row);
+        let same = object.args.len() == args.len()
+            && object.args.iter().zip(&args).all(|(a, b)| a.same(b));
+        if !same {
+            self.check_cycle(key, &args)?;
+            self.graph.connect(key, args);
+        }
+        if !same || !same_row {
+            self.graph.object_mut(key).row = row.clone();
+            self.graph.mark_pending(key);
+        }
+        Ok(key)
+    }
+
+    fn insert(
+        &mut self,
+        name: &str,
+        row: &Arc<Row>,
+        args: Vec<Value<T>>,
+        head: Head,
+        origin: u32,
+    ) -> Key {
+        let graph = &mut *self.graph;
+        let key = Key(u32::try_from(graph.objects.len()).expect("fewer than 2^32 objects"));
+        let name: Arc<str> = name.into();
+        let order = if self.extent == Extent::Whole {
+            graph.declared
+        } else {
+            // An edit adds at the end.
+            graph.objects.iter().flatten().map(|o| o.order + 1).max().unwrap_or(0)
+        };
+        graph.declared = graph.declared.max(order + 1);
+        graph.names.insert(name.clone(), key);
+        graph.objects.push(Some(Object::new(
+            key,
+            name,
+            row.clone(),
+            head,
+            origin,
+            order,
+            graph.clock,
+        )));
+        graph.connect(key, args);
+        graph.mark_pending(key);
+        key
+    }
+
+    fn check_cycle(&self, key: Key, args: &[Value<T>]) -> Result<(), Fault> {
+        // In a run, parents are declared before their children: no cycle can arise.
+        if self.extent == Extent::Whole {
+            return Ok(());
+        }
+        let mut parents = Vec::new();
+        args.iter().for_each(|arg| arg.for_each_object(&mut |parent| parents.push(parent)));
+        let mut path_to = IndexMap::from([(key, key)]);
+        let mut stack = vec![key];
+        while let Some(at) = stack.pop() {
+            for &child in &self.graph.object(at).children {
+                if !path_to.contains_key(&child) {
+                    path_to.insert(child, at);
+                    stack.push(child);
+                }
+            }
+        }
+        let Some(&parent) = parents.iter().find(|&p| path_to.contains_key(p)) else {
+            return Ok(());
+        };
+        let name = |key: Key| self.graph.object(key).name.to_string();
+        let mut path = vec![name(key)];
+        let mut at = parent;
+        while at != key {
+            path.push(name(at));
+            at = path_to[&at];
+        }
+        path.push(name(key));
+        Err(Fault::new("cycle", format!("`{}` would depend on itself", name(key)))
+            .found(path.join(" -> "))
+            .help("an object may only be built on objects that are not built on it"))
+    }
+
+    /// The class of an object, known without evaluating it.
+    pub fn class_of(&self, key: Key) -> Class {
+        self.graph.get(key).map_or(Class::Any, |o| o.row.class)
+    }
+
+    /// The object called `name`, if this run (or, in an edit, the model) has it.
+    pub fn find(&self, name: &str) -> Option<Key> {
+        let key = self.graph.find(name)?;
+        let object = self.graph.object(key);
+        (self.extent == Extent::Edit || object.declared_at == self.graph.clock).then_some(key)
+    }
+
+    /// The value of an object, evaluated now with all that it depends on.
+    ///
+    /// # Errors
+    /// The reason why it has none.
+    pub fn force(&mut self, key: Key) -> Result<Value<T>, Failure> {
+        self.graph.force(key);
+        self.graph.object_mut(key).read_by_program = true;
+        match &self.graph.object(key).state {
+            State::Ok(value) => Ok(value.clone()),
+            State::Failed(failure) => Err(failure.clone()),
+            State::New => unreachable!("forcing evaluates"),
+        }
+    }
+
+    /// The value of an anonymous call, remembered by its arguments from this and the last run.
+    ///
+    /// # Errors
+    /// What the row's body reports.
+    pub fn call(&mut self, row: &Arc<Row>, args: Vec<Value<T>>) -> Result<Value<T>, Fault> {
+        let (clock, context) = (self.graph.clock, self.graph.context);
+        self.graph.memo.call(row, args, clock, &context)
+    }
+
+    /// The graph as it stands.
+    pub fn graph(&self) -> &Graph<T> {
+        self.graph
+    }
+
+    /// Removes an object that nothing depends on.
+    ///
+    /// # Errors
+    /// A [`Fault`] that names the dependents.
+    pub fn remove(&mut self, key: Key) -> Result<(), Fault> {
+        let object = self.graph.object(key);
+        if object.children.is_empty() {
+            self.graph.remove(&[key]);
+            return Ok(());
+        }
+        let mut names: Vec<_> = object
+            .children
+            .iter()
+            .take(5)
+            .map(|&c| self.graph.object(c).name.to_string())
+            .collect();
+        if object.children.len() > names.len() {
+            names.push(format!("{} more", object.children.len() - names.len()));
+        }
+        let names = names.join(", ");
+        Err(Fault::new("has-dependents", format!("`{}` cannot be deleted", object.name))
+            .found(format!("{names} built on it"))
+            .help("delete or rebuild those first"))
+    }
+
+    /// Renames an object; what refers to it goes on doing so.
+    ///
+    /// # Errors
+    /// A [`Fault`] when the name is taken.
+    pub fn rename(&mut self, key: Key, name: &str) -> Result<(), Fault> {
+        if self.graph.names.contains_key(name) {
+            return Err(Fault::new("duplicate-name", format!("`{name}` exists already"))
+                .help("choose another name"));
+        }
+        let new: Arc<str> = name.into();
+        let old = std::mem::replace(&mut self.graph.object_mut(key).name, new.clone());
+        self.graph.names.swap_remove(&old);
+        self.graph.names.insert(new, key);
+        Ok(())
+    }
+}

@@ -1,0 +1,20 @@
+//! The model: named objects that depend on each other, evaluated again only where they changed.
+//!
+//! `declarations -> Graph -> shapes -> Panelling -> Mesh`
+//!
+//! [`Graph::apply`] is the one way to change a model, for a run of a program and for a direct edit
+//! alike. The graph is generic over the scalar: a graph of dual numbers, made by running the same
+//! program with seeded numbers, gives exact derivatives of all that is computed from it.
+//!
+//! Invariant: this crate knows no particular kind, no syntax and no file.
+
+mod contour;
+mod graph;
+mod memo;
+mod object;
+mod panel;
+
+pub use contour::{Polyline, Sectioned};
+pub use graph::{Applied, DEEPEST_NESTING, Declaration, Extent, Graph, Run};
+pub use object::{Failure, Object, State};
+pub use panel::{Panelling, Remark};

@@ -1,0 +1,124 @@
+use moldloft_num::trace::Key;
+use moldloft_registry::{Fault, Head, Row, Scalar, Value};
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// Why an object has no value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Failure {
+    /// Its own data make no such thing.
+    Fault(Fault),
+    /// Something that it depends on failed.
+    Blocked {
+        /// The object at the root of the trouble.
+        by: Key,
+    },
+}
+
+/// What became of an object's evaluation.
+#[derive(Clone, Debug)]
+pub enum State<T: Scalar> {
+    /// Not evaluated yet.
+    New,
+    /// Its value.
+    Ok(Value<T>),
+    /// Why there is none: a failed object is a value too, and everything else lives on.
+    Failed(Failure),
+}
+
+impl<T: Scalar> State<T> {
+    /// The value, if there is one.
+    pub fn value(&self) -> Option<&Value<T>> {
+        match self {
+            State::Ok(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// True for a failed or blocked object.
+    pub fn is_failure(&self) -> bool {
+        matches!(self, State::Failed(_))
+    }
+
+    /// True when what depends on it need not be evaluated again.
+    pub fn same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (State::Ok(a), State::Ok(b)) => a.same(b),
+            (State::Failed(a), State::Failed(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+/// A named object: a call of a row whose result is kept.
+#[derive(Clone, Debug)]
+pub struct Object<T: Scalar> {
+    /// Its identity, which outlives renaming.
+    pub key: Key,
+    /// Its name.
+    pub name: Arc<str>,
+    /// What it is a call of.
+    pub row: Arc<Row>,
+    /// The arguments, in the order of the row's fields; parents as [`Value::Object`].
+    pub args: Vec<Value<T>>,
+    /// How it is drawn and divided.
+    pub head: Head,
+    /// Where it was declared, in the producer's numbering.
+    pub origin: u32,
+    /// What it depends on directly, in order of mention.
+    pub parents: SmallVec<[Key; 4]>,
+    /// What depends on it directly.
+    pub children: Vec<Key>,
+    /// Its place in the order of declaration.
+    pub order: u32,
+    /// What became of its evaluation.
+    pub state: State<T>,
+    /// The clock at which its value changed last.
+    pub changed_at: u64,
+    /// The clock at which its head changed last.
+    pub head_changed_at: u64,
+    /// True when a statement of the program has read its value: a change must run it again.
+    pub read_by_program: bool,
+    pub(crate) declared_at: u64,
+    pub(crate) verified_at: u64,
+    pub(crate) rank: u32,
+    pub(crate) pending: bool,
+}
+
+impl<T: Scalar> Object<T> {
+    pub(crate) fn new(
+        key: Key,
+        name: Arc<str>,
+        row: Arc<Row>,
+        head: Head,
+        origin: u32,
+        order: u32,
+        clock: u64,
+    ) -> Self {
+        Self {
+            key,
+            name,
+            row,
+            args: Vec::new(),
+            head,
+            origin,
+            parents: SmallVec::new(),
+            children: Vec::new(),
+            order,
+            state: State::New,
+            changed_at: clock,
+            head_changed_at: clock,
+            read_by_program: false,
+            declared_at: clock,
+            verified_at: 0,
+            // Below any real rank, so that the first ranking always counts as a change.
+            rank: 0,
+            pending: false,
+        }
+    }
+
+    /// Its value, if it has one.
+    pub fn value(&self) -> Option<&Value<T>> {
+        self.state.value()
+    }
+}
