@@ -1,0 +1,203 @@
+use crate::{Basis, KnotError, KnotVector};
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use std::fmt;
+
+/// Why there is no such spline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SplineError {
+    /// The knots are at fault.
+    Knots(KnotError),
+    /// The knots do not run over [0, 1]; see [`KnotVector::normalized`].
+    Domain {
+        /// The first parameter.
+        start: f64,
+        /// The last parameter.
+        end: f64,
+    },
+    /// The number of control points or weights does not fit the knots.
+    Count {
+        /// The number that the knots ask for.
+        expected: usize,
+        /// The number given.
+        actual: usize,
+    },
+    /// A control point is NaN or infinite.
+    NotFinite {
+        /// Its index.
+        index: usize,
+    },
+    /// A weight is not a positive number.
+    Weight {
+        /// Its index.
+        index: usize,
+        /// The weight.
+        weight: f64,
+    },
+    /// A parameter to split at or insert does not lie inside (0, 1).
+    Outside {
+        /// The parameter.
+        t: f64,
+    },
+}
+
+impl From<KnotError> for SplineError {
+    fn from(error: KnotError) -> Self {
+        Self::Knots(error)
+    }
+}
+
+impl fmt::Display for SplineError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Knots(error) => error.fmt(f),
+            Self::Domain { start, end } => {
+                write!(f, "expected knots over [0, 1], found [{start}, {end}]")
+            }
+            Self::Count { expected, actual } => {
+                write!(f, "expected {expected} control points and weights, found {actual}")
+            }
+            Self::NotFinite { index } => write!(f, "control point {index} is not finite"),
+            Self::Weight { index, weight } => {
+                write!(f, "weight {index} is {weight}, expected a positive number")
+            }
+            Self::Outside { t } => write!(f, "expected a parameter inside (0, 1), found {t}"),
+        }
+    }
+}
+
+impl std::error::Error for SplineError {}
+
+/// Checks what curves and surfaces have in common.
+pub(crate) fn check_net<T: Real>(
+    knots: &[&KnotVector],
+    points: &[Vec3<T>],
+    weights: Option<&[T]>,
+) -> Result<(), SplineError> {
+    for k in knots {
+        let (start, end) = k.domain();
+        if (start, end) != (0.0, 1.0) {
+            return Err(SplineError::Domain { start, end });
+        }
+    }
+    let expected = knots.iter().map(|k| k.points()).product();
+    for actual in [points.len(), weights.map_or(expected, <[T]>::len)] {
+        if actual != expected {
+            return Err(SplineError::Count { expected, actual });
+        }
+    }
+    if let Some(index) = points.iter().position(|p| !p.is_finite()) {
+        return Err(SplineError::NotFinite { index });
+    }
+    for (index, w) in weights.unwrap_or_default().iter().enumerate() {
+        if !(w.is_finite() && w.re() > 0.0) {
+            return Err(SplineError::Weight { index, weight: w.re() });
+        }
+    }
+    Ok(())
+}
+
+/// A B-spline curve of any degree on [0, 1], rational if it has weights.
+///
+/// Outside [0, 1] the polynomial of the first or last span continues.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BSplineCurve<T> {
+    pub(crate) knots: KnotVector,
+    pub(crate) points: Vec<Vec3<T>>,
+    pub(crate) weights: Option<Vec<T>>,
+}
+
+impl<T: Real> BSplineCurve<T> {
+    /// The curve of these knots (over [0, 1]), control points and optional weights.
+    ///
+    /// # Errors
+    /// [`SplineError`] when they do not fit each other or are not finite.
+    pub fn new(
+        knots: KnotVector,
+        control_points: Vec<Vec3<T>>,
+        weights: Option<Vec<T>>,
+    ) -> Result<Self, SplineError> {
+        check_net(&[&knots], &control_points, weights.as_deref())?;
+        Ok(Self { knots, points: control_points, weights })
+    }
+
+    /// The polynomial curve with clamped uniform knots.
+    ///
+    /// # Errors
+    /// [`SplineError`] when there are at most `degree` points or one is not finite.
+    pub fn uniform(degree: usize, control_points: Vec<Vec3<T>>) -> Result<Self, SplineError> {
+        let knots = KnotVector::clamped_uniform(degree, control_points.len())?;
+        Self::new(knots, control_points, None)
+    }
+
+    /// The polynomial degree.
+    pub fn degree(&self) -> usize {
+        self.knots.degree()
+    }
+
+    /// The knots.
+    pub fn knots(&self) -> &KnotVector {
+        &self.knots
+    }
+
+    /// The control points.
+    pub fn control_points(&self) -> &[Vec3<T>] {
+        &self.points
+    }
+
+    /// The weights, for a rational curve.
+    pub fn weights(&self) -> Option<&[T]> {
+        self.weights.as_deref()
+    }
+
+    /// The jet from basis functions; `times` multiplies a coordinate with a basis function, which
+    /// is a plain number wherever the parameter is.
+    #[inline(always)]
+    fn combine<S: Real>(&self, basis: &Basis<S>, times: impl Fn(T, S) -> T) -> CurveJet<T> {
+        let mut a = CurveJet::default();
+        let Some(weights) = &self.weights else {
+            for (a, row) in a.iter_mut().zip(&basis.rows) {
+                for (&b, p) in row.iter().zip(&self.points[basis.first..]) {
+                    *a += p.map(|x| times(x, b));
+                }
+            }
+            return a;
+        };
+        let mut w = [T::zero(); 3];
+        for (k, row) in basis.rows.iter().enumerate() {
+            for (r, &b) in row.iter().enumerate() {
+                let share = times(weights[basis.first + r], b);
+                a[k] += self.points[basis.first + r] * share;
+                w[k] += share;
+            }
+        }
+        quotient(a, w)
+    }
+}
+
+/// The jet of a(t) / w(t) (Piegl and Tiller 1997, eq. 4.8).
+#[inline(always)]
+fn quotient<T: Real>(a: CurveJet<T>, w: [T; 3]) -> CurveJet<T> {
+    let c = a[0] / w[0];
+    let d = (a[1] - c * w[1]) / w[0];
+    [c, d, (a[2] - d * (w[1] * 2.0) - c * w[2]) / w[0]]
+}
+
+impl<T: Real> Curve<T> for BSplineCurve<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        if t.is_constant() {
+            self.combine(&self.knots.basis(t.re(), order), |x, b: f64| x * b)
+        } else {
+            self.combine(&self.knots.basis(t, order), |x, b: T| x * b)
+        }
+    }
+
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        for (x, &t) in out.iter_mut().zip(ts) {
+            *x = self.combine(&self.knots.basis(t, Order::Zero), |x, b: f64| x * b)[0];
+        }
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.knots.breaks()
+    }
+}

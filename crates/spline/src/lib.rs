@@ -1,0 +1,37 @@
+//! Splines, arcs, arc length, distributions and relabellings.
+//!
+//! Pure mathematics, generic over the scalar [`moldloft_num::Real`]; the entities of the language
+//! are declared elsewhere on top of it. Curves and surfaces here implement
+//! [`moldloft_num::Curve`] and [`moldloft_num::Surface`], with parameters in [0, 1].
+//!
+//! `points, knots -> curve or surface -> jets, grids, lengths -> distributed points`
+//!
+//! # Example
+//! ```
+//! use moldloft_num::{Curve, Order, Vec3};
+//! use moldloft_spline::BSplineCurve;
+//! let points = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, 0.0]];
+//! let points = points.map(|[x, y]| Vec3::of(x, y, 0.0)).to_vec();
+//! let curve = BSplineCurve::<f64>::uniform(2, points).unwrap();
+//! assert_eq!(curve.jet(0.5, Order::Zero)[0], Vec3::of(2.0, 2.0, 0.0));
+//! ```
+//!
+//! Invariant: this crate knows no entity, no file and no language, and depends on `num` only.
+
+mod arc;
+mod basis;
+mod curve;
+mod curve_edit;
+mod even;
+mod interpolating;
+mod knot_vector;
+mod piecewise;
+mod surface;
+
+pub use arc::{Arc, ArcError};
+pub use basis::Basis;
+pub use curve::{BSplineCurve, SplineError};
+pub use interpolating::{End, Ends, InterpolatingSpline, InterpolationError};
+pub use knot_vector::{KnotError, KnotVector, MAX_DEGREE};
+pub use piecewise::PiecewiseCubic;
+pub use surface::BSplineSurface;

@@ -1,0 +1,113 @@
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use smallvec::SmallVec;
+
+/// A curve of cubic polynomials between knots that may themselves move (they are scalars, not
+/// plain numbers).
+///
+/// Piece `k` holds the coefficients of 1, s, s^2, s^3 with s = t - knots[k]. There is one piece per
+/// knot: the last continues the one before from its far end, so the value at each knot, the last
+/// included, is its constant coefficient to the bit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PiecewiseCubic<T: Real> {
+    knots: SmallVec<[T; 5]>,
+    coefficients: SmallVec<[[Vec3<T>; 4]; 5]>,
+}
+
+impl<T: Real> PiecewiseCubic<T> {
+    /// The cubic Hermite curve through `points` at ascending `knots` with the given `slopes`; all
+    /// three lists are equally long, at least two.
+    pub fn hermite(knots: &[T], points: &[Vec3<T>], slopes: &[Vec3<T>]) -> Self {
+        let mut coefficients = SmallVec::with_capacity(knots.len());
+        for k in 0..knots.len() - 1 {
+            let shrink = T::one() / (knots[k + 1] - knots[k]);
+            let chord = (points[k + 1] - points[k]) * shrink;
+            let (at_start, at_end) = (slopes[k] - chord, slopes[k + 1] - chord);
+            let cubic = (at_start + at_end) * shrink;
+            let quadratic = -(at_start * shrink) - cubic;
+            coefficients.push([points[k], slopes[k], quadratic, cubic * shrink]);
+        }
+        Self::closed_off(knots, coefficients, points[points.len() - 1])
+    }
+
+    /// The piecewise curve of these coefficients, one set per knot but the last, where it passes
+    /// through `end`.
+    pub(crate) fn closed_off(
+        knots: &[T],
+        mut coefficients: SmallVec<[[Vec3<T>; 4]; 5]>,
+        end: Vec3<T>,
+    ) -> Self {
+        let last = coefficients.len() - 1;
+        let (s, [_, b, c, d]) = (knots[last + 1] - knots[last], coefficients[last]);
+        let slope = (d * (s * 3.0) + c.map(|x| x * 2.0)) * s + b;
+        coefficients.push([end, slope, d * (s * 3.0) + c, d]);
+        Self { knots: SmallVec::from_slice(knots), coefficients }
+    }
+
+    /// The knots, first and last parameter included.
+    pub fn knots(&self) -> &[T] {
+        &self.knots
+    }
+
+    /// The coefficients of each piece; see the type.
+    pub fn coefficients(&self) -> &[[Vec3<T>; 4]] {
+        &self.coefficients
+    }
+
+    /// The piece in charge at `t`: the first for `t` before all knots, the last after them.
+    #[inline(always)]
+    fn piece(&self, t: f64) -> usize {
+        let inner = &self.knots[1..];
+        if inner.len() <= 8 {
+            inner.iter().map(|k| usize::from(k.re() <= t)).sum()
+        } else {
+            inner.partition_point(|k| k.re() <= t)
+        }
+    }
+
+    /// The position at `t`.
+    #[inline(always)]
+    pub fn eval(&self, t: T) -> Vec3<T> {
+        let k = self.piece(t.re());
+        let (s, [a, b, c, d]) = (t - self.knots[k], self.coefficients[k]);
+        ((d * s + c) * s + b) * s + a
+    }
+
+    /// The positions at `ts`, in any order.
+    pub fn eval_many(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        for (x, &t) in out.iter_mut().zip(ts) {
+            *x = self.eval(T::from(t));
+        }
+    }
+
+    /// Positions and derivatives at `ts` to `order`, in any order of `ts`.
+    pub fn jets_many(&self, ts: &[f64], order: Order, out: &mut [CurveJet<T>]) {
+        for (x, &t) in out.iter_mut().zip(ts) {
+            *x = self.jet(T::from(t), order);
+        }
+    }
+}
+
+impl<T: Real> Curve<T> for PiecewiseCubic<T> {
+    #[inline]
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        let k = self.piece(t.re());
+        let (s, [a, b, c, d]) = (t - self.knots[k], self.coefficients[k]);
+        let mut jet = [((d * s + c) * s + b) * s + a, Vec3::zero(), Vec3::zero()];
+        if order >= Order::First {
+            jet[1] = (d * (s * 3.0) + c.map(|x| x * 2.0)) * s + b;
+        }
+        if order == Order::Second {
+            jet[2] = d * (s * 6.0) + c.map(|x| x * 2.0);
+        }
+        jet
+    }
+
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        self.eval_many(ts, out);
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        // Between pieces that are the same polynomial nothing jumps, but rounding hides which.
+        self.knots[1..self.knots.len() - 1].iter().map(|k| k.re()).collect()
+    }
+}
