@@ -4,10 +4,12 @@
 //! what was wrong with the text. Nothing here knows about geometry.
 //!
 //! - [`sdl`]: the language of `.sdl` programs (grammar in `docs/grammar.ebnf`), with its formatter.
+//! - [`model_file`]: MultiSurf model files 0.35 and 1.x.
 //! - [`number`]: the shortest spelling of a double.
 //! - [`decode`]: bytes into text, telling binary files apart.
 
 mod decode;
+pub mod model_file;
 pub mod number;
 pub mod sdl;
 

@@ -4,7 +4,7 @@ use super::interner::Symbol;
 use moldloft_diag::Span;
 use std::marker::PhantomData;
 
-/// A number that stands in the text. A sign directly before a number belongs to it (`{-1, 2}`), except before `^`.
+/// A number that stands in the text. A sign directly before a number belongs to it (`{-1, 2}`), unless `^`, `.` or `.*` follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Literal {
     /// The value, finite.
@@ -15,7 +15,7 @@ pub struct Literal {
     pub span: Span,
     /// Whether the value was set after parsing.
     pub edited: bool,
-    /// Whether a negative value must be written in parentheses here (before `^`).
+    /// Whether a negative value must be written in parentheses here (before `^`, `.` and `.*`).
     pub(crate) wrap_negative: bool,
 }
 

@@ -210,6 +210,14 @@ impl Program {
                 let _ = write!(out, "{:?}{kind}", literal.value);
                 return;
             }
+            ExprKind::Unary { op: UnaryOp::Minus, operand } => {
+                // The same as a literal with a sign.
+                if let Some(id) = self.as_literal(operand) {
+                    let kind = if self[id].is_int { "i" } else { "" };
+                    let _ = write!(out, "{:?}{kind}", -self[id].value);
+                    return;
+                }
+            }
             ExprKind::Text(id) => {
                 let _ = write!(out, "{:?}", &self[id]);
                 return;

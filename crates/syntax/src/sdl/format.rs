@@ -87,6 +87,7 @@ impl<'a> Writer<'a> {
                 break;
             }
             if role == Role::Redundant {
+                self.next_start += 1;
                 continue;
             }
             self.break_line(at, token, role);
@@ -167,15 +168,13 @@ impl<'a> Writer<'a> {
             let first_in_block = std::mem::take(&mut self.first_in_block);
             let starts = self.start_of(at);
             // Comments before a statement or a `}` stand as deep as what is in this block.
-            let fresh =
-                starts.is_some() || self.layout.tokens[at].kind == Kind::End || self.redundant(at);
+            let fresh = starts.is_some() || self.layout.tokens[at].kind == Kind::End;
             if fresh && self.brackets.is_empty() {
                 if !first_in_block {
                     self.empty_line(comment.start);
                 }
                 let closes = self.layout.roles[at] == Role::BlockClose;
                 let depth = starts.map_or(0, |depth| depth + u32::from(closes));
-                let depth = if starts.is_none() && self.redundant(at) { self.depth } else { depth };
                 self.out.extend(std::iter::repeat_n(' ', depth as usize * INDENT));
                 self.at_line_start = false;
             } else {
@@ -187,10 +186,6 @@ impl<'a> Writer<'a> {
         self.line += 1;
         self.at_line_start = true;
         self.source_end = comment.end;
-    }
-
-    fn redundant(&self, at: usize) -> bool {
-        self.layout.roles[at] == Role::Redundant
     }
 
     /// The indentation of the token, if it starts a line.
@@ -211,7 +206,10 @@ impl<'a> Writer<'a> {
             }
             self.brackets.clear();
             self.new_line();
-            if role != Role::BlockClose && token.kind != Kind::Else {
+            let after_head = self.last.is_some_and(|(last, _)| {
+                matches!(last.kind, Kind::RParen | Kind::Then | Kind::Else)
+            });
+            if role != Role::BlockClose && token.kind != Kind::Else && !after_head {
                 self.empty_line(token.start);
             }
             self.depth = depth;
@@ -241,6 +239,7 @@ impl<'a> Writer<'a> {
         while self.open_at.last() == Some(&token.start) {
             self.open_at.pop();
             self.out.push('(');
+            self.brackets.push(self.line);
         }
         if closes(token, role) {
             self.brackets.pop();
@@ -257,6 +256,7 @@ impl<'a> Writer<'a> {
         while self.close_at.last() == Some(&token.end) {
             self.close_at.pop();
             self.out.push(')');
+            self.brackets.pop();
         }
         self.last = Some((token, role));
         self.first_in_block = role == Role::BlockOpen;

@@ -143,13 +143,7 @@ impl Parser {
         }
         let operand = self.dot()?;
         match self.program[operand].kind {
-            ExprKind::Number(literal) => {
-                has.number = true;
-                if self.kind() == Kind::Caret {
-                    self.program.literals[literal.0 as usize].wrap_negative = true;
-                }
-            }
-            ExprKind::Magnitude(_) | ExprKind::List(_) => has.number = true,
+            ExprKind::Number(_) | ExprKind::Magnitude(_) | ExprKind::List(_) => has.number = true,
             _ => {}
         }
         self.items.push(ChainItem::Operand(operand));
@@ -235,8 +229,10 @@ impl Parser {
                 ExprKind::Binary { op, left, right } if is_chain_op(op) => {
                     for (side, is_left) in [(left, true), (right, false)] {
                         let weaker = match self.program[side].kind {
-                            ExprKind::Binary { op, .. } => is_chain_op(op) && op != BinaryOp::Caret,
-                            ExprKind::Unary { .. } => is_left,
+                            ExprKind::Binary { op, .. } => {
+                                is_chain_op(op) && (is_left || op != BinaryOp::Caret)
+                            }
+                            ExprKind::Unary { .. } => true,
                             _ => false,
                         };
                         if op == BinaryOp::Caret && weaker {
@@ -360,6 +356,12 @@ impl Parser {
             _ => return Err(self.unexpected("an expression")),
         };
         self.next();
+        // A sign binds looser than these.
+        if token.kind == Kind::Number
+            && matches!(self.kind(), Kind::Caret | Kind::Dot | Kind::Cross)
+        {
+            self.program.literals[token.payload as usize].wrap_negative = true;
+        }
         Ok(self.push_expr(kind, span, 0))
     }
 

@@ -21,6 +21,7 @@ impl Parser {
                     self.next();
                 }
                 Kind::Semi => {
+                    self.start_line(depth);
                     self.next_as(Role::Redundant);
                 }
                 _ => {
