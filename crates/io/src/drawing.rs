@@ -1,0 +1,420 @@
+//! Lines drawings: the body plan, the waterlines and the buttocks of a hull as SVG.
+//!
+//! Sheets are in millimetres at a stated scale, so they print true. The body plan shows the
+//! sections of the fore body on the right of the centre line and those of the after body on the
+//! left; waterlines are drawn in x-y, buttocks in x-z.
+
+use crate::text::{put, xml};
+use std::fmt::Write as _;
+
+/// A cut of the model with a plane of constant coordinate.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contour {
+    /// Shown beside the line; may be empty.
+    pub name: String,
+    /// The coordinate that is constant: 0 for x (sections), 1 for y (buttocks), 2 for z.
+    pub axis: usize,
+    /// Its value.
+    pub value: f64,
+    /// The lines, points in model coordinates.
+    pub polylines: Vec<Vec<[f64; 3]>>,
+    /// Line width in millimetres; `None` for the drawing's own.
+    pub width_mm: Option<f64>,
+}
+
+/// Which way the hull is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// Sections in the y-z plane.
+    BodyPlan,
+    /// Waterlines in the x-y plane.
+    Waterlines,
+    /// Buttocks in the x-z plane.
+    Buttocks,
+}
+
+impl View {
+    /// The axis whose contours the view shows in true shape.
+    fn axis(self) -> usize {
+        match self {
+            Self::BodyPlan => 0,
+            Self::Buttocks => 1,
+            Self::Waterlines => 2,
+        }
+    }
+
+    /// Names of the sheet's horizontal and vertical coordinate.
+    fn labels(self) -> [&'static str; 2] {
+        match self {
+            Self::BodyPlan => ["y", "z"],
+            Self::Waterlines => ["x", "y"],
+            Self::Buttocks => ["x", "z"],
+        }
+    }
+}
+
+/// How to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Title of the sheet.
+    pub title: String,
+    /// Name of the model's unit.
+    pub unit: String,
+    /// Millimetres in one model unit; 1000 for metres.
+    pub unit_mm: f64,
+    /// The n of the scale 1 : n; `None` for the largest round scale that fits `width_mm`.
+    pub scale: Option<f64>,
+    /// Width that the drawing itself may take, in millimetres.
+    pub width_mm: f64,
+    /// True when the bow is at low x.
+    pub bow_at_low_x: bool,
+    /// Station that divides the fore from the after body; `None` for the middle of the sections.
+    pub midship: Option<f64>,
+    /// Width of the contours in millimetres.
+    pub line_mm: f64,
+    /// Width of the grid lines in millimetres.
+    pub grid_mm: f64,
+}
+
+impl Default for Options {
+    /// Metres, bow at low x, contours of 0.35 mm and grid of 0.13 mm (ISO 128 widths), 260 mm wide.
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            unit: "m".into(),
+            unit_mm: 1000.0,
+            scale: None,
+            width_mm: 260.0,
+            bow_at_low_x: true,
+            midship: None,
+            line_mm: 0.35,
+            grid_mm: 0.13,
+        }
+    }
+}
+
+/// Space around the drawing for labels, and below it for the scale bar, in millimetres.
+const MARGIN: f64 = 16.0;
+const FOOT: f64 = 16.0;
+
+/// The sheet: the view's own contours as lines, the others' values as nothing; a grid of round
+/// numbers with labels, the centre line and z = 0 heavier, names at the ends of the lines, the
+/// scale in words and as a bar. Points that are not finite end a line.
+pub fn draw(view: View, contours: &[Contour], options: &Options) -> Vec<u8> {
+    let lines = projected(view, contours, options);
+    let sheet = Sheet::around(&lines, options);
+    let mut out = String::new();
+    sheet.head(&mut out, view, options);
+    sheet.grid(&mut out, view, options);
+    for line in &lines {
+        sheet.line(&mut out, line, options);
+    }
+    sheet.foot(&mut out, options);
+    out.push_str("</svg>\n");
+    out.into_bytes()
+}
+
+/// A line on the drawing plane, in model units.
+struct Line {
+    name: String,
+    width: Option<f64>,
+    points: Vec<[f64; 2]>,
+}
+
+fn projected(view: View, contours: &[Contour], options: &Options) -> Vec<Line> {
+    let shown = || contours.iter().filter(|c| c.axis == view.axis());
+    let (low, high) = shown().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
+        (low.min(c.value), high.max(c.value))
+    });
+    let midship = options.midship.unwrap_or(0.5 * (low + high));
+    let mut lines = Vec::new();
+    for contour in shown() {
+        // Fore body to the right: the side of y that the section lies on is shown mirrored as
+        // needed; a section through midships belongs to the fore body.
+        let fore =
+            if options.bow_at_low_x { contour.value <= midship } else { contour.value >= midship };
+        let side = if fore { 1.0 } else { -1.0 };
+        let flat = |p: &[f64; 3]| match view {
+            View::BodyPlan => [side * p[1].abs(), p[2]],
+            View::Waterlines => [p[0], p[1]],
+            View::Buttocks => [p[0], p[2]],
+        };
+        for polyline in &contour.polylines {
+            let runs = polyline.split(|p| p.iter().any(|x| !x.is_finite()));
+            lines.extend(runs.filter(|run| run.len() > 1).map(|run| Line {
+                name: contour.name.clone(),
+                width: contour.width_mm,
+                points: run.iter().map(flat).collect(),
+            }));
+        }
+    }
+    lines
+}
+
+/// The next of 1, 2, 2.5, 5, 10 times a power of ten that is not below `x`.
+fn round_up(x: f64) -> f64 {
+    if !(x > 0.0 && x.is_finite()) {
+        return 1.0;
+    }
+    let power = libm::pow(10.0, libm::floor(libm::log10(x)));
+    let steps = [1.0, 2.0, 2.5, 5.0, 10.0, 20.0];
+    steps.into_iter().map(|s| s * power).find(|&s| s >= x * (1.0 - 1e-12)).unwrap_or(x)
+}
+
+/// The drawing's place on its sheet.
+struct Sheet {
+    /// Model coordinates of the drawing's edges, on grid lines: left, right, bottom, top.
+    edges: [f64; 4],
+    /// Millimetres on paper per model unit.
+    mm: f64,
+    /// The n of 1 : n.
+    scale: f64,
+    /// Grid spacing in model units.
+    step: f64,
+}
+
+impl Sheet {
+    fn around(lines: &[Line], options: &Options) -> Self {
+        let mut edges = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+        for [x, y] in lines.iter().flat_map(|l| &l.points) {
+            edges = [edges[0].min(*x), edges[1].max(*x), edges[2].min(*y), edges[3].max(*y)];
+        }
+        if edges[0] > edges[1] {
+            edges = [0.0, 1.0, 0.0, 1.0];
+        }
+        let size = (edges[1] - edges[0]).max(edges[3] - edges[2]).max(f64::MIN_POSITIVE);
+        let step = round_up(size / 12.0);
+        for (k, edge) in edges.iter_mut().enumerate() {
+            let cells = *edge / step;
+            *edge = step * if k % 2 == 0 { libm::floor(cells) } else { libm::ceil(cells) };
+        }
+        if edges[0] == edges[1] {
+            edges[1] += step;
+        }
+        if edges[2] == edges[3] {
+            edges[3] += step;
+        }
+        let full_size = (edges[1] - edges[0]) * options.unit_mm;
+        let scale = options.scale.unwrap_or_else(|| round_up(full_size / options.width_mm));
+        Self { edges, mm: options.unit_mm / scale, scale, step }
+    }
+
+    fn x(&self, x: f64) -> f64 {
+        MARGIN + (x - self.edges[0]) * self.mm
+    }
+
+    fn y(&self, y: f64) -> f64 {
+        MARGIN + (self.edges[3] - y) * self.mm
+    }
+
+    fn size(&self) -> [f64; 2] {
+        [self.x(self.edges[1]) + MARGIN, self.y(self.edges[2]) + MARGIN + FOOT]
+    }
+
+    fn head(&self, out: &mut String, view: View, options: &Options) {
+        let [width, height] = self.size();
+        let view = match view {
+            View::BodyPlan => "body plan",
+            View::Waterlines => "waterlines",
+            View::Buttocks => "buttocks",
+        };
+        let title = xml(&options.title);
+        let title = if title.is_empty() { view.into() } else { format!("{title}: {view}") };
+        put!(
+            *out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.2}mm\" \
+             height=\"{height:.2}mm\" viewBox=\"0 0 {width:.2} {height:.2}\" \
+             font-family=\"Helvetica, Arial, sans-serif\" font-size=\"2.5\">\n<title>{title}</title>\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+             <text x=\"{MARGIN}\" y=\"7\" font-size=\"4\">{title}</text>\n"
+        );
+    }
+
+    fn grid(&self, out: &mut String, view: View, options: &Options) {
+        let [left, right, bottom, top] = self.edges;
+        let (thin, heavy) = (options.grid_mm, 2.0 * options.grid_mm);
+        put!(*out, "<g id=\"grid\" stroke=\"#9ab\" stroke-width=\"{thin}\" fill=\"none\">\n");
+        let ticks = |from: f64, to: f64| {
+            let first = libm::round(from / self.step) as i64;
+            let last = libm::round(to / self.step) as i64;
+            (first..=last).map(|k| k as f64 * self.step)
+        };
+        let weight = |value: f64| {
+            if value == 0.0 {
+                format!(" stroke=\"#456\" stroke-width=\"{heavy}\"")
+            } else {
+                String::new()
+            }
+        };
+        for x in ticks(left, right) {
+            let (at, style) = (self.x(x), weight(x));
+            put!(*out, "<path d=\"M{at:.3} {:.3}V{:.3}\"{style}/>\n", self.y(top), self.y(bottom));
+        }
+        for y in ticks(bottom, top) {
+            let (at, style) = (self.y(y), weight(y));
+            put!(*out, "<path d=\"M{:.3} {at:.3}H{:.3}\"{style}/>\n", self.x(left), self.x(right));
+        }
+        put!(*out, "</g>\n<g id=\"labels\" fill=\"#456\">\n");
+        let label = |value: f64| {
+            // Both halves of a body plan count the half-breadth from the centre line.
+            let text = format!("{:.6}", value + 0.0);
+            text.trim_end_matches('0').trim_end_matches('.').to_string()
+        };
+        let [across, up] = view.labels();
+        for x in ticks(left, right) {
+            let shown = if view == View::BodyPlan { x.abs() } else { x };
+            let (at, below) = (self.x(x), self.y(bottom) + 4.0);
+            put!(
+                *out,
+                "<text x=\"{at:.2}\" y=\"{below:.2}\" text-anchor=\"middle\">{}</text>\n",
+                label(shown)
+            );
+        }
+        for y in ticks(bottom, top) {
+            let (at, beside) = (self.y(y) + 0.9, self.x(left) - 1.5);
+            put!(
+                *out,
+                "<text x=\"{beside:.2}\" y=\"{at:.2}\" text-anchor=\"end\">{}</text>\n",
+                label(y)
+            );
+        }
+        let (x, y) = (self.x(right) + 3.0, self.y(bottom) + 4.0);
+        put!(*out, "<text x=\"{x:.2}\" y=\"{y:.2}\" font-style=\"italic\">{across}</text>\n");
+        let (x, y) = (self.x(left) - 1.5, self.y(top) - 2.5);
+        put!(
+            *out,
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"end\" font-style=\"italic\">{up}</text>\n</g>\n"
+        );
+    }
+
+    fn line(&self, out: &mut String, line: &Line, options: &Options) {
+        let width = line.width.unwrap_or(options.line_mm);
+        out.push_str("<path d=\"");
+        for (k, [x, y]) in line.points.iter().enumerate() {
+            put!(*out, "{}{:.3} {:.3}", if k == 0 { 'M' } else { 'L' }, self.x(*x), self.y(*y));
+        }
+        put!(
+            *out,
+            "\" fill=\"none\" stroke=\"#124\" stroke-width=\"{width}\" stroke-linejoin=\"round\" \
+             stroke-linecap=\"round\"/>\n"
+        );
+        // The name stands at the higher end, where hull lines part.
+        let ends = line.points.first().zip(line.points.last());
+        if let (Some((a, b)), false) = (ends, line.name.is_empty()) {
+            let [x, y] = if a[1] >= b[1] { a } else { b };
+            let (x, y) = (self.x(*x), self.y(*y) - 0.8);
+            let name = xml(&line.name);
+            put!(
+                *out,
+                "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"1.8\" fill=\"#124\" \
+                 text-anchor=\"middle\">{name}</text>\n"
+            );
+        }
+    }
+
+    /// The scale in words and as a bar of five round parts.
+    fn foot(&self, out: &mut String, options: &Options) {
+        let part = round_up(self.step / 2.0);
+        let y = self.size()[1] - 8.0;
+        let unit = xml(&options.unit);
+        let _ =
+            writeln!(out, "<g id=\"scale\" stroke=\"#124\" stroke-width=\"0.13\" fill=\"#124\">");
+        for k in 0..5 {
+            let (x, width) = (MARGIN + k as f64 * part * self.mm, part * self.mm);
+            let fill = if k % 2 == 0 { "#124" } else { "#fff" };
+            put!(
+                *out,
+                "<rect x=\"{x:.3}\" y=\"{y:.2}\" width=\"{width:.3}\" height=\"1.4\" fill=\"{fill}\"/>\n"
+            );
+        }
+        for (k, anchor) in [(0, "start"), (5, "middle")] {
+            let (x, y) = (MARGIN + k as f64 * part * self.mm, y - 1.0);
+            let value = format!("{:.6}", k as f64 * part);
+            let value = value.trim_end_matches('0').trim_end_matches('.');
+            let unit = if k == 5 { format!(" {unit}") } else { String::new() };
+            put!(
+                *out,
+                "<text x=\"{x:.2}\" y=\"{y:.2}\" stroke=\"none\" text-anchor=\"{anchor}\">{value}{unit}</text>\n"
+            );
+        }
+        let x = MARGIN + 5.0 * part * self.mm + 14.0;
+        let scale = (self.scale * 1000.0).round() / 1000.0;
+        put!(
+            *out,
+            "<text x=\"{x:.2}\" y=\"{:.2}\" stroke=\"none\" font-size=\"3\">scale 1 : {scale}</text>\n</g>\n",
+            y + 1.4
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sections() -> Vec<Contour> {
+        let frame = |x: f64, b: f64| Contour {
+            name: format!("x={x}"),
+            axis: 0,
+            value: x,
+            polylines: vec![vec![[x, 0.0, -1.0], [x, b, 0.0], [x, b, 1.0]]],
+            width_mm: (x == 0.0).then_some(0.7),
+        };
+        vec![frame(0.0, 1.0), frame(5.0, 2.0), frame(10.0, 1.5)]
+    }
+
+    #[test]
+    fn fore_body_right_after_body_left() {
+        let svg =
+            String::from_utf8(draw(View::BodyPlan, &sections(), &Options::default())).unwrap();
+        // 4 m wide at 1 : 20 is 200 mm; the centre line is at 16 + 100.
+        assert!(svg.contains("scale 1 : 20"), "{svg}");
+        let starts: Vec<&str> = svg
+            .match_indices("fill=\"none\" stroke=\"#124\"")
+            .map(|(k, _)| {
+                let from = svg[..k].rfind("d=\"M").unwrap();
+                &svg[from + 4..k - 2]
+            })
+            .collect();
+        assert_eq!(starts.len(), 3);
+        let ends: Vec<f64> = starts
+            .iter()
+            .map(|d| d.rsplit('L').next().unwrap().split(' ').next().unwrap().parse().unwrap())
+            .collect();
+        let centre: f64 = starts[0].split(' ').next().unwrap().parse().unwrap();
+        assert_eq!(ends.map_offsets(centre), [50.0, 100.0, -75.0]);
+        assert!(svg.contains("stroke-width=\"0.7\""));
+    }
+
+    trait Offsets {
+        fn map_offsets(&self, centre: f64) -> Vec<f64>;
+    }
+
+    impl Offsets for Vec<f64> {
+        fn map_offsets(&self, centre: f64) -> Vec<f64> {
+            self.iter().map(|x| x - centre).collect()
+        }
+    }
+
+    #[test]
+    fn empty_and_broken_input_still_draws() {
+        let nothing = draw(View::Buttocks, &[], &Options::default());
+        assert!(nothing.ends_with(b"</svg>\n"));
+        let broken = Contour {
+            name: "<&>".into(),
+            axis: 2,
+            polylines: vec![vec![[0.0; 3], [1.0, f64::NAN, 0.0], [2.0, 0.0, 0.0], [3.0, 1.0, 0.0]]],
+            ..Contour::default()
+        };
+        let svg = draw(View::Waterlines, &[broken], &Options::default());
+        let svg = String::from_utf8(svg).unwrap();
+        assert!(!svg.contains("NaN") && svg.contains("&lt;&amp;&gt;"));
+    }
+
+    #[test]
+    fn round_numbers() {
+        for (x, expected) in [(0.9, 1.0), (1.0, 1.0), (1.1, 2.0), (2.2, 2.5), (26.0, 50.0)] {
+            assert!((round_up(x) - expected).abs() < 1e-12, "{x}");
+        }
+        assert_eq!(round_up(0.0), 1.0);
+    }
+}

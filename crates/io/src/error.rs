@@ -1,0 +1,114 @@
+use moldloft_mesh::{Mesh, MeshError};
+use std::fmt;
+
+/// Why a mesh cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum WriteError {
+    /// A position is NaN or infinite, or beyond the range of the format's numbers.
+    NotFinite {
+        /// A patch that uses the vertex.
+        patch: String,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// More items than the format's counters can name.
+    TooLarge {
+        /// What there are too many of.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
+    /// A structured format was asked for patches without a grid.
+    NoGrid {
+        /// The patches without one; empty when there are no patches at all.
+        patches: Vec<String>,
+    },
+    /// A mesh said to be one half reaches to both sides of its symmetry plane.
+    BothSides {
+        /// `x` or `y`: the coordinate that changes sign.
+        axis: char,
+        /// A patch beyond the plane.
+        patch: String,
+    },
+}
+
+impl fmt::Display for WriteError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { patch, vertex } => write!(
+                f,
+                "vertex {vertex} of patch `{patch}` is not a finite position that the format holds"
+            ),
+            Self::TooLarge { what, count } => {
+                write!(f, "{count} {what} are more than the format can count")
+            }
+            Self::NoGrid { patches } if patches.is_empty() => {
+                write!(f, "there is no structured grid to write")
+            }
+            Self::NoGrid { patches } => {
+                write!(f, "no structured grid in patch `{}`", patches.join("`, `"))
+            }
+            Self::BothSides { axis, patch } => write!(
+                f,
+                "a half mirrored in {axis} = 0 must stay on one side, but patch `{patch}` crosses it"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for WriteError {}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of text, from 1.
+    Line(usize),
+    /// A byte, from 0.
+    Byte(usize),
+}
+
+/// Why bytes are not a file of a format.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadError {
+    /// Name of the format.
+    pub format: &'static str,
+    /// Where.
+    pub place: Place,
+    /// What should be there.
+    pub expected: String,
+    /// What is there.
+    pub found: String,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (word, number) = match self.place {
+            Place::Line(line) => ("line", line),
+            Place::Byte(byte) => ("byte", byte),
+        };
+        let Self { format, expected, found, .. } = self;
+        write!(f, "{format}, {word} {number}: expected {expected}, found {found}")
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+impl ReadError {
+    /// A mesh that could not be built from what was read.
+    pub(crate) fn mesh(format: &'static str, place: Place, error: MeshError) -> Self {
+        Self { format, place, expected: "a mesh".into(), found: error.to_string() }
+    }
+}
+
+/// Refuses vertices of faces or grids whose coordinates exceed `limit`, NaN included.
+pub(crate) fn check_positions(mesh: &Mesh, limit: f64) -> Result<(), WriteError> {
+    let good = |v: u32| mesh.positions()[v as usize].to_array().iter().all(|x| x.abs() <= limit);
+    for patch in mesh.patches() {
+        let faces = mesh.faces()[patch.faces.clone()].iter().flatten();
+        let grid = patch.block.iter().flat_map(|b| &b.vertices);
+        if let Some(&vertex) = faces.chain(grid).find(|&&v| !good(v)) {
+            return Err(WriteError::NotFinite { patch: patch.info.name.clone(), vertex });
+        }
+    }
+    Ok(())
+}

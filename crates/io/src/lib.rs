@@ -1,0 +1,34 @@
+//! Mesh, grid and drawing formats: bytes in, bytes out.
+//!
+//! | format | write | read |
+//! | --- | --- | --- |
+//! | WAMIT low-order GDF | [`gdf::write`] | [`gdf::read`] |
+//! | STL | [`stl::write`] (binary) | [`stl::read`] (binary and text) |
+//! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
+//! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`] | – |
+//! | Plot3D surfaces | [`plot3d::write`] | – |
+//! | SVG lines drawings | [`drawing::draw`] | – |
+//!
+//! `Mesh -> Vec<u8>` and `&[u8] -> Mesh`. The caller opens and closes the files, and writes each
+//! whole or not at all.
+//!
+//! Numbers are written with as many digits as bring the same double back. Positions that are
+//! not finite are refused, naming patch and vertex. Readers trust no count in a file: memory grows
+//! with the bytes that are really there.
+//!
+//! Invariant: this crate performs no input or output.
+
+mod error;
+mod text;
+
+pub mod drawing;
+pub mod gdf;
+pub mod obj;
+pub mod plot3d;
+pub mod stl;
+pub mod vtk;
+
+pub use error::{Place, ReadError, WriteError};
+
+#[cfg(test)]
+mod fixtures;

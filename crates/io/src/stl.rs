@@ -1,0 +1,178 @@
+//! STL: triangles, in binary (written and read) or text (read).
+//!
+//! Binary: 80 bytes of anything, a count, then per triangle its normal, three corners (single
+//! precision, little endian) and two unused bytes (3D Systems 1989, Appendix).
+
+use crate::error::check_positions;
+use crate::text::{Line, quoted, utf8};
+use crate::{Place, ReadError, WriteError};
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
+use moldloft_num::Vec3;
+
+const FORMAT: &str = "STL";
+const HEADER: usize = 84;
+const TRIANGLE: usize = 50;
+
+/// The binary file. Quads are split along their shorter diagonal. Triangles two of whose corners
+/// coincide in single precision are left out, which closes no and opens no gap; thin ones stay,
+/// because their neighbours need them.
+///
+/// # Errors
+/// Positions that are not finite in single precision; more than 2^32 - 1 triangles.
+pub fn write(mesh: &Mesh, name: &str) -> Result<Vec<u8>, WriteError> {
+    check_positions(mesh, f64::from(f32::MAX))?;
+    let triangles = mesh.triangulated();
+    // The header must not begin with `solid`, the mark of the text form.
+    let mut out = format!("binary STL: {name}").into_bytes();
+    out.resize(HEADER, b' ');
+    out.truncate(HEADER);
+    let mut count = 0usize;
+    for &[a, b, c, _] in triangles.faces() {
+        // Adding zero turns -0 into 0, so that readers that compare bytes find equal corners.
+        let corners =
+            [a, b, c].map(|v| mesh.positions()[v as usize].to_array().map(|x| x as f32 + 0.0));
+        let [p, q, r] = corners;
+        if p == q || q == r || r == p {
+            continue;
+        }
+        let at = |p: [f32; 3]| Vec3::from(p.map(f64::from));
+        let normal = (at(q) - at(p)).cross(at(r) - at(p)).normalized().unwrap_or_default();
+        for x in normal.to_array().map(|x| x as f32).iter().chain(corners.iter().flatten()) {
+            out.extend_from_slice(&x.to_le_bytes());
+        }
+        out.extend_from_slice(&[0, 0]);
+        count += 1;
+    }
+    let number =
+        u32::try_from(count).map_err(|_| WriteError::TooLarge { what: "triangles", count })?;
+    out[80..HEADER].copy_from_slice(&number.to_le_bytes());
+    Ok(out)
+}
+
+/// The triangles, corners at equal positions made one vertex; those without area by that rule are
+/// left out. A file is text if it begins with `solid` and is not of the size its binary count says.
+///
+/// # Errors
+/// A size that does not fit the count, coordinates that are not finite, and text out of order.
+pub fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
+    let count = bytes.get(80..HEADER).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+    let promised = count.map(|n| HEADER + TRIANGLE * n as usize);
+    if promised == Some(bytes.len()) {
+        return binary(&bytes[HEADER..]);
+    }
+    if bytes.trim_ascii_start().starts_with(b"solid") {
+        return text(bytes);
+    }
+    Err(ReadError {
+        format: FORMAT,
+        place: Place::Byte(bytes.len().min(80)),
+        expected: match count {
+            Some(n) => format!("{} bytes of {n} triangles", HEADER + TRIANGLE * n as usize),
+            None => "a header of 84 bytes".into(),
+        },
+        found: format!("{} bytes", bytes.len()),
+    })
+}
+
+fn binary(triangles: &[u8]) -> Result<Mesh, ReadError> {
+    let mut corners = Vec::with_capacity(3 * (triangles.len() / TRIANGLE));
+    for (k, triangle) in triangles.chunks_exact(TRIANGLE).enumerate() {
+        let number = |b: &[u8]| b.try_into().map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b)));
+        for corner in triangle[12..48].chunks_exact(12) {
+            let p = Vec3::of(number(&corner[..4]), number(&corner[4..8]), number(&corner[8..]));
+            if !p.is_finite() {
+                return Err(ReadError {
+                    format: FORMAT,
+                    place: Place::Byte(HEADER + TRIANGLE * k),
+                    expected: "finite coordinates".into(),
+                    found: format!("{:?}", p.to_array()),
+                });
+            }
+            corners.push(p);
+        }
+    }
+    built(corners, "solid", Place::Byte(HEADER))
+}
+
+fn text(bytes: &[u8]) -> Result<Mesh, ReadError> {
+    let text = utf8(bytes, FORMAT)?;
+    let mut corners = Vec::new();
+    let mut name = "solid";
+    let mut last = 1;
+    for (number, text) in (1..).zip(text.lines()) {
+        last = number;
+        let line = Line { format: FORMAT, number, text };
+        let mut words = line.words();
+        match words.next() {
+            Some("vertex") => {
+                let mut next = || line.real(words.next(), "a coordinate");
+                corners.push(Vec3::of(next()?, next()?, next()?));
+            }
+            Some("endloop") if corners.len() % 3 != 0 => {
+                return Err(line.error("three vertices in a loop", "another number"));
+            }
+            Some("solid") => name = words.next().unwrap_or(name),
+            None | Some("facet" | "outer" | "endloop" | "endfacet" | "endsolid") => {}
+            Some(other) => return Err(line.error("a line of an STL text", quoted(other))),
+        }
+    }
+    if corners.len() % 3 != 0 {
+        let line = Line { format: FORMAT, number: last, text: "" };
+        return Err(line.error("three vertices in a loop", "the end of the file"));
+    }
+    built(corners, name, Place::Line(last))
+}
+
+fn built(corners: Vec<Vec3>, name: &str, place: Place) -> Result<Mesh, ReadError> {
+    let build = || {
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(corners.len())?;
+        let faces = (0..corners.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2, 3 * k + 2]);
+        builder.add_faces(PatchInfo::new(name), faces)?;
+        Mesh::new(builder.build().into(), corners)?.welded()
+    };
+    build().map_err(|e| ReadError::mesh(FORMAT, place, e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::two_patches;
+    use moldloft_mesh::measure;
+
+    #[test]
+    fn triangles_come_back() {
+        let mesh = two_patches();
+        let bytes = write(&mesh, "hull").unwrap();
+        assert_eq!(bytes.len(), 84 + 50 * 7);
+        let back = read(&bytes).unwrap();
+        assert_eq!((back.faces().len(), back.positions().len()), (7, 9));
+        let area = measure(&mesh.triangulated()).area;
+        assert!((measure(&back).area - area).abs() < 1e-6);
+        let far = Mesh::new(mesh.topology().clone(), vec![Vec3::of(1e39, 0.0, 0.0); 9]).unwrap();
+        assert!(matches!(write(&far, ""), Err(WriteError::NotFinite { vertex: 0, .. })));
+    }
+
+    #[test]
+    fn text_is_read() {
+        let text = b"solid wedge\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n\
+            vertex 0 1 0\nendloop\nendfacet\nendsolid wedge\n";
+        let mesh = read(text).unwrap();
+        assert_eq!((measure(&mesh).area, mesh.patches()[0].info.name.as_str()), (0.5, "wedge"));
+        let bad = b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n";
+        assert_eq!(read(bad).unwrap_err().place, Place::Line(6));
+        assert!(read(b"solid\nvertex 1 2\n").unwrap_err().expected.contains("coordinate"));
+        assert!(read(b"solid\nvertex 1 2 3\n").is_err());
+    }
+
+    #[test]
+    fn hostile_counts_are_refused() {
+        let mut bytes = write(&two_patches(), "hull").unwrap();
+        bytes[83] = 0xff;
+        assert!(read(&bytes).unwrap_err().to_string().contains("triangles"));
+        assert!(read(&bytes[..50]).is_err() && read(b"").is_err());
+        let mut bytes = write(&two_patches(), "hull").unwrap();
+        bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
+        assert!(read(&bytes).is_err());
+    }
+}

@@ -1,0 +1,117 @@
+//! Numbers and names in text formats.
+
+use crate::{Place, ReadError};
+use std::fmt::Write;
+
+/// The shortest decimal that reads back as the same double; -0 is written as 0.
+pub(crate) fn real(x: f64) -> String {
+    let x = x + 0.0;
+    let size = x.abs();
+    if size != 0.0 && !(1e-5..1e16).contains(&size) { format!("{x:e}") } else { format!("{x}") }
+}
+
+/// A name without blanks and control characters, never empty.
+pub(crate) fn word(name: &str) -> String {
+    let word: String =
+        name.chars().map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c }).collect();
+    if word.is_empty() { "unnamed".into() } else { word }
+}
+
+/// Text with the characters that XML reserves replaced, and those it forbids left out.
+pub(crate) fn xml(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => {}
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Appends formatted text; writing to a `String` cannot fail.
+macro_rules! put {
+    ($out:expr, $($arg:tt)*) => { $crate::text::append(&mut $out, format_args!($($arg)*)) };
+}
+pub(crate) use put;
+
+pub(crate) fn append(out: &mut String, text: std::fmt::Arguments<'_>) {
+    // `String`'s writer returns no error.
+    let _ = out.write_fmt(text);
+}
+
+/// One line of a number file, split at blanks and commas.
+pub(crate) struct Line<'a> {
+    pub format: &'static str,
+    pub number: usize,
+    pub text: &'a str,
+}
+
+impl<'a> Line<'a> {
+    pub fn words(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        self.text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty())
+    }
+
+    pub fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        let (expected, found) = (expected.into(), found.into());
+        ReadError { format: self.format, place: Place::Line(self.number), expected, found }
+    }
+
+    /// A finite real; Fortran's `D` exponents are understood.
+    pub fn real(&self, word: Option<&str>, what: &str) -> Result<f64, ReadError> {
+        let Some(word) = word else { return Err(self.error(what, "the end of the line")) };
+        let value = word.parse().or_else(|_| word.replace(['d', 'D'], "e").parse());
+        match value {
+            Ok(x) if f64::is_finite(x) => Ok(x),
+            _ => Err(self.error(what, quoted(word))),
+        }
+    }
+
+    pub fn integer(&self, word: Option<&str>, what: &str) -> Result<i64, ReadError> {
+        let Some(word) = word else { return Err(self.error(what, "the end of the line")) };
+        word.parse().map_err(|_| self.error(what, quoted(word)))
+    }
+}
+
+/// A word of the input between quotes, shortened.
+pub(crate) fn quoted(word: &str) -> String {
+    let mut short: String = word.chars().take(24).collect();
+    if short.len() < word.len() {
+        short.push('…');
+    }
+    format!("`{short}`")
+}
+
+/// The bytes as text.
+pub(crate) fn utf8<'a>(bytes: &'a [u8], format: &'static str) -> Result<&'a str, ReadError> {
+    std::str::from_utf8(bytes).map_err(|e| ReadError {
+        format,
+        place: Place::Byte(e.valid_up_to()),
+        expected: "text".into(),
+        found: "bytes that are not UTF-8".into(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back() {
+        for x in [0.1, 1.0 / 3.0, 1e-300, -2.5e17, 1e16, 123456.789, f64::MIN_POSITIVE, 0.0] {
+            assert_eq!(real(x).parse::<f64>().unwrap().to_bits(), x.to_bits());
+            assert!(real(x).len() < 25);
+        }
+        assert_eq!(real(-0.0), "0");
+    }
+
+    #[test]
+    fn names_are_made_safe() {
+        assert_eq!((word("fore body").as_str(), word("").as_str()), ("fore_body", "unnamed"));
+        assert_eq!(xml("a<\"b\">&\u{1}"), "a&lt;&quot;b&quot;&gt;&amp;");
+    }
+}
