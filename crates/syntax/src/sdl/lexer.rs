@@ -147,9 +147,10 @@ impl Lexer<'_> {
         let digits = &self.text[start..self.at];
         let mut value: f64 = digits.parse().unwrap_or(f64::INFINITY);
         let span = self.span(start);
-        if in_word(self.peek(0)) {
+        let second_point = self.peek(0) == b'.' && self.peek(1).is_ascii_digit();
+        if in_word(self.peek(0)) || second_point {
             let from = self.at;
-            while in_word(self.peek(0)) {
+            while in_word(self.peek(0)) || (self.peek(0) == b'.' && in_word(self.peek(1))) {
                 self.at += 1;
             }
             let message =

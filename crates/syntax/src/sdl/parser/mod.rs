@@ -271,10 +271,11 @@ impl Parser {
             _ => "|",
         };
         let found = self.describe(token);
-        let diagnostic = if matches!(
+        let ends = matches!(
             token.kind,
             Kind::End | Kind::Semi | Kind::RBrace | Kind::RParen | Kind::RBracket
-        ) {
+        );
+        let diagnostic = if ends || self.at_fresh_statement() {
             let message = format!("`{opener}` is not closed");
             let diagnostic =
                 Diagnostic::error("unclosed-bracket", message).expected(format!("`{closer}`"));

@@ -58,7 +58,7 @@ impl Parser {
     }
 
     /// Whether a new line starts here that looks like a statement.
-    fn at_fresh_statement(&self) -> bool {
+    pub(super) fn at_fresh_statement(&self) -> bool {
         let token = self.token();
         if !token.new_line {
             return false;
