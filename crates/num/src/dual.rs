@@ -131,6 +131,33 @@ mod tests {
     }
 
     #[test]
+    fn functions_have_the_bits_of_the_plain_ones() {
+        for k in 1..400 {
+            let x = f64::from(k) * 0.0173;
+            let (d, e) = (D::seeded(x, 0), D::seeded(1.3, 0));
+            let pairs = [
+                (d.sin().re, Real::sin(x)),
+                (d.cos().re, Real::cos(x)),
+                (d.tan().re, Real::tan(x)),
+                (d.exp().re, Real::exp(x)),
+                (d.ln().re, Real::ln(x)),
+                (d.sinh().re, Real::sinh(x)),
+                (d.cosh().re, Real::cosh(x)),
+                (d.tanh().re, Real::tanh(x)),
+                (d.atan().re, Real::atan(x)),
+                ((d * 0.1).asin().re, Real::asin(x * 0.1)),
+                ((d * 0.1).acos().re, Real::acos(x * 0.1)),
+                (d.atan2(e).re, Real::atan2(x, 1.3)),
+                (d.powf(e).re, Real::powf(x, 1.3)),
+                (d.powf(D::from(1.3)).re, Real::powf(x, 1.3)),
+            ];
+            for (dual, plain) in pairs {
+                assert_eq!(dual.to_bits(), plain.to_bits());
+            }
+        }
+    }
+
+    #[test]
     fn real_part_is_the_plain_result() {
         let (a, b) = (D::seeded(0.1, 0), D::seeded(0.3, 0));
         assert_eq!((a / b).re.to_bits(), (0.1f64 / 0.3).to_bits());

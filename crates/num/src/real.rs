@@ -272,38 +272,40 @@ macro_rules! real_by_chain {
                     rest.all(|a| a == <$base>::from(0.0))
                 }
             }
+            // The functions of the base are called by their trait: on a plain `f64` a method call
+            // would be the standard library's, whose last bits differ from platform to platform.
             fn sqrt(self) -> Self {
-                let s = self.value().sqrt();
+                let s = Real::sqrt(self.value());
                 let d = <$base>::from(0.5) / s;
                 self.chain(s, d, -(d / self.value()) * 0.5)
             }
             fn sin(self) -> Self {
-                let (s, c) = (self.value().sin(), self.value().cos());
+                let (s, c) = (Real::sin(self.value()), Real::cos(self.value()));
                 self.chain(s, c, -s)
             }
             fn cos(self) -> Self {
-                let (s, c) = (self.value().sin(), self.value().cos());
+                let (s, c) = (Real::sin(self.value()), Real::cos(self.value()));
                 self.chain(c, -s, -c)
             }
             fn tan(self) -> Self {
-                let t = self.value().tan();
+                let t = Real::tan(self.value());
                 let d = t * t + 1.0;
                 self.chain(t, d, t * d * 2.0)
             }
             fn asin(self) -> Self {
                 let x = self.value();
-                let d = <$base>::from(1.0) / (-(x * x) + 1.0).sqrt();
-                self.chain(x.asin(), d, x * d * d * d)
+                let d = <$base>::from(1.0) / Real::sqrt(-(x * x) + 1.0);
+                self.chain(Real::asin(x), d, x * d * d * d)
             }
             fn acos(self) -> Self {
                 let x = self.value();
-                let d = <$base>::from(-1.0) / (-(x * x) + 1.0).sqrt();
-                self.chain(x.acos(), d, x * d * d * d)
+                let d = <$base>::from(-1.0) / Real::sqrt(-(x * x) + 1.0);
+                self.chain(Real::acos(x), d, x * d * d * d)
             }
             fn atan(self) -> Self {
                 let x = self.value();
                 let d = <$base>::from(1.0) / (x * x + 1.0);
-                self.chain(x.atan(), d, -(x * d * d) * 2.0)
+                self.chain(Real::atan(x), d, -(x * d * d) * 2.0)
             }
             fn atan2(self, x: Self) -> Self {
                 // atan2(y, x) has the derivatives of atan(y/x) or, better conditioned where
@@ -313,27 +315,27 @@ macro_rules! real_by_chain {
                 } else {
                     (self / x).atan()
                 };
-                *angle.value_mut() = self.value().atan2(x.value());
+                *angle.value_mut() = Real::atan2(self.value(), x.value());
                 angle
             }
             fn exp(self) -> Self {
-                let e = self.value().exp();
+                let e = Real::exp(self.value());
                 self.chain(e, e, e)
             }
             fn ln(self) -> Self {
                 let d = <$base>::from(1.0) / self.value();
-                self.chain(self.value().ln(), d, -(d * d))
+                self.chain(Real::ln(self.value()), d, -(d * d))
             }
             fn sinh(self) -> Self {
-                let (s, c) = (self.value().sinh(), self.value().cosh());
+                let (s, c) = (Real::sinh(self.value()), Real::cosh(self.value()));
                 self.chain(s, c, s)
             }
             fn cosh(self) -> Self {
-                let (s, c) = (self.value().sinh(), self.value().cosh());
+                let (s, c) = (Real::sinh(self.value()), Real::cosh(self.value()));
                 self.chain(c, s, c)
             }
             fn tanh(self) -> Self {
-                let t = self.value().tanh();
+                let t = Real::tanh(self.value());
                 let d = -(t * t) + 1.0;
                 self.chain(t, d, -(t * d) * 2.0)
             }
@@ -342,12 +344,12 @@ macro_rules! real_by_chain {
                 if exponent.is_constant() {
                     let e = exponent.value();
                     let slope = |k: $base, value: $base| if k.re() == 0.0 { <$base>::from(0.0) } else { value };
-                    let d1 = slope(e, e * x.powf(e - 1.0));
-                    let d2 = slope(e * (e - 1.0), e * (e - 1.0) * x.powf(e - 2.0));
-                    return self.chain(x.powf(e), d1, d2);
+                    let d1 = slope(e, e * Real::powf(x, e - 1.0));
+                    let d2 = slope(e * (e - 1.0), e * (e - 1.0) * Real::powf(x, e - 2.0));
+                    return self.chain(Real::powf(x, e), d1, d2);
                 }
                 let mut power = (self.ln() * exponent).exp();
-                *power.value_mut() = x.powf(exponent.value());
+                *power.value_mut() = Real::powf(x, exponent.value());
                 power
             }
         }
