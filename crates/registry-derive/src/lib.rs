@@ -20,6 +20,7 @@
 use proc_macro::TokenStream;
 use proc_macro2::TokenStream as Tokens;
 use quote::quote;
+use syn::ext::IdentExt;
 use syn::punctuated::Punctuated;
 use syn::{
     Attribute, Data, DeriveInput, Expr, Fields, Lit, LitStr, Meta, Token, parse_macro_input,
@@ -93,7 +94,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
             return Err(syn::Error::new_spanned(field_ident, "a field needs a doc comment"));
         }
         let o = field_options(&field.attrs)?;
-        let text = LitStr::new(&field_ident.to_string(), field_ident.span());
+        let text = LitStr::new(&field_ident.unraw().to_string(), field_ident.span());
         let optional = quote!(<#ty as ::moldloft_registry::FromValue<S>>::OPTIONAL);
         let default = match &o.default {
             Some(default) => quote!(Some(#default)),

@@ -36,6 +36,8 @@ pub enum Class {
     Plane,
     /// What things are mirrored in or projected to: a plane, line, point or "x=0", "y=0", "z=0".
     Mirror,
+    /// What bounds a patch of a surface: a snake, or a magnet for a side without length.
+    Side,
     /// A frame of three axes.
     Frame,
     /// A family of plane sections.
@@ -50,7 +52,7 @@ pub enum Class {
 
 impl Class {
     /// All classes, in the order of the reference.
-    pub const ALL: [Class; 21] = [
+    pub const ALL: [Class; 22] = [
         Class::Any,
         Class::Number,
         Class::Integer,
@@ -67,6 +69,7 @@ impl Class {
         Class::Surface,
         Class::Plane,
         Class::Mirror,
+        Class::Side,
         Class::Frame,
         Class::Contours,
         Class::Relabel,
@@ -93,6 +96,7 @@ impl Class {
             Class::Surface => "surface",
             Class::Plane => "plane",
             Class::Mirror => "mirror",
+            Class::Side => "side",
             Class::Frame => "frame",
             Class::Contours => "contours",
             Class::Relabel => "relabel",
@@ -120,6 +124,7 @@ impl Class {
             Class::Surface => "a surface",
             Class::Plane => "a plane",
             Class::Mirror => "a plane, line or point to mirror in",
+            Class::Side => "a snake or a magnet",
             Class::Frame => "a frame",
             Class::Contours => "contours",
             Class::Relabel => "a relabel",
@@ -140,6 +145,7 @@ impl Class {
             Point => matches!(found, Bead | Magnet | Ring | Vector),
             Bead | Magnet => found == Ring,
             Curve => found == Snake,
+            Side => matches!(found, Snake | Magnet | Ring),
             Vectors => found == List,
             Numbers => found == List,
             List => matches!(found, Numbers | Vectors),

@@ -1,4 +1,5 @@
 use crate::Class;
+use moldloft_num::trace::Key;
 
 /// Which argument a fault is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub struct FaultData {
     pub help: Vec<String>,
     /// The argument it is about.
     pub place: Option<Place>,
+    /// Other objects it is about, each with what is to be said of it.
+    pub related: Vec<(Key, String)>,
 }
 
 impl Fault {
@@ -40,6 +43,7 @@ impl Fault {
             found: None,
             help: Vec::new(),
             place: None,
+            related: Vec::new(),
         }))
     }
 
@@ -65,6 +69,12 @@ impl Fault {
     /// Adds a way to mend it.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.0.help.push(text.into());
+        self
+    }
+
+    /// Points to another object, if it has a name: "`label`" stands beside its declaration.
+    pub fn related(mut self, object: Option<Key>, label: impl Into<String>) -> Self {
+        self.0.related.extend(object.map(|key| (key, label.into())));
         self
     }
 
