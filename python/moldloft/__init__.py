@@ -1,0 +1,78 @@
+"""Moldloft: describe a shape, relate its parts, panel it, measure it, differentiate it.
+
+>>> import moldloft
+>>> m = moldloft.loads('''
+... param float beam = 5.0 in [3, 7];
+... AbsPoint A(0, 0, 0);
+... AbsPoint B(10, beam, 0);
+... Line keel(A, B);
+... ''')
+>>> m["keel"](0.5)
+array([5. , 2.5, 0. ])
+>>> m["beam"] = 4.0
+>>> m["keel"](0.5)
+array([5., 2., 0.])
+
+Angles are in radians, lengths in the model's unit, and the parameters t, u, v of curves and
+surfaces run over [0, 1].
+"""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from moldloft._core import Diagnostic, __version__
+    from moldloft.errors import Error, FileError, ModelError, UnknownNameError
+    from moldloft.hydrostatics import Hydrostatics
+    from moldloft.mesh import Mesh, Patch
+    from moldloft.model import Model, Param, load, loads
+    from moldloft.objects import Object
+
+__all__ = [
+    "Diagnostic",
+    "Error",
+    "FileError",
+    "Hydrostatics",
+    "Mesh",
+    "Model",
+    "ModelError",
+    "Object",
+    "Param",
+    "Patch",
+    "UnknownNameError",
+    "__version__",
+    "load",
+    "loads",
+]
+
+_HOMES = {
+    "Diagnostic": "moldloft._core",
+    "__version__": "moldloft._core",
+    "Error": "moldloft.errors",
+    "FileError": "moldloft.errors",
+    "ModelError": "moldloft.errors",
+    "UnknownNameError": "moldloft.errors",
+    "Hydrostatics": "moldloft.hydrostatics",
+    "Mesh": "moldloft.mesh",
+    "Patch": "moldloft.mesh",
+    "Model": "moldloft.model",
+    "Param": "moldloft.model",
+    "load": "moldloft.model",
+    "loads": "moldloft.model",
+    "Object": "moldloft.objects",
+}
+
+
+def __getattr__(name: str) -> object:
+    # Names are looked up when first used, so that the command answers at once.
+    from importlib import import_module
+
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value: object = getattr(import_module(home), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

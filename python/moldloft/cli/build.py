@@ -1,0 +1,266 @@
+"""``moldloft build``: run, evaluate, mesh, measure, write."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from moldloft.cli.console import (
+    Progress,
+    add_model,
+    open_model,
+    print_json,
+    report,
+    table,
+)
+from moldloft.errors import Error
+from moldloft.hydrostatics import Hydrostatics
+from moldloft.mesh import Mesh, Patch
+from moldloft.model import Model
+
+__all__ = ["add", "facts", "run", "summary"]
+
+_POLL_SECONDS = 0.2
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    from moldloft.files import FORMATS
+
+    add_model(parser)
+    parser.add_argument(
+        "--to",
+        metavar="FORMAT",
+        nargs="+",
+        action="extend",
+        type=_format,
+        default=[],
+        help="files to write: " + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="DIR", default=".", help="folder for the files, by default here"
+    )
+    parser.add_argument(
+        "--level", metavar="Z", type=float, default=0.0, help="height of the water, by default 0"
+    )
+    parser.add_argument(
+        "--density", type=float, default=1.0, help="mass per volume of the water, by default 1"
+    )
+    parser.add_argument(
+        "--sides",
+        choices=["both", "one"],
+        default="both",
+        help="count a mirrored model with its image (the default), or one side alone",
+    )
+    parser.add_argument("--json", action="store_true", help="one object instead of the table")
+    parser.add_argument(
+        "--watch", action="store_true", help="again at every save, with a picture; ends by Ctrl-C"
+    )
+
+
+def _format(name: str) -> str:
+    from moldloft.files import format_named
+
+    try:
+        return format_named(name)
+    except Error as error:
+        raise argparse.ArgumentTypeError(str(error).removeprefix("error: ")) from error
+
+
+def run(options: argparse.Namespace) -> int:
+    """Builds once, or at every save."""
+    if not options.watch:
+        return _build(options)
+    if "png" not in options.to:
+        options.to.append("png")
+    while True:
+        try:
+            sources = _build_watched(options)
+        except Error as error:
+            print(str(error).rstrip(), file=sys.stderr)
+            sources = [options.model]
+        print(f"watching {', '.join(sources)}", file=sys.stderr)
+        _wait_for_change(sources)
+
+
+def _build_watched(options: argparse.Namespace) -> list[str]:
+    sources: list[str] = []
+    _build(options, sources)
+    return sources or [options.model]
+
+
+def _wait_for_change(sources: list[str]) -> None:
+    before = [_stamp(path) for path in sources]
+    while [_stamp(path) for path in sources] == before:
+        time.sleep(_POLL_SECONDS)
+
+
+def _stamp(path: str) -> tuple[int, int]:
+    try:
+        status = Path(path).stat()
+    except OSError:
+        return (0, 0)
+    return (status.st_mtime_ns, status.st_size)
+
+
+def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int:
+    from moldloft.files import Output, commit, produce
+
+    with Progress() as progress:
+        progress.stage(f"running {options.model}")
+        model = open_model(options)
+        if sources is not None:
+            sources.extend(model._document.files())
+        if model._document.has_errors():
+            progress.stage("reporting")
+            return _report_errors(model, options)
+        progress.stage("making panels")
+        mesh = model.mesh()
+        progress.stage("measuring")
+        patches = mesh.patches
+        floating = None
+        if patches:
+            floating = model.hydrostatics(
+                level=options.level, density=options.density, sides=options.sides
+            )
+        outputs: list[Output] = []
+        folder = Path(options.output)
+        stem = Path(options.model).stem
+        for name in dict.fromkeys(options.to):
+            progress.stage(f"writing {name}")
+            outputs += produce(model, name, folder / f"{stem}.{name}")
+        written = commit(folder, outputs) if outputs else []
+    # Remarks of the panelling have joined those of the run.
+    report(model.diagnostics)
+    data = facts(model, mesh, floating, written)
+    if options.json:
+        print_json(data)
+    else:
+        print(summary(model, mesh, floating, data))
+    return 0
+
+
+def _report_errors(model: Model, options: argparse.Namespace) -> int:
+    report(model.diagnostics)
+    if options.json:
+        print_json(
+            {
+                "ok": False,
+                "objects": _objects(model),
+                "meshes": [],
+                "total": None,
+                "hydrostatics": None,
+                "files": [],
+                "diagnostics": [d.to_dict() for d in model.diagnostics],
+            }
+        )
+    else:
+        failed = sum(not o["ok"] for o in _objects(model))
+        print(f"{options.model}: errors; {failed} objects failed; nothing was written")
+    return 1
+
+
+def _objects(model: Model) -> list[dict[str, Any]]:
+    keys = ("name", "kind", "class", "ok", "parents")
+    facts = (model._document.object(name) for name in model.objects)
+    return [{key: fact[key] for key in keys} for fact in facts]
+
+
+def facts(
+    model: Model, mesh: Mesh, floating: Hydrostatics | None, written: list[Path]
+) -> dict[str, Any]:
+    """What ``build --json`` prints."""
+    return {
+        "ok": True,
+        "objects": _objects(model),
+        "params": {p.name: p.value for p in model.params.values()},
+        "symmetry": model.symmetry,
+        "meshes": [_patch_facts(patch) for patch in mesh.patches],
+        "total": mesh.summary,
+        "hydrostatics": floating.as_dict() if floating else None,
+        "files": [{"path": str(path), "bytes": path.stat().st_size} for path in written],
+        "diagnostics": [d.to_dict() for d in model.diagnostics],
+    }
+
+
+def _patch_facts(patch: Patch) -> dict[str, Any]:
+    return {
+        "name": patch.name,
+        "kind": patch.kind,
+        "tag": patch.tag,
+        "divisions": patch.divisions,
+        "panels": patch.panels,
+        "vertices": patch.vertices,
+        "closed": patch.closed,
+        "area": patch.area,
+        "volume": patch.volume,
+        "quality": patch.quality,
+    }
+
+
+def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[str, Any]) -> str:
+    """What ``build`` prints: patches, the whole, hydrostatics, files."""
+    lines = [f"{len(data['objects'])} objects, {mesh!r}"]
+    if mesh.patches:
+        header = ["patch", "kind", "panels", "vertices", "area", "volume", "closed"]
+        header += ["aspect", "skew", "warp"]
+        rows = [_row(patch) for patch in mesh.patches]
+        total = mesh.summary
+        whole = [str(total["panels"]), str(total["vertices"]), _number(total["area"])]
+        whole += [_number(total["volume"]), _yes(total["closed"])]
+        rows.append(["whole", "", *whole, "", "", ""])
+        lines += ["", table(header, rows)]
+        lines += [f"open edge: {_loop(loop)}" for loop in total["open_loops"]]
+    if floating is not None:
+        lines += ["", _floating(floating)]
+    if data["files"]:
+        lines.append("")
+        lines += [f"wrote {file['path']} ({_bytes(file['bytes'])})" for file in data["files"]]
+    return "\n".join(lines)
+
+
+def _row(patch: Patch) -> list[str]:
+    worst = [f"{patch.quality[name]['max']:.3g}" for name in ("aspect", "skew", "warp")]
+    volume = _number(patch.volume)
+    counts = [str(patch.panels), str(patch.vertices)]
+    return [
+        patch.name,
+        patch.kind,
+        *counts,
+        _number(patch.area),
+        volume,
+        _yes(patch.closed),
+        *worst,
+    ]
+
+
+def _loop(loop: dict[str, Any]) -> str:
+    where = ", ".join(loop["patches"])
+    return f"{loop['edges']} panel edges of {where}, length {_number(loop['length'])}"
+
+
+def _floating(floating: Hydrostatics) -> str:
+    sides = {"both": "both sides", "one": "one side", "whole": "the whole body"}[floating.sides]
+    lines = [f"hydrostatics at z = {_number(floating.level)}, {sides}"]
+    hidden = {"level", "sides", "open_edges", "closure_error", "waterplane_error", "outward"}
+    figures = {k: v for k, v in floating.as_dict().items() if k not in hidden}
+    width = max(map(len, figures))
+    lines += [f"  {name.ljust(width)}  {_number(value)}" for name, value in figures.items()]
+    if floating.open_edges:
+        lines.append(f"  {floating.open_edges} open panel edges below the water: it would leak")
+    return "\n".join(lines)
+
+
+def _number(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, (int, float)) else "-"
+
+
+def _yes(value: object) -> str:
+    return "yes" if value else "no"
+
+
+def _bytes(count: int) -> str:
+    return f"{count} B" if count < 10_000 else f"{count / 1000:.0f} kB"

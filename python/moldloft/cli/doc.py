@@ -1,0 +1,108 @@
+"""``moldloft doc``: the reference in the terminal, as data, or as a page."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+from typing import Any
+
+from moldloft.cli.console import print_json, table
+from moldloft.errors import UnknownNameError
+
+__all__ = ["add", "markdown", "run"]
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    parser.add_argument("name", metavar="NAME", nargs="?", help="a kind or function")
+    parser.add_argument("--list", action="store_true", help="all of them, with class and fields")
+    parser.add_argument("--json", action="store_true", help="the same as data")
+    parser.add_argument("--markdown", action="store_true", help="the reference page")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Prints the reference."""
+    from moldloft._core import reference
+
+    rows = reference()
+    if options.markdown:
+        print(markdown(rows), end="")
+        return 0
+    if options.name is None:
+        if options.json:
+            print_json(rows)
+        else:
+            print(_list(rows))
+        return 0
+    row = next((row for row in rows if row["name"] == options.name), None)
+    if row is None:
+        near = difflib.get_close_matches(options.name, [row["name"] for row in rows], n=1)
+        hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
+        raise UnknownNameError(f"error: there is no kind or function `{options.name}`{hint}")
+    if options.json:
+        print_json(row)
+    else:
+        print(_page(row))
+    return 0
+
+
+def _list(rows: list[dict[str, Any]]) -> str:
+    return table(
+        ["name", "class", "arguments"],
+        [[row["name"], row["class"], ", ".join(f["name"] for f in row["fields"])] for row in rows],
+    )
+
+
+def _signature(row: dict[str, Any]) -> str:
+    name = f"{row['name']} name" if row["is_kind"] else row["name"]
+    return f"{name}({', '.join(_argument(field) for field in row['fields'])})"
+
+
+def _argument(field: dict[str, Any]) -> str:
+    text = f"{{{field['name']} …}}" if field["many"] else str(field["name"])
+    if field["required"]:
+        return text
+    return f"{text} = {field['default']}" if field["default"] is not None else f"[{text}]"
+
+
+def _page(row: dict[str, Any]) -> str:
+    lines = [_signature(row), "", str(row["doc"]), ""]
+    rows = [
+        [f"  {f['name']}", f"{f['class']}{' list' if f['many'] else ''}"] for f in row["fields"]
+    ]
+    width = max((len(cell) for cells in rows for cell in cells), default=0) + 2
+    for cells, field in zip(rows, row["fields"], strict=True):
+        lines.append("".join(cell.ljust(width) for cell in cells) + field["help"])
+    if row["example"]:
+        lines += ["", "Example:", *(f"  {line}" for line in row["example"].strip().splitlines())]
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def markdown(rows: list[dict[str, Any]]) -> str:
+    """The reference page, made from the declarations."""
+    lines = [
+        "# Reference of kinds and functions",
+        "",
+        "Made by `make reference` from the declarations in `crates/`; not edited by hand. Every",
+        "kind also takes the named arguments `colour`, `visible`, `layer`, `divisions`,",
+        "`subdivisions` and `orientation`. Angles are in radians.",
+    ]
+    for title, is_kind in (("Kinds", True), ("Functions", False)):
+        chosen = [row for row in rows if row["is_kind"] is is_kind]
+        lines += ["", f"## {title}"]
+        for row in chosen:
+            lines += ["", f"### {row['name']}", "", f"`{_signature(row)}` → {row['class']}", ""]
+            lines += [str(row["doc"]).strip(), ""]
+            lines += ["| argument | class | default | meaning |", "| --- | --- | --- | --- |"]
+            for field in row["fields"]:
+                many = " list" if field["many"] else ""
+                default = field["default"]
+                if default is None:
+                    default = "required" if field["required"] else "none"
+                cells = [f"`{field['name']}`", f"{field['class']}{many}", str(default)]
+                lines.append("| " + " | ".join([*cells, field["help"]]) + " |")
+            if row["columns"]:
+                lines += ["", f"Model file columns: `{row['columns']}`"]
+            if row["example"]:
+                lines += ["", "```", row["example"].strip(), "```"]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,62 @@
+"""``moldloft eval``: the value of expressions in a model's names."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from moldloft.cli.console import add_model, open_model, print_json, report
+
+__all__ = ["add", "as_data", "as_text", "run"]
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    add_model(parser)
+    parser.add_argument("expressions", metavar="EXPR", nargs="+", help="such as 'hull(.5,.25)'")
+    parser.add_argument("--json", action="store_true", help="one list, vectors as [x, y, z]")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Evaluates and prints."""
+    model = open_model(options)
+    if model._document.has_errors():
+        report(model.diagnostics)
+    values = [model.eval(expression) for expression in options.expressions]
+    if options.json:
+        print_json([as_data(value) for value in values])
+    else:
+        for value in values:
+            print(as_text(value))
+    return 1 if model._document.has_errors() else 0
+
+
+def as_data(value: Any) -> Any:
+    """The value as JSON holds it; a shape as its class."""
+    from numpy import ndarray
+
+    from moldloft._core import Shape
+
+    if isinstance(value, ndarray):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [as_data(item) for item in value]
+    if isinstance(value, Shape):
+        return {"class": value.class_}
+    return value
+
+
+def as_text(value: Any) -> str:
+    """The value as a person reads it.
+
+    >>> as_text(2.0), as_text([1.0, 2.5])
+    ('2', '{1, 2.5}')
+    """
+    data = as_data(value)
+    if isinstance(data, float):
+        return f"{data:.10g}"
+    if isinstance(data, list):
+        return "{" + ", ".join(as_text(item) for item in data) + "}"
+    if isinstance(data, dict):
+        return f"a {data['class']}"
+    return str(data)

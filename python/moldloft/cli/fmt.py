@@ -1,0 +1,51 @@
+"""``moldloft fmt``: canonical text."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from moldloft.errors import FileError
+
+__all__ = ["add", "run"]
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    parser.add_argument("files", metavar="FILE", nargs="+", help=".sdl programs")
+    how = parser.add_mutually_exclusive_group()
+    how.add_argument("--check", action="store_true", help="name the files that would change")
+    how.add_argument("-w", "--write", action="store_true", help="write the files")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Formats each file; a program that does not parse stays as it is and is reported."""
+    from moldloft._core import format_text
+    from moldloft.errors import Error
+    from moldloft.files import Output, commit
+
+    status = 0
+    for file in options.files:
+        path = Path(file)
+        try:
+            old = path.read_bytes()
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise FileError(f"error: cannot read `{file}`: {reason}") from error
+        try:
+            new = format_text(file, old).encode()
+        except Error as error:
+            print(str(error).rstrip(), file=sys.stderr)
+            status = 1
+            continue
+        if options.check:
+            if new != old:
+                print(f"{file} would be formatted")
+                status = 1
+        elif options.write:
+            if new != old:
+                commit(path.parent, [Output(path.name, new)])
+        else:
+            sys.stdout.write(new.decode())
+    return status

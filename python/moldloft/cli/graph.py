@@ -1,0 +1,39 @@
+"""``moldloft graph``: the dependency digraph."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from moldloft.cli.console import add_model, open_model, print_json, report
+
+__all__ = ["add", "run"]
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    add_model(parser)
+    parser.add_argument("-o", "--output", metavar="FILE", help="by default MODEL.graph.svg here")
+    parser.add_argument("--json", action="store_true", help="nodes and edges as data, no picture")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draws all objects, the failed ones too."""
+    from moldloft.digraph import Node, digraph_svg
+    from moldloft.files import Output, commit
+
+    model = open_model(options)
+    report(model.diagnostics)
+    facts = [model._document.object(name) for name in model.objects]
+    status = 1 if model._document.has_errors() else 0
+    if options.json:
+        keys = ("name", "kind", "class", "ok")
+        edges = [[parent, fact["name"]] for fact in facts for parent in fact["parents"]]
+        print_json({"nodes": [{key: f[key] for key in keys} for f in facts], "edges": edges})
+        return status
+    nodes = [Node(f["name"], f["kind"], f["class"], f["parents"], f["ok"]) for f in facts]
+    stem = Path(options.model).stem
+    path = Path(options.output or f"{stem}.graph.svg")
+    commit(path.parent, [Output(path.name, digraph_svg(nodes, stem).encode())])
+    print(path)
+    return status

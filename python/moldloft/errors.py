@@ -1,0 +1,62 @@
+"""The errors that Moldloft raises: one base class, and what a user would catch besides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from moldloft._core import Diagnostic
+
+__all__ = ["Error", "FileError", "ModelError", "UnknownNameError"]
+
+
+class Error(Exception):
+    """Anything that went wrong in Moldloft by a user's or a file's fault.
+
+    Parameters
+    ----------
+    message
+        What to print: the rendered diagnostics, where there are any.
+    diagnostics
+        The same facts as data.
+
+    Attributes
+    ----------
+    diagnostics : tuple of Diagnostic
+        Each with id, severity, message, places, help. Empty when the fault has no place in a
+        model, such as a full disk.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> try:
+    ...     moldloft.loads("AbsPoint P(1, 2, 3);").eval("Q.x")
+    ... except moldloft.Error as error:
+    ...     print(error.diagnostics[0].severity)
+    error
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+
+    def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
+        super().__init__(message)
+        self.diagnostics = tuple(diagnostics)
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class ModelError(Error, ValueError):
+    """The model, or an expression or value for it, is wrong; see ``diagnostics``."""
+
+
+class UnknownNameError(Error, KeyError):
+    """There is no parameter or object of that name."""
+
+
+class FileError(Error, OSError):
+    """A file or folder cannot be read or written; nothing was left half-written."""
+
+    def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
+        Error.__init__(self, message, diagnostics)

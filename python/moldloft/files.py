@@ -1,0 +1,133 @@
+"""What a model is written as, and writing it whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from moldloft.errors import Error, FileError
+
+if TYPE_CHECKING:
+    from moldloft.model import Model
+
+__all__ = ["FORMATS", "Output", "commit", "format_named", "produce"]
+
+FORMATS = {
+    "gdf": "WAMIT low-order panels",
+    "stl": "triangles, binary STL",
+    "obj": "Wavefront OBJ",
+    "vtp": "VTK polygons",
+    "vts": "VTK structured grids, one per patch",
+    "p3d": "Plot3D surface grids",
+    "svg": "body plan, waterlines and buttocks, each with its scale",
+    "png": "a picture",
+    "sdl": "the model as a program",
+    "ms2": "the model as a MultiSurf model file",
+}
+"""The formats by name, with a line about each."""
+
+_ALIASES = {"plot3d": "p3d", "xyz": "p3d", "vtk": "vtp"}
+
+
+@dataclass(frozen=True)
+class Output:
+    """A file to be written."""
+
+    name: str
+    """Its name, without folder."""
+    data: bytes
+    """Its content."""
+
+
+def format_named(name: str) -> str:
+    """The format of that name or alias.
+
+    >>> format_named("Plot3D")
+    'p3d'
+    """
+    wanted = name.lower()
+    wanted = _ALIASES.get(wanted, wanted)
+    if wanted not in FORMATS:
+        raise Error(f"error: there is no format `{name}`; there are: {', '.join(FORMATS)}")
+    return wanted
+
+
+def produce(model: Model, format: str, path: Path) -> list[Output]:
+    """The files of a model in one format; ``path`` gives their names."""
+    wanted = format_named(format)
+    if wanted in ("sdl", "ms2"):
+        return [Output(path.name, model.convert(wanted).encode())]
+    files = model._document.write(wanted, path.stem)
+    if len(files) == 1:
+        return [Output(path.name, files[0][1])]
+    return [Output(name, data) for name, data in files]
+
+
+def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
+    """Write all files or none: under temporary names first, synced, then renamed.
+
+    Parameters
+    ----------
+    folder
+        Where to; made when it is not there.
+    outputs
+        What to write.
+
+    Raises
+    ------
+    FileError
+        When the folder or the disk refuses; then nothing has changed.
+    """
+    made = _make_folder(folder)
+    pending: list[tuple[Path, Path]] = []
+    try:
+        for output in outputs:
+            target = folder / output.name
+            if target.is_dir():
+                raise FileError(f"error: cannot write `{target}`: it is a folder")
+            draft = folder / f".{output.name}.{os.getpid()}.part"
+            pending.append((draft, target))
+            _write_synced(draft, output.data)
+        for draft, target in pending:
+            draft.replace(target)
+    except BaseException as error:
+        for draft, _ in pending:
+            with contextlib.suppress(OSError):
+                draft.unlink(missing_ok=True)
+        for new in made:
+            with contextlib.suppress(OSError):
+                new.rmdir()
+        if isinstance(error, OSError) and not isinstance(error, FileError):
+            where = pending[-1][1] if pending else folder
+            raise FileError(f"error: cannot write `{where}`: {_reason(error)}") from error
+        raise
+    return [target for _, target in pending]
+
+
+def _make_folder(folder: Path) -> list[Path]:
+    """Makes a folder; the new ones, innermost first."""
+    missing = []
+    at = folder
+    while not at.exists() and at != at.parent:
+        missing.append(at)
+        at = at.parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"error: cannot make the folder `{folder}`: {_reason(error)}") from error
+    return missing
+
+
+def _write_synced(path: Path, data: bytes) -> None:
+    with path.open("xb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _reason(error: OSError) -> str:
+    return (error.strerror or str(error)).lower()

@@ -1,0 +1,123 @@
+"""Panels of a model, as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moldloft import _core
+
+__all__ = ["Mesh", "Patch"]
+
+
+@dataclass(frozen=True)
+class Patch:
+    """The panels of one surface: a run of the mesh's faces, all of which it measures."""
+
+    name: str
+    """The surface's name."""
+    kind: str
+    """Its entity kind."""
+    tag: str
+    """Its role: ``"wetted"``, ``"lid"``, ``"waterline"``, ``"symmetry"`` or a name."""
+    start: int
+    """Its first face."""
+    stop: int
+    """One past its last face."""
+    divisions: tuple[int, int] | None
+    """Panels along u and v, for a structured patch."""
+    area: float
+    """Area of its panels."""
+    closed: bool
+    """True when its panels alone enclose a volume."""
+    volume: float | None
+    """The volume that it encloses by itself; ``None`` for an open patch."""
+    vertices: int
+    """Vertices that its panels use."""
+    quality: dict[str, Any]
+    """Aspect ratio, skewness and warp (min, max, mean) and the counts of quads and triangles."""
+
+    @property
+    def panels(self) -> int:
+        """The number of panels."""
+        return self.stop - self.start
+
+
+class Mesh:
+    """Panels of all shown surfaces of a model, at one state of it.
+
+    Panels are counter-clockwise seen from outside. Vertices that patches share are one vertex.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads('''
+    ... AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(2, 1, 0);
+    ... Line a(A, B); Line b(C, D);
+    ... RuledSurf plate(a, b, divisions = {4, 2});
+    ... ''')
+    >>> mesh = m.mesh()
+    >>> mesh.vertices.shape, mesh.faces.shape
+    ((15, 3), (8, 4))
+    >>> mesh.area
+    2.0
+    >>> mesh.closed, mesh.patch("plate").panels
+    (False, 8)
+    """
+
+    def __init__(self, core: _core.Mesh) -> None:
+        self._core = core
+
+    @cached_property
+    def vertices(self) -> NDArray[np.float64]:
+        """Positions, ``(n, 3)``."""
+        return self._core.vertices()
+
+    @cached_property
+    def faces(self) -> NDArray[np.uint32]:
+        """Corners of the panels as indices of vertices, ``(m, 4)``; a triangle repeats its last."""
+        return self._core.faces()
+
+    @cached_property
+    def patches(self) -> tuple[Patch, ...]:
+        """The patches, in the order of their faces."""
+        return tuple(Patch(**facts) for facts in self._core.patches())
+
+    def patch(self, name: str) -> Patch:
+        """The patch of the surface called ``name``."""
+        for patch in self.patches:
+            if patch.name == name:
+                return patch
+        from moldloft.errors import UnknownNameError
+
+        known = ", ".join(patch.name for patch in self.patches)
+        raise UnknownNameError(f"there is no patch `{name}`; there are: {known or 'none'}")
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """Panels, vertices, area, volume, closure and orientation of the whole, as data."""
+        return self._core.summary()
+
+    @property
+    def closed(self) -> bool:
+        """True when every panel edge belongs to two panels."""
+        return bool(self.summary["closed"])
+
+    @property
+    def area(self) -> float:
+        """Area of all panels."""
+        return float(self.summary["area"])
+
+    @property
+    def volume(self) -> float | None:
+        """The enclosed volume; ``None`` for an open mesh."""
+        volume = self.summary["volume"]
+        return None if volume is None else float(volume)
+
+    def __repr__(self) -> str:
+        count = f"{self.summary['panels']} panels, {self.summary['vertices']} vertices"
+        return f"<Mesh: {count}, {'closed' if self.closed else 'open'}>"

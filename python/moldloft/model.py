@@ -1,0 +1,324 @@
+"""Models: loading, changing, measuring and differentiating them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from moldloft import _core
+from moldloft.errors import ModelError, UnknownNameError
+from moldloft.hydrostatics import Hydrostatics
+from moldloft.objects import Object
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from moldloft.mesh import Mesh
+
+__all__ = ["Model", "Param", "load", "loads"]
+
+
+@dataclass(frozen=True)
+class Param:
+    """A design parameter of a model."""
+
+    name: str
+    """Its name."""
+    value: float
+    """Its value now."""
+    default: float
+    """Its value in the text."""
+    low: float | None
+    """The least value of its range."""
+    high: float | None
+    """The greatest value of its range."""
+    whole: bool
+    """True when it takes whole numbers only."""
+
+
+def load(path: str | os.PathLike[str], *, library: Sequence[str | os.PathLike[str]] = ()) -> Model:
+    """Load a model from a file.
+
+    Parameters
+    ----------
+    path
+        An ``.sdl`` program or an ``.ms2`` model file.
+    library
+        Folders, besides the model's own, from which it may load.
+
+    Raises
+    ------
+    ModelError
+        When the text cannot be run at all. Objects that fail leave the rest alive: see
+        :attr:`Model.diagnostics`.
+    FileError
+        When the file cannot be read.
+    """
+    return Model(_core.Document.open(os.fspath(path), [os.fspath(folder) for folder in library]))
+
+
+def loads(
+    text: str, *, name: str = "model.sdl", library: Sequence[str | os.PathLike[str]] = ()
+) -> Model:
+    """Load a model from a text.
+
+    Parameters
+    ----------
+    text
+        The program, or the model file's content.
+    name
+        The name that messages show; ``.ms2`` at its end means a model file.
+    library
+        Folders from which the text may load.
+
+    Raises
+    ------
+    ModelError
+        When the text has an error.
+    """
+    folders = [os.fspath(folder) for folder in library]
+    model = Model(_core.Document.from_text(name, text, None, folders))
+    model.check()
+    return model
+
+
+class Model:
+    """A model: named objects that depend on each other, and the text that declares them.
+
+    ``m["beam"]`` is a parameter's value and ``m["hull"]`` an object; ``m["beam"] = 4.5`` changes
+    the model, and only what depends on it is computed again. Made by :func:`load` and
+    :func:`loads`.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads('''
+    ... param float beam = 5.0 in [3, 7];
+    ... AbsPoint A(0, 0, 0);
+    ... AbsPoint B(10, beam, 0);
+    ... Line edge(A, B);
+    ... ''')
+    >>> m["beam"] = 6
+    >>> m["B"].y, m.eval("edge(0.5)")
+    (6.0, array([5., 3., 0.]))
+    >>> m.evaluated
+    2
+    >>> m.objects
+    ['A', 'B', 'edge']
+    >>> m["beem"]
+    Traceback (most recent call last):
+      ...
+    moldloft.errors.UnknownNameError: there is no parameter or object `beem`; did you mean `beam`?
+    """
+
+    def __init__(self, document: _core.Document) -> None:
+        self._document = document
+
+    # -- reading ---------------------------------------------------------------------------
+
+    @property
+    def objects(self) -> list[str]:
+        """The names of all objects, in the order of declaration."""
+        return self._document.names()
+
+    @property
+    def params(self) -> dict[str, Param]:
+        """The design parameters by name."""
+        return {row[0]: Param(*row) for row in self._document.params()}
+
+    @property
+    def diagnostics(self) -> list[_core.Diagnostic]:
+        """What is wrong or worth knowing, errors first found first."""
+        return self._document.diagnostics()
+
+    @property
+    def evaluated(self) -> int:
+        """How many objects the last change evaluated again."""
+        return self._document.evaluated()
+
+    @property
+    def symmetry(self) -> str:
+        """The axes in whose planes the model is mirrored, such as ``"y"``; else empty."""
+        return self._document.symmetry()
+
+    @property
+    def text(self) -> str:
+        """The model's text, with direct edits written in. Assigning runs the new text."""
+        return self._document.text()
+
+    @text.setter
+    def text(self, text: str) -> None:
+        self._document.set_text(text)
+
+    def check(self) -> None:
+        """Raise :class:`ModelError` with all diagnostics when the model has an error."""
+        if self._document.has_errors():
+            diagnostics = self._document.diagnostics()
+            raise ModelError("\n".join(map(str, diagnostics)).rstrip(), diagnostics)
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and (
+            self._document.param(name) is not None or self._document.has(name)
+        )
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.objects)
+
+    def __getitem__(self, name: str) -> Any:
+        value = self._document.param(name)
+        if value is not None:
+            return value
+        if self._document.has(name):
+            return Object(self._document, name)
+        near = self._document.similar(name)
+        hint = f"; did you mean `{near}`?" if near else ""
+        raise UnknownNameError(f"there is no parameter or object `{name}`{hint}")
+
+    # -- changing --------------------------------------------------------------------------
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self._document.set([(name, float(value))])
+
+    def set(self, values: Mapping[str, float]) -> None:
+        """Change several numbers at once.
+
+        Parameters
+        ----------
+        values
+            By a parameter's name, or by an object's and a field's: ``{"beam": 4.5, "P21.x": 3}``.
+            A number that the text computes from others refuses and names its parameters.
+
+        Raises
+        ------
+        ModelError
+            When a value is out of its range or a name unknown; nothing is changed then.
+        """
+        self._document.set([(name, float(value)) for name, value in values.items()])
+
+    # -- measuring -------------------------------------------------------------------------
+
+    def eval(self, expression: str) -> Any:
+        """Evaluate an expression of the language in the model's names.
+
+        Returns
+        -------
+        float, str, numpy.ndarray or list
+            A vector as an array ``(3,)``; rows and grids as arrays.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> moldloft.loads("AbsPoint P(1, 2, 2);").eval("P.x + 2")
+        3.0
+        """
+        return self._document.eval(expression)
+
+    def mesh(self) -> Mesh:
+        """Panels of all shown surfaces, as the model stands now; remembered until it changes."""
+        from moldloft.mesh import Mesh
+
+        return Mesh(self._document.mesh())
+
+    def hydrostatics(
+        self, *, level: float = 0.0, density: float = 1.0, sides: str = "both"
+    ) -> Hydrostatics:
+        """What the panels displace when the water stands at ``z = level``.
+
+        Parameters
+        ----------
+        level
+            Height of the water.
+        density
+            Mass per volume of the water, in the model's units.
+        sides
+            For a model that is mirrored in y = 0: ``"both"`` counts its image too, ``"one"``
+            does not. A model without symmetry is always counted as it is.
+        """
+        return Hydrostatics(**self._document.hydrostatics(level, density, sides))
+
+    def jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
+        """Exact derivatives of every mesh vertex.
+
+        Parameters
+        ----------
+        by
+            Parameters, or literals of objects such as ``"P21.y"``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(vertices, 3, len(by))``.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float beam = 2 in [1, 3];
+        ... AbsPoint A(0, 0, 0); AbsPoint C(0, beam, 0);
+        ... AbsPoint B(1, 0, 0); AbsPoint D(1, beam, 0);
+        ... Line a(A, B); Line b(C, D);
+        ... RuledSurf plate(a, b, divisions = {1, 1});
+        ... ''')
+        >>> m.jacobian(["beam"]).shape
+        (4, 3, 1)
+        >>> float(m.jacobian(["beam"])[:, 1, 0].sum())
+        2.0
+        """
+        return self._document.jacobian(list(by))
+
+    def derivative(self, expression: str, by: str) -> Any:
+        """The exact derivative of a number or vector by one parameter or literal.
+
+        Parameters
+        ----------
+        expression
+            Anything that :meth:`eval` takes, such as ``"hull.volume"`` or ``"length(keel)"``.
+        by
+            A parameter, or a literal such as ``"P21.y"``.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("param float a = 3 in [0, 9]; AbsPoint P(a * a, 0, 0);")
+        >>> m.derivative("P.x", "a")
+        6.0
+        """
+        return self._document.derivatives([expression], [by])[0][0]
+
+    def derivatives(self, expressions: Sequence[str], by: Sequence[str]) -> list[list[Any]]:
+        """Exact derivatives of several expressions by several parameters, ``[expression][by]``."""
+        return self._document.derivatives(list(expressions), list(by))
+
+    # -- writing ---------------------------------------------------------------------------
+
+    def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> list[Path]:
+        """Write the panels to a file, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file.
+        format
+            One of ``gdf``, ``stl``, ``obj``, ``vtp``, ``vts``, ``p3d``, ``svg``, ``png``,
+            ``sdl``, ``ms2``; by default what the file's name ends in.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The files written; some formats take several.
+        """
+        from moldloft.files import commit, produce
+
+        path = Path(path)
+        return commit(path.parent, produce(self, format or path.suffix.lstrip("."), path))
+
+    def convert(self, to: str) -> str:
+        """The model's text in another form: ``"sdl"`` or ``"ms2"``."""
+        return self._document.convert(to)
+
+    def __repr__(self) -> str:
+        return f"<Model: {len(self.objects)} objects, {len(self.params)} parameters>"

@@ -1,0 +1,164 @@
+"""Objects of a model, seen from Python."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from moldloft._core import Document
+
+__all__ = ["Object"]
+
+Floats = NDArray[np.float64]
+_OWN = frozenset({"_document", "name"})
+
+
+class Object:
+    """A named object of a model.
+
+    It is a name and no copy: after a change of the model it shows the new shape. Calling it
+    evaluates a curve or a surface; its numbers are read and written as attributes.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads("AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); Line edge(A, B);")
+    >>> m["edge"]([0, 0.25, 1])
+    array([[0. , 0. , 0. ],
+           [0.5, 0. , 0. ],
+           [2. , 0. , 0. ]])
+    >>> m["B"].y = 4
+    >>> m["B"].y
+    4.0
+    >>> m["edge"](0.5)
+    array([1., 2., 0.])
+    >>> m["edge"].parents
+    ['A', 'B']
+    """
+
+    __slots__ = ("_document", "name")
+
+    _document: Document
+    name: str
+    """Its name in the model."""
+
+    def __init__(self, document: Document, name: str) -> None:
+        object.__setattr__(self, "_document", document)
+        object.__setattr__(self, "name", name)
+
+    @property
+    def kind(self) -> str:
+        """The entity kind, such as ``"BCurve"``."""
+        return str(self._facts()["kind"])
+
+    @property
+    def class_(self) -> str:
+        """What kind of thing it is, such as ``"point"``, ``"curve"`` or ``"surface"``."""
+        return str(self._facts()["class"])
+
+    @property
+    def parents(self) -> list[str]:
+        """The names of what it depends on directly."""
+        return list(self._facts()["parents"])
+
+    @property
+    def children(self) -> list[str]:
+        """The names of what depends on it directly."""
+        return list(self._facts()["children"])
+
+    @property
+    def ok(self) -> bool:
+        """False when it failed or waits for one that did."""
+        return bool(self._facts()["ok"])
+
+    def __call__(self, *parameters: ArrayLike) -> Floats:
+        """Positions on the curve at ``t``, or on the surface at ``u, v``.
+
+        Parameters
+        ----------
+        *parameters
+            One array for a curve, two for a surface (broadcast against each other); the shape
+            runs over [0, 1].
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape ``(…, 3)``: that of the parameters and the coordinates.
+        """
+        if len(parameters) == 1:
+            t = np.asarray(parameters[0], dtype=np.float64)
+            flat = self._document.curve(self.name, np.ascontiguousarray(t.ravel()))
+            return flat.reshape(*t.shape, 3)
+        if len(parameters) == 2:
+            u, v = np.broadcast_arrays(*(np.asarray(p, dtype=np.float64) for p in parameters))
+            flat = self._document.surface(
+                self.name, np.ascontiguousarray(u.ravel()), np.ascontiguousarray(v.ravel())
+            )
+            return flat.reshape(*u.shape, 3)
+        raise TypeError(f"a curve takes t and a surface u, v; {len(parameters)} were given")
+
+    @overload
+    def grid(self, nu: int, nv: int) -> Floats: ...
+    @overload
+    def grid(self, nu: int, nv: int, *, normals: bool) -> Floats | tuple[Floats, Floats]: ...
+
+    def grid(self, nu: int, nv: int, *, normals: bool = False) -> Floats | tuple[Floats, Floats]:
+        """Positions of a surface on an even grid of its parameters.
+
+        Parameters
+        ----------
+        nu, nv
+            Numbers of points along u and v, at least 2.
+        normals
+            Also the unit normals, along the product of the derivatives by u and v; zero where
+            the surface is singular.
+
+        Returns
+        -------
+        numpy.ndarray or tuple of two
+            Shape ``(nu, nv, 3)``.
+        """
+        if normals:
+            return self._document.grid_with_normals(self.name, nu, nv)
+        return self._document.grid(self.name, nu, nv)
+
+    def delete(self) -> None:
+        """Removes the object from the model and its text; refused while others depend on it."""
+        self._document.delete(self.name)
+
+    def rename(self, name: str) -> None:
+        """Gives the object another name, everywhere in the text."""
+        self._document.rename(self.name, name)
+        object.__setattr__(self, "name", name)
+
+    def __getattr__(self, member: str) -> Any:
+        if member.startswith("_"):
+            raise AttributeError(member)
+        from moldloft.errors import Error
+
+        try:
+            return self._document.eval(f"{self.name}.{member}")
+        except Error as error:
+            raise AttributeError(str(error)) from error
+
+    def __setattr__(self, member: str, value: float) -> None:
+        if member in _OWN or isinstance(getattr(type(self), member, None), property):
+            raise AttributeError(f"`{member}` of an object cannot be set")
+        self._document.set([(f"{self.name}.{member}", float(value))])
+
+    def _facts(self) -> dict[str, Any]:
+        return self._document.object(self.name)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Object):
+            return NotImplemented
+        return self._document is other._document and self.name == other.name
+
+    def __hash__(self) -> int:
+        return hash(self.name)
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name}>"

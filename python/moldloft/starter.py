@@ -1,0 +1,29 @@
+"""The model that ``moldloft new`` begins with."""
+
+STARTER = """\
+# {name}: half of a small boat, from stem (x = 0) to transom; the keel lies in y = 0.
+# Try:  moldloft build {file} --set beam=1.4 --to stl png
+symmetry = "y";
+
+param float length = 4.0 in [2, 8];
+param float beam = 1.2 in [0.8, 2];
+
+# Three master curves, each from the sheer down to the keel.
+AbsPoint stem1(0, 0, 0.60);
+AbsPoint stem2(0.04 * length, 0, 0.10);
+AbsPoint stem3(0.10 * length, 0, -0.20);
+BCurve stem({{stem1, stem2, stem3}}, degree = 2);
+
+AbsPoint mid1(0.5 * length, 0.5 * beam, 0.45);
+AbsPoint mid2(0.5 * length, 0.5 * beam, -0.20);
+AbsPoint mid3(0.5 * length, 0, -0.30);
+BCurve mid({{mid1, mid2, mid3}}, degree = 2);
+
+AbsPoint transom1(length, 0.4 * beam, 0.50);
+AbsPoint transom2(length, 0.4 * beam, -0.05);
+AbsPoint transom3(length, 0, -0.10);
+BCurve transom({{transom1, transom2, transom3}}, degree = 2);
+
+# The hull is lofted through them.
+CLoftSurf hull({{stem, mid, transom}}, divisions = {{12, 24}});
+"""
