@@ -19,19 +19,24 @@
 //! Invariant: this crate knows no entity, no file and no language, and depends on `num` only.
 
 mod arc;
+mod arclen;
 mod basis;
 mod curve;
 mod curve_edit;
+pub mod distribution;
 mod even;
 mod interpolating;
 mod knot_vector;
 mod piecewise;
+mod relabel;
 mod surface;
 
 pub use arc::{Arc, ArcError};
+pub use arclen::{BeyondEnd, arclen, inv_arclen};
 pub use basis::Basis;
 pub use curve::{BSplineCurve, SplineError};
 pub use interpolating::{End, Ends, InterpolatingSpline, InterpolationError};
 pub use knot_vector::{KnotError, KnotVector, MAX_DEGREE};
 pub use piecewise::PiecewiseCubic;
+pub use relabel::{Dense, Relabel, RelabelError};
 pub use surface::BSplineSurface;

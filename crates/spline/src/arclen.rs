@@ -1,0 +1,139 @@
+use moldloft_num::{Curve, Order, Real, integrate};
+use std::fmt;
+
+/// A length that does not lie on the curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeyondEnd {
+    /// The length asked for.
+    pub asked: f64,
+    /// The length from the starting point to the end of the curve on that side.
+    pub available: f64,
+}
+
+impl fmt::Display for BeyondEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { asked, available } = self;
+        write!(f, "the length {asked} lies beyond the end of the curve, which is {available} away")
+    }
+}
+
+impl std::error::Error for BeyondEnd {}
+
+/// The parameters `a`, the breaks strictly between, `b`, in that order.
+fn pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
+    let (low, high) = (a.re().min(b.re()), a.re().max(b.re()));
+    let mut all = vec![a];
+    let inside = curve.breaks().into_iter().filter(|&t| low < t && t < high);
+    all.extend(inside.map(T::from));
+    if b.re() < a.re() {
+        all[1..].reverse();
+    }
+    all.push(b);
+    all
+}
+
+/// The length of the curve from `a` to `b`, negative when `b < a`, to about `accuracy` (a hope,
+/// kept by smooth pieces; the integrals between breaks are refined until two levels agree).
+///
+/// Derivatives in `T` are those of the length, by the same integration.
+///
+/// # Example
+/// ```
+/// use moldloft_num::Vec3;
+/// use moldloft_spline::{Arc, arclen};
+/// let p = [[1., 0., 0.], [0., 0., 0.], [0., 1., 0.]].map(Vec3::from);
+/// let circle = Arc::<f64>::circle(p[0], p[1], p[2]).unwrap();
+/// assert!((arclen(&circle, 0.25, 0.75, 1e-12) - std::f64::consts::PI).abs() < 1e-12);
+/// ```
+pub fn arclen<T: Real>(curve: &dyn Curve<T>, a: T, b: T, accuracy: f64) -> T {
+    let ends = pieces(curve, a, b);
+    let share = accuracy / (ends.len() - 1) as f64;
+    let mut length = T::zero();
+    for w in ends.windows(2) {
+        length += integrate(w[0], w[1], share, |t| speed(curve, t));
+    }
+    length
+}
+
+fn speed<T: Real>(curve: &dyn Curve<T>, t: T) -> T {
+    curve.jet(t, Order::First)[1].norm()
+}
+
+/// The parameter in [0, 1] at the signed length `s` along the curve from `a`, to `accuracy` of
+/// length.
+///
+/// The root is found in plain numbers, by Newton's method between brackets; one more step in `T`
+/// gives its derivatives (implicit function theorem).
+///
+/// # Errors
+/// [`BeyondEnd`] when the curve is too short on that side.
+pub fn inv_arclen<T: Real>(
+    curve: &dyn Curve<T>,
+    a: T,
+    s: T,
+    accuracy: f64,
+) -> Result<T, BeyondEnd> {
+    if s.re() == 0.0 && s.is_constant() {
+        return Ok(a);
+    }
+    let far = if s.re() < 0.0 { 0.0 } else { 1.0 };
+    let ends = pieces(curve, T::from(a.re()), T::from(far));
+    let share = 0.1 * accuracy / ends.len() as f64;
+    let length =
+        |a: f64, b: f64| integrate(T::from(a), T::from(b), share, |t| speed(curve, t)).re();
+    let (mut passed, mut found) = (0.0, None);
+    for w in ends.windows(2) {
+        let (from, to) = (w[0].re(), w[1].re());
+        let piece = length(from, to);
+        let rest = s.re() - passed;
+        // Lengths have the sign of s throughout.
+        if rest.abs() <= piece.abs() {
+            let ahead = |t: f64| length(from, t) - rest;
+            let slope = |t: f64| speed(curve, T::from(t)).re();
+            found = Some(bracketed_newton(ahead, slope, from, to, rest / piece, 0.1 * accuracy));
+            break;
+        }
+        passed += piece;
+    }
+    let t = match found {
+        Some(t) => t,
+        None if (s.re() - passed).abs() <= accuracy => far,
+        None => return Err(BeyondEnd { asked: s.re(), available: passed }),
+    };
+    let rate = speed(curve, T::from(t)).re();
+    let residual = s - arclen(curve, a, T::from(t), accuracy);
+    // Only the derivatives of the step count; the root itself is already as good as asked.
+    Ok(residual / rate - residual.re() / rate + t)
+}
+
+/// The root of the monotone `f` between `from` and `to`, starting at the share `guess` of the way.
+fn bracketed_newton(
+    f: impl Fn(f64) -> f64,
+    slope: impl Fn(f64) -> f64,
+    from: f64,
+    to: f64,
+    guess: f64,
+    accuracy: f64,
+) -> f64 {
+    let (mut low, mut high) = (from.min(to), from.max(to));
+    let mut t = (from + (to - from) * guess).clamp(low, high);
+    // Newton doubles the digits or the bracket halves: far fewer than 64 steps are ever needed.
+    for _ in 0..64 {
+        let value = f(t);
+        if value.abs() <= accuracy * 1e-3 || low >= high {
+            break;
+        }
+        if value > 0.0 {
+            high = t;
+        } else {
+            low = t;
+        }
+        let next = t - value / slope(t);
+        let next = if low < next && next < high { next } else { 0.5 * (low + high) };
+        if next == t {
+            break;
+        }
+        t = next;
+    }
+    t
+}
