@@ -98,7 +98,7 @@ const MARGIN: f64 = 16.0;
 const FOOT: f64 = 16.0;
 
 /// The sheet: the view's own contours as lines, the others' values as nothing; a grid of round
-/// numbers with labels, the centre line and z = 0 heavier, names at the ends of the lines, the
+/// numbers with labels, the centre line and z = 0 heavier, names on the lines, the
 /// scale in words and as a bar. Points that are not finite end a line.
 pub fn draw(view: View, contours: &[Contour], options: &Options) -> Vec<u8> {
     let lines = projected(view, contours, options);
@@ -117,6 +117,8 @@ pub fn draw(view: View, contours: &[Contour], options: &Options) -> Vec<u8> {
 /// A line on the drawing plane, in model units.
 struct Line {
     name: String,
+    /// Where the name stands.
+    label: Option<[f64; 2]>,
     width: Option<f64>,
     points: Vec<[f64; 2]>,
 }
@@ -141,11 +143,24 @@ fn projected(view: View, contours: &[Contour], options: &Options) -> Vec<Line> {
         };
         for polyline in &contour.polylines {
             let runs = polyline.split(|p| p.iter().any(|x| !x.is_finite()));
-            lines.extend(runs.filter(|run| run.len() > 1).map(|run| Line {
-                name: contour.name.clone(),
-                width: contour.width_mm,
-                points: run.iter().map(flat).collect(),
-            }));
+            for run in runs.filter(|run| run.len() > 1) {
+                let points: Vec<[f64; 2]> = run.iter().map(flat).collect();
+                let label = match view {
+                    // Sections and buttocks part at their higher ends.
+                    View::BodyPlan | View::Buttocks => {
+                        let ends = points.first().zip(points.last());
+                        ends.map(|(a, b)| if a[1] >= b[1] { *a } else { *b })
+                    }
+                    // Waterlines meet at their ends: one after the other names its line a bit
+                    // further along, about the middle.
+                    View::Waterlines => {
+                        let along = 0.35 + 0.06 * (lines.len() % 6) as f64;
+                        points.get((points.len() as f64 * along) as usize).copied()
+                    }
+                };
+                let (name, width) = (contour.name.clone(), contour.width_mm);
+                lines.push(Line { name, label, width, points });
+            }
         }
     }
     lines
@@ -298,18 +313,13 @@ impl Sheet {
             "\" fill=\"none\" stroke=\"#124\" stroke-width=\"{width}\" stroke-linejoin=\"round\" \
              stroke-linecap=\"round\"/>\n"
         );
-        // The name stands at the higher end, where hull lines part.
-        let ends = line.points.first().zip(line.points.last());
-        if let (Some((a, b)), false) = (ends, line.name.is_empty()) {
-            let [x, y] = if a[1] >= b[1] { a } else { b };
-            let (x, y) = (self.x(*x), self.y(*y) - 0.8);
-            let name = xml(&line.name);
-            put!(
-                *out,
-                "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"1.8\" fill=\"#124\" \
-                 text-anchor=\"middle\">{name}</text>\n"
-            );
-        }
+        let Some([x, y]) = line.label.filter(|_| !line.name.is_empty()) else { return };
+        let (x, y, name) = (self.x(x), self.y(y) - 0.8, xml(&line.name));
+        put!(
+            *out,
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"1.8\" fill=\"#124\" text-anchor=\"middle\" \
+             stroke=\"#fff\" stroke-width=\"0.5\" paint-order=\"stroke\">{name}</text>\n"
+        );
     }
 
     /// The scale in words and as a bar of five round parts.

@@ -70,6 +70,19 @@ pub(crate) fn edges(sorted: &[HalfEdge]) -> impl Iterator<Item = &[HalfEdge]> {
     sorted.chunk_by(|a, b| a.ends() == b.ends())
 }
 
+impl Topology {
+    /// The edges at the rim of patches: those of one face only, and those whose faces belong to
+    /// different patches, lower vertex first, ordered by vertex.
+    pub fn borders(&self) -> Vec<[u32; 2]> {
+        let sorted = half_edges(self);
+        let owner = |e: &HalfEdge| self.patch_of(e.face());
+        edges(&sorted)
+            .filter(|edge| edge.len() == 1 || edge.iter().any(|e| owner(e) != owner(&edge[0])))
+            .map(|edge| edge[0].ends().into())
+            .collect()
+    }
+}
+
 /// Sets joined pair by pair; the root of a set is its lowest member.
 pub(crate) struct Joined(Vec<u32>);
 

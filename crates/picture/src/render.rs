@@ -1,0 +1,295 @@
+use crate::camera::{Aimed, Camera, Seen};
+use crate::palette::{Gamma, patch_colour};
+use crate::raster::{Corner, Raster, Sides, length};
+use moldloft_mesh::{Mesh, Tag, is_triangle};
+use moldloft_num::{Box3, Vec3};
+use std::fmt;
+
+/// A polyline in the model, such as a contour or a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Its points.
+    pub points: Vec<Vec3>,
+    /// sRGB colour.
+    pub colour: [u8; 3],
+    /// Width in picture points.
+    pub width: f32,
+}
+
+/// How the picture is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Picture points across.
+    pub width: usize,
+    /// Picture points down.
+    pub height: usize,
+    /// From where.
+    pub camera: Camera,
+    /// Draw the rims of the patches.
+    pub borders: bool,
+    /// Draw the sides of the panels; they fade where panels are only a few points wide.
+    pub edges: bool,
+    /// Shade across panels as if the surface were smooth, but for creases above 40 degrees.
+    pub smooth: bool,
+    /// Show the mirror image in y = 0 too.
+    pub mirror: bool,
+    /// Draw the directions of the axes in the corner.
+    pub axes: bool,
+    /// Colours of the background, top and bottom.
+    pub background: [[u8; 3]; 2],
+}
+
+impl Default for Options {
+    /// 1600 x 1000, smooth with panel sides and axes, on a light background.
+    fn default() -> Self {
+        Self {
+            width: 1600,
+            height: 1000,
+            camera: Camera::default(),
+            borders: true,
+            edges: true,
+            smooth: true,
+            mirror: false,
+            axes: true,
+            background: [[0xfc, 0xfd, 0xfe], [0xe2, 0xe8, 0xee]],
+        }
+    }
+}
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PictureError {
+    /// A side of the picture is 0 or above [`PictureError::LARGEST`].
+    Size {
+        /// Picture points asked for.
+        width: usize,
+        /// Picture points asked for.
+        height: usize,
+    },
+    /// A vertex is not at a finite position.
+    NotFinite {
+        /// A patch that uses it.
+        patch: String,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// The encoder failed.
+    Encoding(String),
+}
+
+impl PictureError {
+    /// The most picture points along a side.
+    pub const LARGEST: usize = 8192;
+}
+
+impl fmt::Display for PictureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Size { width, height } => write!(
+                f,
+                "a picture of {width} x {height} points; each side must be 1 to {}",
+                Self::LARGEST
+            ),
+            Self::NotFinite { patch, vertex } => {
+                write!(f, "vertex {vertex} of patch `{patch}` is not at a finite position")
+            }
+            Self::Encoding(text) => write!(f, "the picture cannot be encoded: {text}"),
+        }
+    }
+}
+
+impl std::error::Error for PictureError {}
+
+/// Colour of the rims of patches.
+const RIM: [u8; 3] = [0x2b, 0x33, 0x3f];
+
+/// The picture of a mesh and some lines, as the bytes of a PNG file. The camera sees all of them.
+///
+/// # Errors
+/// An impossible size, positions that are not finite.
+pub fn render(mesh: &Mesh, lines: &[Line], options: &Options) -> Result<Vec<u8>, PictureError> {
+    let (width, height) = (options.width, options.height);
+    let possible = 1..=PictureError::LARGEST;
+    if !possible.contains(&width) || !possible.contains(&height) {
+        return Err(PictureError::Size { width, height });
+    }
+    for patch in mesh.patches() {
+        let mut corners = mesh.faces()[patch.faces.clone()].iter().flatten();
+        if let Some(&vertex) = corners.find(|&&v| !mesh.positions()[v as usize].is_finite()) {
+            return Err(PictureError::NotFinite { patch: patch.info.name.clone(), vertex });
+        }
+    }
+    let sides: &[f64] = if options.mirror { &[1.0, -1.0] } else { &[1.0] };
+    let image = |p: Vec3, side: f64| Vec3 { y: p.y * side, ..p };
+    let corners = mesh.faces().iter().flatten().map(|&v| mesh.positions()[v as usize]);
+    let ends = lines.iter().flat_map(|l| l.points.iter().copied().filter(|p| p.is_finite()));
+    let all: Vec<Vec3> =
+        corners.chain(ends).flat_map(|p| sides.iter().map(move |&side| image(p, side))).collect();
+    let aimed = Aimed::at(&options.camera, &all, 2.0 * width as f64, 2.0 * height as f64);
+
+    let [top, bottom] = options.background;
+    let gamma = Gamma::new();
+    let mut raster = Raster::new(2 * width, 2 * height, top, bottom, Gamma::new());
+    let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options };
+    for &side in sides {
+        painter.panels(&mut raster, side);
+    }
+    let diagonal = Box3::around(all.iter().copied()).diagonal();
+    let rims = if options.borders { mesh.topology().borders() } else { Vec::new() };
+    for &side in sides {
+        let mut stroke = |p: Vec3, q: Vec3, half_width: f32, slack: f64, colour: [u8; 3]| {
+            let (p, q) = (image(p, side), image(q, side));
+            let middle = (p + q) * 0.5;
+            let nearer = aimed.see(middle + aimed.towards(middle) * (slack * diagonal));
+            let slack = nearer.near - aimed.see(middle).near;
+            raster.line(aimed.see(p), aimed.see(q), half_width, slack, colour);
+        };
+        for ends in &rims {
+            let [p, q] = ends.map(|v| mesh.positions()[v as usize]);
+            // Where a half meets its image the surface goes on.
+            if !(options.mirror && p.y == 0.0 && q.y == 0.0) {
+                stroke(p, q, 0.75, 4e-4, RIM);
+            }
+        }
+        for line in lines {
+            for ends in line.points.windows(2).filter(|w| w.iter().all(|p| p.is_finite())) {
+                // A line on the surface lies within its panels' sagitta of them.
+                stroke(ends[0], ends[1], line.width, 2e-3, line.colour);
+            }
+        }
+    }
+    if options.axes {
+        axes(&mut raster, &aimed, width, height);
+    }
+    encoded(&raster.halved(), width, height)
+}
+
+struct Painter<'a> {
+    mesh: &'a Mesh,
+    aimed: &'a Aimed,
+    gamma: &'a Gamma,
+    options: &'a Options,
+}
+
+impl Painter<'_> {
+    /// Draws all panels, mirrored in y = 0 for `side` -1.
+    fn panels(&self, raster: &mut Raster, side: f64) {
+        let positions: Vec<Vec3> =
+            self.mesh.positions().iter().map(|&p| Vec3 { y: p.y * side, ..p }).collect();
+        let seen: Vec<Seen> = positions.iter().map(|&p| self.aimed.see(p)).collect();
+        let mut normals = vec![Vec3::zero(); positions.len()];
+        for (index, patch) in self.mesh.patches().iter().enumerate() {
+            if side < 0.0 && patch.info.tag == Tag::Symmetry {
+                continue;
+            }
+            let faces = &self.mesh.faces()[patch.faces.clone()];
+            // Area-weighted normals at the vertices, of this patch alone: seams stay sharp.
+            faces.iter().flatten().for_each(|&v| normals[v as usize] = Vec3::zero());
+            let turned = |face: [u32; 4]| {
+                let [a, b, c, d] = face.map(|v| positions[v as usize]);
+                (c - a).cross(d - b) * side
+            };
+            for &face in faces {
+                let normal = turned(face);
+                let corners = if is_triangle(face) { 3 } else { 4 };
+                face[..corners].iter().for_each(|&v| normals[v as usize] += normal);
+            }
+            let base = self.gamma.linear(patch_colour(patch, index));
+            for &face in faces {
+                let Some(normal) = turned(face).normalized() else { continue };
+                let corners = face.map(|v| {
+                    let v = v as usize;
+                    // cos 40 degrees: a sharper turn is a crease.
+                    let shared = normals[v].normalized().filter(|n| n.dot(normal) > 0.766);
+                    let n = shared.filter(|_| self.options.smooth).unwrap_or(normal);
+                    Corner { at: seen[v], light: self.light(base, n, normal, positions[v]) }
+                });
+                self.panel(raster, corners, is_triangle(face));
+            }
+        }
+    }
+
+    fn panel(&self, raster: &mut Raster, [a, b, c, d]: [Corner; 4], triangle: bool) {
+        let strength = if self.options.edges {
+            // Lines closer than about 3 points would only darken the surface.
+            let cross =
+                (c.at.x - a.at.x) * (d.at.y - b.at.y) - (c.at.y - a.at.y) * (d.at.x - b.at.x);
+            let reach = [(a, b), (b, c), (c, d), (d, a)]
+                .map(|(p, q)| length(q.at.x - p.at.x, q.at.y - p.at.y))
+                .into_iter()
+                .fold(1.0, f32::max);
+            let breadth = 0.5 * cross.abs() / reach;
+            0.62 * ((breadth - 4.0) / 10.0).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let sides = |shown| (strength > 0.0).then_some(Sides { shown, half_width: 0.55, strength });
+        if triangle {
+            raster.triangle([a, b, c], sides([true; 3]));
+        } else {
+            raster.triangle([a, b, c], sides([true, true, false]));
+            raster.triangle([a, c, d], sides([false, true, true]));
+        }
+    }
+
+    /// The light that a surface of normal `n` (of its panel: `flat`) sends to the viewer.
+    fn light(&self, base: [f32; 3], n: Vec3, flat: Vec3, p: Vec3) -> [f32; 3] {
+        let eye = self.aimed.towards(p);
+        // What is seen from behind is the inside: lit as from its own side, a little darker.
+        let inside = flat.dot(eye) < 0.0;
+        let n = if inside { -n } else { n };
+        let key = self.aimed.world([-0.45, 0.7, 0.55]);
+        let key = key.normalized().unwrap_or(eye);
+        let sky = 0.5 + 0.5 * n.z;
+        let diffuse = 0.30 + 0.14 * sky + 0.34 * n.dot(eye).max(0.0) + 0.46 * n.dot(key).max(0.0);
+        let half = (key + eye).normalized().unwrap_or(eye);
+        let gloss = 0.10 * libm::pow(n.dot(half).max(0.0), 40.0);
+        let (dim, gloss) = if inside { (0.72, 0.0) } else { (1.0, gloss) };
+        base.map(|c| c * (dim * diffuse) as f32 + gloss as f32)
+    }
+}
+
+/// The directions of x, y and z in the lower left corner.
+fn axes(raster: &mut Raster, aimed: &Aimed, width: usize, height: usize) {
+    let size = 2.0 * (width.min(height) as f64) * 0.045;
+    let (x0, y0) = (1.9 * size, 2.0 * height as f64 - 1.9 * size);
+    let at = |x: f64, y: f64| Seen { x: (x0 + x) as f32, y: (y0 - y) as f32, near: f32::MAX };
+    // Strokes of the letters in a square of side 2 about the origin.
+    let letters: [&[[f64; 4]]; 3] = [
+        &[[-0.7, -1.0, 0.7, 1.0], [-0.7, 1.0, 0.7, -1.0]],
+        &[[-0.7, 1.0, 0.0, 0.0], [0.7, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0]],
+        &[[-0.7, 1.0, 0.7, 1.0], [0.7, 1.0, -0.7, -1.0], [-0.7, -1.0, 0.7, -1.0]],
+    ];
+    let colours = [[0xc0, 0x44, 0x3c], [0x35, 0x8a, 0x50], [0x36, 0x63, 0xb0]];
+    let unit = [Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 1.0, 0.0), Vec3::of(0.0, 0.0, 1.0)];
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| aimed.turned(unit[a])[2].total_cmp(&aimed.turned(unit[b])[2]));
+    for k in order {
+        let [right, up, _] = aimed.turned(unit[k]);
+        raster.line(at(0.0, 0.0), at(size * right, size * up), 1.6, 0.0, colours[k]);
+        let reach = libm::hypot(right, up).max(0.25);
+        let (cx, cy) = (right * (1.0 + 0.28 / reach) * size, up * (1.0 + 0.28 / reach) * size);
+        let letter = 0.11 * size;
+        for [x1, y1, x2, y2] in letters[k] {
+            let (p, q) =
+                (at(cx + letter * x1, cy + letter * y1), at(cx + letter * x2, cy + letter * y2));
+            raster.line(p, q, 1.2, 0.0, colours[k]);
+        }
+    }
+}
+
+fn encoded(rgb: &[u8], width: usize, height: usize) -> Result<Vec<u8>, PictureError> {
+    let failed = |e: png::EncodingError| PictureError::Encoding(e.to_string());
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(rgb).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests;
