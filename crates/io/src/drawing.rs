@@ -109,6 +109,9 @@ pub fn draw(view: View, contours: &[Contour], options: &Options) -> Vec<u8> {
     for line in &lines {
         sheet.line(&mut out, line, options);
     }
+    for line in &lines {
+        sheet.name(&mut out, line);
+    }
     sheet.foot(&mut out, options);
     out.push_str("</svg>\n");
     out.into_bytes()
@@ -119,6 +122,8 @@ struct Line {
     name: String,
     /// Where the name stands.
     label: Option<[f64; 2]>,
+    /// How far above that place, in millimetres: above the end of a line, or in its middle.
+    lift_mm: f64,
     width: Option<f64>,
     points: Vec<[f64; 2]>,
 }
@@ -159,7 +164,8 @@ fn projected(view: View, contours: &[Contour], options: &Options) -> Vec<Line> {
                     }
                 };
                 let (name, width) = (contour.name.clone(), contour.width_mm);
-                lines.push(Line { name, label, width, points });
+                let lift_mm = if view == View::Waterlines { -0.6 } else { 0.8 };
+                lines.push(Line { name, label, lift_mm, width, points });
             }
         }
     }
@@ -313,13 +319,20 @@ impl Sheet {
             "\" fill=\"none\" stroke=\"#124\" stroke-width=\"{width}\" stroke-linejoin=\"round\" \
              stroke-linecap=\"round\"/>\n"
         );
+    }
+
+    /// The name of a line on a white halo (a text of its own, as not every viewer knows
+    /// `paint-order`), so it breaks the lines it stands on.
+    fn name(&self, out: &mut String, line: &Line) {
         let Some([x, y]) = line.label.filter(|_| !line.name.is_empty()) else { return };
-        let (x, y, name) = (self.x(x), self.y(y) - 0.8, xml(&line.name));
-        put!(
-            *out,
-            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"1.8\" fill=\"#124\" text-anchor=\"middle\" \
-             stroke=\"#fff\" stroke-width=\"0.5\" paint-order=\"stroke\">{name}</text>\n"
-        );
+        let (x, y, name) = (self.x(x), self.y(y) - line.lift_mm, xml(&line.name));
+        for style in ["fill=\"#fff\" stroke=\"#fff\" stroke-width=\"0.6\"", "fill=\"#124\""] {
+            put!(
+                *out,
+                "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"1.8\" text-anchor=\"middle\" {style}>\
+                 {name}</text>\n"
+            );
+        }
     }
 
     /// The scale in words and as a bar of five round parts.

@@ -23,3 +23,48 @@ pub fn two_patches() -> Mesh {
     ];
     Mesh::new(b.build().into(), p.map(Vec3::from).to_vec()).unwrap()
 }
+
+/// Copies of a file with bytes changed, cut off and doubled, the same ones every time.
+pub fn damaged(file: &[u8]) -> impl Iterator<Item = Vec<u8>> + '_ {
+    // Knuth's linear congruential generator (MMIX).
+    let mut state = 1u64;
+    let mut draw = move |below: usize| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as usize % below.max(1)
+    };
+    (0..4000).map(move |_| {
+        let mut bytes = file.to_vec();
+        for _ in 0..1 + draw(6) {
+            let at = draw(bytes.len());
+            match draw(4) {
+                0 => bytes.truncate(at),
+                1 if !bytes.is_empty() => bytes[at] = draw(256) as u8,
+                2 if !bytes.is_empty() => bytes[at] = b"-0 9e\n/.#"[draw(9)],
+                _ => bytes.extend_from_within(at..(at + draw(40)).min(bytes.len())),
+            }
+        }
+        bytes
+    })
+}
+
+#[test]
+fn damaged_files_are_refused_or_read_but_never_panic() {
+    let mesh = two_patches();
+    let gdf = crate::gdf::write(&mesh, &Default::default(), true).unwrap();
+    let stl = crate::stl::write(&mesh, "hull").unwrap();
+    let obj = crate::obj::write(&mesh).unwrap();
+    let text =
+        b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
+        endloop\nendfacet\nendsolid a\n";
+    let mut refused = 0;
+    for bytes in damaged(&gdf) {
+        refused += usize::from(crate::gdf::read(&bytes).is_err());
+    }
+    for bytes in damaged(&stl).chain(damaged(text)) {
+        refused += usize::from(crate::stl::read(&bytes).is_err());
+    }
+    for bytes in damaged(&obj) {
+        refused += usize::from(crate::obj::read(&bytes).is_err());
+    }
+    assert!(refused > 4000, "{refused}");
+}

@@ -37,8 +37,7 @@ pub struct TopologyReport {
     pub misoriented_edges: usize,
     /// Vertices whose faces form several fans.
     pub pinched_vertices: usize,
-    /// Where the mesh is open, the edges of one face only, chained; longest list first is *not*
-    /// promised, they come in the order of their lowest face.
+    /// Where the mesh is open: the edges of one face only, chained, in the order of their lowest face.
     pub open_loops: Vec<OpenLoop>,
 }
 
