@@ -27,9 +27,11 @@ pub mod distribution;
 mod even;
 mod interpolating;
 mod knot_vector;
+mod patches;
 mod piecewise;
 mod relabel;
 mod surface;
+mod surface_grid;
 
 pub use arc::{Arc, ArcError};
 pub use arclen::{BeyondEnd, arclen, inv_arclen};

@@ -73,18 +73,80 @@ impl<T: Real> PiecewiseCubic<T> {
     }
 
     /// The positions at `ts`, in any order.
+    ///
+    /// The polynomials are first moved to the real parts of their knots, so that each point takes
+    /// products with plain numbers only, whatever the scalar.
     pub fn eval_many(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        let fixed = self.with_fixed_knots();
         for (x, &t) in out.iter_mut().zip(ts) {
-            *x = self.eval(T::from(t));
+            let (s, [a, b, c, d]) = fixed.at(t);
+            *x = step(step(step(*d, s, *c), s, *b), s, *a);
         }
     }
 
-    /// Positions and derivatives at `ts` to `order`, in any order of `ts`.
+    /// Positions and derivatives at `ts` to `order`, in any order of `ts`; see
+    /// [`PiecewiseCubic::eval_many`].
     pub fn jets_many(&self, ts: &[f64], order: Order, out: &mut [CurveJet<T>]) {
+        let fixed = self.with_fixed_knots();
         for (x, &t) in out.iter_mut().zip(ts) {
-            *x = self.jet(T::from(t), order);
+            let (s, [a, b, c, d]) = fixed.at(t);
+            *x = [step(step(step(*d, s, *c), s, *b), s, *a), Vec3::default(), Vec3::default()];
+            if order >= Order::First {
+                x[1] = step(step(d.map(|x| x * 3.0), s, c.map(|x| x * 2.0)), s, *b);
+            }
+            if order == Order::Second {
+                x[2] = step(d.map(|x| x * 6.0), s, c.map(|x| x * 2.0));
+            }
         }
     }
+
+    /// The same curve in powers of the distance from the real part of each knot.
+    fn with_fixed_knots(&self) -> FixedKnots<T> {
+        let mut fixed = FixedKnots {
+            knots: self.knots.iter().map(|k| k.re()).collect(),
+            coefficients: self.coefficients.clone(),
+        };
+        for (k, c) in self.knots.iter().zip(&mut fixed.coefficients) {
+            if k.is_constant() {
+                continue;
+            }
+            // Taylor's shift by the derivative part of the knot, as repeated Horner steps.
+            let shift = -*k + k.re();
+            for from in 0..3 {
+                for j in (from..3).rev() {
+                    let higher = c[j + 1] * shift;
+                    c[j] += higher;
+                }
+            }
+        }
+        fixed
+    }
+}
+
+/// See [`PiecewiseCubic::with_fixed_knots`].
+struct FixedKnots<T> {
+    knots: SmallVec<[f64; 5]>,
+    coefficients: SmallVec<[[Vec3<T>; 4]; 5]>,
+}
+
+impl<T: Real> FixedKnots<T> {
+    /// The distance from the knot before `t`, and the coefficients there.
+    #[inline(always)]
+    fn at(&self, t: f64) -> (f64, &[Vec3<T>; 4]) {
+        let inner = &self.knots[1..];
+        let k = if inner.len() <= 8 {
+            inner.iter().map(|&k| usize::from(k <= t)).sum()
+        } else {
+            inner.partition_point(|&k| k <= t)
+        };
+        (t - self.knots[k], &self.coefficients[k])
+    }
+}
+
+/// One step of Horner's rule with a plain number: high * s + low.
+#[inline(always)]
+fn step<T: Real>(high: Vec3<T>, s: f64, low: Vec3<T>) -> Vec3<T> {
+    high.map(|x| x * s) + low
 }
 
 impl<T: Real> Curve<T> for PiecewiseCubic<T> {

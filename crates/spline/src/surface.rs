@@ -1,6 +1,8 @@
 use crate::curve::check_net;
+use crate::patches::Patches;
 use crate::{Basis, KnotVector, SplineError};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
+use std::sync::OnceLock;
 
 /// A tensor-product B-spline surface of any degrees on [0, 1] x [0, 1], rational if it has weights.
 ///
@@ -11,6 +13,8 @@ pub struct BSplineSurface<T> {
     v: KnotVector,
     points: Vec<Vec3<T>>,
     weights: Option<Vec<T>>,
+    /// For scattered points, made when first asked for; `None` inside where degrees are too high.
+    pub(crate) patches: OnceLock<Option<Patches<T>>>,
 }
 
 impl<T: Real> BSplineSurface<T> {
@@ -26,7 +30,7 @@ impl<T: Real> BSplineSurface<T> {
         weights: Option<Vec<T>>,
     ) -> Result<Self, SplineError> {
         check_net(&[&u, &v], &control_points, weights.as_deref())?;
-        Ok(Self { u, v, points: control_points, weights })
+        Ok(Self { u, v, points: control_points, weights, patches: OnceLock::new() })
     }
 
     /// The knots in both directions.
@@ -114,6 +118,16 @@ impl<T: Real> Surface<T> for BSplineSurface<T> {
             let bases = [self.u.basis(u, order), self.v.basis(v, order)];
             self.combine(bases.each_ref(), order, |x, b: T| x * b)
         }
+    }
+
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        normals: Option<&mut [Vec3<T>]>,
+    ) {
+        self.tensor_grid(us, vs, points, normals);
     }
 
     fn breaks(&self) -> [Vec<f64>; 2] {

@@ -199,7 +199,16 @@ fn a_loft_carries_the_derivatives_of_its_masters() {
     let (u, vs) = (0.3, [0.2, 0.5, 0.8]);
     let mut jets = vec![Default::default(); 3];
     loft(u).pieces().jets_many(&vs, Order::First, &mut jets);
-    for (&v, jet) in vs.iter().zip(&jets) {
+    let mut points = vec![Vec3::zero(); 3];
+    loft(u).pieces().eval_many(&vs, &mut points);
+    for ((&v, jet), &point) in vs.iter().zip(&jets).zip(&points) {
+        assert_eq!(point, jet[0]);
+        let alone = loft(u).jet(v.into(), Order::First);
+        for k in 0..2 {
+            close(jet[k].map(|x| x.f), alone[k].map(|x| x.f), 1e-13);
+            close(jet[k].map(|x| x.t), alone[k].map(|x| x.t), 1e-12);
+            close(jet[k].map(|x| x.tt), alone[k].map(|x| x.tt), 1e-11);
+        }
         let value = |u: f64| loft(u).pieces().eval(v.into());
         let su = common::ridders(|u| value(u).map(|x| x.f), u, 0.01);
         let suu = common::ridders(|u| value(u).map(|x| x.t), u, 0.01);
