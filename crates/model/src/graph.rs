@@ -29,9 +29,12 @@ pub struct Graph<T: Scalar> {
     pending: BinaryHeap<Reverse<(u32, Key)>>,
     /// Counts applications.
     clock: u64,
+    /// The clock at which something visible changed last.
+    last_change: u64,
     declared: u32,
     evaluated: usize,
     failed: usize,
+    any_read: bool,
     memo: Memo<T>,
     context: Context,
 }
@@ -95,6 +98,7 @@ impl<T: Scalar> Graph<T> {
         self.evaluated = 0;
         if extent == Extent::Whole {
             self.declared = 0;
+            self.any_read = false;
         }
         let produced = produce(&mut Run { graph: self, extent });
         if extent == Extent::Whole {
@@ -137,6 +141,16 @@ impl<T: Scalar> Graph<T> {
         self.names.len()
     }
 
+    /// How many objects failed or are blocked.
+    pub fn failed(&self) -> usize {
+        self.failed
+    }
+
+    /// True when the program has read the value of some object while it ran.
+    pub fn any_read(&self) -> bool {
+        self.any_read
+    }
+
     /// True when there is no object.
     pub fn is_empty(&self) -> bool {
         self.names.is_empty()
@@ -147,9 +161,10 @@ impl<T: Scalar> Graph<T> {
         nearest(name, self.names.keys().map(|n| &**n))
     }
 
-    /// Counts applications: a value remembered for one clock may be stale at the next.
-    pub fn clock(&self) -> u64 {
-        self.clock
+    /// When some value, head or name changed last: what was computed from the whole model is
+    /// stale when this has grown.
+    pub fn last_change(&self) -> u64 {
+        self.last_change
     }
 
     /// Everything that depends on `key`, directly or not, in the order of declaration.
@@ -191,6 +206,9 @@ impl<T: Scalar> Graph<T> {
     }
 
     fn remove(&mut self, gone: &[Key]) {
+        if !gone.is_empty() {
+            self.last_change = self.clock;
+        }
         let mut bereft: Vec<Key> = Vec::new();
         for key in gone {
             let object = self.objects[key.0 as usize].take().expect("a living object");
@@ -341,6 +359,7 @@ impl<T: Scalar> Graph<T> {
         let (was, is) = (object.state.is_failure(), state.is_failure());
         object.state = state;
         object.changed_at = clock;
+        self.last_change = clock;
         self.failed = self.failed + usize::from(is) - usize::from(was);
         for at in 0..self.object(key).children.len() {
             let child = self.object(key).children[at];
@@ -442,7 +461,9 @@ impl<T: Scalar> Run<'_, T> {
         if object.head != head {
             object.head = head;
             object.head_changed_at = clock;
+            self.graph.last_change = clock;
         }
+        let object = self.graph.object_mut(key);
         let same_row = Arc::ptr_eq(&object.row, row);
         let same = object.args.len() == args.len()
             && object.args.iter().zip(&args).all(|(a, b)| a.same(b));
@@ -455,6 +476,21 @@ impl<T: Scalar> Run<'_, T> {
             self.graph.mark_pending(key);
         }
         Ok(key)
+    }
+
+    /// Gives an object of the model new arguments, in an edit.
+    ///
+    /// # Errors
+    /// A [`Fault`] when it would depend on itself.
+    pub fn set_args(&mut self, key: Key, args: Vec<Value<T>>) -> Result<(), Fault> {
+        let old = &self.graph.object(key).args;
+        if old.len() == args.len() && old.iter().zip(&args).all(|(a, b)| a.same(b)) {
+            return Ok(());
+        }
+        self.check_cycle(key, &args)?;
+        self.graph.connect(key, args);
+        self.graph.mark_pending(key);
+        Ok(())
     }
 
     fn insert(
@@ -541,7 +577,11 @@ impl<T: Scalar> Run<'_, T> {
     /// The reason why it has none.
     pub fn force(&mut self, key: Key) -> Result<Value<T>, Failure> {
         self.graph.force(key);
-        self.graph.object_mut(key).read_by_program = true;
+        // What is asked afterwards, in an edit, is no part of the program.
+        if self.extent == Extent::Whole {
+            self.graph.object_mut(key).read_by_program = true;
+            self.graph.any_read = true;
+        }
         match &self.graph.object(key).state {
             State::Ok(value) => Ok(value.clone()),
             State::Failed(failure) => Err(failure.clone()),
@@ -597,6 +637,7 @@ impl<T: Scalar> Run<'_, T> {
             return Err(Fault::new("duplicate-name", format!("`{name}` exists already"))
                 .help("choose another name"));
         }
+        self.graph.last_change = self.graph.clock;
         let new: Arc<str> = name.into();
         let old = std::mem::replace(&mut self.graph.object_mut(key).name, new.clone());
         self.graph.names.swap_remove(&old);

@@ -117,6 +117,22 @@ impl<T: Scalar> Object<T> {
         }
     }
 
+    /// Its own fault, if its data make no such thing.
+    pub fn fault(&self) -> Option<&Fault> {
+        match &self.state {
+            State::Failed(Failure::Fault(fault)) => Some(fault),
+            _ => None,
+        }
+    }
+
+    /// The failed object that it waits for.
+    pub fn blocked_by(&self) -> Option<Key> {
+        match &self.state {
+            State::Failed(Failure::Blocked { by }) => Some(*by),
+            _ => None,
+        }
+    }
+
     /// Its value, if it has one.
     pub fn value(&self) -> Option<&Value<T>> {
         self.state.value()

@@ -1,0 +1,516 @@
+use crate::env::{Environment, Param};
+use crate::interpreter::{Inputs, Seed};
+use crate::module::Modules;
+use crate::place::NumberPath;
+use crate::program::{self, Program};
+use crate::world::World;
+use indexmap::IndexMap;
+use moldloft_diag::{Diagnostic, Sources};
+use moldloft_mesh::Mesh;
+use moldloft_model::{Applied, Extent, Graph, Panelling};
+use moldloft_num::Dual4;
+use moldloft_registry::{Context, Registry, Row, Scalar};
+use std::collections::HashSet;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// A model as its user sees it: a text, its parameters, the objects it makes, and what is
+/// computed from them. Opening never fails: what is wrong is in [`Document::diagnostics`].
+pub struct Document {
+    pub(crate) registry: Registry,
+    pub(crate) world: Box<dyn World>,
+    pub(crate) sources: Sources,
+    pub(crate) text_diagnostics: Vec<Diagnostic>,
+    pub(crate) run_diagnostics: Vec<Diagnostic>,
+    pub(crate) source: Source,
+    pub(crate) modules: Modules,
+    /// Values of parameters, and of literals of objects, that differ from the text's.
+    pub(crate) overrides: IndexMap<String, f64>,
+    pub(crate) plain: Evaluation<f64>,
+    pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
+    panelled: Option<(u64, Arc<Panelled>)>,
+    applied: Applied,
+    cancelled: Arc<AtomicBool>,
+}
+
+/// Where the objects come from.
+pub(crate) enum Source {
+    /// A program; its text is module 0.
+    Program,
+    /// A model file.
+    ModelFile(Box<crate::model_file::ModelFileSource>),
+    /// Nothing: the file could not be read.
+    None,
+}
+
+/// A graph and what the run that made it left behind.
+pub(crate) struct Evaluation<T: Scalar> {
+    pub graph: Graph<T>,
+    pub env: Environment<T>,
+}
+
+impl<T: Scalar> Default for Evaluation<T> {
+    fn default() -> Self {
+        Self { graph: Graph::new(Context::default()), env: Environment::default() }
+    }
+}
+
+/// The panels of a model and their positions.
+#[derive(Debug)]
+pub struct Panelled {
+    /// Who computes which vertex.
+    pub panelling: Panelling,
+    /// The mesh.
+    pub mesh: Mesh<f64>,
+}
+
+impl Document {
+    /// Opens the model at `path`.
+    pub fn open(registry: Registry, world: Box<dyn World>, path: &str) -> Self {
+        let mut document = Self::empty(registry, world);
+        match document.world.read(path, None) {
+            Ok(read) => match moldloft_syntax::decode(&read.bytes, &read.name) {
+                Ok(text) => document.take_text(&read.name, text.to_string()),
+                Err(diagnostic) => document.text_diagnostics.push(diagnostic),
+            },
+            Err(error) => {
+                let diagnostic = Diagnostic::error("cannot-read", error.message);
+                document.text_diagnostics.push(diagnostic.maybe_help(error.help));
+            }
+        }
+        document
+    }
+
+    /// A model from a text; the ending of `name` tells a model file (`.ms2`) from a program, and
+    /// without one the first word does.
+    pub fn from_text(registry: Registry, world: Box<dyn World>, name: &str, text: &str) -> Self {
+        let mut document = Self::empty(registry, world);
+        document.take_text(name, text.to_string());
+        document
+    }
+
+    fn empty(registry: Registry, world: Box<dyn World>) -> Self {
+        Self {
+            registry,
+            world,
+            sources: Sources::new(),
+            text_diagnostics: Vec::new(),
+            run_diagnostics: Vec::new(),
+            source: Source::None,
+            modules: Modules::default(),
+            overrides: IndexMap::new(),
+            plain: Evaluation::default(),
+            dual: None,
+            panelled: None,
+            applied: Applied { evaluated: 0, objects: 0, failed: 0 },
+            cancelled: Arc::default(),
+        }
+    }
+
+    fn take_text(&mut self, name: &str, text: String) {
+        let file = self.sources.add(name, text.clone());
+        self.parse(name, text, file);
+        self.run();
+    }
+
+    fn parse(&mut self, name: &str, text: String, file: moldloft_diag::FileId) {
+        let lower = name.to_ascii_lowercase();
+        let model_file = lower.ends_with(".ms2")
+            || (!lower.ends_with(".sdl") && text.trim_start().starts_with("MultiSurf"));
+        if model_file {
+            let (source, diagnostics) = crate::model_file::ModelFileSource::parse(text, file);
+            self.text_diagnostics = diagnostics;
+            self.source = Source::ModelFile(Box::new(source));
+        } else {
+            let (program, diagnostics) = moldloft_syntax::sdl::parse(text, file);
+            self.text_diagnostics = diagnostics;
+            let at = (self.modules.len() > 0).then_some(0);
+            self.modules.add(name, program, &self.registry, at);
+            self.source = Source::Program;
+        }
+    }
+
+    /// Replaces the text, as an editor does at every keystroke, and runs it.
+    pub fn set_text(&mut self, text: &str) -> Applied {
+        let file = self.sources.ids().next();
+        let name = file.and_then(|f| self.sources.name(f)).unwrap_or("model.sdl").to_string();
+        let file = match file {
+            Some(file) => {
+                self.sources.replace(file, text);
+                file
+            }
+            None => self.sources.add(name.clone(), text),
+        };
+        // Literals of objects were changed in the old text.
+        self.overrides.retain(|name, _| !name.contains('.'));
+        self.parse(&name, text.to_string(), file);
+        self.run();
+        self.applied
+    }
+
+    /// Runs the model again: only what changed is evaluated.
+    pub fn run(&mut self) -> Applied {
+        self.run_diagnostics.clear();
+        let mut evaluation = std::mem::take(&mut self.plain);
+        let seeds = HashSet::new();
+        self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
+        self.plain = evaluation;
+        self.applied
+    }
+
+    /// Runs the source on a graph. `report` says whether what is found goes to the user: a run
+    /// with derivatives repeats what the plain run said.
+    pub(crate) fn evaluate<T: Scalar>(
+        &mut self,
+        evaluation: &mut Evaluation<T>,
+        seed: Seed<'_, T>,
+        seeded_objects: &HashSet<String>,
+        report: bool,
+    ) -> Applied {
+        let mut found = Vec::new();
+        let inputs = Inputs {
+            overrides: &self.overrides,
+            seed,
+            seeded_objects,
+            cancelled: &self.cancelled,
+        };
+        let applied = match &self.source {
+            Source::Program => {
+                let program = Program {
+                    modules: &mut self.modules,
+                    world: &*self.world,
+                    registry: &self.registry,
+                    sources: &mut self.sources,
+                };
+                program.run(evaluation, inputs, &mut found)
+            }
+            Source::ModelFile(source) => {
+                source.run(&self.registry, evaluation, inputs, &mut found)
+            }
+            Source::None => evaluation.graph.apply(Extent::Whole, |_| ()).1,
+        };
+        if report {
+            found.extend(self.failures(evaluation));
+            self.run_diagnostics = found;
+        }
+        applied
+    }
+
+    /// The diagnostics of failed objects; what they block is told with them, once.
+    fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+        if evaluation.graph.failed() == 0 {
+            return Vec::new();
+        }
+        let mut blocked: IndexMap<_, Vec<String>> = IndexMap::new();
+        for object in evaluation.graph.objects() {
+            if let Some(by) = object.blocked_by() {
+                blocked.entry(by).or_default().push(object.name.to_string());
+            }
+        }
+        let mut diagnostics = Vec::new();
+        for object in evaluation.graph.objects() {
+            let Some(fault) = object.fault() else { continue };
+            let mut diagnostic = crate::place::unplaced(fault);
+            diagnostic.message = format!("`{}`: {}", object.name, diagnostic.message);
+            let span = match &self.source {
+                Source::Program => program::fault_span(&self.modules, &evaluation.env, object, fault),
+                Source::ModelFile(source) => source.fault_span(object, fault),
+                Source::None => None,
+            };
+            diagnostic = diagnostic.object(&*object.name);
+            if let Some(span) = span {
+                diagnostic = diagnostic.at(span);
+            }
+            if let Some(names) = blocked.get(&object.key) {
+                let shown = names.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
+                let more = names.len().saturating_sub(5);
+                let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+                diagnostic = diagnostic.note(format!("blocked by `{}`: {shown}{more}", object.name));
+            }
+            diagnostics.push(diagnostic);
+        }
+        diagnostics
+    }
+
+    /// All that is wrong or remarkable, in the order of the text's faults, then the run's.
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
+        self.text_diagnostics.iter().chain(&self.run_diagnostics).cloned().collect()
+    }
+
+    /// True when there is an error.
+    pub fn has_errors(&self) -> bool {
+        self.text_diagnostics.iter().chain(&self.run_diagnostics).any(|d| d.is_error())
+    }
+
+    /// The texts that diagnostics point into.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// The design parameters in order of declaration.
+    pub fn params(&self) -> &[Param] {
+        &self.plain.env.params
+    }
+
+    /// The objects.
+    pub fn graph(&self) -> &Graph<f64> {
+        &self.plain.graph
+    }
+
+    /// What the last change did.
+    pub fn applied(&self) -> Applied {
+        self.applied
+    }
+
+    /// The rows that the model can call.
+    pub fn registry(&self) -> &Registry {
+        &self.registry
+    }
+
+    /// Adds or replaces a row, such as a user's function, and runs again.
+    pub fn add_row(&mut self, row: Row) -> Applied {
+        self.registry.add(row);
+        self.modules.relink(&self.registry);
+        self.run()
+    }
+
+    /// What the program printed.
+    pub fn printed(&self) -> &[String] {
+        &self.plain.env.printed
+    }
+
+    /// Setting this stops a run that is under way.
+    pub fn cancel_handle(&self) -> Arc<AtomicBool> {
+        self.cancelled.clone()
+    }
+
+    /// The text, with direct edits written into it.
+    pub fn text(&self) -> String {
+        match &self.source {
+            Source::Program => self.modules.get(0).program.text_with_edits(),
+            Source::ModelFile(source) => source.text(),
+            Source::None => String::new(),
+        }
+    }
+
+    /// The planes in which the model is mirrored, as "y" or "xy"; empty for none.
+    pub fn symmetry(&self) -> String {
+        match &self.source {
+            Source::ModelFile(source) => source.symmetry(),
+            _ => crate::header::symmetry(&self.plain.graph),
+        }
+    }
+
+    /// Sets parameters and literals of objects (`P21.y`), all or none, and evaluates what they
+    /// reach.
+    ///
+    /// # Errors
+    /// What is wrong with the assignments; the model is then as before.
+    pub fn set(&mut self, assignments: &[(String, f64)]) -> Result<Applied, Vec<Diagnostic>> {
+        let before = self.overrides.clone();
+        let mut edits = Vec::new();
+        let mut errors = Vec::new();
+        let mut rerun = false;
+        for (name, value) in assignments {
+            if self.params().iter().any(|p| p.name == *name) {
+                if let Err(diagnostic) = self.check_param(name, *value) {
+                    errors.push(diagnostic);
+                }
+                self.overrides.insert(name.clone(), *value);
+                rerun = true;
+            } else {
+                match self.literal(name, *value) {
+                    Ok(edit) => edits.push(edit),
+                    Err(diagnostic) => errors.push(diagnostic),
+                }
+            }
+        }
+        if !errors.is_empty() {
+            self.overrides = before;
+            return Err(errors);
+        }
+        for edit in &edits {
+            rerun |= self.must_rerun(edit);
+        }
+        for edit in &edits {
+            self.write_literal(edit).map_err(|d| vec![d])?;
+        }
+        if rerun {
+            return Ok(self.run());
+        }
+        self.edit(&edits);
+        Ok(self.applied)
+    }
+
+    fn check_param(&self, name: &str, value: f64) -> Result<(), Diagnostic> {
+        let Some(param) = self.params().iter().find(|p| p.name == name) else { return Ok(()) };
+        let wrong = |expected: String| {
+            Diagnostic::error("out-of-range", format!("`{name}` = {value} is out of its range"))
+                .at(param.span)
+                .expected(expected)
+                .found(value.to_string())
+        };
+        if !value.is_finite() {
+            return Err(wrong("a finite number".into()));
+        }
+        match param.range {
+            Some((low, high)) if !(low..=high).contains(&value) => {
+                Err(wrong(format!("a number from {low} to {high}")))
+            }
+            _ if param.is_int && value.fract() != 0.0 => Err(wrong("a whole number".into())),
+            _ => Ok(()),
+        }
+    }
+
+    /// The literal that `name` (`P21.y`) means.
+    pub(crate) fn literal(&self, name: &str, value: f64) -> Result<LiteralEdit, Diagnostic> {
+        if !value.is_finite() {
+            return Err(Diagnostic::error("not-finite", format!("`{name}` cannot be {value}"))
+                .expected("a finite number")
+                .found(value.to_string()));
+        }
+        let graph = &self.plain.graph;
+        // The object's own name may contain dots: the longest that is one wins.
+        let split = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
+        let found = split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)));
+        let Some((key, path)) = found else {
+            let params = self.params().iter().map(|p| p.name.as_str());
+            let objects = graph.objects().map(|o| o.name.as_ref());
+            let stem = name.split('.').next().unwrap_or(name);
+            return Err(Diagnostic::error("unknown-name", format!("there is nothing called `{name}` to set"))
+                .expected("a parameter, or a number of an object such as P21.y")
+                .suggest(stem, params.chain(objects)));
+        };
+        let object = graph.get(key).expect("found above");
+        let fields = || object.row.fields.iter().map(|f| f.name).collect::<Vec<_>>().join(", ");
+        let Some(path) = NumberPath::parse(&object.row, path) else {
+            return Err(Diagnostic::error("unknown-member", format!("{} `{}` has no number `{}`", object.row.name, object.name, &path[1..]))
+                .expected(fields()));
+        };
+        let mut args = object.args.clone();
+        if path.change(&mut args, |_| value).is_none() {
+            return Err(Diagnostic::error("not-a-number", format!("`{name}` is not a number"))
+                .help("only numbers can be set; edit the text to change what an object is built on"));
+        }
+        let place = match &self.source {
+            Source::Program => program::literal(&self.modules, &self.plain.env, object, &path)
+                .map(LiteralPlace::Program),
+            Source::ModelFile(source) => {
+                source.literal(object, &path).map(LiteralPlace::ModelFile)
+            }
+            Source::None => unreachable!("there are objects"),
+        };
+        let place = place.map_err(|why| self.not_literal(name, why))?;
+        Ok(LiteralEdit { key, path, place, value })
+    }
+
+    fn not_literal(&self, name: &str, why: program::NotLiteral) -> Diagnostic {
+        match why {
+            program::NotLiteral::Expression { span, names } => {
+                let params: Vec<&str> = self
+                    .params()
+                    .iter()
+                    .map(|p| p.name.as_str())
+                    .filter(|p| names.iter().any(|n| n == p))
+                    .collect();
+                let diagnostic = Diagnostic::error(
+                    "not-a-literal",
+                    format!("`{name}` is computed and cannot be set by itself"),
+                )
+                .at(span)
+                .expected("a number written as such");
+                if params.is_empty() {
+                    diagnostic.help("edit the expression")
+                } else {
+                    diagnostic.help(format!("set what it is computed from: {}", params.join(", ")))
+                }
+            }
+            program::NotLiteral::Shared { span } => Diagnostic::error(
+                "not-a-literal",
+                format!("`{name}` shares its number with other objects made by the same statement"),
+            )
+            .at(span)
+            .help("edit the text, or make the number a parameter"),
+            program::NotLiteral::Default => Diagnostic::error(
+                "not-a-literal",
+                format!("`{name}` is not written in the text: it is a default"),
+            )
+            .help("write it in the text first"),
+        }
+    }
+
+    fn must_rerun(&self, edit: &LiteralEdit) -> bool {
+        let graph = &self.plain.graph;
+        let read = |key| graph.get(key).is_some_and(|o| o.read_by_program);
+        read(edit.key) || (graph.any_read() && graph.dependents(edit.key).into_iter().any(read))
+    }
+
+    fn write_literal(&mut self, edit: &LiteralEdit) -> Result<(), Diagnostic> {
+        match (&edit.place, &mut self.source) {
+            (LiteralPlace::Program((module, literal)), _) => {
+                self.modules.get_mut(*module).program.set_literal(*literal, edit.value)
+            }
+            (LiteralPlace::ModelFile(number), Source::ModelFile(source)) => {
+                source.set(*number, edit.value)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The direct edit: the same change as a run with the new literals would make.
+    fn edit(&mut self, edits: &[LiteralEdit]) {
+        let failed = self.plain.graph.failed();
+        let ((), applied) = self.plain.graph.apply(Extent::Edit, |run| {
+            for edit in edits {
+                let Some(object) = run.graph().get(edit.key) else { continue };
+                let mut args = object.args.clone();
+                if edit.path.change(&mut args, |_| edit.value).is_some() {
+                    // The parents stay the same, so no cycle can arise.
+                    let _ = run.set_args(edit.key, args);
+                }
+            }
+        });
+        self.applied = applied;
+        if failed > 0 || applied.failed > 0 {
+            let evaluation = std::mem::take(&mut self.plain);
+            self.run_diagnostics.retain(|d| d.object.is_none());
+            let failures = self.failures(&evaluation);
+            self.run_diagnostics.extend(failures);
+            self.plain = evaluation;
+        }
+    }
+
+    /// The panels of all shown surfaces, remembered until something changes.
+    ///
+    /// # Errors
+    /// When there would be too many panels.
+    pub fn panelled(&mut self) -> Result<Arc<Panelled>, Diagnostic> {
+        let clock = self.plain.graph.last_change();
+        if let Some((at, panelled)) = &self.panelled
+            && *at == clock
+        {
+            return Ok(panelled.clone());
+        }
+        let panelling = Panelling::new(&self.plain.graph).map_err(|f| crate::place::unplaced(&f))?;
+        let mesh = panelling.mesh(&self.plain.graph).ok_or_else(|| {
+            Diagnostic::error("no-mesh", "the model has no panels").help("show a surface")
+        })?;
+        let panelled = Arc::new(Panelled { panelling, mesh });
+        self.panelled = Some((clock, panelled.clone()));
+        Ok(panelled)
+    }
+}
+
+/// A change of one number in the text.
+pub(crate) struct LiteralEdit {
+    pub key: moldloft_num::trace::Key,
+    pub path: NumberPath,
+    pub place: LiteralPlace,
+    pub value: f64,
+}
+
+/// Where a number stands.
+pub(crate) enum LiteralPlace {
+    Program((usize, moldloft_syntax::sdl::LiteralId)),
+    ModelFile(moldloft_syntax::model_file::NumberId),
+}

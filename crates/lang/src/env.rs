@@ -1,0 +1,114 @@
+use crate::module::{Name, RoutineAt};
+use indexmap::IndexMap;
+use moldloft_diag::Span;
+use moldloft_num::trace::Key;
+use moldloft_registry::{Scalar, Value};
+use moldloft_syntax::sdl::{StmtId, Type};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What a name means.
+#[derive(Clone, Debug)]
+pub(crate) enum Binding<T: Scalar> {
+    /// A variable of a type; `fixed` when its dimensions were declared.
+    Variable { ty: Type, value: Value<T>, fixed: bool },
+    /// A design parameter, by its number.
+    Param(usize),
+    /// An object.
+    Object(Key),
+    /// Something made in loops: in the turn `turn` it means `now`, afterwards all of them.
+    Turn { now: Key, turn: u64, family: Arc<str> },
+    /// A named call of a subroutine: the family of the objects in it.
+    Instance(Arc<str>),
+    /// Its declaration failed and was reported; what uses it stays silent.
+    Poisoned,
+}
+
+/// A binding and where it was made.
+#[derive(Clone, Debug)]
+pub(crate) struct Bound<T: Scalar> {
+    pub span: Span,
+    pub what: Binding<T>,
+}
+
+/// The variables of a routine's call, or of the file level of a load.
+#[derive(Debug)]
+pub(crate) struct Frame<T: Scalar> {
+    pub locals: Vec<(Name, Bound<T>)>,
+    /// True at file level, where names are global.
+    pub global: bool,
+    /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
+    pub prefix: Arc<str>,
+    pub loops: Vec<Turn>,
+}
+
+/// A turn of a loop under way.
+#[derive(Clone, Debug)]
+pub(crate) struct Turn {
+    /// The loop variable's value as it stands in names; `None` in a `while`.
+    pub label: Option<String>,
+    /// Unique among the turns of a run.
+    pub id: u64,
+}
+
+impl<T: Scalar> Frame<T> {
+    pub fn new(global: bool, prefix: Arc<str>) -> Self {
+        Self { locals: Vec::new(), global, prefix, loops: Vec::new() }
+    }
+}
+
+/// A design parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Param {
+    /// Its name.
+    pub name: String,
+    /// Its value in this run.
+    pub value: f64,
+    /// The value in the text.
+    pub default: f64,
+    /// Its range, when it has one.
+    pub range: Option<(f64, f64)>,
+    /// True when it takes whole numbers only.
+    pub is_int: bool,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// Where an object was declared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Origin {
+    pub module: u32,
+    pub stmt: StmtId,
+    /// True when the statement may be executed more than once: in a loop or a subroutine.
+    pub repeated: bool,
+}
+
+/// All that a run leaves behind: what expressions may refer to afterwards.
+#[derive(Debug)]
+pub(crate) struct Environment<T: Scalar> {
+    pub globals: Vec<Option<Bound<T>>>,
+    pub routines: HashMap<Name, RoutineAt>,
+    pub params: Vec<Param>,
+    pub param_values: Vec<T>,
+    /// Objects made in loops and subroutines, by the name without its last index.
+    pub families: IndexMap<Arc<str>, Vec<Key>>,
+    pub origins: Vec<Origin>,
+    pub printed: Vec<String>,
+    /// True when the run ended early, so that objects may be missing.
+    pub stopped: bool,
+}
+
+impl<T: Scalar> Default for Environment<T> {
+    fn default() -> Self {
+        Self {
+            globals: Vec::new(),
+            routines: HashMap::new(),
+            params: Vec::new(),
+            param_values: Vec::new(),
+            families: IndexMap::new(),
+            origins: Vec::new(),
+            printed: Vec::new(),
+            stopped: false,
+        }
+    }
+}

@@ -1,0 +1,576 @@
+//! Runs a program: expressions.
+
+use crate::env::Binding;
+use crate::interpreter::{Interpreter, silent};
+use crate::module::Module;
+use crate::ops;
+use crate::place;
+use crate::variables::{self, Place, Selection};
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_model::Failure;
+use moldloft_num::{Order, Real, Vec3};
+use moldloft_registry::{
+    Array, Class, CurveRef, FieldRef, Given, Scalar, SurfaceRef, Value, arrange, many,
+};
+use moldloft_syntax::number;
+use moldloft_syntax::sdl::{
+    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, List, Step, Subscript, Symbol, UnaryOp,
+};
+use std::sync::Arc;
+
+type Evaluated<T> = Result<Value<T>, Diagnostic>;
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// The value of an expression; an object comes as [`Value::Object`], unread.
+    pub fn expr(&mut self, m: &Module, id: ExprId) -> Evaluated<T> {
+        let expr = m.program[id];
+        match expr.kind {
+            ExprKind::Number(literal) => Ok(Value::Number(T::from(m.program[literal].value))),
+            ExprKind::Name(symbol) => self.name(m, symbol, expr.span),
+            _ => {
+                if !self.deeper(expr.span) {
+                    return Err(silent());
+                }
+                let value = self.compound(m, id, expr.kind, expr.span);
+                self.depth -= 1;
+                value.map_err(|d| d.or_at(expr.span))
+            }
+        }
+    }
+
+    fn compound(&mut self, m: &Module, id: ExprId, kind: ExprKind, span: Span) -> Evaluated<T> {
+        match kind {
+            ExprKind::Number(_) | ExprKind::Name(_) => self.expr(m, id),
+            ExprKind::Text(text) => Ok(Value::text(&m.program[text])),
+            ExprKind::Paren(inner) => self.expr(m, inner),
+            ExprKind::List(items) => {
+                let mut values = Vec::with_capacity(items.len());
+                for &item in &m.program[items] {
+                    values.push(self.expr(m, item)?);
+                }
+                ops::braces(values)
+            }
+            ExprKind::Magnitude(inner) => ops::magnitude(&self.operand(m, inner)?),
+            ExprKind::Unary { op, operand } => {
+                let value = self.operand(m, operand)?;
+                unary(op, &value)
+            }
+            ExprKind::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
+                let first = self.truth(m, left)?;
+                let decided = if op == BinaryOp::And { !first } else { first };
+                let holds = if decided { first } else { self.truth(m, right)? };
+                Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
+            }
+            ExprKind::Binary { op, left, right } => {
+                let (a, b) = (self.operand(m, left)?, self.operand(m, right)?);
+                ops::binary(op, &a, &b)
+            }
+            ExprKind::Chain(items) => self.chain(m, items),
+            ExprKind::Index { base, subs } => self.index(m, id, base, subs),
+            ExprKind::Member { base, name, or_dot } => self.member(m, id, base, name, or_dot),
+            ExprKind::Call { callee, args } => self.call(m, callee, args, span),
+            ExprKind::Error => Err(silent()),
+        }
+    }
+
+    /// The value of an expression, objects read.
+    pub fn operand(&mut self, m: &Module, id: ExprId) -> Evaluated<T> {
+        let value = self.expr(m, id)?;
+        self.read(value, m.program[id].span)
+    }
+
+    pub fn number(&mut self, m: &Module, id: ExprId) -> Result<T, Diagnostic> {
+        match self.operand(m, id)? {
+            Value::Number(x) => Ok(x),
+            other => Err(Diagnostic::error("wrong-type", "expected a number")
+                .at(m.program[id].span)
+                .expected("a number")
+                .found(other.class().a())),
+        }
+    }
+
+    fn truth(&mut self, m: &Module, id: ExprId) -> Result<bool, Diagnostic> {
+        Ok(self.number(m, id)?.re() != 0.0)
+    }
+
+    /// The value with every object in it replaced by its own value, evaluated now.
+    pub fn read(&mut self, value: Value<T>, span: Span) -> Evaluated<T> {
+        match value {
+            Value::Object(key) => self.run.force(key).map_err(|failure| {
+                let object = self.run.graph().get(key);
+                let name = object.map_or("", |o| &*o.name);
+                let cause = match failure {
+                    Failure::Blocked { by } => {
+                        self.run.graph().get(by).map_or(String::new(), |o| o.name.to_string())
+                    }
+                    Failure::Fault(_) => name.to_string(),
+                };
+                Diagnostic::error("blocked", format!("`{name}` has no value"))
+                    .at(span)
+                    .found(format!("blocked by `{cause}`, which failed"))
+            }),
+            Value::List(items) if items.iter().any(|v| matches!(v, Value::Object(_) | Value::List(_))) => {
+                let mut read = Vec::with_capacity(items.len());
+                for item in items.iter() {
+                    read.push(self.read(item.clone(), span)?);
+                }
+                Ok(Value::list(read))
+            }
+            other => Ok(other),
+        }
+    }
+
+    fn name(&mut self, m: &Module, symbol: Symbol, span: Span) -> Evaluated<T> {
+        let name = m.names[symbol.0 as usize];
+        let Some(bound) = self.lookup(name) else {
+            return Err(self.unknown_name(m, symbol, span));
+        };
+        match &bound.what {
+            Binding::Object(key) => Ok(Value::Object(*key)),
+            Binding::Variable { value: Value::Unset, .. } => {
+                let text = m.program.name(symbol);
+                Err(Diagnostic::error("no-value", format!("`{text}` has no value yet"))
+                    .at(span)
+                    .note_at(bound.span, "declared here"))
+            }
+            Binding::Variable { value, .. } => Ok(value.clone()),
+            Binding::Param(number) => Ok(Value::Number(self.env.param_values[*number])),
+            Binding::Turn { now, turn, family } => {
+                let frame = self.frames.last().expect("there is always a frame");
+                if frame.loops.iter().any(|t| t.id == *turn) {
+                    return Ok(Value::Object(*now));
+                }
+                Ok(self.family(family))
+            }
+            Binding::Instance(family) => {
+                let family = family.clone();
+                Err(Diagnostic::error("not-a-value", format!("`{family}` is a group of objects"))
+                    .at(span)
+                    .help(format!("name one of its objects, as in {family}.name")))
+            }
+            Binding::Poisoned => Err(silent()),
+        }
+    }
+
+    fn family(&self, family: &str) -> Value<T> {
+        let keys = self.env.families.get(family);
+        Value::list(keys.into_iter().flatten().map(|&key| Value::Object(key)))
+    }
+
+    fn unknown_name(&self, m: &Module, symbol: Symbol, span: Span) -> Diagnostic {
+        let text = m.program.name(symbol);
+        let diagnostic = Diagnostic::error("unknown-name", format!("there is no `{text}` here")).at(span);
+        match crate::later::declared_later(m, symbol, span) {
+            Some(later) => later.explain(m, diagnostic),
+            None => match self.nearest_name(text) {
+                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+                None => diagnostic,
+            },
+        }
+    }
+
+    fn chain(&mut self, m: &Module, items: List<ChainItem>) -> Evaluated<T> {
+        let mut values = std::collections::HashMap::new();
+        for item in &m.program[items] {
+            if let ChainItem::Operand(expr) = item {
+                values.insert(*expr, self.operand(m, *expr)?);
+            }
+        }
+        let sets = self.has_set(&m.program[items], &values);
+        let grouping = if sets { Grouping::Sets } else { Grouping::Numbers };
+        let mut stack: Vec<Value<T>> = Vec::new();
+        for step in m.program.grouped(items, grouping) {
+            let value = match step {
+                Step::Push(expr) => values[&expr].clone(),
+                Step::Unary(op, span) => {
+                    let operand = stack.pop().ok_or_else(silent)?;
+                    unary(op, &operand).map_err(|d| d.or_at(span))?
+                }
+                Step::Binary(op, span) => {
+                    let right = stack.pop().ok_or_else(silent)?;
+                    let left = stack.pop().ok_or_else(silent)?;
+                    ops::binary(op, &left, &right).map_err(|d| d.or_at(span))?
+                }
+            };
+            stack.push(value);
+        }
+        stack.pop().ok_or_else(silent)
+    }
+
+    /// The full name of an object that an expression such as `fore[2].leg[3]` spells, when it
+    /// begins with something that stands for several objects.
+    fn spelled(&mut self, m: &Module, id: ExprId) -> Result<Option<String>, Diagnostic> {
+        Ok(match m.program[id].kind {
+            ExprKind::Paren(inner) => self.spelled(m, inner)?,
+            ExprKind::Name(symbol) => match self.lookup(m.names[symbol.0 as usize]) {
+                Some(bound) => match &bound.what {
+                    Binding::Turn { family, .. } | Binding::Instance(family) => {
+                        Some(family.to_string())
+                    }
+                    _ => None,
+                },
+                None => None,
+            },
+            ExprKind::Member { base, name, .. } => {
+                self.spelled(m, base)?.map(|base| format!("{base}.{}", m.program.name(name)))
+            }
+            ExprKind::Index { base, subs } => {
+                let Some(base) = self.spelled(m, base)? else { return Ok(None) };
+                let mut labels = Vec::new();
+                for sub in &m.program[subs] {
+                    let Subscript::At(expr) = *sub else { return Ok(None) };
+                    labels.push(match self.operand(m, expr)? {
+                        Value::Number(x) => number::plain(x.re()),
+                        Value::Text(text) => text.to_string(),
+                        _ => return Ok(None),
+                    });
+                }
+                Some(format!("{base}[{}]", labels.join(",")))
+            }
+            _ => None,
+        })
+    }
+
+    /// What a spelled name means: an object or all objects of a family.
+    fn spelled_value(&self, text: &str) -> Option<Value<T>> {
+        if let Some(key) = self.run.find(text) {
+            return Some(Value::Object(key));
+        }
+        self.env.families.contains_key(text).then(|| self.family(text))
+    }
+
+    fn index(
+        &mut self,
+        m: &Module,
+        id: ExprId,
+        base: ExprId,
+        subs: List<Subscript>,
+    ) -> Evaluated<T> {
+        if let Some(text) = self.spelled(m, id)? {
+            if let Some(value) = self.spelled_value(&text) {
+                return Ok(value);
+            }
+            return Err(self.no_such_object(&text));
+        }
+        let value = self.expr(m, base)?;
+        let value = match value {
+            list @ Value::List(_) => list,
+            other => self.read(other, m.program[base].span)?,
+        };
+        let section = self.section(m, &value, subs)?;
+        variables::part(&value, &section)
+    }
+
+    fn no_such_object(&self, text: &str) -> Diagnostic {
+        Diagnostic::error("unknown-name", format!("there is no object `{text}`"))
+            .maybe_help(self.run.graph().nearest_name(text).map(|n| format!("did you mean `{n}`?")))
+    }
+
+    /// The subscripts as positions, checked against the extents.
+    pub fn section(
+        &mut self,
+        m: &Module,
+        value: &Value<T>,
+        subs: List<Subscript>,
+    ) -> Result<Vec<Selection>, Diagnostic> {
+        let Some(extents) = variables::extents(value) else {
+            let class = value.class().a();
+            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
+                .expected("a row, grid or list before [")
+                .found(class));
+        };
+        if extents.len() != subs.len() {
+            return Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
+                .expected(format!("{} subscripts", extents.len()))
+                .found(format!("{} subscripts", subs.len())));
+        }
+        let mut section = Vec::new();
+        for (sub, &extent) in m.program[subs].iter().zip(&extents) {
+            section.push(self.selection(m, *sub, extent)?);
+        }
+        Ok(section)
+    }
+
+    fn selection(
+        &mut self,
+        m: &Module,
+        sub: Subscript,
+        extent: usize,
+    ) -> Result<Selection, Diagnostic> {
+        let mut bound = |this: &mut Self, expr: Option<ExprId>, default: f64| match expr {
+            Some(expr) => this.number(m, expr).map(|x| (x.re(), m.program[expr].span)),
+            None => Ok((default, Span::UNKNOWN)),
+        };
+        let inside = |(x, span): (f64, Span)| {
+            if x.fract() == 0.0 && x >= 1.0 && x <= extent as f64 {
+                return Ok(x as i64 - 1);
+            }
+            Err(Diagnostic::error("outside", format!("index {x} is outside the array"))
+                .at(span)
+                .expected(format!("a whole number from 1 to {extent}"))
+                .found(x.to_string()))
+        };
+        let (from, to, step) = match sub {
+            Subscript::Whole => {
+                return Ok(Selection { positions: (0..extent).collect(), keeps_dimension: true });
+            }
+            Subscript::At(expr) => {
+                let at = inside(bound(self, Some(expr), 1.0)?)?;
+                return Ok(Selection { positions: vec![at as usize], keeps_dimension: false });
+            }
+            Subscript::Range { from, to, step } => {
+                let from = bound(self, from, 1.0)?;
+                let to = bound(self, to, extent as f64)?;
+                (inside(from)?, inside(to)?, bound(self, step, 1.0)?.0)
+            }
+        };
+        if step.fract() != 0.0 || step == 0.0 || (to - from) as f64 * step < 0.0 {
+            return Err(Diagnostic::error("empty-range", "this range selects nothing")
+                .expected("lo:hi with lo <= hi, or a negative step")
+                .found(format!("{}:{}:{step}", from + 1, to + 1)));
+        }
+        let count = ((to - from) as f64 / step).floor() as i64;
+        let positions = (0..=count).map(|k| (from + k * step as i64) as usize).collect();
+        Ok(Selection { positions, keeps_dimension: true })
+    }
+
+    /// The variable, section and component that an assignment's target names.
+    pub fn place(&mut self, m: &Module, id: ExprId) -> Result<Place, Diagnostic> {
+        let span = m.program[id].span;
+        match m.program[id].kind {
+            ExprKind::Paren(inner) => self.place(m, inner),
+            ExprKind::Name(symbol) => {
+                let name = m.names[symbol.0 as usize];
+                if self.lookup(name).is_none() {
+                    return Err(self.unknown_name(m, symbol, span));
+                }
+                Ok(Place { name, section: None, component: None })
+            }
+            ExprKind::Member { base, name, .. } => {
+                let place = self.place(m, base)?;
+                let component = ["x", "y", "z"].iter().position(|c| *c == m.program.name(name));
+                match component {
+                    Some(c) if place.component.is_none() => {
+                        Ok(Place { component: Some(c), ..place })
+                    }
+                    _ => Err(Diagnostic::error("not-assignable", "this cannot be assigned to")
+                        .at(span)
+                        .expected("a variable, with subscripts or .x .y .z")),
+                }
+            }
+            ExprKind::Index { base, subs } => {
+                let place = self.place(m, base)?;
+                if place.section.is_some() || place.component.is_some() {
+                    return Err(Diagnostic::error("not-assignable", "subscripts come once, before the component")
+                        .at(span));
+                }
+                let value = self.operand(m, base)?;
+                let section = self.section(m, &value, subs).map_err(|d| d.or_at(span))?;
+                Ok(Place { section: Some(section), ..place })
+            }
+            _ => Err(Diagnostic::error("not-assignable", "this cannot be assigned to")
+                .at(span)
+                .expected("a variable, with subscripts or .x .y .z")),
+        }
+    }
+
+    fn member(
+        &mut self,
+        m: &Module,
+        id: ExprId,
+        base: ExprId,
+        name: Symbol,
+        or_dot: bool,
+    ) -> Evaluated<T> {
+        if let Some(text) = self.spelled(m, id)? {
+            if let Some(value) = self.spelled_value(&text) {
+                return Ok(value);
+            }
+            // `fore.leg.x`: the object is spelled by the base, the member is its own.
+            let base_text = self.spelled(m, base)?.unwrap_or_default();
+            if self.spelled_value(&base_text).is_none() {
+                return Err(self.no_such_object(&text));
+            }
+        }
+        let word = m.program.name(name).to_string();
+        let value = self.expr(m, base)?;
+        let object = match value {
+            Value::Object(key) => Some(key),
+            _ => None,
+        };
+        let value = self.read(value, m.program[base].span)?;
+        if let Some(member) = crate::member::of_value(&value, &word) {
+            return member;
+        }
+        if let Some(key) = object
+            && let Some(member) = self.member_of_object(key, &word)
+        {
+            return member;
+        }
+        if or_dot && self.lookup(m.names[name.0 as usize]).is_some() {
+            let span = m.program.member_span(id);
+            let right = self.name(m, name, span)?;
+            let right = self.read(right, span)?;
+            return ops::binary(BinaryOp::Dot, &value, &right);
+        }
+        let known = crate::member::names(&value);
+        Err(Diagnostic::error("unknown-member", format!("{} has no `{word}`", value.class().a()))
+            .at(m.program.member_span(id))
+            .expected(known.join(", "))
+            .suggest(&word, known.iter().copied()))
+    }
+
+    fn member_of_object(
+        &mut self,
+        key: moldloft_num::trace::Key,
+        word: &str,
+    ) -> Option<Evaluated<T>> {
+        let object = self.run.graph().get(key)?;
+        if let Some(number) = crate::member::of_patch(object, word) {
+            return Some(Ok(Value::Number(number)));
+        }
+        let at = object.row.field(word)?;
+        Some(Ok(object.args[at].clone()))
+    }
+
+    fn call(&mut self, m: &Module, callee: ExprId, args: List<Arg>, span: Span) -> Evaluated<T> {
+        let Some(symbol) = m.program.as_name(callee) else {
+            let value = self.operand(m, callee)?;
+            return self.call_value(m, value, args, m.program[callee].span);
+        };
+        let name = m.names[symbol.0 as usize];
+        if self.lookup(name).is_some() {
+            let value = self.name(m, symbol, m.program[callee].span)?;
+            let value = self.read(value, m.program[callee].span)?;
+            return self.call_value(m, value, args, m.program[callee].span);
+        }
+        if let Some(&routine) = self.env.routines.get(&name) {
+            let value = self.call_routine(m, routine, args, None, span)?;
+            return value.ok_or_else(|| {
+                let text = m.program.name(symbol);
+                Diagnostic::error("no-value", format!("`{text}` returns no value"))
+                    .help("only a function does: declare it as `function float f(...)`")
+            });
+        }
+        let Some(row) = m.rows[symbol.0 as usize].clone() else {
+            return Err(self.unknown_function(m, symbol).at(m.program[callee].span));
+        };
+        let mut given = Given { positional: Vec::with_capacity(args.len()), named: Vec::new() };
+        for arg in &m.program[args] {
+            let value = self.operand(m, arg.value)?;
+            match arg.name {
+                None => given.positional.push(value),
+                Some(ident) => given.named.push((m.program.name(ident.symbol), value)),
+            }
+        }
+        let positional = given.positional.len();
+        let (filled, _) = arrange(&row, given, |_| Class::Any)
+            .map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
+        let value = self
+            .run
+            .call(&row, filled)
+            .map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
+        if !value.is_finite() {
+            return Err(Diagnostic::error("not-finite", format!("the result of {} is not a finite number", row.name))
+                .at(span)
+                .expected("arguments inside the function's domain"));
+        }
+        Ok(value)
+    }
+
+    fn unknown_function(&self, m: &Module, symbol: Symbol) -> Diagnostic {
+        let text = m.program.name(symbol);
+        let diagnostic = Diagnostic::error("unknown-name", format!("there is no function `{text}`"));
+        match self.nearest_name(text) {
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None => diagnostic,
+        }
+    }
+
+    /// A shape called with parameters: its point or points there.
+    fn call_value(&mut self, m: &Module, value: Value<T>, args: List<Arg>, span: Span) -> Evaluated<T> {
+        let mut given = Vec::new();
+        for arg in &m.program[args] {
+            given.push(self.operand(m, arg.value)?);
+        }
+        shape_at(&value, &given).map_err(|d| d.or_at(span))
+    }
+}
+
+fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Evaluated<T> {
+    match op {
+        UnaryOp::Plus => Ok(value.clone()),
+        UnaryOp::Minus => ops::negated(value),
+        UnaryOp::Not => match value {
+            Value::Number(x) => Ok(Value::Number(T::from(f64::from(u8::from(x.re() == 0.0))))),
+            other => Err(Diagnostic::error("wrong-operand", "`not` takes a condition")
+                .expected("a comparison or a number")
+                .found(other.class().a())),
+        },
+    }
+}
+
+/// A curve at t, a surface at (u, v), a field at a point; rows of parameters give rows.
+pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evaluated<T> {
+    let parameters = |arg: &Value<T>| -> Result<Option<Vec<T>>, Diagnostic> {
+        match arg {
+            Value::Number(_) => Ok(None),
+            other => many(other).map(Some).map_err(|f| place::unplaced(&f)),
+        }
+    };
+    let one = |arg: &Value<T>| match arg {
+        Value::Number(x) => *x,
+        _ => T::zero(),
+    };
+    let count = |expected: &str| {
+        Diagnostic::error("wrong-count", format!("expected {expected}"))
+            .expected(expected.to_string())
+            .found(format!("{} arguments", args.len()))
+    };
+    let row = |points: Vec<Vec3<T>>| Value::Vectors(Arc::new(Array::row(points)));
+    match (value, args) {
+        (Value::Curve(curve), [t]) => {
+            let at = |curve: &CurveRef<T>, t: T| curve.jet(t, Order::Zero)[0];
+            Ok(match parameters(t)? {
+                None => Value::Vector(at(curve, one(t))),
+                Some(ts) => row(ts.into_iter().map(|t| at(curve, t)).collect()),
+            })
+        }
+        (Value::Curve(_), _) => Err(count("one parameter t, as in c(0.5)")),
+        (Value::Surface(surface), [u, v]) => {
+            let at = |s: &SurfaceRef<T>, u: T, v: T| s.jet(u, v, Order::Zero).p;
+            let (us, vs) = (parameters(u)?, parameters(v)?);
+            let n = match (&us, &vs) {
+                (None, None) => return Ok(Value::Vector(at(surface, one(u), one(v)))),
+                (Some(us), Some(vs)) if us.len() != vs.len() => {
+                    return Err(Diagnostic::error("shapes-differ", "u and v differ in length")
+                        .found(format!("{} and {}", us.len(), vs.len())));
+                }
+                (Some(us), _) => us.len(),
+                (None, Some(vs)) => vs.len(),
+            };
+            let pick = |all: &Option<Vec<T>>, single: &Value<T>, k: usize| {
+                all.as_ref().map_or_else(|| one(single), |all| all[k])
+            };
+            Ok(row((0..n).map(|k| at(surface, pick(&us, u, k), pick(&vs, v, k))).collect()))
+        }
+        (Value::Surface(_), _) => Err(count("two parameters u and v, as in s(0.5, 0.25)")),
+        (Value::Field(field), [p]) => {
+            let value = |f: &FieldRef<T>, p: Vec3<T>| f.value(p);
+            match p {
+                Value::Vector(p) => Ok(Value::Number(value(field, *p))),
+                Value::Point(p) => Ok(Value::Number(value(field, p.xyz))),
+                other => Err(Diagnostic::error("wrong-type", "a field is asked at a point")
+                    .expected("a point or vector")
+                    .found(other.class().a())),
+            }
+        }
+        (Value::Field(_), _) => Err(count("one point, as in f({1, 2, 3})")),
+        (other, _) => {
+            let class = other.class().a();
+            Err(Diagnostic::error("not-callable", format!("{class} cannot be called"))
+                .expected("a curve, surface, field or function")
+                .found(class))
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What values own: `.x`, `.t`, `.length`, `.area` and the like.
+
+use moldloft_diag::Diagnostic;
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
+use moldloft_model::Object;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Array, ArrayShape, Scalar, Value};
+use std::sync::Arc;
+
+/// The member called `name`, if the value has one.
+pub(crate) fn of_value<T: Scalar>(
+    value: &Value<T>,
+    name: &str,
+) -> Option<Result<Value<T>, Diagnostic>> {
+    let axis = ["x", "y", "z"].iter().position(|c| *c == name);
+    let number = |x: T| Some(Ok(Value::Number(x)));
+    match (value, axis) {
+        (Value::Vector(v), Some(c)) => number(v[c]),
+        (Value::Point(p), Some(c)) => number(p.xyz[c]),
+        (Value::Vectors(a), Some(c)) => {
+            let items = a.items.iter().map(|v| v[c]).collect();
+            Some(Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items }))))
+        }
+        (Value::Point(p), None) => match (name, &p.on_curve, &p.on_surface) {
+            ("t", Some(place), _) => number(place.1),
+            ("u", _, Some(place)) => number(place.1[0]),
+            ("v", _, Some(place)) => number(place.1[1]),
+            _ => None,
+        },
+        (Value::Curve(curve), None) if name == "length" => {
+            number(moldloft_spline::arclen(&**curve, T::zero(), T::one(), 1e-10))
+        }
+        (Value::Numbers(_) | Value::Vectors(_) | Value::List(_), None) => {
+            let extents = crate::variables::extents(value)?;
+            let extent = match name {
+                "d1" => extents.first(),
+                "d2" => extents.get(1),
+                _ => None,
+            }?;
+            number(T::from(*extent as f64))
+        }
+        _ => None,
+    }
+}
+
+/// The names of the members that a value has.
+pub(crate) fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
+    match value {
+        Value::Vector(_) => vec!["x", "y", "z"],
+        Value::Point(p) => {
+            let mut names = vec!["x", "y", "z"];
+            names.extend(p.on_curve.as_ref().map(|_| "t"));
+            names.extend(p.on_surface.iter().flat_map(|_| ["u", "v"]));
+            names
+        }
+        Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)) => {
+            vec!["x", "y", "z", "d1", "d2"]
+        }
+        Value::Vectors(_) => vec!["x", "y", "z", "d1"],
+        Value::Numbers(_) | Value::List(_) => vec!["d1"],
+        Value::Curve(_) => vec!["length"],
+        Value::Surface(_) => vec!["area", "volume"],
+        _ => Vec::new(),
+    }
+}
+
+/// A number measured on the panels of a surface object: `area`, or `volume`, the signed volume of
+/// the cone from the origin.
+pub(crate) fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<T> {
+    let Value::Surface(surface) = object.value()? else { return None };
+    if !matches!(name, "area" | "volume") {
+        return None;
+    }
+    let [nu, nv] = object.head.divisions.map(|n| n as usize);
+    let steps = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();
+    let mut points = vec![Vec3::zero(); (nu + 1) * (nv + 1)];
+    surface.grid(&steps(nu), &steps(nv), &mut points, None);
+    let mut builder = TopologyBuilder::new();
+    let vertices = builder.add_vertices(points.len()).ok()?;
+    let reversed = object.head.orientation == 1;
+    builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), reversed).ok()?;
+    let measures = measure(&Mesh::new(builder.build().into(), points).ok()?);
+    Some(if name == "area" { measures.area } else { measures.volume })
+}

@@ -1,0 +1,181 @@
+use crate::World;
+use moldloft_diag::{Diagnostic, Sources, Span};
+use moldloft_registry::{Registry, Row};
+use moldloft_syntax::sdl::{self, Program, RoutineId, Symbol};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A name, the same number in every file of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct Name(pub u32);
+
+/// A routine of a module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RoutineAt {
+    pub module: usize,
+    pub routine: RoutineId,
+}
+
+/// A parsed file of a model, its names resolved against the others'.
+#[derive(Debug)]
+pub(crate) struct Module {
+    /// The name that the world gave it.
+    pub path: String,
+    pub program: Program,
+    /// The model-wide name of each symbol.
+    pub names: Vec<Name>,
+    /// The registry's row of each symbol.
+    pub rows: Vec<Option<Arc<Row>>>,
+}
+
+/// All files of a model: parsed once, executed often.
+#[derive(Debug, Default)]
+pub(crate) struct Modules {
+    modules: Vec<Arc<Module>>,
+    texts: HashMap<Arc<str>, Name>,
+    names: Vec<Arc<str>>,
+    /// Loaded files by the name the world gave, and the outcome of each request.
+    loaded: HashMap<(usize, String), Result<usize, Diagnostic>>,
+}
+
+impl Modules {
+    pub fn get(&self, module: usize) -> &Arc<Module> {
+        &self.modules[module]
+    }
+
+    /// The module, to edit its literals; no run is under way then.
+    pub fn get_mut(&mut self, module: usize) -> &mut Module {
+        Arc::get_mut(&mut self.modules[module]).expect("no run holds on to a module")
+    }
+
+    pub fn len(&self) -> usize {
+        self.modules.len()
+    }
+
+    pub fn name(&mut self, text: &str) -> Name {
+        if let Some(&name) = self.texts.get(text) {
+            return name;
+        }
+        let name = Name(self.names.len() as u32);
+        let text: Arc<str> = text.into();
+        self.names.push(text.clone());
+        self.texts.insert(text, name);
+        name
+    }
+
+    pub fn find_name(&self, text: &str) -> Option<Name> {
+        self.texts.get(text).copied()
+    }
+
+    pub fn text(&self, name: Name) -> &Arc<str> {
+        &self.names[name.0 as usize]
+    }
+
+    pub fn name_count(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Takes in a parsed program; `at` replaces the module of that number.
+    pub fn add(
+        &mut self,
+        path: &str,
+        program: Program,
+        registry: &Registry,
+        at: Option<usize>,
+    ) -> usize {
+        let (names, rows) = self.resolve(&program, registry);
+        let module = Arc::new(Module { path: path.into(), program, names, rows });
+        match at {
+            Some(at) => {
+                self.modules[at] = module;
+                self.loaded.retain(|(from, _), _| *from != at);
+                at
+            }
+            None => {
+                self.modules.push(module);
+                self.modules.len() - 1
+            }
+        }
+    }
+
+    /// Takes in an expression for a moment; it goes with [`Self::remove_expression`].
+    pub fn add_expression(&mut self, program: Program, registry: &Registry) -> usize {
+        self.add("", program, registry, None)
+    }
+
+    /// Removes the expression that came last.
+    pub fn remove_expression(&mut self, at: usize) {
+        if at + 1 == self.modules.len() {
+            self.modules.pop();
+        }
+    }
+
+    fn resolve(
+        &mut self,
+        program: &Program,
+        registry: &Registry,
+    ) -> (Vec<Name>, Vec<Option<Arc<Row>>>) {
+        (0..program.symbol_count() as u32)
+            .map(|k| {
+                let text = program.name(Symbol(k));
+                (self.name(text), registry.get(text).cloned())
+            })
+            .unzip()
+    }
+
+    /// Looks the rows up again, after the registry has changed.
+    pub fn relink(&mut self, registry: &Registry) {
+        for module in &mut self.modules {
+            let module = Arc::get_mut(module).expect("no run holds on to a module");
+            for (k, row) in module.rows.iter_mut().enumerate() {
+                *row = registry.get(module.program.name(Symbol(k as u32))).cloned();
+            }
+        }
+    }
+
+    /// The module that `load "path"` in module `from` means, read and parsed when it is new. The
+    /// diagnostics of its text are pushed once.
+    pub fn load(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<usize, Diagnostic> {
+        if let Some(known) = self.loaded.get(&(from, path.to_string())) {
+            return known.clone();
+        }
+        let outcome = self.read(from, path, span, loader);
+        self.loaded.insert((from, path.to_string()), outcome.clone());
+        outcome
+    }
+
+    fn read(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<usize, Diagnostic> {
+        let from_path = self.modules[from].path.clone();
+        let read = loader.world.read(path, Some(&from_path)).map_err(|e| {
+            Diagnostic::error("cannot-read", e.message).at(span).maybe_help(e.help)
+        })?;
+        if let Some(at) = self.modules.iter().position(|m| m.path == read.name) {
+            return Ok(at);
+        }
+        let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
+        let file = loader.sources.add(read.name.clone(), text);
+        let (program, found) = sdl::parse(text, file);
+        loader.diagnostics.extend(found);
+        Ok(self.add(&read.name, program, loader.registry, None))
+    }
+}
+
+/// What loading a file needs.
+pub(crate) struct Loader<'a> {
+    pub world: &'a dyn World,
+    pub registry: &'a Registry,
+    pub sources: &'a mut Sources,
+    pub diagnostics: &'a mut Vec<Diagnostic>,
+}

@@ -1,0 +1,236 @@
+//! Operators on values: element by element over rows and grids of equal shape, or with a scalar.
+
+use moldloft_diag::Diagnostic;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Array, ArrayShape, Value};
+use moldloft_syntax::sdl::BinaryOp;
+use std::sync::Arc;
+
+/// A value as its elements: all numbers or all vectors, and the shape they form.
+enum Elements<'v, T: Real> {
+    Number(T),
+    Vector(Vec3<T>),
+    Numbers(&'v Array<T>),
+    Vectors(&'v Array<Vec3<T>>),
+}
+
+fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T>, Diagnostic> {
+    Ok(match value {
+        Value::Number(x) => Elements::Number(*x),
+        Value::Vector(v) => Elements::Vector(*v),
+        Value::Point(p) => Elements::Vector(p.xyz),
+        Value::Numbers(a) => Elements::Numbers(a),
+        Value::Vectors(a) => Elements::Vectors(a),
+        other => {
+            let class = other.class().a();
+            return Err(Diagnostic::error("wrong-operand", format!("`{op}` does not take {class}"))
+                .expected("numbers, vectors, or rows and grids of them")
+                .found(class));
+        }
+    })
+}
+
+fn shapes_differ(a: ArrayShape, b: ArrayShape) -> Diagnostic {
+    Diagnostic::error("shapes-differ", format!("shapes differ: {a} and {b}"))
+        .expected("equal shapes, or a single value on one side")
+        .found(format!("{a} and {b}"))
+}
+
+fn zipped<A: Copy, B: Copy, C>(
+    a: &Array<A>,
+    b: &Array<B>,
+    mut f: impl FnMut(A, B) -> C,
+) -> Result<Array<C>, Diagnostic> {
+    if a.shape != b.shape {
+        return Err(shapes_differ(a.shape, b.shape));
+    }
+    let items = a.items.iter().zip(&b.items).map(|(&x, &y)| f(x, y)).collect();
+    Ok(Array { shape: a.shape, items })
+}
+
+fn mapped<A: Copy, C>(a: &Array<A>, f: impl FnMut(A) -> C) -> Array<C> {
+    Array { shape: a.shape, items: a.items.iter().copied().map(f).collect() }
+}
+
+fn numbers<T: Real>(array: Array<T>) -> Value<T> {
+    Value::Numbers(Arc::new(array))
+}
+
+fn vectors<T: Real>(array: Array<Vec3<T>>) -> Value<T> {
+    Value::Vectors(Arc::new(array))
+}
+
+/// What the operator does to two numbers, a number and a vector, and so on; `None` where it is
+/// not defined.
+struct Rules<T> {
+    nn: Option<fn(T, T) -> T>,
+    nv: Option<fn(T, Vec3<T>) -> Vec3<T>>,
+    vn: Option<fn(Vec3<T>, T) -> Vec3<T>>,
+    vv: Option<fn(Vec3<T>, Vec3<T>) -> Vec3<T>>,
+    /// Two vectors to a number: the dot product.
+    dot: bool,
+}
+
+fn power<T: Real>(a: T, b: T) -> T {
+    // Small whole powers by multiplication: exact for whole numbers, defined for negative bases.
+    let k = b.re();
+    if b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0 { a.powi(k as i32) } else { a.powf(b) }
+}
+
+fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {
+    let each = |f: fn(T, T) -> T, v: fn(Vec3<T>, Vec3<T>) -> Vec3<T>| Rules {
+        nn: Some(f),
+        nv: None,
+        vn: None,
+        vv: Some(v),
+        dot: false,
+    };
+    Some(match op {
+        BinaryOp::Add => each(|a, b| a + b, |a, b| a + b),
+        BinaryOp::Sub => each(|a, b| a - b, |a, b| a - b),
+        BinaryOp::Mul => Rules {
+            nv: Some(|a, b| b * a),
+            vn: Some(|a, b| a * b),
+            ..each(|a, b| a * b, |a, b| Vec3::new(a.x * b.x, a.y * b.y, a.z * b.z))
+        },
+        BinaryOp::Div => Rules {
+            vn: Some(|a, b| a / b),
+            ..each(|a, b| a / b, |a, b| Vec3::new(a.x / b.x, a.y / b.y, a.z / b.z))
+        },
+        BinaryOp::Caret => Rules { nn: Some(power), nv: None, vn: None, vv: None, dot: false },
+        BinaryOp::Cross => {
+            Rules { nn: None, nv: None, vn: None, vv: Some(Vec3::cross), dot: false }
+        }
+        BinaryOp::Dot => Rules { nn: None, nv: None, vn: None, vv: None, dot: true },
+        _ => return None,
+    })
+}
+
+/// The value of `a op b`.
+pub(crate) fn binary<T: Real>(
+    op: BinaryOp,
+    a: &Value<T>,
+    b: &Value<T>,
+) -> Result<Value<T>, Diagnostic> {
+    use Elements::*;
+    let word = op.spelling();
+    let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
+    let undefined = || {
+        let found = format!("{} {word} {}", a.class().name(), b.class().name());
+        let d = Diagnostic::error("wrong-operand", format!("`{word}` is not defined for {found}"));
+        match op {
+            BinaryOp::Add | BinaryOp::Sub => d.help(
+                "add numbers to numbers and vectors to vectors: take a component (.x) or write \
+                 {a, a, a}",
+            ),
+            BinaryOp::Caret => d.help("only numbers have powers; use . for a dot product"),
+            BinaryOp::Dot | BinaryOp::Cross => d.help("both sides must be vectors; multiply with *"),
+            _ => d,
+        }
+    };
+    let (x, y) = (elements(a, word)?, elements(b, word)?);
+    if r.dot {
+        let dot = |a: Vec3<T>, b: Vec3<T>| a.dot(b);
+        return Ok(match (x, y) {
+            (Vector(a), Vector(b)) => Value::Number(dot(a, b)),
+            (Vectors(a), Vector(b)) => numbers(mapped(a, |a| dot(a, b))),
+            (Vector(a), Vectors(b)) => numbers(mapped(b, |b| dot(a, b))),
+            (Vectors(a), Vectors(b)) => numbers(zipped(a, b, dot)?),
+            _ => return Err(undefined()),
+        });
+    }
+    Ok(match (x, y, r.nn, r.nv, r.vn, r.vv) {
+        (Number(a), Number(b), Some(f), ..) => Value::Number(f(a, b)),
+        (Numbers(a), Number(b), Some(f), ..) => numbers(mapped(a, |a| f(a, b))),
+        (Number(a), Numbers(b), Some(f), ..) => numbers(mapped(b, |b| f(a, b))),
+        (Numbers(a), Numbers(b), Some(f), ..) => numbers(zipped(a, b, f)?),
+        (Number(a), Vector(b), _, Some(f), ..) => Value::Vector(f(a, b)),
+        (Numbers(a), Vector(b), _, Some(f), ..) => vectors(mapped(a, |a| f(a, b))),
+        (Number(a), Vectors(b), _, Some(f), ..) => vectors(mapped(b, |b| f(a, b))),
+        (Numbers(a), Vectors(b), _, Some(f), ..) => vectors(zipped(a, b, f)?),
+        (Vector(a), Number(b), _, _, Some(f), _) => Value::Vector(f(a, b)),
+        (Vectors(a), Number(b), _, _, Some(f), _) => vectors(mapped(a, |a| f(a, b))),
+        (Vector(a), Numbers(b), _, _, Some(f), _) => vectors(mapped(b, |b| f(a, b))),
+        (Vectors(a), Numbers(b), _, _, Some(f), _) => vectors(zipped(a, b, f)?),
+        (Vector(a), Vector(b), .., Some(f)) => Value::Vector(f(a, b)),
+        (Vectors(a), Vector(b), .., Some(f)) => vectors(mapped(a, |a| f(a, b))),
+        (Vector(a), Vectors(b), .., Some(f)) => vectors(mapped(b, |b| f(a, b))),
+        (Vectors(a), Vectors(b), .., Some(f)) => vectors(zipped(a, b, f)?),
+        _ => return Err(undefined()),
+    })
+}
+
+fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    let holds = match (a, b) {
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.re(), b.re());
+            match op {
+                BinaryOp::Lt => a < b,
+                BinaryOp::Gt => a > b,
+                BinaryOp::Le => a <= b,
+                BinaryOp::Ge => a >= b,
+                BinaryOp::Eq => a == b,
+                BinaryOp::Ne => a != b,
+                _ => return Err(unsupported(op, a_of(&Value::Number(T::from(a))))),
+            }
+        }
+        (Value::Text(a), Value::Text(b)) => match op {
+            BinaryOp::Eq => a == b,
+            BinaryOp::Ne => a != b,
+            _ => return Err(unsupported(op, "texts")),
+        },
+        (Value::Field(_), _) | (_, Value::Field(_)) => return Err(unsupported(op, "fields")),
+        _ => {
+            let found = format!("{} and {}", a.class().a(), b.class().a());
+            return Err(Diagnostic::error(
+                "wrong-operand",
+                format!("`{}` compares numbers, not {found}", op.spelling()),
+            )
+            .expected("two numbers")
+            .found(found)
+            .help("compare a component, or take min() or max() of a row first"));
+        }
+    };
+    Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
+}
+
+fn a_of<T: Real>(value: &Value<T>) -> &'static str {
+    value.class().a()
+}
+
+fn unsupported(op: BinaryOp, what: &str) -> Diagnostic {
+    Diagnostic::error("wrong-operand", format!("`{}` is not defined for {what}", op.spelling()))
+}
+
+/// `-a`.
+pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    Ok(match elements(a, "-")? {
+        Elements::Number(x) => Value::Number(-x),
+        Elements::Vector(v) => Value::Vector(-v),
+        Elements::Numbers(a) => numbers(mapped(a, |x| -x)),
+        Elements::Vectors(a) => vectors(mapped(a, |v| -v)),
+    })
+}
+
+/// `|a|`: the length of vectors, the absolute value of numbers.
+pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    Ok(match elements(a, "|")? {
+        Elements::Number(x) => Value::Number(x.abs()),
+        Elements::Vector(v) => Value::Number(v.norm()),
+        Elements::Numbers(a) => numbers(mapped(a, T::abs)),
+        Elements::Vectors(a) => numbers(mapped(a, Vec3::norm)),
+    })
+}
+
+/// `{a, b, c, ...}`: a vector of three numbers, a row of vectors of three rows of numbers, else a
+/// list.
+pub(crate) fn braces<T: Real>(items: Vec<Value<T>>) -> Result<Value<T>, Diagnostic> {
+    if let [Value::Number(x), Value::Number(y), Value::Number(z)] = items[..] {
+        return Ok(Value::Vector(Vec3::new(x, y, z)));
+    }
+    if let [Value::Numbers(x), Value::Numbers(y), Value::Numbers(z)] = &items[..] {
+        let xy = zipped(x, y, |x, y| (x, y))?;
+        return Ok(vectors(zipped(&xy, z, |(x, y), z| Vec3::new(x, y, z))?));
+    }
+    Ok(Value::list(items))
+}

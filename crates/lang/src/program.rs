@@ -1,0 +1,184 @@
+//! A program as a producer of objects.
+
+use crate::document::Evaluation;
+use crate::env::Environment;
+use crate::interpreter::{Inputs, Interpreter, STACK_BYTES};
+use crate::module::{Loader, Modules};
+use crate::place::{self, NumberPath};
+use crate::world::World;
+use moldloft_diag::{Diagnostic, Sources, Span};
+use moldloft_model::{Applied, Extent, Object};
+use moldloft_registry::{Fault, Registry, Scalar, Value};
+use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind};
+
+/// What running a program needs.
+pub(crate) struct Program<'a> {
+    pub modules: &'a mut Modules,
+    pub world: &'a dyn World,
+    pub registry: &'a Registry,
+    pub sources: &'a mut Sources,
+}
+
+/// Why a number of an object is no literal of the text.
+pub(crate) enum NotLiteral {
+    /// It is computed from these names.
+    Expression { span: Span, names: Vec<String> },
+    /// Several objects are made by the statement it stands in.
+    Shared { span: Span },
+    /// It is a default.
+    Default,
+}
+
+/// Runs `f` where a deeply nested program finds enough stack.
+fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, f);
+        match thread.expect("a thread can be started").join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    })
+}
+
+impl Program<'_> {
+    /// Runs module 0 and what it loads.
+    pub fn run<T: Scalar>(
+        self,
+        evaluation: &mut Evaluation<T>,
+        inputs: Inputs<'_, T>,
+        found: &mut Vec<Diagnostic>,
+    ) -> Applied {
+        evaluation.env = Environment::default();
+        let Evaluation { graph, env } = evaluation;
+        let loader = Loader {
+            world: self.world,
+            registry: self.registry,
+            sources: self.sources,
+            diagnostics: found,
+        };
+        with_stack(|| {
+            graph.apply(Extent::Whole, |run| {
+                Interpreter::new(self.modules, loader, run, env, inputs).module(0);
+            })
+        })
+        .1
+    }
+
+    /// The value of an expression in the names that the last run left behind.
+    pub fn eval<T: Scalar>(
+        self,
+        evaluation: &mut Evaluation<T>,
+        inputs: Inputs<'_, T>,
+        text: &str,
+    ) -> Result<Value<T>, Vec<Diagnostic>> {
+        let file = self.sources.add("expression", text);
+        let (program, expr, mut found) = sdl::parse_expr(text, file);
+        if found.iter().any(Diagnostic::is_error) {
+            return Err(found);
+        }
+        let at = self.modules.add_expression(program, self.registry);
+        let module = self.modules.get(at).clone();
+        let Evaluation { graph, env } = evaluation;
+        let stopped = std::mem::take(&mut env.stopped);
+        let loader = Loader {
+            world: self.world,
+            registry: self.registry,
+            sources: self.sources,
+            diagnostics: &mut found,
+        };
+        let modules = &mut *self.modules;
+        let (value, _) = with_stack(|| {
+            graph.apply(Extent::Edit, |run| {
+                let mut interpreter = Interpreter::new(modules, loader, run, env, inputs);
+                interpreter.current = at;
+                interpreter.operand(&module, expr)
+            })
+        });
+        drop(module);
+        self.modules.remove_expression(at);
+        evaluation.env.stopped = stopped;
+        match value {
+            Ok(value) if found.is_empty() => Ok(value),
+            Ok(_) => Err(found),
+            Err(diagnostic) => {
+                if diagnostic.id != crate::interpreter::SILENT {
+                    found.push(diagnostic);
+                }
+                if found.is_empty() {
+                    found.push(Diagnostic::error(
+                        "no-value",
+                        "this depends on something that failed; see the model's own errors",
+                    ));
+                }
+                Err(found)
+            }
+        }
+    }
+}
+
+/// Where in the text the fault of an object lies.
+pub(crate) fn fault_span<T: Scalar>(
+    modules: &Modules,
+    env: &Environment<T>,
+    object: &Object<T>,
+    fault: &Fault,
+) -> Option<Span> {
+    let origin = env.origins.get(object.origin as usize)?;
+    let m = modules.get(origin.module as usize);
+    let stmt = m.program[origin.stmt];
+    let StmtKind::Object { args, .. } = stmt.kind else { return Some(stmt.span) };
+    let unnamed = m.program[args].iter().filter(|a| a.name.is_none()).count();
+    Some(place::diagnostic(m, args, &object.row, unnamed, fault, stmt.span).span())
+}
+
+/// Where in the text an object is declared.
+pub(crate) fn declared_at<T: Scalar>(
+    modules: &Modules,
+    env: &Environment<T>,
+    object: &Object<T>,
+) -> Option<Span> {
+    let origin = env.origins.get(object.origin as usize)?;
+    let m = modules.get(origin.module as usize);
+    match m.program[origin.stmt].kind {
+        StmtKind::Object { name, .. } => Some(name.span),
+        _ => None,
+    }
+}
+
+/// The literal of the text that a number of an object is.
+pub(crate) fn literal(
+    modules: &Modules,
+    env: &Environment<f64>,
+    object: &Object<f64>,
+    path: &NumberPath,
+) -> Result<(usize, LiteralId), NotLiteral> {
+    let Some(origin) = env.origins.get(object.origin as usize) else {
+        return Err(NotLiteral::Default);
+    };
+    let m = modules.get(origin.module as usize);
+    let stmt = m.program[origin.stmt];
+    let StmtKind::Object { args, .. } = stmt.kind else { return Err(NotLiteral::Default) };
+    let args = &m.program[args];
+    let unnamed = args.iter().filter(|a| a.name.is_none()).count();
+    let mut expr = place::argument(m, args, &object.row, unnamed, path.field)
+        .ok_or(NotLiteral::Default)?;
+    for k in [path.item, path.component].into_iter().flatten() {
+        match place::item(m, expr, k) {
+            Some(item) => expr = item,
+            None => return Err(computed(m, expr)),
+        }
+    }
+    let Some(literal) = m.program.as_literal(expr) else {
+        return Err(computed(m, expr));
+    };
+    if origin.repeated {
+        return Err(NotLiteral::Shared { span: m.program[expr].span });
+    }
+    Ok((origin.module as usize, literal))
+}
+
+fn computed(m: &crate::module::Module, expr: ExprId) -> NotLiteral {
+    let mut names = Vec::new();
+    crate::later::names_in(m, expr, &mut |symbol| names.push(m.program.name(symbol).to_string()));
+    NotLiteral::Expression { span: m.program[expr].span, names }
+}

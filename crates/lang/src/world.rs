@@ -1,0 +1,39 @@
+use std::sync::Arc;
+
+/// What the outside world lets a run see. The core opens no files: the host does, inside the
+/// folders that it allows.
+pub trait World: Send + Sync {
+    /// The text at `path`, named in the text of `from` (or by the user when `None`).
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn read(&self, path: &str, from: Option<&str>) -> Result<ReadText, ReadError>;
+}
+
+/// A text and where it came from.
+#[derive(Clone, Debug)]
+pub struct ReadText {
+    /// The name to show, the same for the same file however it was asked for.
+    pub name: String,
+    /// The bytes.
+    pub bytes: Arc<[u8]>,
+}
+
+/// Why a text cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadError {
+    /// One line: what is wrong.
+    pub message: String,
+    /// How to mend it.
+    pub help: Option<String>,
+}
+
+/// A world without files.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFiles;
+
+impl World for NoFiles {
+    fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, ReadError> {
+        Err(ReadError { message: format!("cannot read `{path}`: there are no files here"), help: None })
+    }
+}
