@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 /// A curve of cubic polynomials between knots that may themselves move (they are scalars, not
 /// plain numbers).
 ///
-/// Piece `k` holds the coefficients of 1, s, s^2, s^3 with s = t - knots[k]. There is one piece per
+/// Piece `k` holds the coefficients of 1, s, s^2, s^3 with `s = t - knots[k]`. There is one piece per
 /// knot: the last continues the one before from its far end, so the value at each knot, the last
 /// included, is its constant coefficient to the bit.
 #[derive(Clone, Debug, PartialEq)]
