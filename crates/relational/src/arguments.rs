@@ -1,0 +1,238 @@
+//! Types of arguments that kinds share: beads, magnets, snakes, the sides of patches.
+
+use moldloft_num::trace::Key;
+use moldloft_num::{CurveJet, Order, Real};
+use moldloft_registry::{Class, CurveRef, Fault, FromValue, SurfaceRef, Value};
+use moldloft_spline::{End, Ends};
+use std::sync::Arc;
+
+fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
+    Err(Fault::wrong_class(class, value.class()))
+}
+
+/// A point on a curve.
+#[derive(Clone, Debug)]
+pub struct Bead<T: Real> {
+    /// The point object.
+    pub key: Option<Key>,
+    /// The curve it lies on.
+    pub curve: CurveRef<T>,
+    /// Its parameter there.
+    pub t: T,
+}
+
+fn bead<T: Real>(value: &Value<T>, class: Class) -> Result<Bead<T>, Fault> {
+    let Value::Point(point) = value else { return wrong(class, value) };
+    match &point.on_curve {
+        Some(place) => Ok(Bead { key: point.key, curve: place.0.clone(), t: place.1 }),
+        None => wrong(class, value),
+    }
+}
+
+impl<T: Real> FromValue<T> for Bead<T> {
+    const CLASS: Class = Class::Bead;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        bead(value, Class::Bead)
+    }
+}
+
+/// A point on a snake.
+#[derive(Clone, Debug)]
+pub struct Ring<T: Real>(pub Bead<T>);
+
+impl<T: Real> FromValue<T> for Ring<T> {
+    const CLASS: Class = Class::Ring;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let bead = bead(value, Class::Ring)?;
+        if bead.curve.surface.is_some() { Ok(Ring(bead)) } else { wrong(Class::Ring, value) }
+    }
+}
+
+/// A point on a surface.
+#[derive(Clone, Debug)]
+pub struct Magnet<T: Real> {
+    /// The point object.
+    pub key: Option<Key>,
+    /// The surface it lies on.
+    pub surface: SurfaceRef<T>,
+    /// Its parameters (u, v) there.
+    pub uv: [T; 2],
+}
+
+impl<T: Real> FromValue<T> for Magnet<T> {
+    const CLASS: Class = Class::Magnet;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Point(p) => match &p.on_surface {
+                Some(place) => Ok(Magnet { key: p.key, surface: place.0.clone(), uv: place.1 }),
+                None => wrong(Class::Magnet, value),
+            },
+            other => wrong(Class::Magnet, other),
+        }
+    }
+}
+
+/// A curve on a surface.
+#[derive(Clone, Debug)]
+pub struct Snake<T: Real> {
+    /// The curve.
+    pub curve: CurveRef<T>,
+    /// The surface it lies on.
+    pub surface: SurfaceRef<T>,
+}
+
+impl<T: Real> Snake<T> {
+    /// The jet of (u(t), v(t), 0) on the surface.
+    pub fn path(&self, t: T, order: Order) -> CurveJet<T> {
+        self.curve.on_surface(t, order).expect("a curve with a surface knows its place on it")
+    }
+}
+
+impl<T: Real> FromValue<T> for Snake<T> {
+    const CLASS: Class = Class::Snake;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Curve(curve) => match &curve.surface {
+                Some(surface) => {
+                    Ok(Snake { curve: curve.clone(), surface: SurfaceRef::clone(surface) })
+                }
+                None => wrong(Class::Snake, value),
+            },
+            other => wrong(Class::Snake, other),
+        }
+    }
+}
+
+/// A side of a patch on a surface: a snake, or a magnet for a side without length.
+#[derive(Clone, Debug)]
+pub enum Side<T: Real> {
+    /// A side with length.
+    Snake(Snake<T>),
+    /// A side that is a single point.
+    Magnet(Magnet<T>),
+}
+
+impl<T: Real> Side<T> {
+    /// The surface it lies on.
+    pub fn surface(&self) -> &SurfaceRef<T> {
+        match self {
+            Side::Snake(snake) => &snake.surface,
+            Side::Magnet(magnet) => &magnet.surface,
+        }
+    }
+}
+
+impl<T: Real> FromValue<T> for Side<T> {
+    const CLASS: Class = Class::Side;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value.class() {
+            Class::Snake => Snake::from_value(value).map(Side::Snake),
+            Class::Magnet | Class::Ring => Magnet::from_value(value).map(Side::Magnet),
+            _ => wrong(Class::Side, value),
+        }
+    }
+}
+
+/// Which condition holds at both ends of an interpolating spline, by its name in the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EndRule {
+    /// "notaknot": the first two pieces are one polynomial.
+    NotAKnot,
+    /// "natural": no curvature.
+    Natural,
+    /// "bessel": the slope of the parabola through three points.
+    Bessel,
+    /// "quadratic": the end piece is a parabola.
+    Quadratic,
+    /// "clamped": given slopes.
+    Clamped,
+    /// "periodic": closed without a corner.
+    Periodic,
+}
+
+impl EndRule {
+    const NAMES: [(&'static str, EndRule); 6] = [
+        ("notaknot", EndRule::NotAKnot),
+        ("natural", EndRule::Natural),
+        ("bessel", EndRule::Bessel),
+        ("quadratic", EndRule::Quadratic),
+        ("clamped", EndRule::Clamped),
+        ("periodic", EndRule::Periodic),
+    ];
+
+    /// The conditions, when they need no slopes.
+    pub fn ends<T: Real>(self) -> Option<Ends<T>> {
+        Some(match self {
+            EndRule::NotAKnot => Ends::Open(End::NotAKnot, End::NotAKnot),
+            EndRule::Natural => Ends::Open(End::Natural, End::Natural),
+            EndRule::Bessel => Ends::Open(End::Bessel, End::Bessel),
+            EndRule::Quadratic => Ends::Open(End::Quadratic, End::Quadratic),
+            EndRule::Clamped => return None,
+            EndRule::Periodic => Ends::Periodic,
+        })
+    }
+}
+
+impl<T: Real> FromValue<T> for EndRule {
+    const CLASS: Class = Class::Text;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let text = Arc::<str>::from_value(value)?;
+        let found = Self::NAMES.iter().find(|(name, _)| *name == &*text);
+        found.map(|(_, rule)| *rule).ok_or_else(|| {
+            let names = Self::NAMES.map(|(name, _)| format!("\"{name}\"")).join(", ");
+            Fault::new("unknown-ends", format!("there are no ends \"{text}\""))
+                .expected(names)
+                .found(format!("\"{text}\""))
+        })
+    }
+}
+
+/// True when both are the same surface object, or the same nameless surface.
+fn same_surface<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>) -> bool {
+    if a.key.is_some() || b.key.is_some() { a.key == b.key } else { a.same(b) }
+}
+
+/// The one surface that all of `items` lie on; `place` puts a fault where item k was given.
+///
+/// # Errors
+/// `wrong-surface` at the first item on another surface than the first item.
+pub fn common_surface<T: Real>(
+    items: &[(Option<Key>, &SurfaceRef<T>)],
+    place: impl Fn(Fault, usize) -> Fault,
+) -> Result<SurfaceRef<T>, Fault> {
+    let (first_key, first) = items[0];
+    for (k, (key, surface)) in items.iter().enumerate() {
+        if !same_surface(first, surface) {
+            let message = format!("item {} lies on another surface than item 1", k + 1);
+            let fault = Fault::new("wrong-surface", message)
+                .expected("magnets and snakes of one surface")
+                .found("two different surfaces")
+                .related(*key, "lies on one surface")
+                .related(surface.key, "is the surface of the one")
+                .related(first_key, "lies on another surface")
+                .related(first.key, "is the surface of the other");
+            return Err(place(fault, k));
+        }
+    }
+    Ok(first.clone())
+}
+
+/// The one curve that both beads lie on.
+///
+/// # Errors
+/// `wrong-curve`, in field `field`, when they lie on different curves.
+pub fn common_curve<T: Real>([a, b]: [&Bead<T>; 2], field: usize) -> Result<CurveRef<T>, Fault> {
+    let named = a.curve.key.is_some() || b.curve.key.is_some();
+    let same = if named { a.curve.key == b.curve.key } else { a.curve.same(&b.curve) };
+    if same {
+        return Ok(a.curve.clone());
+    }
+    Err(Fault::new("wrong-curve", "the two beads lie on different curves")
+        .expected("two beads of one curve")
+        .found("beads of two curves")
+        .related(a.key, "lies on one curve")
+        .related(a.curve.key, "is the curve of the one")
+        .related(b.key, "lies on another curve")
+        .related(b.curve.key, "is the curve of the other")
+        .in_field(field))
+}

@@ -1,0 +1,53 @@
+use crate::curve::Ended;
+use crate::faults;
+use moldloft_num::Real;
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+
+/// A circular arc, uniform in angle.
+///
+/// Six types (types 1 and 3 to 6 are our numbers for those of the catalogue): 1 through p1, p2 and
+/// p3; 2 from p1 about the centre p2, the shorter way to the direction of p3; 3 from p1, tangent to
+/// the line toward p2, to p3; 4 from p1 to p3, tangent there to the line that comes from p2; 5 the
+/// semicircle from p1 to p2 on the side of p3; 6 the full circle from p1 about the centre p2,
+/// setting out toward the side of p3.
+///
+/// Points in line make types 1 to 4 a straight line, which the arc approaches smoothly.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel type p1 p2 p3",
+    example = "AbsPoint A(1, 0, 0); AbsPoint B(0.6, 0.8, 0.1); AbsPoint C(-1, 0, 0); \
+               Arc a(A, B, C, type = 1);"
+)]
+pub struct Arc<T: Real> {
+    /// First point.
+    p1: Point<T>,
+    /// Second point.
+    p2: Point<T>,
+    /// Third point.
+    p3: Point<T>,
+    /// Which of the six types.
+    #[field(default = 1, min = 1, max = 6)]
+    r#type: u32,
+}
+
+impl<T: Real> Build<T> for Arc<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { p1, p2, p3, r#type } = self;
+        let arc = moldloft_spline::Arc::of_type(r#type, [p1.xyz, p2.xyz, p3.xyz]);
+        let arc = arc.ok_or_else(|| {
+            Fault::new("out-of-range", format!("there is no arc of type {}", r#type))
+                .expected("a type from 1 to 6")
+                .found(r#type.to_string())
+                .in_field(3)
+        })?;
+        let end = match r#type {
+            2 => None,
+            5 => p2.key,
+            6 => p1.key,
+            _ => p3.key,
+        };
+        let curve = arc.map_err(faults::of_arc)?;
+        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: [p1.key, end] }, 0)))
+    }
+}

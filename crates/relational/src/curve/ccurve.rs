@@ -1,0 +1,73 @@
+use super::bcurve;
+use crate::arguments::EndRule;
+use crate::curve::Ended;
+use crate::faults;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_spline::{End, Ends, InterpolatingSpline};
+
+/// An interpolating spline: the twice differentiable piecewise cubic through the points, with
+/// knots at the cumulative chord lengths (Ahlberg, Nilson and Walsh 1967).
+///
+/// With the default ends two points give a line, three a parabola, four or more the spline whose
+/// first two and last two pieces are one polynomial each. Neighbouring points must differ.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel degree points",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); \
+               AbsPoint E(6, 0.5, 2); CCurve c({A, B, C, D, E}); \
+               CCurve d({A, B, C, D}, ends = \"clamped\", start = {3, 1, 0}, end = {4, -2, 1});"
+)]
+pub struct CCurve<T: Real> {
+    /// The points it passes through, two or more.
+    #[field(min_items = 2)]
+    points: Vec<Point<T>>,
+    /// 3 for the cubic spline, 1 for a polyline.
+    #[field(default = 3, min = 1, max = 3)]
+    degree: usize,
+    /// End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
+    #[field(default = "notaknot")]
+    ends: EndRule,
+    /// Slope dC/dt at the start, for clamped ends.
+    start: Option<Vec3<T>>,
+    /// Slope dC/dt at the end, for clamped ends.
+    end: Option<Vec3<T>>,
+}
+
+impl<T: Real> Build<T> for CCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let names = bcurve::ends(&self.points)?;
+        let ends = self.conditions()?;
+        let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
+        let curve = match self.degree {
+            1 => InterpolatingSpline::polyline(&points),
+            2 if points.len() > 3 => InterpolatingSpline::of_type(2, &points),
+            _ => InterpolatingSpline::with_ends(&points, ends),
+        }
+        .map_err(|error| faults::of_interpolation(error, "point", [0, 1, 2]))?;
+        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: names }, 0)))
+    }
+}
+
+impl<T: Real> CCurve<T> {
+    fn conditions(&self) -> Result<Ends<T>, Fault> {
+        match (self.ends.ends(), self.start, self.end) {
+            (Some(ends), None, None) => Ok(ends),
+            (None, Some(start), Some(end)) => {
+                Ok(Ends::Open(End::Clamped(start), End::Clamped(end)))
+            }
+            (None, start, _) => Err(Fault::new(
+                "missing-argument",
+                "clamped ends need the slopes `start` and `end`",
+            )
+            .expected("start = {x, y, z}, end = {x, y, z}")
+            .in_field(if start.is_none() { 3 } else { 4 })),
+            (Some(_), start, _) => {
+                Err(Fault::new("unused-argument", "slopes are for clamped ends only")
+                    .help("add ends = \"clamped\", or leave the slopes out")
+                    .in_field(if start.is_some() { 3 } else { 4 }))
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use moldloft_registry::{CurveRef, Kind, Mirror};
+
+/// The mirror image of a curve in a plane, line or point, point by point: C(t) = 2 F(t) - P(t),
+/// with F the foot of the perpendicular from P.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    shape,
+    columns = "relabel curve mirror",
+    example = "AbsPoint A(0, 1, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); \
+               BCurve c({A, B, C}); MirrCurve port(c, \"y=0\");"
+)]
+pub struct MirrCurve<T: Real> {
+    /// The curve to mirror.
+    curve: CurveRef<T>,
+    /// What to mirror it in.
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Curve<T> for MirrCurve<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        let [p, d, dd] = self.curve.jet(t, order);
+        let turned = |v| self.mirror.direction(v, false);
+        [self.mirror.image(p), turned(d), turned(dd)]
+    }
+
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        self.curve.grid(ts, out);
+        for p in out {
+            *p = self.mirror.image(*p);
+        }
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
+    }
+}

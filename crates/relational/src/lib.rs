@@ -1,0 +1,92 @@
+//! The relational kinds: points, curves, snakes, surfaces, planes and contours that are made from
+//! one another, and the first functions on rows of numbers.
+//!
+//! Each kind is a documented struct whose fields are its arguments; the derive macro makes a row of
+//! the registry of it. A new kind is one file and one line in [`rows`].
+//!
+//! `arguments (numbers, points, shapes) -> kind -> shape that evaluates itself`
+//!
+//! Shapes made of points hold positions, not their points; shapes made of shapes hold those. What a
+//! curve or an edge runs along ([`moldloft_num::trace`]) is stated by the kinds, so that meshes join
+//! by identity.
+//!
+//! Invariant: this crate knows no graph, no language and no file.
+
+mod arguments;
+mod contours;
+mod curve;
+mod faults;
+mod field;
+mod intrinsics;
+mod plane;
+mod point;
+mod snake;
+mod surface;
+
+use moldloft_registry::Row;
+use moldloft_registry::export::StaticRow;
+
+macro_rules! rows {
+    ($($kind:path),* $(,)?) => {
+        vec![$({
+            use $kind as Kind;
+            <Kind<f64> as StaticRow>::row()
+        }),*]
+    };
+}
+
+/// All kinds and functions of this crate, in the order of the reference.
+///
+/// # Example
+/// ```
+/// let rows = moldloft_relational::rows();
+/// let line = rows.iter().find(|row| row.name == "Line").unwrap();
+/// assert_eq!(line.fields.len(), 2);
+/// ```
+pub fn rows() -> Vec<Row> {
+    rows![
+        point::AbsPoint,
+        point::RelPoint,
+        point::MirrPoint,
+        point::ProjPoint,
+        point::AbsBead,
+        point::RelBead,
+        point::AbsMagnet,
+        point::RelMagnet,
+        point::AbsRing,
+        point::RelRing,
+        curve::Line,
+        curve::Arc,
+        curve::BCurve,
+        curve::CCurve,
+        curve::SubCurve,
+        curve::MirrCurve,
+        snake::LineSnake,
+        snake::BSnake,
+        snake::EdgeSnake,
+        snake::UVSnake,
+        curve::SubSnake,
+        surface::RuledSurf,
+        surface::BLoftSurf,
+        surface::CLoftSurf,
+        surface::RevSurf,
+        surface::TranSurf,
+        surface::SubSurf,
+        surface::MirrSurf,
+        plane::XPlane,
+        plane::YPlane,
+        plane::ZPlane,
+        plane::OffsetPlane,
+        plane::ThreePointPlane,
+        plane::TwoPointPlane,
+        contours::XContours,
+        contours::YContours,
+        contours::ZContours,
+        intrinsics::Uniform,
+        intrinsics::Cosine,
+        intrinsics::DTanh,
+        intrinsics::Distc,
+        intrinsics::Length,
+        field::Sphere,
+    ]
+}

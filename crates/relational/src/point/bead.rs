@@ -1,0 +1,51 @@
+use crate::arguments::Bead;
+use moldloft_num::Real;
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+
+/// A point on a curve at a given parameter: X = C(t).
+///
+/// Outside [0, 1] it lies on the natural continuation of the curve's formula. On a snake it is a
+/// ring: it knows its place on the surface too.
+#[derive(Kind)]
+#[kind(
+    class = Bead,
+    columns = "curve t",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B); AbsBead b(l, 0.25);"
+)]
+pub struct AbsBead<T: Real> {
+    /// The curve it lives on.
+    curve: CurveRef<T>,
+    /// Its parameter.
+    t: T,
+}
+
+impl<T: Real> Build<T> for AbsBead<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        Ok(Value::Point(Box::new(Point::on_curve(self.curve, self.t))))
+    }
+}
+
+/// A point on the curve of another bead, at a fixed difference of parameter: X = C(t + dt).
+///
+/// What stays the same when the other bead moves is the difference of parameters, not the length
+/// of the curve between them.
+#[derive(Kind)]
+#[kind(
+    class = Bead,
+    columns = "bead dt",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B); AbsBead b(l, 0.25); \
+               RelBead c(b, 0.5);"
+)]
+pub struct RelBead<T: Real> {
+    /// The bead it is relative to.
+    bead: Bead<T>,
+    /// Difference of parameter.
+    dt: T,
+}
+
+impl<T: Real> Build<T> for RelBead<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Bead { curve, t, .. } = self.bead;
+        Ok(Value::Point(Box::new(Point::on_curve(curve, t + self.dt))))
+    }
+}

@@ -1,0 +1,96 @@
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Context, Fault, Kind, Mirror, Point, Value};
+
+fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
+    Ok(Value::Point(Box::new(Point::free(xyz))))
+}
+
+/// A point given by its coordinates: X = (x, y, z).
+///
+/// Three degrees of freedom (Letcher and Shook 1995).
+#[derive(Kind)]
+#[kind(class = Point, columns = "x y z", example = "AbsPoint A(1, 2, 0.5);")]
+pub struct AbsPoint<T: Real> {
+    /// First coordinate.
+    x: T,
+    /// Second coordinate.
+    y: T,
+    /// Third coordinate.
+    z: T,
+}
+
+impl<T: Real> Build<T> for AbsPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        free(Vec3::new(self.x, self.y, self.z))
+    }
+}
+
+/// A point at a fixed offset from another: X = P + (dx, dy, dz).
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "point dx dy dz",
+    example = "AbsPoint A(1, 2, 0.5); RelPoint B(A, 0, 0, 1.5);"
+)]
+pub struct RelPoint<T: Real> {
+    /// The point it is relative to.
+    point: Point<T>,
+    /// Offset along x.
+    #[field(default = 0)]
+    dx: T,
+    /// Offset along y.
+    #[field(default = 0)]
+    dy: T,
+    /// Offset along z.
+    #[field(default = 0)]
+    dz: T,
+}
+
+impl<T: Real> Build<T> for RelPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        free(self.point.xyz + Vec3::new(self.dx, self.dy, self.dz))
+    }
+}
+
+/// The mirror image of a point: X = 2 F - P, with F the foot of the perpendicular from P to the
+/// plane or line, or the point to mirror in.
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "point mirror",
+    example = "AbsPoint A(1, 2, 0.5); MirrPoint B(A, \"y=0\");"
+)]
+pub struct MirrPoint<T: Real> {
+    /// The point to mirror.
+    point: Point<T>,
+    /// What to mirror it in.
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Build<T> for MirrPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        free(self.mirror.image(self.point.xyz))
+    }
+}
+
+/// The foot of the perpendicular from a point to a plane or line; for a mirror that is a point,
+/// that point.
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "point mirror",
+    example = "AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); Line axis(B, C); \
+               ProjPoint foot(A, axis);"
+)]
+pub struct ProjPoint<T: Real> {
+    /// The point to project.
+    point: Point<T>,
+    /// What to project it to.
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Build<T> for ProjPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        free(self.mirror.foot(self.point.xyz))
+    }
+}

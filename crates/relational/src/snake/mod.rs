@@ -1,0 +1,9 @@
+//! Snakes: curves on surfaces, given in the surface's parameter plane.
+
+mod isoparametric;
+mod on_surface;
+mod through;
+
+pub use isoparametric::{EdgeSnake, UVSnake};
+pub use on_surface::OnSurface;
+pub use through::{BSnake, LineSnake};

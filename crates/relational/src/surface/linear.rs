@@ -1,0 +1,127 @@
+//! Lofts that are linear in their masters: S(u, v) = sum B_i(v) C_i(u).
+
+use super::chunk::{Chunk, LANES};
+use super::masters::{Masters, Points};
+use moldloft_num::trace::Edges;
+use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Vec3, surface_jet_of};
+use moldloft_spline::{Basis, KnotVector};
+
+/// Masters blended by the basis functions of a clamped knot vector.
+pub struct Blend<T: Real> {
+    pub masters: Masters<T>,
+    /// As many control points as masters, on [0, 1].
+    pub knots: KnotVector,
+}
+
+impl<T: Real> Blend<T> {
+    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        let basis = self.knots.basis(v, Order::Zero);
+        let mut sum = Vec3::zero();
+        for (&b, curve) in basis.rows[0].iter().zip(&self.masters.curves()[basis.first..]) {
+            sum += curve.at(u) * b;
+        }
+        sum
+    }
+}
+
+/// The basis at all parameters v of a grid.
+struct Table {
+    rows: Vec<Basis<f64>>,
+}
+
+impl Table {
+    /// The stretches, at most [`LANES`] long, within which the same masters are blended.
+    fn stretches(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        let mut begin = 0;
+        std::iter::from_fn(move || {
+            let first = self.rows.get(begin)?.first;
+            let most = (begin + LANES).min(self.rows.len());
+            let end = (begin..most).find(|&j| self.rows[j].first != first).unwrap_or(most);
+            let stretch = begin..end;
+            begin = end;
+            Some(stretch)
+        })
+    }
+}
+
+/// The basis values of one stretch, one plane for each master in play.
+fn planes(rows: &[Basis<f64>], order: usize) -> Vec<[f64; LANES]> {
+    let mut planes = vec![[0.0; LANES]; rows[0].rows[order].len()];
+    for (j, row) in rows.iter().enumerate() {
+        for (plane, &b) in planes.iter_mut().zip(&row.rows[order]) {
+            plane[j] = b;
+        }
+    }
+    planes
+}
+
+fn blend<T: Real>(planes: &[[f64; LANES]], q: impl Fn(usize) -> T, n: usize, out: &mut [T; LANES]) {
+    let first = q(0);
+    for (o, &b) in out.iter_mut().zip(&planes[0]).take(n) {
+        *o = first * b;
+    }
+    for (r, plane) in planes.iter().enumerate().skip(1) {
+        let q = q(r);
+        for (o, &b) in out.iter_mut().zip(plane).take(n) {
+            *o += q * b;
+        }
+    }
+}
+
+impl<T: Real> Surface<T> for Blend<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        surface_jet_of!(self, Self::at, u, v, order)
+    }
+
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        mut normals: Option<&mut [Vec3<T>]>,
+    ) {
+        let order = if normals.is_some() { Order::First } else { Order::Zero };
+        let table = Table { rows: vs.iter().map(|&v| self.knots.basis(v, order)).collect() };
+        let columns: Vec<Points<Uni1<T>>> = match order {
+            Order::Zero => Vec::new(),
+            _ => us.iter().map(|&u| self.masters.with_slopes(u)).collect(),
+        };
+        let plain: Vec<Points<T>> = match order {
+            Order::Zero => us.iter().map(|&u| self.masters.at(T::from(u))).collect(),
+            _ => Vec::new(),
+        };
+        let mut chunk = Chunk::zero();
+        for stretch in table.stretches() {
+            let rows = &table.rows[stretch.clone()];
+            let (first, n) = (rows[0].first, rows.len());
+            let values = planes(rows, 0);
+            let slopes = planes(rows, usize::from(order >= Order::First));
+            for i in 0..us.len() {
+                let out = i * vs.len() + stretch.start..i * vs.len() + stretch.end;
+                let Some(normals) = normals.as_deref_mut() else {
+                    for axis in 0..3 {
+                        blend(&values, |r| plain[i][first + r][axis], n, &mut chunk.p[axis]);
+                    }
+                    chunk.write_points(&mut points[out]);
+                    continue;
+                };
+                let q = &columns[i][first..];
+                for axis in 0..3 {
+                    blend(&values, |r| q[r][axis].f, n, &mut chunk.p[axis]);
+                    blend(&values, |r| q[r][axis].t, n, &mut chunk.u[axis]);
+                    blend(&slopes, |r| q[r][axis].f, n, &mut chunk.v[axis]);
+                }
+                chunk.write_points(&mut points[out.clone()]);
+                chunk.write_normals(&mut normals[out]);
+            }
+        }
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        [self.masters.breaks(), self.knots.breaks()]
+    }
+
+    fn edges(&self) -> Edges<T> {
+        self.masters.edges()
+    }
+}

@@ -1,0 +1,76 @@
+//! What all lofts have in common: their master curves, and so their edges.
+
+use moldloft_num::trace::{Edge, Edges, Key, Trace};
+use moldloft_num::{Jet, Order, Real, Uni1, Vec3};
+use moldloft_registry::{CurveRef, Fault};
+use smallvec::SmallVec;
+
+/// A short list of positions: those of a few masters stay on the stack.
+pub type Points<S> = SmallVec<[Vec3<S>; 6]>;
+
+/// The master curves of a loft, two or more.
+pub struct Masters<T: Real>(Vec<CurveRef<T>>);
+
+impl<T: Real> Masters<T> {
+    /// # Errors
+    /// `too-few-items`, in field `field`, for fewer than two curves.
+    pub fn new(curves: Vec<CurveRef<T>>, field: usize) -> Result<Self, Fault> {
+        if curves.len() >= 2 {
+            return Ok(Self(curves));
+        }
+        Err(Fault::new("too-few-items", "a loft needs at least 2 curves")
+            .expected("at least 2 curves")
+            .found(curves.len().to_string())
+            .in_field(field))
+    }
+
+    pub fn curves(&self) -> &[CurveRef<T>] {
+        &self.0
+    }
+
+    /// The positions of all masters at `u`.
+    pub fn at<J: Jet<T>>(&self, u: J) -> Points<J> {
+        self.0.iter().map(|curve| curve.at(u)).collect()
+    }
+
+    /// The positions at the plain number `u`, with their derivatives by u.
+    pub fn with_slopes(&self, u: f64) -> Points<Uni1<T>> {
+        let jet = |curve: &CurveRef<T>| {
+            let [p, d, _] = curve.jet(T::from(u), Order::First);
+            Vec3::new(Uni1 { f: p.x, t: d.x }, Uni1 { f: p.y, t: d.y }, Uni1 { f: p.z, t: d.z })
+        };
+        self.0.iter().map(jet).collect()
+    }
+
+    /// The parameters u at which a master has a break.
+    pub fn breaks(&self) -> Vec<f64> {
+        let mut all: Vec<f64> = self.0.iter().flat_map(|curve| curve.breaks()).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+
+    /// The edges of a surface that begins with the first master at v = 0 and ends with the last at
+    /// v = 1: those two run along the masters. Where all masters meet in one point object, the
+    /// edge is that point.
+    pub fn edges(&self) -> Edges<T> {
+        let (first, last) = (&self.0[0], &self.0[self.0.len() - 1]);
+        let ends: Vec<[Option<Key>; 2]> = self.0.iter().map(|c| c.end_points()).collect();
+        let across = |end: usize| {
+            let point = ends[0][end];
+            let meet = point.is_some() && ends.iter().all(|e| e[end] == point);
+            if meet { Edge::Pole(point) } else { Edge::Own }
+        };
+        let ([a, b], [d, c]) = (ends[0], ends[ends.len() - 1]);
+        Edges { edges: [along(first), across(1), along(last), across(0)], corners: [a, b, c, d] }
+    }
+}
+
+/// The edge that runs along the whole of a curve.
+pub fn along<T: Real>(curve: &CurveRef<T>) -> Edge<T> {
+    if let Trace::Point(point) = curve.trace() {
+        return Edge::Pole(point);
+    }
+    let pieces = curve.pieces();
+    if pieces.is_empty() { Edge::Own } else { Edge::Pieces(pieces) }
+}

@@ -1,0 +1,245 @@
+use super::masters::along;
+use crate::arguments::{Side, Snake, common_surface};
+use moldloft_num::trace::{Edge, Edges, Key};
+use moldloft_num::{Jet, Real, SurfaceFormula, Vec3, lift_curve};
+use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+
+/// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
+/// and w a patch of its parameter plane.
+///
+/// Two sides w1, w2 are edges v = 0 and v = 1: w = (1 - v) w1(u) + v w2(u). Four sides are the edges
+/// v = 0, u = 1, v = 1, u = 0, in this order and each in increasing parameter, so the third and the
+/// fourth run against a walk round the patch; w is the bilinear Coons patch (Coons 1967). Three are
+/// the same with the edge u = 0 a single point, where the first and the third begin. A magnet is a
+/// side without length. Sides that do not meet are refused, never turned round.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "sides",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
+               AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
+               AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.9, 0.1); AbsMagnet r(S, 0.8, 0.9); \
+               AbsMagnet s(S, 0.2, 0.7); AbsMagnet t(S, 0.5, 0.3); BSnake south({p, t, q}); \
+               LineSnake east(q, r); LineSnake north(s, r); LineSnake west(p, s); \
+               SubSurf half({south, r}); SubSurf three({south, east, LineSnake(p, r)}); \
+               SubSurf part({south, east, north, west});"
+)]
+pub struct SubSurf<T: Real> {
+    /// Two, three or four snakes and magnets of one surface.
+    #[field(min_items = 2)]
+    sides: Vec<Side<T>>,
+}
+
+/// How far apart, in u or v, ends that should meet may be: far below a panel, far above rounding.
+const MEETING: f64 = 1e-6;
+
+impl<T: Real> Build<T> for SubSurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let sides = self.sides;
+        if !(2..=4).contains(&sides.len()) {
+            return Err(Fault::new("wrong-length", "a sub-surface has 2, 3 or 4 sides")
+                .expected("2, 3 or 4 snakes and magnets")
+                .found(sides.len().to_string())
+                .in_field(0));
+        }
+        let keys = |side: &Side<T>| match side {
+            Side::Snake(snake) => snake.curve.key,
+            Side::Magnet(magnet) => magnet.key,
+        };
+        let items: Vec<_> = sides.iter().map(|side| (keys(side), side.surface())).collect();
+        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(0))?;
+        if sides.iter().all(|side| matches!(side, Side::Magnet(_))) {
+            return Err(Fault::new("no-area", "a sub-surface needs a side with length")
+                .expected("at least one snake")
+                .found("magnets only")
+                .in_field(0));
+        }
+        let shape = match <[Side<T>; 2]>::try_from(sides) {
+            Ok(ends) => Patch { surface, layout: Layout::Between(ends) },
+            Err(sides) => {
+                let layout = Layout::Round(sides);
+                check_corners(&layout)?;
+                Patch { surface, layout }
+            }
+        };
+        Ok(Value::Surface(SurfaceRef::new(shape, context.nesting)))
+    }
+}
+
+/// The sides of a patch and where they lie.
+enum Layout<T: Real> {
+    /// Edges v = 0 and v = 1.
+    Between([Side<T>; 2]),
+    /// Edges v = 0, u = 1, v = 1 and, unless it is a point, u = 0.
+    Round(Vec<Side<T>>),
+}
+
+struct Patch<T: Real> {
+    surface: SurfaceRef<T>,
+    layout: Layout<T>,
+}
+
+/// The place (u, v, 0) on the surface at the parameter `t` of a side.
+fn place<T: Real, J: Jet<T>>(side: &Side<T>, t: J) -> Vec3<J> {
+    match side {
+        Side::Snake(snake) => lift_curve(&snake.path(t.value(), J::ORDER), t),
+        Side::Magnet(magnet) => {
+            let [u, v] = magnet.uv;
+            Vec3::new(J::fixed(u), J::fixed(v), J::zero())
+        }
+    }
+}
+
+fn end<T: Real>(side: &Side<T>, t: f64) -> Vec3<T> {
+    place(side, T::from(t))
+}
+
+/// The corners (side, end) that must be one place, with the names of the ends.
+const CORNERS: [[(usize, f64); 2]; 4] =
+    [[(0, 1.0), (1, 0.0)], [(1, 1.0), (2, 1.0)], [(2, 0.0), (3, 1.0)], [(3, 0.0), (0, 0.0)]];
+
+fn check_corners<T: Real>(layout: &Layout<T>) -> Result<(), Fault> {
+    let Layout::Round(sides) = layout else { return Ok(()) };
+    let apart = |[(a, s), (b, t)]: [(usize, f64); 2]| {
+        let d = (end(&sides[a], s) - end(&sides[b], t)).re();
+        (d.x.abs().max(d.y.abs()) > MEETING).then_some((a, s, b, t))
+    };
+    let corners = match sides.len() {
+        3 => vec![CORNERS[0], CORNERS[1], [(2, 0.0), (0, 0.0)]],
+        _ => CORNERS.to_vec(),
+    };
+    let Some((a, s, b, t)) = corners.into_iter().find_map(apart) else { return Ok(()) };
+    let says = |side: usize, at: f64| {
+        let p = end(&sides[side], at).re();
+        let which = if at == 0.0 { "begins" } else { "ends" };
+        format!("side {} {which} at (u, v) = ({}, {})", side + 1, p.x, p.y)
+    };
+    let fault = Fault::new("open-corner", format!("sides {} and {} do not meet", a + 1, b + 1))
+        .expected("the edges v = 0, u = 1, v = 1, u = 0, each in increasing parameter")
+        .found(format!("{}, but {}", says(a, s), says(b, t)))
+        .in_item(b)
+        .in_field(0);
+    Err(match turned_round(sides) {
+        Some(turned) if !turned.is_empty() => {
+            let list = turned.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ");
+            fault.help(format!("they do when these sides run the other way: {list}"))
+        }
+        _ => fault.help("let neighbouring sides end in common magnets"),
+    })
+}
+
+/// The sides that must run backwards for all corners to meet, when that helps.
+fn turned_round<T: Real>(sides: &[Side<T>]) -> Option<Vec<usize>> {
+    let count = sides.len();
+    let meets = |mask: u32, [(a, s), (b, t)]: [(usize, f64); 2]| {
+        let at = |side: usize, t: f64| {
+            end(&sides[side], if mask >> side & 1 == 1 { 1.0 - t } else { t }).re()
+        };
+        let d = at(a, s) - at(b, t);
+        d.x.abs().max(d.y.abs()) <= MEETING
+    };
+    let corners = match count {
+        3 => vec![CORNERS[0], CORNERS[1], [(2, 0.0), (0, 0.0)]],
+        _ => CORNERS.to_vec(),
+    };
+    let mask = (1..1u32 << count).find(|&mask| corners.iter().all(|&c| meets(mask, c)))?;
+    Some((0..count).filter(|k| mask >> k & 1 == 1).collect())
+}
+
+impl<T: Real> Patch<T> {
+    /// The place on the surface.
+    fn inside<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        let (a, b) = (-u + 1.0, -v + 1.0);
+        let sides = match &self.layout {
+            Layout::Between([first, last]) => return place(first, u) * b + place(last, u) * v,
+            Layout::Round(sides) => sides,
+        };
+        let [south, east, north] = [&sides[0], &sides[1], &sides[2]];
+        let fixed = |p: Vec3<T>| p.map(J::fixed);
+        let corner = |side, t| fixed(end(side, t));
+        let west = match sides.get(3) {
+            Some(west) => place(west, v),
+            None => corner(south, 0.0),
+        };
+        let across = place(south, u) * b + place(north, u) * v;
+        let along = west * a + place(east, v) * u;
+        let low = corner(south, 0.0) * a + corner(south, 1.0) * u;
+        let high = corner(north, 0.0) * a + corner(north, 1.0) * u;
+        across + along - (low * b + high * v)
+    }
+}
+
+impl<T: Real> SurfaceFormula for Patch<T> {
+    type Scalar = T;
+
+    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        let w = self.inside(u, v);
+        self.surface.at(w.x, w.y)
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        let of = |side: &Side<T>| match side {
+            Side::Snake(snake) => snake.curve.breaks(),
+            Side::Magnet(_) => Vec::new(),
+        };
+        let merged = |a: Option<&Side<T>>, b: Option<&Side<T>>| {
+            let mut all: Vec<f64> = [a, b].into_iter().flatten().flat_map(of).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        };
+        match &self.layout {
+            Layout::Between([a, b]) => [merged(Some(a), Some(b)), Vec::new()],
+            Layout::Round(s) => [merged(Some(&s[0]), Some(&s[2])), merged(Some(&s[1]), s.get(3))],
+        }
+    }
+
+    fn edges(&self) -> Edges<T> {
+        match &self.layout {
+            Layout::Between([first, last]) => {
+                let ([a, b], [d, c]) = (ends(first), ends(last));
+                let across = |p: Option<Key>, q: Option<Key>| {
+                    if p.is_some() && p == q { Edge::Pole(p) } else { Edge::Own }
+                };
+                Edges {
+                    edges: [edge(first), across(b, c), edge(last), across(a, d)],
+                    corners: [a, b, c, d],
+                }
+            }
+            Layout::Round(sides) => {
+                let point = |[(a, s), (b, t)]: [(usize, f64); 2]| {
+                    let of = |side: usize, t: f64| {
+                        sides.get(side).and_then(|side| ends(side)[t as usize])
+                    };
+                    of(a, s).or(of(b, t))
+                };
+                let [b, c, d, a] = match sides.len() {
+                    3 => {
+                        let pole = point([(0, 0.0), (2, 0.0)]);
+                        [point(CORNERS[0]), point(CORNERS[1]), pole, pole]
+                    }
+                    _ => CORNERS.map(point),
+                };
+                let west = sides.get(3).map_or(Edge::Pole(a), edge);
+                Edges {
+                    edges: [edge(&sides[0]), edge(&sides[1]), edge(&sides[2]), west],
+                    corners: [a, b, c, d],
+                }
+            }
+        }
+    }
+}
+
+fn edge<T: Real>(side: &Side<T>) -> Edge<T> {
+    match side {
+        Side::Snake(Snake { curve, .. }) => along(curve),
+        Side::Magnet(magnet) => Edge::Pole(magnet.key),
+    }
+}
+
+fn ends<T: Real>(side: &Side<T>) -> [Option<Key>; 2] {
+    match side {
+        Side::Snake(Snake { curve, .. }) => curve.end_points(),
+        Side::Magnet(magnet) => [magnet.key; 2],
+    }
+}

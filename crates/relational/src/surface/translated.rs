@@ -1,0 +1,48 @@
+use super::masters::along;
+use moldloft_num::trace::{Edge, Edges};
+use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
+use moldloft_registry::{CurveRef, Kind};
+
+/// A curve moved along another: S(u, v) = C1(u) + (C2(v) - C2(0)).
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    shape,
+    columns = "c1 c2",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 1, 2); \
+               AbsPoint E(1, 1, 3); BCurve l({A, B, C}); BCurve m({A, D, E}); TranSurf S(l, m);"
+)]
+pub struct TranSurf<T: Real> {
+    /// The curve that is moved: edge v = 0.
+    c1: CurveRef<T>,
+    /// The curve along which it is moved.
+    c2: CurveRef<T>,
+}
+
+impl<T: Real> SurfaceFormula for TranSurf<T> {
+    type Scalar = T;
+
+    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        self.c1.at(u) + (self.c2.at(v) - self.c2.end(0.0).map(J::fixed))
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        [self.c1.breaks(), self.c2.breaks()]
+    }
+
+    /// Edge v = 0 runs along the first curve; where both curves begin in one point object, edge
+    /// u = 0 runs along the second.
+    fn edges(&self) -> Edges<T> {
+        let (a, b) = (self.c1.end_points(), self.c2.end_points());
+        let mut edges = Edges::own().with(0, along(&self.c1));
+        edges.corners[..2].copy_from_slice(&a);
+        if a[0].is_some() && a[0] == b[0] {
+            let second = along(&self.c2);
+            if second != Edge::Own {
+                edges = edges.with(3, second);
+            }
+            edges.corners[3] = b[1];
+        }
+        edges
+    }
+}
