@@ -221,6 +221,11 @@ impl Document {
             if let Some(span) = span {
                 diagnostic = diagnostic.at(span);
             }
+            for (key, label) in &fault.related {
+                if let Some(span) = evaluation.graph.get(*key).and_then(|o| self.declared_at(evaluation, o)) {
+                    diagnostic = diagnostic.note_at(span, label.clone());
+                }
+            }
             if let Some(names) = blocked.get(&object.key) {
                 let shown = names.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
                 let more = names.len().saturating_sub(5);
@@ -230,6 +235,18 @@ impl Document {
             diagnostics.push(diagnostic);
         }
         diagnostics
+    }
+
+    fn declared_at<T: Scalar>(
+        &self,
+        evaluation: &Evaluation<T>,
+        object: &moldloft_model::Object<T>,
+    ) -> Option<moldloft_diag::Span> {
+        match &self.source {
+            Source::Program => program::declared_at(&self.modules, &evaluation.env, object),
+            Source::ModelFile(source) => source.declared_at(object),
+            Source::None => None,
+        }
     }
 
     /// All that is wrong or remarkable, in the order of the text's faults, then the run's.

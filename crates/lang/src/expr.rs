@@ -297,7 +297,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         sub: Subscript,
         extent: usize,
     ) -> Result<Selection, Diagnostic> {
-        let mut bound = |this: &mut Self, expr: Option<ExprId>, default: f64| match expr {
+        let bound = |this: &mut Self, expr: Option<ExprId>, default: f64| match expr {
             Some(expr) => this.number(m, expr).map(|x| (x.re(), m.program[expr].span)),
             None => Ok((default, Span::UNKNOWN)),
         };

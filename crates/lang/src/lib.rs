@@ -36,6 +36,7 @@ mod module;
 mod ops;
 mod place;
 mod program;
+mod rename;
 mod sections;
 pub mod show;
 mod variables;

@@ -63,10 +63,6 @@ impl Modules {
         name
     }
 
-    pub fn find_name(&self, text: &str) -> Option<Name> {
-        self.texts.get(text).copied()
-    }
-
     pub fn text(&self, name: Name) -> &Arc<str> {
         &self.names[name.0 as usize]
     }
