@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
-from moldloft.errors import ModelError, UnknownNameError
+from moldloft.errors import FileError, ModelError, UnknownNameError
 from moldloft.hydrostatics import Hydrostatics
 from moldloft.objects import Object
 
@@ -40,7 +40,12 @@ class Param:
     """True when it takes whole numbers only."""
 
 
-def load(path: str | os.PathLike[str], *, library: Sequence[str | os.PathLike[str]] = ()) -> Model:
+def load(
+    path: str | os.PathLike[str],
+    *,
+    library: Sequence[str | os.PathLike[str]] = (),
+    strict: bool = True,
+) -> Model:
     """Load a model from a file.
 
     Parameters
@@ -49,20 +54,33 @@ def load(path: str | os.PathLike[str], *, library: Sequence[str | os.PathLike[st
         An ``.sdl`` program or an ``.ms2`` model file.
     library
         Folders, besides the model's own, from which it may load.
+    strict
+        Whether errors raise. Without it they are told by :attr:`Model.diagnostics` only, and
+        what does not depend on a failed object lives on.
 
     Raises
     ------
     ModelError
-        When the text cannot be run at all. Objects that fail leave the rest alive: see
-        :attr:`Model.diagnostics`.
+        When the model has an error.
     FileError
         When the file cannot be read.
     """
-    return Model(_core.Document.open(os.fspath(path), [os.fspath(folder) for folder in library]))
+    folders = [os.fspath(folder) for folder in library]
+    model = Model(_core.Document.open(os.fspath(path), folders))
+    if strict:
+        unread = [d for d in model.diagnostics if d.id == "cannot-read"]
+        if unread and not model.text:
+            raise FileError(str(unread[0]).rstrip(), unread)
+        model.check()
+    return model
 
 
 def loads(
-    text: str, *, name: str = "model.sdl", library: Sequence[str | os.PathLike[str]] = ()
+    text: str,
+    *,
+    name: str = "model.sdl",
+    library: Sequence[str | os.PathLike[str]] = (),
+    strict: bool = True,
 ) -> Model:
     """Load a model from a text.
 
@@ -74,15 +92,18 @@ def loads(
         The name that messages show; ``.ms2`` at its end means a model file.
     library
         Folders from which the text may load.
+    strict
+        As for :func:`load`.
 
     Raises
     ------
     ModelError
-        When the text has an error.
+        When the model has an error.
     """
     folders = [os.fspath(folder) for folder in library]
     model = Model(_core.Document.from_text(name, text, None, folders))
-    model.check()
+    if strict:
+        model.check()
     return model
 
 

@@ -212,7 +212,7 @@ def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[
         whole = [str(total["panels"]), str(total["vertices"]), _number(total["area"])]
         whole += [_number(total["volume"]), _yes(total["closed"])]
         rows.append(["whole", "", *whole, "", "", ""])
-        lines += ["", table(header, rows)]
+        lines += ["", table(header, rows, left=2)]
         lines += [f"open edge: {_loop(loop)}" for loop in total["open_loops"]]
     if floating is not None:
         lines += ["", _floating(floating)]

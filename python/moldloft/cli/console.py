@@ -62,7 +62,7 @@ def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
     from moldloft.model import load
 
-    model = load(options.model, library=options.library)
+    model = load(options.model, library=options.library, strict=False)
     if options.set and not model._document.has_errors():
         model.set(dict(options.set))
     return model
@@ -89,8 +89,8 @@ def _finite(data: Any) -> Any:
     return data
 
 
-def table(header: list[str], rows: list[list[str]]) -> str:
-    """A table; the first column to the left, the others to the right.
+def table(header: list[str], rows: list[list[str]], *, left: int = 1) -> str:
+    """A table; the first ``left`` columns to the left, the others to the right.
 
     >>> print(table(["patch", "panels"], [["hull", "200"]]))
     patch  panels
@@ -99,8 +99,8 @@ def table(header: list[str], rows: list[list[str]]) -> str:
     widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
     lines = []
     for row in [header, *rows]:
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        padded = zip(row, widths, strict=True)
+        cells = [c.ljust(w) if k < left else c.rjust(w) for k, (c, w) in enumerate(padded)]
         lines.append("  ".join(cells).rstrip())
     return "\n".join(lines)
 

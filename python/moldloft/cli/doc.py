@@ -50,6 +50,7 @@ def _list(rows: list[dict[str, Any]]) -> str:
     return table(
         ["name", "class", "arguments"],
         [[row["name"], row["class"], ", ".join(f["name"] for f in row["fields"])] for row in rows],
+        left=3,
     )
 
 

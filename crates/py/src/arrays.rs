@@ -1,0 +1,31 @@
+//! Vectors and NumPy arrays.
+
+use moldloft_num::Vec3;
+use numpy::ndarray::Dimension;
+use numpy::{PyArray, PyArrayMethods};
+use pyo3::prelude::*;
+
+/// Numbers, a whole number of threes, as vectors.
+fn vectors(numbers: &mut [f64]) -> &mut [Vec3] {
+    // SAFETY: Vec3<f64> is repr(C) with three f64 and nothing else, of the same alignment, so 3 n
+    // numbers are n vectors; a remainder of one or two numbers is left out.
+    #[allow(unsafe_code)]
+    unsafe {
+        std::slice::from_raw_parts_mut(numbers.as_mut_ptr().cast(), numbers.len() / 3)
+    }
+}
+
+/// A new array of vectors, its last extent 3, filled by `fill` without a copy.
+pub fn filled<'py, D: Dimension, R>(
+    py: Python<'py>,
+    shape: impl numpy::ndarray::IntoDimension<Dim = D>,
+    fill: impl FnOnce(&mut [Vec3]) -> R,
+) -> (Bound<'py, PyArray<f64, D>>, R) {
+    let array = PyArray::<f64, D>::zeros(py, shape, false);
+    let result = {
+        let mut access = array.readwrite();
+        let slice = access.as_slice_mut().expect("a new array is contiguous");
+        fill(vectors(slice))
+    };
+    (array, result)
+}

@@ -1,0 +1,440 @@
+//! A model with its text.
+
+use crate::arrays;
+use crate::diagnostics::Diagnostic;
+use crate::error::{model_error, plain_error, unknown_name};
+use crate::mesh::PyMesh;
+use crate::value::to_python;
+use crate::work::interruptible;
+use crate::world::FileWorld;
+use crate::write;
+use moldloft_diag::Sources;
+use moldloft_lang::{Document, Format};
+use moldloft_mesh::{FloatOptions, Symmetry, hydrostatics};
+use moldloft_model::Object;
+use moldloft_num::{Order, Vec3};
+use moldloft_registry::{CurveRef, SurfaceRef, Value};
+use numpy::{PyArray2, PyArray3, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use pyo3::types::{PyBytes, PyDict};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The most points of one grid.
+const MOST_POINTS: usize = 1 << 27;
+
+/// A model that is at least this large is changed on another thread, so that Ctrl-C is heard.
+const LARGE: usize = 50_000;
+
+/// A model with its text.
+#[pyclass(frozen, name = "Document", module = "moldloft._core")]
+pub struct PyDocument {
+    inner: Arc<Mutex<Document>>,
+    cancel: Arc<AtomicBool>,
+}
+
+type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
+
+impl PyDocument {
+    fn new(document: Document) -> Self {
+        let cancel = document.cancel_handle();
+        Self { inner: Arc::new(Mutex::new(document)), cancel }
+    }
+
+    fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Document> {
+        // A panic is our own bug and was shown as such; the document is still in one piece.
+        self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Work that may take long.
+    fn long<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Document) -> R + Send + 'static,
+    ) -> PyResult<R> {
+        let inner = self.inner.clone();
+        interruptible(py, &self.cancel, move || {
+            work(&mut inner.lock().unwrap_or_else(PoisonError::into_inner))
+        })
+    }
+
+    /// Work that may take long or find fault.
+    fn long_checked<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Document) -> Outcome<R> + Send + 'static,
+    ) -> PyResult<R> {
+        let outcome = self.long(py, move |document| {
+            let outcome = work(document);
+            outcome.map_err(|diagnostics| (diagnostics, document.sources().clone()))
+        })?;
+        outcome.map_err(|(diagnostics, sources)| model_error(&diagnostics, &sources))
+    }
+
+    /// The value of an object, without holding on to the document.
+    fn value(&self, py: Python<'_>, name: &str) -> PyResult<Value<f64>> {
+        let document = self.lock(py);
+        let object = object_named(&document, name)?;
+        match object.value() {
+            Some(value) => Ok(value.clone()),
+            None => Err(model_error(&document.diagnostics(), document.sources())),
+        }
+    }
+
+    fn surface_of(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceRef<f64>> {
+        match self.value(py, name)? {
+            Value::Surface(surface) => Ok(surface),
+            other => Err(wrong_class(name, "a surface takes u and v", &other)),
+        }
+    }
+
+    fn curve_of(&self, py: Python<'_>, name: &str) -> PyResult<CurveRef<f64>> {
+        match self.value(py, name)? {
+            Value::Curve(curve) => Ok(curve),
+            other => Err(wrong_class(name, "a curve takes t", &other)),
+        }
+    }
+}
+
+#[pymethods]
+impl PyDocument {
+    #[staticmethod]
+    fn open(py: Python<'_>, path: String, library: Vec<String>) -> PyResult<Self> {
+        let world = Box::new(FileWorld::around(&path, &library));
+        let never = AtomicBool::new(false);
+        let open = move || Document::open(moldloft_lang::registry(), world, &path);
+        interruptible(py, &never, open).map(Self::new)
+    }
+
+    #[staticmethod]
+    fn from_text(
+        py: Python<'_>,
+        name: String,
+        text: String,
+        folder: Option<String>,
+        library: Vec<String>,
+    ) -> PyResult<Self> {
+        let world = Box::new(FileWorld::new(folder.as_deref().map(Path::new), &library));
+        let never = AtomicBool::new(false);
+        let open = move || Document::from_text(moldloft_lang::registry(), world, &name, &text);
+        interruptible(py, &never, open).map(Self::new)
+    }
+
+    fn diagnostics(&self, py: Python<'_>) -> Vec<Diagnostic> {
+        let document = self.lock(py);
+        let sources = document.sources();
+        document.diagnostics().iter().map(|d| d.to_data(sources).into()).collect()
+    }
+
+    fn has_errors(&self, py: Python<'_>) -> bool {
+        self.lock(py).has_errors()
+    }
+
+    fn text(&self, py: Python<'_>) -> String {
+        self.lock(py).text()
+    }
+
+    fn set_text(&self, py: Python<'_>, text: String) -> PyResult<()> {
+        self.long(py, move |document| {
+            document.set_text(&text);
+        })
+    }
+
+    fn convert(&self, py: Python<'_>, to: &str) -> PyResult<String> {
+        let format = match to {
+            "sdl" => Format::Sdl,
+            "ms2" => Format::ModelFile,
+            _ => return Err(plain_error(format!("there is no form `{to}` but sdl and ms2"))),
+        };
+        self.long_checked(py, move |document| document.convert(format))
+    }
+
+    /// Rows of name, value, default, low, high, whole.
+    fn params(&self, py: Python<'_>) -> Vec<(String, f64, f64, Option<f64>, Option<f64>, bool)> {
+        let document = self.lock(py);
+        let row = |p: &moldloft_lang::Param| {
+            let (low, high) = p.range.unzip();
+            (p.name.clone(), p.value, p.default, low, high, p.is_int)
+        };
+        document.params().iter().map(row).collect()
+    }
+
+    fn param(&self, py: Python<'_>, name: &str) -> Option<f64> {
+        self.lock(py).params().iter().find(|p| p.name == name).map(|p| p.value)
+    }
+
+    fn set(&self, py: Python<'_>, assignments: Vec<(String, f64)>) -> PyResult<()> {
+        let mut document = self.lock(py);
+        if document.graph().len() >= LARGE {
+            drop(document);
+            return self.long_checked(py, move |d| d.set(&assignments).map(drop));
+        }
+        match document.set(&assignments) {
+            Ok(_) => Ok(()),
+            Err(diagnostics) => Err(model_error(&diagnostics, document.sources())),
+        }
+    }
+
+    fn evaluated(&self, py: Python<'_>) -> usize {
+        self.lock(py).applied().evaluated
+    }
+
+    fn symmetry(&self, py: Python<'_>) -> String {
+        self.lock(py).symmetry()
+    }
+
+    /// The names of the files that the model was read from.
+    fn files(&self, py: Python<'_>) -> Vec<String> {
+        let document = self.lock(py);
+        let sources = document.sources();
+        sources.ids().filter_map(|id| sources.name(id)).map(str::to_owned).collect()
+    }
+
+    fn names(&self, py: Python<'_>) -> Vec<String> {
+        self.lock(py).graph().objects().map(|o| o.name.to_string()).collect()
+    }
+
+    fn has(&self, py: Python<'_>, name: &str) -> bool {
+        self.lock(py).graph().find(name).is_some()
+    }
+
+    /// The parameter or object most like `name`.
+    fn similar(&self, py: Python<'_>, name: &str) -> Option<String> {
+        let document = self.lock(py);
+        similar(&document, name)
+    }
+
+    fn object<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyDict>> {
+        let document = self.lock(py);
+        let object = object_named(&document, name)?;
+        let graph = document.graph();
+        let names = |keys: &mut dyn Iterator<Item = moldloft_num::trace::Key>| -> Vec<String> {
+            keys.filter_map(|key| Some(graph.get(key)?.name.to_string())).collect()
+        };
+        let class = object.value().map_or(object.row.class, Value::class);
+        let dict = PyDict::new(py);
+        dict.set_item("name", object.name.as_ref())?;
+        dict.set_item("kind", object.row.name.as_ref())?;
+        dict.set_item("class", class.name())?;
+        dict.set_item("ok", object.value().is_some())?;
+        dict.set_item("shown", object.head.shown())?;
+        dict.set_item("parents", names(&mut object.parents.iter().copied()))?;
+        dict.set_item("children", names(&mut object.children.iter().copied()))?;
+        Ok(dict)
+    }
+
+    fn rename(&self, py: Python<'_>, old: String, new: String) -> PyResult<()> {
+        self.long_checked(py, move |d| d.rename(&old, &new).map(drop).map_err(|e| vec![e]))
+    }
+
+    fn delete(&self, py: Python<'_>, name: String) -> PyResult<()> {
+        self.long_checked(py, move |d| d.delete(&name).map(drop).map_err(|e| vec![e]))
+    }
+
+    fn eval<'py>(&self, py: Python<'py>, expression: &str) -> PyResult<Bound<'py, PyAny>> {
+        let mut document = self.lock(py);
+        match document.eval(expression) {
+            Ok(value) => to_python(py, &value),
+            Err(diagnostics) => Err(model_error(&diagnostics, document.sources())),
+        }
+    }
+
+    fn derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        expressions: Vec<String>,
+        by: Vec<String>,
+    ) -> PyResult<Vec<Vec<Bound<'py, PyAny>>>> {
+        let rows = self.long_checked(py, move |d| d.derivatives(&expressions, &by))?;
+        let row = |row: Vec<Value<f64>>| row.iter().map(|value| to_python(py, value)).collect();
+        rows.into_iter().map(row).collect()
+    }
+
+    fn curve<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        t: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let curve = self.curve_of(py, name)?;
+        let ts = t.as_slice()?;
+        Ok(arrays::filled(py, [ts.len(), 3], |out| py.detach(|| curve.grid(ts, out))).0)
+    }
+
+    fn surface<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        u: PyReadonlyArray1<'py, f64>,
+        v: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let surface = self.surface_of(py, name)?;
+        let (us, vs) = (u.as_slice()?, v.as_slice()?);
+        let fill = |out: &mut [Vec3]| {
+            for ((x, &u), &v) in out.iter_mut().zip(us).zip(vs) {
+                *x = surface.jet(u, v, Order::Zero).p;
+            }
+        };
+        Ok(arrays::filled(py, [us.len(), 3], |out| py.detach(|| fill(out))).0)
+    }
+
+    fn grid<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        nu: usize,
+        nv: usize,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (us, vs) = (parameters(nu)?, parameters(nv)?);
+        check_size(nu, nv)?;
+        let surface = self.surface_of(py, name)?;
+        let fill = |out: &mut [Vec3]| py.detach(|| surface.grid(&us, &vs, out, None));
+        Ok(arrays::filled(py, [nu, nv, 3], fill).0)
+    }
+
+    fn grid_with_normals<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        nu: usize,
+        nv: usize,
+    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
+        let (us, vs) = (parameters(nu)?, parameters(nv)?);
+        check_size(nu, nv)?;
+        let surface = self.surface_of(py, name)?;
+        let (points, normals) = arrays::filled(py, [nu, nv, 3], |points| {
+            let fill = |normals: &mut [Vec3]| {
+                py.detach(|| surface.grid(&us, &vs, points, Some(normals)));
+            };
+            arrays::filled(py, [nu, nv, 3], fill).0
+        });
+        Ok((points, normals))
+    }
+
+    fn mesh(&self, py: Python<'_>) -> PyResult<PyMesh> {
+        let panelled = self.long_checked(py, |d| d.panelled().map_err(|e| vec![e]))?;
+        Ok(PyMesh::new(panelled))
+    }
+
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        by: Vec<String>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let columns = self.long_checked(py, move |d| d.jacobian(&by))?;
+        let vertices = columns.first().map_or(0, Vec::len);
+        let array = PyArray3::<f64>::zeros(py, [vertices, 3, columns.len()], false);
+        {
+            let mut access = numpy::PyArrayMethods::readwrite(&array);
+            let mut out = access.as_array_mut();
+            for (k, column) in columns.iter().enumerate() {
+                for (i, v) in column.iter().enumerate() {
+                    for (axis, x) in v.to_array().into_iter().enumerate() {
+                        out[[i, axis, k]] = x;
+                    }
+                }
+            }
+        }
+        Ok(array)
+    }
+
+    fn hydrostatics<'py>(
+        &self,
+        py: Python<'py>,
+        level: f64,
+        density: f64,
+        sides: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let mirrored = self.lock(py).symmetry().contains('y');
+        let (symmetry, counted) = match (mirrored, sides) {
+            (false, "both" | "one") => (Symmetry::None, "whole"),
+            (true, "both") => (Symmetry::MirroredTwice, "both"),
+            (true, "one") => (Symmetry::MirroredOnce, "one"),
+            _ => return Err(plain_error(format!("sides are `both` or `one`, not `{sides}`"))),
+        };
+        if !level.is_finite() || !(density.is_finite() && density > 0.0) {
+            return Err(plain_error("the level must be a finite number and the density positive"));
+        }
+        let options = FloatOptions { level, symmetry, density };
+        let panelled = self.long_checked(py, |d| d.panelled().map_err(|e| vec![e]))?;
+        let h = py.detach(|| hydrostatics(&panelled.mesh, options));
+        let dict = PyDict::new(py);
+        dict.set_item("level", h.level)?;
+        dict.set_item("sides", counted)?;
+        for (name, value) in h.figures() {
+            dict.set_item(name, value)?;
+        }
+        dict.set_item("open_edges", h.open_edges)?;
+        dict.set_item("closure_error", h.closure_error)?;
+        dict.set_item("waterplane_error", h.waterplane_error)?;
+        dict.set_item("outward", h.outward)?;
+        Ok(dict)
+    }
+
+    /// The files of a format: name and content of each.
+    fn write<'py>(
+        &self,
+        py: Python<'py>,
+        format: String,
+        stem: String,
+    ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+        let files = self.long_checked(py, move |d| write::files(d, &format, &stem))?;
+        Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
+    }
+
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        width: usize,
+        height: usize,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let picture = self.long_checked(py, move |d| write::picture(d, width, height))?;
+        Ok(PyBytes::new(py, &picture))
+    }
+}
+
+/// The canonical text of a program.
+#[pyfunction]
+pub fn format_text(name: &str, text: &[u8]) -> PyResult<String> {
+    let mut sources = Sources::new();
+    let text = match moldloft_syntax::decode(text, name) {
+        Ok(text) => text,
+        Err(diagnostic) => return Err(model_error(&[diagnostic], &sources)),
+    };
+    sources.add(name, text);
+    moldloft_syntax::sdl::format(text).map_err(|diagnostics| model_error(&diagnostics, &sources))
+}
+
+fn object_named<'d>(document: &'d Document, name: &str) -> PyResult<&'d Object<f64>> {
+    let graph = document.graph();
+    graph.find(name).and_then(|key| graph.get(key)).ok_or_else(|| {
+        let near = similar(document, name).map(|n| format!("; did you mean `{n}`?"));
+        unknown_name(format!("there is no object `{name}`{}", near.unwrap_or_default()))
+    })
+}
+
+fn similar(document: &Document, name: &str) -> Option<String> {
+    let params = document.params().iter().map(|p| p.name.as_str());
+    let objects = document.graph().objects().map(|o| o.name.as_ref());
+    moldloft_diag::nearest(name, params.chain(objects)).map(str::to_owned)
+}
+
+fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr {
+    plain_error(format!("{takes}, but `{name}` is {}", found.class().a()))
+}
+
+fn parameters(n: usize) -> PyResult<Vec<f64>> {
+    if n < 2 {
+        return Err(plain_error(format!("a grid has at least 2 points along each side, not {n}")));
+    }
+    Ok((0..n).map(|i| i as f64 / (n - 1) as f64).collect())
+}
+
+fn check_size(nu: usize, nv: usize) -> PyResult<()> {
+    match nu.checked_mul(nv) {
+        Some(points) if points <= MOST_POINTS => Ok(()),
+        _ => Err(plain_error(format!("{nu} x {nv} are more than {MOST_POINTS} points"))),
+    }
+}

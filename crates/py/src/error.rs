@@ -1,0 +1,37 @@
+//! The one place where faults of Rust become Python's exceptions.
+
+use crate::diagnostics::Diagnostic;
+use moldloft_diag::Sources;
+use pyo3::prelude::*;
+
+mod raised {
+    pyo3::import_exception!(moldloft.errors, Error);
+    pyo3::import_exception!(moldloft.errors, ModelError);
+    pyo3::import_exception!(moldloft.errors, UnknownNameError);
+}
+
+/// The ids of diagnostics about a name that is not there.
+const UNKNOWN: [&str; 3] = ["unknown-name", "unknown-object", "unknown-parameter"];
+
+/// An exception that carries diagnostics and prints as they do.
+pub fn model_error(diagnostics: &[moldloft_diag::Diagnostic], sources: &Sources) -> PyErr {
+    let data: Vec<Diagnostic> = diagnostics.iter().map(|d| d.to_data(sources).into()).collect();
+    let text: Vec<&str> = data.iter().map(Diagnostic::rendered).collect();
+    let text = text.join("\n");
+    let mut errors = diagnostics.iter().filter(|d| d.is_error());
+    if errors.all(|d| UNKNOWN.contains(&d.id.as_ref())) && !diagnostics.is_empty() {
+        raised::UnknownNameError::new_err((text, data))
+    } else {
+        raised::ModelError::new_err((text, data))
+    }
+}
+
+/// An exception without a place in a model.
+pub fn plain_error(message: impl std::fmt::Display) -> PyErr {
+    raised::Error::new_err(format!("error: {message}"))
+}
+
+/// An exception about a name.
+pub fn unknown_name(message: impl std::fmt::Display) -> PyErr {
+    raised::UnknownNameError::new_err(message.to_string())
+}

@@ -1,0 +1,39 @@
+//! The Python extension `moldloft._core`: classes over documents and meshes, no logic.
+//!
+//! `Document -> Python object`, `&[Vec3] -> NumPy array`, `Diagnostic -> exception`. What users see
+//! is `python/moldloft`, which wraps these classes.
+//!
+//! Invariant: this crate is the only one that knows Python and the only one that opens files, and
+//! those for reading only: inside the model's folder and the library path.
+
+mod arrays;
+mod diagnostics;
+mod document;
+mod error;
+mod mesh;
+mod reference;
+mod value;
+mod work;
+mod world;
+mod write;
+
+use pyo3::prelude::*;
+
+/// The compiled part of Moldloft.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    #[pymodule_export]
+    use crate::diagnostics::{Diagnostic, Label};
+    #[pymodule_export]
+    use crate::document::{PyDocument, format_text};
+    #[pymodule_export]
+    use crate::mesh::PyMesh;
+    #[pymodule_export]
+    use crate::reference::reference;
+    #[pymodule_export]
+    use crate::value::Shape;
+}

@@ -1,0 +1,42 @@
+//! The registry as data.
+
+use moldloft_registry::{DefaultValue, Field, Row};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// All kinds and functions with their classes and arguments, in the order of the reference.
+#[pyfunction]
+pub fn reference(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    moldloft_lang::registry().rows().map(|row| describe(py, row)).collect()
+}
+
+fn describe<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {
+    let fields: PyResult<Vec<_>> = row.fields.iter().map(|field| argument(py, field)).collect();
+    let dict = PyDict::new(py);
+    dict.set_item("name", row.name.as_ref())?;
+    dict.set_item("class", row.class.name())?;
+    dict.set_item("is_kind", row.kind)?;
+    dict.set_item("summary", row.summary())?;
+    dict.set_item("doc", row.doc.as_ref())?;
+    dict.set_item("fields", fields?)?;
+    dict.set_item("columns", row.columns)?;
+    dict.set_item("example", row.example.as_ref())?;
+    Ok(dict)
+}
+
+fn argument<'py>(py: Python<'py>, field: &Field) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("name", field.name)?;
+    dict.set_item("class", field.class.name())?;
+    dict.set_item("many", field.many)?;
+    dict.set_item("required", field.default.is_none())?;
+    match field.default {
+        Some(DefaultValue::Number(x)) => dict.set_item("default", x)?,
+        Some(DefaultValue::Text(text)) => dict.set_item("default", text)?,
+        Some(DefaultValue::Unset) | None => dict.set_item("default", py.None())?,
+    }
+    dict.set_item("min", field.min)?;
+    dict.set_item("max", field.max)?;
+    dict.set_item("help", field.help)?;
+    Ok(dict)
+}

@@ -1,0 +1,65 @@
+//! Values of the language as Python objects.
+
+use crate::arrays;
+use moldloft_num::Vec3;
+use moldloft_registry::{Array, ArrayShape, Class, Value};
+use numpy::{PyArray, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyList, PyString};
+
+/// A value that has no form in Python, such as a curve; it knows its class.
+#[pyclass(frozen, module = "moldloft._core")]
+pub struct Shape {
+    class: Class,
+}
+
+#[pymethods]
+impl Shape {
+    #[getter]
+    fn class_(&self) -> &'static str {
+        self.class.name()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<{}>", self.class.name())
+    }
+}
+
+/// Numbers as floats, vectors as arrays, lists as lists; shapes by their class only.
+pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::Unset => py.None().into_bound(py),
+        // -0 is a rounding accident to whoever reads it.
+        Value::Number(x) => PyFloat::new(py, x + 0.0).into_any(),
+        Value::Text(text) => PyString::new(py, text).into_any(),
+        Value::Vector(v) => vector(py, *v),
+        Value::Point(p) => vector(py, p.xyz),
+        Value::Numbers(a) => numbers(py, a)?,
+        Value::Vectors(a) => vectors(py, a),
+        Value::List(items) => {
+            let items: PyResult<Vec<_>> = items.iter().map(|item| to_python(py, item)).collect();
+            PyList::new(py, items?)?.into_any()
+        }
+        other => Bound::new(py, Shape { class: other.class() })?.into_any(),
+    })
+}
+
+fn vector<'py>(py: Python<'py>, v: Vec3) -> Bound<'py, PyAny> {
+    arrays::filled(py, [3], |out| out[0] = v.map(|x| x + 0.0)).0.into_any()
+}
+
+fn numbers<'py>(py: Python<'py>, a: &Array<f64>) -> PyResult<Bound<'py, PyAny>> {
+    let row = PyArray::from_slice(py, &a.items);
+    Ok(match a.shape {
+        ArrayShape::Row(_) => row.into_any(),
+        ArrayShape::Grid(m, n) => row.reshape([m, n])?.into_any(),
+    })
+}
+
+fn vectors<'py>(py: Python<'py>, a: &Array<Vec3>) -> Bound<'py, PyAny> {
+    let fill = |out: &mut [Vec3]| out.copy_from_slice(&a.items);
+    match a.shape {
+        ArrayShape::Row(n) => arrays::filled(py, [n, 3], fill).0.into_any(),
+        ArrayShape::Grid(m, n) => arrays::filled(py, [m, n, 3], fill).0.into_any(),
+    }
+}

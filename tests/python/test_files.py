@@ -1,0 +1,197 @@
+"""Every format is read back by a program that is not ours."""
+
+from __future__ import annotations
+
+import errno
+import os
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import capytaine
+import manifold3d
+import meshio
+import numpy as np
+import pytest
+import pyvista
+import trimesh
+
+import moldloft
+from conftest import SAILBOAT
+from moldloft.files import FORMATS, Output, commit
+
+BOX = """
+param float height = 1 in [0.5, 2];
+AbsPoint a(0, 0, 0); AbsPoint b(2, 0, 0); AbsPoint c(2, 3, 0); AbsPoint d(0, 3, 0);
+AbsPoint e(0, 0, height); AbsPoint f(2, 0, height);
+AbsPoint g(2, 3, height); AbsPoint h(0, 3, height);
+Line ab(a, b, divisions = 4, visible = 0); Line bc(b, c); Line dc(d, c); Line ad(a, d);
+Line ef(e, f); Line fg(f, g); Line hg(h, g); Line eh(e, h);
+RuledSurf bottom(ab, dc, divisions = {4, 3}, orientation = 1);
+RuledSurf top(ef, hg, divisions = {4, 3});
+RuledSurf front(ab, ef, divisions = {4, 2});
+RuledSurf back(dc, hg, divisions = {4, 2}, orientation = 1);
+RuledSurf left(ad, eh, divisions = {3, 2}, orientation = 1);
+RuledSurf right(bc, fg, divisions = {3, 2});
+"""
+
+
+@pytest.fixture
+def hull() -> moldloft.Model:
+    return moldloft.load(SAILBOAT / "hull.sdl")
+
+
+@pytest.fixture
+def box() -> moldloft.Model:
+    return moldloft.loads(BOX)
+
+
+def test_gdf_by_capytaine(hull, tmp_path):
+    (path,) = hull.write(tmp_path / "hull.gdf")
+    mesh = capytaine.load_mesh(str(path), file_format="gdf")
+    half = getattr(mesh, "half", mesh)
+    ours = hull.mesh()
+    assert half.nb_faces == len(ours.faces)
+    assert half.faces_areas.sum() == pytest.approx(ours.area, rel=1e-3)
+    lines = path.read_text().splitlines()
+    assert lines[2].split()[:2] == ["0", "1"], "the hull is mirrored in y = 0"
+    corners = np.array([line.split() for line in lines[4:]], dtype=float).reshape(-1, 4, 3)
+    np.testing.assert_array_equal(corners, ours.vertices[ours.faces])
+
+
+def test_obj_by_meshio(hull, tmp_path):
+    (path,) = hull.write(tmp_path / "hull.obj")
+    mesh, ours = meshio.read(path), hull.mesh()
+    np.testing.assert_array_equal(mesh.points, ours.vertices)
+    faces = np.vstack([block.data for block in mesh.cells if block.type == "quad"])
+    np.testing.assert_array_equal(faces, ours.faces)
+
+
+def test_vtp_by_pyvista(hull, tmp_path):
+    (path,) = hull.write(tmp_path / "hull.vtp")
+    mesh, ours = pyvista.read(path), hull.mesh()
+    np.testing.assert_array_equal(mesh.points, ours.vertices)
+    assert mesh.n_cells == len(ours.faces)
+    assert mesh.area == pytest.approx(ours.area, rel=1e-3)
+
+
+def test_vts_by_pyvista(box, tmp_path):
+    paths = box.write(tmp_path / "box.vts")
+    grids = [pyvista.read(path) for path in paths if path.suffix == ".vts"]
+    assert len(grids) == 6
+    for grid, patch in zip(grids, box.mesh().patches, strict=True):
+        nu, nv = patch.divisions
+        assert grid.dimensions == (nu + 1, nv + 1, 1)
+        assert grid.area == pytest.approx(patch.area)
+
+
+def test_plot3d_by_pyvista(box, tmp_path):
+    (path,) = box.write(tmp_path / "box.p3d")
+    reader = pyvista.MultiBlockPlot3DReader(path)
+    reader.binary_file = True
+    reader.has_byte_count = False
+    reader.multi_grid = True
+    reader.double_precision = True
+    reader.byte_order = "little"
+    blocks = reader.read()
+    assert blocks.n_blocks == 6
+    for block, patch in zip(blocks, box.mesh().patches, strict=True):
+        nu, nv = patch.divisions
+        assert block.dimensions == (nu + 1, nv + 1, 1)
+    lows = np.min([block.points.min(axis=0) for block in blocks], axis=0)
+    highs = np.max([block.points.max(axis=0) for block in blocks], axis=0)
+    np.testing.assert_array_equal([lows, highs], [[0, 0, 0], [2, 3, 1]])
+
+
+def test_stl_by_trimesh_and_manifold(box, tmp_path):
+    assert box.mesh().closed and box.mesh().volume == pytest.approx(6)
+    (path,) = box.write(tmp_path / "box.stl")
+    mesh = trimesh.load_mesh(path)
+    assert mesh.is_watertight and mesh.is_winding_consistent
+    assert mesh.volume == pytest.approx(6)
+    solid = manifold3d.Manifold(
+        manifold3d.Mesh(
+            np.asarray(mesh.vertices, dtype=np.float32), np.asarray(mesh.faces, dtype=np.uint32)
+        )
+    )
+    assert solid.status() == manifold3d.Error.NoError
+    assert solid.volume() == pytest.approx(6, rel=1e-6)
+
+
+def test_the_box_stays_closed_for_every_height(box):
+    for height in (0.5, 0.7, 1.9):
+        box["height"] = height
+        assert box.mesh().closed
+        assert box.mesh().volume == pytest.approx(6 * height)
+    assert box.derivative("mesh.volume", "height") == pytest.approx(6)
+
+
+def test_svg_sheets_have_their_scale(hull, tmp_path):
+    paths = hull.write(tmp_path / "hull.svg")
+    assert len(paths) == 3
+    for path in paths:
+        root = ElementTree.parse(path).getroot()
+        text = " ".join(root.itertext())
+        assert "1 : " in text, path
+        lines = [e for e in root.iter() if e.tag.endswith(("path", "polyline"))]
+        assert lines, path
+
+
+def test_png_shows_something(hull, tmp_path):
+    (path,) = hull.write(tmp_path / "hull.png")
+    pixels = pyvista.read_texture(path).to_array()
+    assert pixels.shape[0] >= 500 and pixels.shape[1] >= 800
+    assert len(np.unique(pixels.reshape(-1, pixels.shape[-1]), axis=0)) > 100
+
+
+def test_formats_by_other_names(hull, tmp_path):
+    (path,) = hull.write(tmp_path / "hull.xyz")
+    assert path.read_bytes() == hull.write(tmp_path / "hull.p3d")[0].read_bytes()
+    with pytest.raises(moldloft.Error, match="gdf"):
+        hull.write(tmp_path / "hull.dwg")
+
+
+def test_every_format_can_be_written(hull, tmp_path):
+    for name in FORMATS:
+        for path in hull.write(tmp_path / f"hull.{name}"):
+            assert path.stat().st_size > 100
+
+
+def folder_of(path: Path) -> dict[str, bytes]:
+    return {entry.name: entry.read_bytes() for entry in path.iterdir()}
+
+
+@pytest.mark.parametrize("at", [1, 2])
+def test_a_full_disk_leaves_nothing(tmp_path, monkeypatch, at):
+    (tmp_path / "a.txt").write_bytes(b"old")
+    before = folder_of(tmp_path)
+    calls = 0
+
+    def full(_: int) -> None:
+        nonlocal calls
+        calls += 1
+        if calls == at:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
+    outputs = [Output("a.txt", b"new"), Output("b.txt", b"new")]
+    with pytest.raises(moldloft.FileError, match="no space left"):
+        commit(tmp_path, outputs)
+    assert folder_of(tmp_path) == before
+    with pytest.raises(moldloft.FileError) as caught:
+        calls = 0
+        commit(tmp_path / "new" / "folder", outputs)
+    assert isinstance(caught.value, OSError)
+    assert folder_of(tmp_path) == before
+
+
+def test_a_folder_in_the_way(tmp_path):
+    (tmp_path / "b.txt").mkdir()
+    with pytest.raises(moldloft.FileError, match="folder"):
+        commit(tmp_path, [Output("a.txt", b"new"), Output("b.txt", b"new")])
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["b.txt"]
+
+
+def test_files_are_replaced_whole(tmp_path):
+    commit(tmp_path, [Output("a.txt", b"one")])
+    assert commit(tmp_path, [Output("a.txt", b"two")]) == [tmp_path / "a.txt"]
+    assert folder_of(tmp_path) == {"a.txt": b"two"}

@@ -1,0 +1,86 @@
+"""Promises about the package itself: versions, start-up, what a wheel holds."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import time
+import zipfile
+from pathlib import Path
+
+import moldloft
+from conftest import ROOT
+
+TRIES = 7
+
+
+def seconds(*arguments: str) -> float:
+    """The least time of a few runs: what the machine does besides only adds."""
+    times = []
+    for _ in range(TRIES):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def test_the_version_answers_at_once():
+    assert seconds("-m", "moldloft", "--version") < 0.15
+
+
+def test_the_import_adds_little_to_numpy():
+    together = "import numpy; import moldloft; moldloft.load; moldloft.Mesh"
+    assert seconds("-c", together) - seconds("-c", "import numpy") < 0.05
+
+
+def test_no_extra_is_imported():
+    code = "import moldloft, sys; moldloft.load; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+    modules = {name.partition(".")[0] for name in loaded.split()}
+    assert not modules & {"scipy", "matplotlib", "pyvista", "capytaine", "meshio", "OCP", "h5py"}
+
+
+def test_all_names_are_there():
+    for name in moldloft.__all__:
+        assert getattr(moldloft, name) is not None
+    assert set(moldloft.__all__) <= set(dir(moldloft))
+
+
+def test_the_oldest_tools_are_stated_alike():
+    manifest = (ROOT / ".ci" / "manifest.toml").read_text()
+    rust = re.search(r'rust = "([\d.]+)"', manifest)[1]
+    python = re.search(r'python = "([\d.]+)"', manifest)[1]
+    assert f'rust-version = "{rust}"' in (ROOT / "Cargo.toml").read_text()
+    assert f'requires-python = ">={python}"' in (ROOT / "pyproject.toml").read_text()
+    readme = (ROOT / "README.md").read_text()
+    assert f"Rust {rust}" in readme and f"Python {python}" in readme
+
+
+def test_the_version_is_the_workspace_s():
+    version = re.search(r'^version = "([\d.]+)"', (ROOT / "Cargo.toml").read_text(), re.M)[1]
+    assert moldloft.__version__ == version
+    assert f"## {version}" in (ROOT / "CHANGELOG.md").read_text()
+
+
+def test_the_wheel(tmp_path: Path):
+    build = [sys.executable, "-m", "maturin", "build", "--release", "--quiet", "--out"]
+    subprocess.run([*build, str(tmp_path)], cwd=ROOT, check=True, timeout=1200)
+    (wheel,) = tmp_path.glob("*.whl")
+    assert wheel.stat().st_size < 8_000_000
+    assert "abi3" in wheel.name
+    names = set(zipfile.ZipFile(wheel).namelist())
+    assert {"moldloft/py.typed", "moldloft/_core.pyi", "moldloft/cli/build.py"} <= names
+    assert any(name.endswith(("LICENSE-MIT", "LICENSE-APACHE")) for name in names)
+
+
+def test_the_reference_is_up_to_date():
+    done = subprocess.run(
+        [sys.executable, "-m", "moldloft", "doc", "--markdown"],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=True,
+    )
+    page = (ROOT / "docs" / "reference.md").read_text(encoding="utf-8")
+    assert page == done.stdout, "run `make reference` and look at the difference"
