@@ -85,12 +85,20 @@ impl<const N: usize> Dual<N> {
         }
         Self { re: f(self.re), eps }
     }
+    #[inline(always)]
+    fn nth_part(self, k: usize) -> f64 {
+        if k == 0 { self.re } else { self.eps[k - 1] }
+    }
+    #[inline(always)]
+    fn of_parts(mut part: impl FnMut(usize) -> f64) -> Self {
+        Self { re: part(0), eps: std::array::from_fn(|k| part(k + 1)) }
+    }
     fn all(self, f: impl Fn(f64) -> bool) -> bool {
         f(self.re) && self.eps.iter().all(|&e| f(e))
     }
 }
 
-real_by_chain!(impl[const N: usize] Dual<N>, base = f64);
+real_by_chain!(impl[const N: usize] Dual<N>, base = f64, parts = N + 1, first_order = true);
 
 #[cfg(test)]
 mod tests {
@@ -163,6 +171,7 @@ mod tests {
         assert_eq!((a / b).re.to_bits(), (0.1f64 / 0.3).to_bits());
         assert_eq!((a * b - a).re.to_bits(), (0.1f64 * 0.3 - 0.1).to_bits());
         assert!(D::from(2.0).is_constant() && !a.is_constant());
+        assert_eq!(D::from_parts(|k| a.part(k)), a);
     }
 
     #[test]

@@ -110,12 +110,32 @@ macro_rules! jet_type {
             fn map(self, mut g: impl FnMut(T) -> T) -> Self {
                 Self { f: g(self.f), $($part: g(self.$part)),* }
             }
+            const FIELDS: usize = [$(stringify!($part)),*].len() + 1;
+            #[inline(always)]
+            fn nth_part(self, k: usize) -> f64 {
+                [self.f, $(self.$part),*][k / T::PARTS].part(k % T::PARTS)
+            }
+            #[inline(always)]
+            fn of_parts(mut part: impl FnMut(usize) -> f64) -> Self {
+                let mut begin = 0;
+                let mut next = || {
+                    let x = T::from_parts(|k| part(begin + k));
+                    begin += T::PARTS;
+                    x
+                };
+                Self { f: next(), $($part: next()),* }
+            }
             fn all(self, g: impl Fn(T) -> bool) -> bool {
                 g(self.f) $(&& g(self.$part))*
             }
         }
 
-        real_by_chain!(impl[T: Real] $name<T>, base = T);
+        real_by_chain!(
+            impl[T: Real] $name<T>,
+            base = T,
+            parts = Self::FIELDS * T::PARTS,
+            first_order = T::PARTS == 1 && matches!($order, Order::First)
+        );
 
         impl<T: Real> Jet<T> for $name<T> {
             const ORDER: Order = $order;
@@ -275,6 +295,15 @@ mod tests {
         assert!((f.v - e * (u0 * c / v0 - s / (v0 * v0))).abs() < 1e-14);
         let fuv = -u0 * s * e + u0 * c * e / v0 - s * e / (v0 * v0);
         assert!((f.uv - fuv).abs() < 1e-14, "{} {fuv}", f.uv);
+    }
+
+    #[test]
+    fn parts_make_the_whole() {
+        type J = Uni2<crate::Dual<2>>;
+        assert_eq!((J::PARTS, J::FIRST_ORDER, Bi1::<f64>::FIRST_ORDER), (9, false, true));
+        let x = J::from_parts(|k| k as f64);
+        assert_eq!((x.f.eps, x.t.re, x.tt.eps[1]), ([1.0, 2.0], 3.0, 8.0));
+        assert!((0..9).all(|k| x.part(k) == k as f64));
     }
 
     #[test]

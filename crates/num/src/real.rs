@@ -27,8 +27,20 @@ pub trait Real:
     + SubAssign
     + MulAssign
 {
+    /// How many plain numbers it consists of: itself and its derivatives.
+    const PARTS: usize;
+
+    /// True when the parts after the first are first derivatives, each in a direction of its own.
+    const FIRST_ORDER: bool;
+
     /// The real part: the number without its derivatives.
     fn re(self) -> f64;
+
+    /// Part `k` of [`Self::PARTS`]; part 0 is the real part.
+    fn part(self, k: usize) -> f64;
+
+    /// The number whose part `k` is `part(k)`.
+    fn from_parts(part: impl FnMut(usize) -> f64) -> Self;
 
     /// True when the number and all its derivatives are finite.
     fn is_finite(self) -> bool;
@@ -112,9 +124,19 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    const PARTS: usize = 1;
+    const FIRST_ORDER: bool = true;
     #[inline(always)]
     fn re(self) -> f64 {
         self
+    }
+    #[inline(always)]
+    fn part(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn from_parts(mut part: impl FnMut(usize) -> f64) -> Self {
+        part(0)
     }
     #[inline(always)]
     fn is_finite(self) -> bool {
@@ -180,9 +202,9 @@ impl Real for f64 {
 
 /// Implements [`Real`] and the operators for a number `f + nilpotent` over a base scalar, from the
 /// chain rule `chain(f(x), f'(x), f''(x))`. `$base` is the scalar of the parts; the implementor
-/// provides `value`, `constant`, `chain`, `mul`, `zip`, `map`.
+/// provides `value`, `constant`, `chain`, `mul`, `zip`, `map`, `nth_part` and `of_parts`.
 macro_rules! real_by_chain {
-    (impl[$($gen:tt)*] $ty:ty, base = $base:ty) => {
+    (impl[$($gen:tt)*] $ty:ty, base = $base:ty, parts = $parts:expr, first_order = $first:expr) => {
         impl<$($gen)*> From<f64> for $ty {
             #[inline(always)]
             fn from(x: f64) -> Self { Self::constant(<$base>::from(x)) }
@@ -257,8 +279,14 @@ macro_rules! real_by_chain {
             }
         }
         impl<$($gen)*> Real for $ty {
+            const PARTS: usize = $parts;
+            const FIRST_ORDER: bool = $first;
             #[inline(always)]
             fn re(self) -> f64 { self.value().re() }
+            #[inline(always)]
+            fn part(self, k: usize) -> f64 { self.nth_part(k) }
+            #[inline(always)]
+            fn from_parts(part: impl FnMut(usize) -> f64) -> Self { Self::of_parts(part) }
             fn is_finite(self) -> bool { self.all(|a| a.is_finite()) }
             fn bits_eq(self, o: Self) -> bool {
                 let mut same = true;
