@@ -69,6 +69,7 @@ pub fn rows() -> Vec<Row> {
         surface::RuledSurf,
         surface::BLoftSurf,
         surface::CLoftSurf,
+        surface::BSurf,
         surface::RevSurf,
         surface::TranSurf,
         surface::SubSurf,

@@ -1,4 +1,4 @@
-use super::chunk::{Chunk, LANES};
+use super::chunk::{Chunk, LANES, Part, Plane};
 use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
 use crate::faults;
@@ -88,27 +88,24 @@ impl<T: Real> Loft<T> {
         InterpolatingSpline::with_ends(points, ends)
     }
 
-    /// The spline of one column; where masters meet, which only a column that is one point was let
-    /// pass with, its knots are uniform.
-    fn column<S: Real>(&self, points: &[Vec3<S>]) -> PiecewiseCubic<S> {
-        match self.spline(points) {
-            Ok(spline) => spline.pieces().clone(),
-            Err(_) => {
-                let last = (points.len() - 1) as f64;
-                let knots: Vec<S> = (0..points.len()).map(|k| S::from(k as f64 / last)).collect();
-                let spline = InterpolatingSpline::with_knots(&knots, points, Ends::default());
-                spline.map_or_else(|_| constant(points[0]), |s| s.pieces().clone())
-            }
-        }
+    /// The spline of one column. Where masters meet, which only a column that is one point was let
+    /// pass with, its knots are uniform; where a master is not finite there is none.
+    fn column<S: Real>(&self, points: &[Vec3<S>]) -> Option<InterpolatingSpline<S>> {
+        let spline = self.spline(points).or_else(|_| {
+            let last = (points.len() - 1) as f64;
+            let knots: Vec<S> = (0..points.len()).map(|k| S::from(k as f64 / last)).collect();
+            InterpolatingSpline::with_knots(&knots, points, Ends::default())
+        });
+        spline.ok()
     }
 
     fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
-        self.column(&self.masters.at(u)).eval(v)
+        self.column(&self.masters.at(u)).map_or_else(nowhere, |spline| spline.pieces().eval(v))
     }
 }
 
-fn constant<S: Real>(p: Vec3<S>) -> PiecewiseCubic<S> {
-    PiecewiseCubic::hermite(&[S::zero(), S::one()], &[p, p], &[Vec3::zero(), Vec3::zero()])
+fn nowhere<S: Real>() -> Vec3<S> {
+    Vec3::of(f64::NAN, f64::NAN, f64::NAN)
 }
 
 impl<T: Real> Surface<T> for Loft<T> {
@@ -123,18 +120,25 @@ impl<T: Real> Surface<T> for Loft<T> {
         points: &mut [Vec3<T>],
         mut normals: Option<&mut [Vec3<T>]>,
     ) {
-        let mut chunk = Chunk::zero();
+        let mut chunk = Chunk::new();
         for (i, &u) in us.iter().enumerate() {
             let row = i * vs.len()..(i + 1) * vs.len();
-            match normals.as_deref_mut() {
-                Some(normals) => {
-                    let spline = self.column(&self.masters.with_slopes(u));
-                    let (points, normals) = (&mut points[row.clone()], &mut normals[row]);
-                    fill_with_normals(&spline, vs, &mut chunk, points, normals);
+            let points = &mut points[row.clone()];
+            let Some(normals) = normals.as_deref_mut() else {
+                match self.column(&self.masters.at(T::from(u))) {
+                    Some(spline) => fill(spline.pieces(), vs, &mut chunk, points),
+                    None => points.fill(nowhere()),
+                }
+                continue;
+            };
+            let normals = &mut normals[row];
+            match self.column(&self.masters.with_slopes(u)) {
+                Some(spline) => {
+                    fill_with_normals(spline.pieces(), vs, &mut chunk, points, normals);
                 }
                 None => {
-                    let spline = self.column(&self.masters.at(T::from(u)));
-                    fill(&spline, vs, &mut chunk, &mut points[row]);
+                    points.fill(nowhere());
+                    normals.fill(Vec3::zero());
                 }
             }
         }
@@ -178,25 +182,37 @@ fn stretches<'a, S: Real>(
     spline: &'a PiecewiseCubic<S>,
     vs: &'a [f64],
 ) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> + 'a {
-    let inner = &spline.knots()[1..];
-    let piece = move |v: f64| inner.iter().take_while(|k| k.re() <= v).count();
+    let knots = spline.knots();
+    let last = knots.len() - 1;
     let mut begin = 0;
     std::iter::from_fn(move || {
-        let first = piece(*vs.get(begin)?);
-        let most = (begin + LANES).min(vs.len());
-        let end = (begin + 1..most).find(|&j| piece(vs[j]) != first).unwrap_or(most);
+        let v = *vs.get(begin)?;
+        let first = knots[1..].iter().take_while(|k| k.re() <= v).count();
+        let low = if first == 0 { f64::NEG_INFINITY } else { knots[first].re() };
+        let high = if first == last { f64::INFINITY } else { knots[first + 1].re() };
+        let rest = &vs[begin..(begin + LANES).min(vs.len())];
+        let length = rest.iter().position(|&v| v < low || v >= high).unwrap_or(rest.len());
+        let end = begin + length;
         let stretch = begin..end;
         begin = end;
         Some((first, stretch))
     })
 }
 
-fn steps(vs: &[f64], base: f64) -> [f64; LANES] {
+fn steps(vs: &[f64], base: f64) -> Plane {
     let mut s = [0.0; LANES];
     for (s, &v) in s.iter_mut().zip(vs) {
         *s = v - base;
     }
     s
+}
+
+/// The cubic of coefficients `[a, b, c, d]` at the first `n` of the numbers `s`.
+#[inline(always)]
+fn horner([a, b, c, d]: [f64; 4], s: &Plane, n: usize, out: &mut Plane) {
+    for (o, &s) in out.iter_mut().zip(s).take(n) {
+        *o = ((d * s + c) * s + b) * s + a;
+    }
 }
 
 fn fill<T: Real>(
@@ -209,9 +225,9 @@ fn fill<T: Real>(
         let (base, cubic) = rebased(spline, piece);
         let s = steps(&vs[stretch.clone()], base);
         for axis in 0..3 {
-            let [a, b, c, d] = cubic.map(|k| k[axis]);
-            for j in 0..stretch.len() {
-                chunk.p[axis][j] = ((d * s[j] + c) * s[j] + b) * s[j] + a;
+            for k in 0..T::PARTS {
+                let coefficients = std::array::from_fn(|r| cubic[r][axis].part(k));
+                horner(coefficients, &s, stretch.len(), chunk.plane(Part::Point, axis, k));
             }
         }
         chunk.write_points(&mut points[stretch]);
@@ -229,16 +245,17 @@ fn fill_with_normals<T: Real>(
         let (base, cubic) = rebased(spline, piece);
         let (s, n) = (steps(&vs[stretch.clone()], base), stretch.len());
         for axis in 0..3 {
-            let [a, b, c, d] = cubic.map(|k| k[axis]);
-            let (c2, d3) = (c.f * 2.0, d.f * 3.0);
-            for j in 0..n {
-                chunk.p[axis][j] = ((d.f * s[j] + c.f) * s[j] + b.f) * s[j] + a.f;
-            }
-            for j in 0..n {
-                chunk.u[axis][j] = ((d.t * s[j] + c.t) * s[j] + b.t) * s[j] + a.t;
-            }
-            for j in 0..n {
-                chunk.v[axis][j] = (d3 * s[j] + c2) * s[j] + b.f;
+            for k in 0..T::PARTS {
+                let position: [f64; 4] = std::array::from_fn(|r| cubic[r][axis].f.part(k));
+                horner(position, &s, n, chunk.plane(Part::Point, axis, k));
+                let by_u = std::array::from_fn(|r| cubic[r][axis].t.part(k));
+                horner(by_u, &s, n, chunk.plane(Part::ByU, axis, k));
+                let [_, b, c, d] = position;
+                let (c2, d3) = (c * 2.0, d * 3.0);
+                let by_v = chunk.plane(Part::ByV, axis, k);
+                for (o, &s) in by_v.iter_mut().zip(&s).take(n) {
+                    *o = (d3 * s + c2) * s + b;
+                }
             }
         }
         chunk.write_points(&mut points[stretch.clone()]);

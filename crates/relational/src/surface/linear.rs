@@ -1,6 +1,6 @@
 //! Lofts that are linear in their masters: S(u, v) = sum B_i(v) C_i(u).
 
-use super::chunk::{Chunk, LANES};
+use super::chunk::{Chunk, LANES, Part, Plane};
 use super::masters::{Masters, Points};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Vec3, surface_jet_of};
@@ -45,7 +45,7 @@ impl Table {
 }
 
 /// The basis values of one stretch, one plane for each master in play.
-fn planes(rows: &[Basis<f64>], order: usize) -> Vec<[f64; LANES]> {
+fn planes(rows: &[Basis<f64>], order: usize) -> Vec<Plane> {
     let mut planes = vec![[0.0; LANES]; rows[0].rows[order].len()];
     for (j, row) in rows.iter().enumerate() {
         for (plane, &b) in planes.iter_mut().zip(&row.rows[order]) {
@@ -55,12 +55,11 @@ fn planes(rows: &[Basis<f64>], order: usize) -> Vec<[f64; LANES]> {
     planes
 }
 
-fn blend<T: Real>(planes: &[[f64; LANES]], q: impl Fn(usize) -> T, n: usize, out: &mut [T; LANES]) {
-    let first = q(0);
-    for (o, &b) in out.iter_mut().zip(&planes[0]).take(n) {
-        *o = first * b;
-    }
-    for (r, plane) in planes.iter().enumerate().skip(1) {
+/// The sum of the basis planes times the numbers `q(0)`, `q(1)`, ...
+#[inline(always)]
+fn blend(planes: &[Plane], q: impl Fn(usize) -> f64, n: usize, out: &mut Plane) {
+    out.fill(0.0);
+    for (r, plane) in planes.iter().enumerate() {
         let q = q(r);
         for (o, &b) in out.iter_mut().zip(plane).take(n) {
             *o += q * b;
@@ -90,7 +89,7 @@ impl<T: Real> Surface<T> for Blend<T> {
             Order::Zero => us.iter().map(|&u| self.masters.at(T::from(u))).collect(),
             _ => Vec::new(),
         };
-        let mut chunk = Chunk::zero();
+        let mut chunk = Chunk::new();
         for stretch in table.stretches() {
             let rows = &table.rows[stretch.clone()];
             let (first, n) = (rows[0].first, rows.len());
@@ -98,18 +97,21 @@ impl<T: Real> Surface<T> for Blend<T> {
             let slopes = planes(rows, usize::from(order >= Order::First));
             for i in 0..us.len() {
                 let out = i * vs.len() + stretch.start..i * vs.len() + stretch.end;
+                let each = (0..3).flat_map(|axis| (0..T::PARTS).map(move |k| (axis, k)));
                 let Some(normals) = normals.as_deref_mut() else {
-                    for axis in 0..3 {
-                        blend(&values, |r| plain[i][first + r][axis], n, &mut chunk.p[axis]);
+                    for (axis, k) in each {
+                        let q = |r: usize| plain[i][first + r][axis].part(k);
+                        blend(&values, q, n, chunk.plane(Part::Point, axis, k));
                     }
                     chunk.write_points(&mut points[out]);
                     continue;
                 };
-                let q = &columns[i][first..];
-                for axis in 0..3 {
-                    blend(&values, |r| q[r][axis].f, n, &mut chunk.p[axis]);
-                    blend(&values, |r| q[r][axis].t, n, &mut chunk.u[axis]);
-                    blend(&slopes, |r| q[r][axis].f, n, &mut chunk.v[axis]);
+                for (axis, k) in each {
+                    let q = |r: usize| columns[i][first + r][axis].f.part(k);
+                    let by_u = |r: usize| columns[i][first + r][axis].t.part(k);
+                    blend(&values, q, n, chunk.plane(Part::Point, axis, k));
+                    blend(&values, by_u, n, chunk.plane(Part::ByU, axis, k));
+                    blend(&slopes, q, n, chunk.plane(Part::ByV, axis, k));
                 }
                 chunk.write_points(&mut points[out.clone()]);
                 chunk.write_normals(&mut normals[out]);

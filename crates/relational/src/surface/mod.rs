@@ -1,6 +1,7 @@
 //! Surfaces: lofts, revolutions, translations, and those made from other surfaces.
 
 mod bloft;
+mod bsurf;
 mod chunk;
 mod cloft;
 mod linear;
@@ -12,6 +13,7 @@ mod sub;
 mod translated;
 
 pub use bloft::BLoftSurf;
+pub use bsurf::BSurf;
 pub use cloft::CLoftSurf;
 pub use mirrored::MirrSurf;
 pub use revolved::RevSurf;

@@ -21,8 +21,8 @@ use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
                AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.9, 0.1); AbsMagnet r(S, 0.8, 0.9); \
                AbsMagnet s(S, 0.2, 0.7); AbsMagnet t(S, 0.5, 0.3); BSnake south({p, t, q}); \
                LineSnake east(q, r); LineSnake north(s, r); LineSnake west(p, s); \
-               SubSurf half({south, r}); SubSurf three({south, east, LineSnake(p, r)}); \
-               SubSurf part({south, east, north, west});"
+               LineSnake middle(p, r); SubSurf half({south, north}); SubSurf fan({south, r}); \
+               SubSurf three({south, east, middle}); SubSurf part({south, east, north, west});"
 )]
 pub struct SubSurf<T: Real> {
     /// Two, three or four snakes and magnets of one surface.
