@@ -433,6 +433,52 @@ impl<'g> Planner<'g> {
         }
     }
 
+    /// True when the panels as a whole, turned as their surfaces say, face inward: then all of
+    /// them are turned round. A closed mesh has a negative volume then; of an open one, the cone
+    /// from the middle of its rim has. A flat one faces as its surface says.
+    fn faces_inward(&mut self) -> bool {
+        let mut rim: HashMap<(u32, u32), (u32, Vec3, Vec3)> = HashMap::new();
+        for at in 0..self.drafts.len() {
+            if !self.drafts[at].meshed {
+                continue;
+            }
+            for k in 0..4 {
+                for pair in self.drafts[at].edge(k).windows(2) {
+                    let (a, b) = (self.joined.find(pair[0]), self.joined.find(pair[1]));
+                    if a != b {
+                        let ends = (self.drafts[at].point(pair[0]), self.drafts[at].point(pair[1]));
+                        rim.entry((a.min(b), a.max(b))).or_insert((0, ends.0, ends.1)).0 += 1;
+                    }
+                }
+            }
+        }
+        let mut open: Vec<_> = rim.into_iter().filter(|(_, (count, ..))| *count == 1).collect();
+        // In a fixed order, so that the sum has the same bits every time.
+        open.sort_unstable_by_key(|(edge, _)| *edge);
+        let (mut centre, mut length) = (Vec3::zero(), 0.0);
+        for (_, (_, a, b)) in open {
+            let step = a.distance(b);
+            centre += (a + b) * (0.5 * step);
+            length += step;
+        }
+        if length > 0.0 {
+            centre = centre / length;
+        }
+        let (mut volume, mut size) = (0.0, 0.0);
+        for draft in self.drafts.iter().filter(|d| d.meshed) {
+            let [nu, nv] = draft.divisions;
+            let sign = if draft.reversed { -1.0 } else { 1.0 };
+            let at = |i: usize, j: usize| draft.points[i * (nv + 1) + j] - centre;
+            for (i, j) in (0..nu).flat_map(|i| (0..nv).map(move |j| (i, j))) {
+                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+                let cone = (a + c).dot((c - a).cross(d - b));
+                volume += sign * cone;
+                size += cone.abs();
+            }
+        }
+        volume < -1e-6 * size
+    }
+
     fn assemble(mut self) -> Result<Panelling, MeshError> {
         let mut builder = TopologyBuilder::new();
         let mut number: HashMap<u32, u32> = HashMap::new();
@@ -454,6 +500,7 @@ impl<'g> Planner<'g> {
             });
         }
         builder.add_vertices(count as usize)?;
+        let inward = self.faces_inward();
         let meshed = self.drafts.iter().filter(|d| d.meshed);
         for (patch, draft) in patches.iter().zip(meshed) {
             let [nu, nv] = patch.divisions;
@@ -463,7 +510,8 @@ impl<'g> Planner<'g> {
                 colour: Some((draft.object.head.colour & 15) as u8),
                 kind: draft.object.row.name.to_string(),
             };
-            builder.add_block(info, nu + 1, nv + 1, patch.vertices.clone(), draft.reversed)?;
+            let reversed = draft.reversed != inward;
+            builder.add_block(info, nu + 1, nv + 1, patch.vertices.clone(), reversed)?;
         }
         Ok(Panelling { topology: builder.build().into(), patches, remarks: self.remarks })
     }

@@ -95,6 +95,13 @@ pub trait Surface<T: Real>: Send + Sync {
         }
     }
 
+    /// Positions at many parameter pairs in any order. `out` has the length of `uv`.
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
+        for (x, &[u, v]) in out.iter_mut().zip(uv) {
+            *x = self.jet(T::from(u), T::from(v), Order::Zero).p;
+        }
+    }
+
     /// Interior parameters u and v at which a derivative up to the second may jump, ascending.
     fn breaks(&self) -> [Vec<f64>; 2] {
         [Vec::new(), Vec::new()]

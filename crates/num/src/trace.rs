@@ -19,15 +19,6 @@ pub enum Root {
     Curve(Key),
     /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) of a surface object.
     Edge(Key, u8),
-    /// The mirror image of edge 0..4 of surface object `of`, in the mirror surface object `by`.
-    MirrorEdge {
-        /// The surface that is mirrored.
-        of: Key,
-        /// Its edge.
-        edge: u8,
-        /// The mirror-surface object.
-        by: Key,
-    },
 }
 
 /// Where a piece begins or ends on its root.
