@@ -529,5 +529,5 @@ pub(crate) struct LiteralEdit {
 /// Where a number stands.
 pub(crate) enum LiteralPlace {
     Program((usize, moldloft_syntax::sdl::LiteralId)),
-    ModelFile(moldloft_syntax::model_file::NumberId),
+    ModelFile(crate::model_file::ModelNumber),
 }

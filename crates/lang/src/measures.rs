@@ -5,7 +5,7 @@ use crate::interpreter::Inputs;
 use crate::program::Program;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
-use moldloft_mesh::{Mesh, measure};
+use moldloft_mesh::{Mesh, measure, measure_patch};
 use moldloft_num::{Dual4, Vec3};
 use moldloft_registry::{Scalar, Value};
 use std::collections::HashSet;
@@ -50,12 +50,21 @@ impl Document {
         program.eval(evaluation, inputs, text)
     }
 
-    /// The parts of `mesh.area` or `hydrostatics.volume`, unless the model has such an object.
+    /// The parts of `mesh.area`, `hydrostatics.volume` (unless the model has such an object) or
+    /// `hull.volume` of a surface: numbers of the joined panels.
     fn whole_name<'t>(&self, text: &'t str) -> Option<(&'t str, &'t str)> {
-        let (group, number) = text.trim().split_once('.')?;
+        let (group, number) = text.trim().rsplit_once('.')?;
         let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        let known = matches!(group, "mesh" | "hydrostatics");
-        (known && word && self.graph().find(group).is_none()).then_some((group, number))
+        let object = self.graph().find(group).and_then(|key| self.graph().get(key));
+        let known = match object {
+            Some(object) => {
+                matches!(object.value(), Some(Value::Surface(_)))
+                    && object.head.shown()
+                    && matches!(number, "area" | "volume")
+            }
+            None => matches!(group, "mesh" | "hydrostatics"),
+        };
+        (known && word).then_some((group, number))
     }
 
     /// A number of the whole model.
@@ -65,8 +74,9 @@ impl Document {
         group: &str,
         number: &str,
     ) -> Result<Value<T>, Diagnostic> {
-        let numbers = if group == "mesh" {
-            let measures = measure(mesh);
+        let patch = mesh.patches().iter().position(|p| p.info.name == group);
+        let numbers = if patch.is_some() || group == "mesh" {
+            let measures = patch.map_or_else(|| measure(mesh), |k| measure_patch(mesh, k));
             vec![
                 ("area", Value::Number(measures.area)),
                 ("volume", Value::Number(measures.volume)),

@@ -59,16 +59,15 @@ pub(crate) fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Vectors(_) => vec!["x", "y", "z", "d1"],
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
         Value::Curve(_) => vec!["length"],
-        Value::Surface(_) => vec!["area", "volume"],
+        Value::Surface(_) => vec!["area"],
         _ => Vec::new(),
     }
 }
 
-/// A number measured on the panels of a surface object: `area`, or `volume`, the signed volume of
-/// the cone from the origin.
+/// The area of a surface object, measured on its panels.
 pub(crate) fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<T> {
     let Value::Surface(surface) = object.value()? else { return None };
-    if !matches!(name, "area" | "volume") {
+    if name != "area" {
         return None;
     }
     let [nu, nv] = object.head.divisions.map(|n| n as usize);
@@ -77,8 +76,6 @@ pub(crate) fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<T> {
     surface.grid(&steps(nu), &steps(nv), &mut points, None);
     let mut builder = TopologyBuilder::new();
     let vertices = builder.add_vertices(points.len()).ok()?;
-    let reversed = object.head.orientation == 1;
-    builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), reversed).ok()?;
-    let measures = measure(&Mesh::new(builder.build().into(), points).ok()?);
-    Some(if name == "area" { measures.area } else { measures.volume })
+    builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), false).ok()?;
+    Some(measure(&Mesh::new(builder.build().into(), points).ok()?).area)
 }

@@ -1,0 +1,169 @@
+//! A user's Python function as a row of the registry.
+
+use moldloft_num::{Dual, Dual4, Real, Vec3};
+use moldloft_registry::{Array, Body, Class, Context, Fault, Field, Foreign, Row, Unit, Value};
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+use std::sync::Arc;
+
+/// An argument as `moldloft.numbers._call` takes it: a text, or a shape and its numbers.
+type Encoded = (Option<String>, Vec<usize>, Vec<Vec<f64>>);
+
+struct PythonFunction {
+    name: String,
+    function: Py<PyAny>,
+}
+
+/// The row of a function with the given names of arguments.
+pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny>) -> Row {
+    let fields: Vec<Field> = arguments
+        .into_iter()
+        .map(|argument| Field {
+            // Names of a registry's fields live as long as the program; a user has few functions.
+            name: Box::leak(argument.into_boxed_str()),
+            help: "An argument of the Python function.",
+            class: Class::Any,
+            many: false,
+            default: None,
+            unit: Unit::None,
+            min: None,
+            max: None,
+            min_items: 0,
+        })
+        .collect();
+    Row {
+        name: name.clone().into(),
+        doc: doc.into(),
+        class: Class::Any,
+        fields: fields.into(),
+        kind: false,
+        columns: None,
+        example: "".into(),
+        body: Body::Foreign(Arc::new(PythonFunction { name, function })),
+    }
+}
+
+impl PythonFunction {
+    fn call<T: Number>(&self, args: &[Value<T>]) -> Result<Value<T>, Fault> {
+        let mut encoded = Vec::with_capacity(args.len());
+        for (k, arg) in args.iter().enumerate() {
+            encoded.push(encode(arg).ok_or_else(|| {
+                Fault::new(
+                    "wrong-class",
+                    format!("a Python function does not take {}", arg.class().a()),
+                )
+                .expected("numbers, vectors, rows and grids of them, or texts")
+                .found(arg.class().a())
+                .in_field(k)
+            })?);
+        }
+        let (shape, numbers) = Python::attach(|py| self.call_python(py, encoded)).map_err(|e| {
+            let text = Python::attach(|py| e.value(py).to_string());
+            let kind = Python::attach(|py| {
+                e.get_type(py).name().map(|n| n.to_string()).unwrap_or_default()
+            });
+            Fault::new("function-failed", format!("{} raised {kind}: {text}", self.name))
+        })?;
+        decode(&shape, &numbers).ok_or_else(|| {
+            Fault::new(
+                "wrong-result",
+                format!("{} returned an array of shape {shape:?}", self.name),
+            )
+            .expected("a number, a vector (3,), a row (n,) or (n, 3), or a grid (m, n, 3)")
+            .found(format!("{shape:?}"))
+        })
+    }
+
+    fn call_python(
+        &self,
+        py: Python<'_>,
+        args: Vec<Encoded>,
+    ) -> PyResult<(Vec<usize>, Vec<Vec<f64>>)> {
+        let list = PyList::empty(py);
+        for (text, shape, numbers) in args {
+            match text {
+                Some(text) => list.append((text, py.None()))?,
+                None => list.append((shape, numbers))?,
+            }
+        }
+        py.import("moldloft.numbers")?
+            .getattr("_call")?
+            .call1((self.function.bind(py), list))?
+            .extract()
+    }
+}
+
+impl Foreign for PythonFunction {
+    fn call_plain(&self, args: &[Value<f64>], _: &Context) -> Result<Value<f64>, Fault> {
+        self.call(args)
+    }
+    fn call_dual(&self, args: &[Value<Dual4>], _: &Context) -> Result<Value<Dual4>, Fault> {
+        self.call(args)
+    }
+}
+
+/// A scalar as its parts.
+trait Number: Real {
+    fn parts(self) -> Vec<f64>;
+    fn of_parts(parts: &[f64]) -> Self;
+}
+
+impl Number for f64 {
+    fn parts(self) -> Vec<f64> {
+        vec![self]
+    }
+    fn of_parts(parts: &[f64]) -> Self {
+        parts[0]
+    }
+}
+
+impl Number for Dual4 {
+    fn parts(self) -> Vec<f64> {
+        let [a, b, c, d] = self.eps;
+        vec![self.re, a, b, c, d]
+    }
+    fn of_parts(parts: &[f64]) -> Self {
+        let mut eps = [0.0; 4];
+        for (e, part) in eps.iter_mut().zip(&parts[1..]) {
+            *e = *part;
+        }
+        Dual { re: parts[0], eps }
+    }
+}
+
+fn encode<T: Number>(value: &Value<T>) -> Option<Encoded> {
+    let vector = |v: &Vec3<T>| v.to_array().map(Number::parts);
+    let extents = |shape: moldloft_registry::ArrayShape| match shape {
+        moldloft_registry::ArrayShape::Row(n) => vec![n],
+        moldloft_registry::ArrayShape::Grid(m, n) => vec![m, n],
+    };
+    Some(match value {
+        Value::Text(text) => (Some(text.to_string()), Vec::new(), Vec::new()),
+        Value::Number(x) => (None, Vec::new(), vec![x.parts()]),
+        Value::Vector(v) => (None, vec![3], vector(v).to_vec()),
+        Value::Point(p) => (None, vec![3], vector(&p.xyz).to_vec()),
+        Value::Numbers(a) => {
+            (None, extents(a.shape), a.items.iter().map(|x| x.parts()).collect())
+        }
+        Value::Vectors(a) => {
+            let mut shape = extents(a.shape);
+            shape.push(3);
+            (None, shape, a.items.iter().flat_map(vector).collect())
+        }
+        _ => return None,
+    })
+}
+
+fn decode<T: Number>(shape: &[usize], numbers: &[Vec<f64>]) -> Option<Value<T>> {
+    let all: Vec<T> = numbers.iter().map(|parts| T::of_parts(parts)).collect();
+    let vectors = || all.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect::<Vec<_>>();
+    Some(match *shape {
+        [] => Value::Number(*all.first()?),
+        [3] => Value::Vector(vectors()[0]),
+        [_] => Value::Numbers(Arc::new(Array::row(all))),
+        [_, 3] => Value::Vectors(Arc::new(Array::row(vectors()))),
+        [m, n] => Value::Numbers(Arc::new(Array::grid(m, n, all))),
+        [m, n, 3] => Value::Vectors(Arc::new(Array::grid(m, n, vectors()))),
+        _ => return None,
+    })
+}

@@ -1,0 +1,37 @@
+"""The kinds of entities, for models written in Python.
+
+Each kind of the registry is an attribute, made from the registry when first asked for:
+
+>>> from moldloft import kinds
+>>> kinds.AbsPoint
+<Kind: AbsPoint>
+>>> "CLoftSurf" in dir(kinds)
+True
+"""
+
+from functools import cache
+
+from moldloft.builder import Kind
+
+
+@cache
+def _names() -> tuple[str, ...]:
+    from moldloft import _core
+
+    return tuple(row["name"] for row in _core.reference() if row["is_kind"])
+
+
+def __getattr__(name: str) -> Kind:
+    if name.startswith("_"):
+        raise AttributeError(name)
+    if name not in _names():
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, _names(), 1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise AttributeError(f"there is no kind {name}{hint}")
+    return Kind(name)
+
+
+def __dir__() -> list[str]:
+    return list(_names())
