@@ -3,6 +3,7 @@
 
 #![allow(dead_code)]
 
+use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{
     Class, Context, CurveRef, Fault, Given, Point, Registry, Row, Scalar, SurfaceRef, Value,
@@ -150,6 +151,9 @@ impl<'a, T: Scalar> Reader<'a, T> {
             while !self.accept("}") {
                 items.push(self.value());
                 self.accept(",");
+            }
+            if let [Value::Number(x), Value::Number(y), Value::Number(z)] = items[..] {
+                return Value::Vector(Vec3::new(x, y, z));
             }
             return Value::list(items);
         }
