@@ -1,9 +1,10 @@
 use crate::{Class, DefaultValue, Fault, Field, Unit, Value};
 use moldloft_num::Real;
+use std::sync::Arc;
 
 /// What every object carries besides its geometry: how it is drawn and divided. A change here
 /// never evaluates geometry again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Head {
     /// Colour index 0..=255; 0..=15 are the sixteen classic ones.
     pub colour: i32,
@@ -18,6 +19,8 @@ pub struct Head {
     pub subdivisions: [u32; 2],
     /// 1 when the normal of the panels is opposite to the natural one.
     pub orientation: i32,
+    /// Attributes of a model file, such as `A:Note(port side)`, kept as they are.
+    pub attributes: Option<Arc<str>>,
 }
 
 /// The most panels along one parameter.
@@ -38,13 +41,17 @@ const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> 
 }
 
 /// The named arguments that every kind accepts besides its own.
-pub const HEAD: [Field; 6] = [
+pub const HEAD: [Field; 7] = [
     head("colour", "Colour index, 0 to 255.", DefaultValue::Unset),
     head("visible", "Shown when positive, hidden when 0 or negative.", DefaultValue::Number(1.0)),
     head("layer", "Layer, 0 to 255.", DefaultValue::Number(0.0)),
     head("divisions", "Panels along the curve, or {along u, along v}.", DefaultValue::Unset),
     head("subdivisions", "Steps in each division, or {in u, in v}.", DefaultValue::Unset),
     head("orientation", "1 turns the normal of a surface's panels round.", DefaultValue::Unset),
+    Field {
+        class: Class::Text,
+        ..head("attributes", "Attributes of a model file, kept as they are.", DefaultValue::Unset)
+    },
 ];
 
 impl Head {
@@ -56,7 +63,7 @@ impl Head {
             Some(_) => (10, [8, 8], [1, 1]),
             None => (12, [1, 1], [1, 1]),
         };
-        Self { colour, visible: 1, layer: 0, divisions, subdivisions, orientation: 0 }
+        Self { colour, visible: 1, layer: 0, divisions, subdivisions, orientation: 0, attributes: None }
     }
 
     /// True when the object is drawn and meshed.
@@ -99,6 +106,10 @@ impl Head {
             "divisions" => self.divisions = pair(value, self.divisions)?,
             "subdivisions" => self.subdivisions = pair(value, self.subdivisions)?,
             "orientation" => self.orientation = whole(0.0, 1.0, value)? as i32,
+            "attributes" => match value {
+                Value::Text(text) => self.attributes = Some(text.clone()),
+                other => return Err(Fault::wrong_class(Class::Text, other.class())),
+            },
             _ => return Ok(false),
         }
         Ok(true)

@@ -1,0 +1,937 @@
+//! A model file as a producer of objects.
+//!
+//! Every object is a call of the row that its entity word names; the row's `columns` say which
+//! field of the line is which argument. Parents may stand below their children in the file: the
+//! objects are declared in an order in which they do not.
+
+use crate::document::Evaluation;
+use crate::env::{Binding, Bound, Environment};
+use crate::interpreter::Inputs;
+use crate::module::{Module, Modules};
+use crate::place::{self, NumberPath};
+use crate::program::NotLiteral;
+use moldloft_diag::{Diagnostic, FileId, Span};
+use moldloft_model::{Applied, Declaration, Extent, Graph, Object, Run};
+use moldloft_num::trace::Key;
+use moldloft_registry::{
+    Class, Fault, Field, Given, Head, Registry, Row, Scalar, Unit, Value, arrange,
+};
+use moldloft_syntax::model_file::{
+    self, Field as Written, FieldKind, Fields, ModelFile, NumberId, Object as Line,
+};
+use moldloft_syntax::number;
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// More diagnostics of one run than this are counted, not listed.
+const MOST_DIAGNOSTICS: usize = 100;
+
+/// A parsed model file and the places of its objects.
+pub(crate) struct ModelFileSource {
+    model: ModelFile,
+    lines: Vec<Line>,
+    /// The first object of each name, by its place in `lines`.
+    names: HashMap<Box<str>, usize>,
+}
+
+/// A number of the file that an argument is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ModelNumber {
+    id: NumberId,
+    /// True when the file has degrees where the argument has radians.
+    angle: bool,
+}
+
+/// The fields of an object, sorted by what they are for.
+pub(crate) struct Sorted {
+    /// The row of its entity; `None` when there is none that model files know.
+    pub row: Option<Arc<Row>>,
+    /// Colour, visibility and divisions.
+    pub head: Vec<Written>,
+    /// `A:Name(value)`.
+    pub attributes: Vec<Written>,
+    /// What stands in the column for a relabel, unless that is `*`.
+    pub relabel: Option<Written>,
+    /// Arguments, each with the number of its field in the row.
+    pub slots: Vec<(usize, Written)>,
+    /// The first field beyond the columns.
+    extra: Option<Written>,
+}
+
+/// What became of an object in a run.
+#[derive(Clone, Copy)]
+enum Outcome {
+    Built(Key),
+    /// Not declared, because of this [`Root`].
+    Missing(usize),
+}
+
+/// Why objects are missing.
+struct Root {
+    diagnostics: Vec<Diagnostic>,
+    /// The objects that could not be built for want of it.
+    blocked: Vec<String>,
+    /// For a root that is no error by itself: where it was asked for first.
+    first_use: Option<(Span, String)>,
+}
+
+/// Why a field has no value.
+enum Trouble {
+    /// What is wrong with it.
+    Wrong(Box<Diagnostic>),
+    /// It refers to an object that is missing because of this root.
+    Blocked { root: usize, span: Span },
+}
+
+fn wrong(diagnostic: Diagnostic) -> Trouble {
+    Trouble::Wrong(Box::new(diagnostic))
+}
+
+impl ModelFileSource {
+    /// Reads a text. It never fails: what is wrong is in the diagnostics.
+    pub fn parse(text: String, file: FileId) -> (Self, Vec<Diagnostic>) {
+        let (model, mut diagnostics) = model_file::parse(text, file);
+        let lines: Vec<Line> = model.objects().collect();
+        let mut names: HashMap<Box<str>, usize> = HashMap::with_capacity(lines.len());
+        for (at, line) in lines.iter().enumerate().filter(|(_, line)| !line.name.is_empty()) {
+            let name = model.slice(line.name);
+            if let Some(&first) = names.get(name) {
+                if diagnostics.len() < MOST_DIAGNOSTICS {
+                    diagnostics.push(
+                        Diagnostic::error("duplicate-name", format!("`{name}` is declared twice"))
+                            .labelled(line.name, "declared again here")
+                            .note_at(lines[first].name, "first declared here")
+                            .help("give one of them another name")
+                            .object(name),
+                    );
+                }
+            } else {
+                names.insert(name.into(), at);
+            }
+        }
+        (Self { model, lines, names }, diagnostics)
+    }
+
+    /// Declares the objects in a graph.
+    pub fn run<T: Scalar>(
+        &self,
+        registry: &Registry,
+        evaluation: &mut Evaluation<T>,
+        inputs: Inputs<'_, T>,
+        found: &mut Vec<Diagnostic>,
+    ) -> Applied {
+        evaluation.env = Environment::default();
+        let Evaluation { graph, env } = evaluation;
+        let sorted: Vec<Sorted> = self.lines.iter().map(|line| self.sorted(registry, line)).collect();
+        let (order, cycles) = self.order(&sorted);
+        let (mut roots, applied) = graph.apply(Extent::Whole, |run| {
+            let mut producer = Producer {
+                source: self,
+                registry,
+                inputs,
+                run,
+                outcomes: vec![None; self.lines.len()],
+                roots: Vec::new(),
+                suggestions: 0,
+            };
+            for cycle in &cycles {
+                producer.report_cycle(cycle);
+            }
+            for (k, &at) in order.iter().enumerate() {
+                if k % 1024 == 0 && producer.inputs.cancelled.load(Ordering::Relaxed) {
+                    env.stopped = true;
+                    producer.root(vec![Diagnostic::error("cancelled", "the run was cancelled")]);
+                    break;
+                }
+                if producer.outcomes[at].is_none() {
+                    producer.object(at, &sorted[at]);
+                }
+            }
+            producer.roots
+        });
+        let mut diagnostics: Vec<Diagnostic> =
+            roots.drain(..).flat_map(Root::into_diagnostics).collect();
+        diagnostics.sort_by_key(|d| d.span().start);
+        let beyond = diagnostics.len().saturating_sub(MOST_DIAGNOSTICS);
+        if beyond > 0 {
+            let severe = diagnostics[MOST_DIAGNOSTICS..].iter().any(Diagnostic::is_error);
+            diagnostics.truncate(MOST_DIAGNOSTICS);
+            let message = format!("{beyond} more faults are not listed");
+            diagnostics.push(if severe {
+                Diagnostic::error("too-many-errors", message)
+            } else {
+                Diagnostic::warning("too-many-errors", message)
+            });
+        }
+        found.extend(diagnostics);
+        applied
+    }
+
+    /// The parsed text.
+    pub fn model(&self) -> &ModelFile {
+        &self.model
+    }
+
+    /// The objects in the order of the file; an object's origin is its place here.
+    pub fn lines(&self) -> &[Line] {
+        &self.lines
+    }
+
+    /// True for the name of an object.
+    pub fn has(&self, name: &str) -> bool {
+        self.names.contains_key(name)
+    }
+
+    /// Sorts the fields of an object by what they are for.
+    pub fn sorted(&self, registry: &Registry, line: &Line) -> Sorted {
+        let entity = self.model.slice(line.entity);
+        let row = registry.get(entity).filter(|row| row.kind && row.columns.is_some()).cloned();
+        let (attributes, fields): (Vec<Written>, Vec<Written>) = self.model[line.fields]
+            .iter()
+            .partition(|field| matches!(field.kind, FieldKind::Attribute { .. }));
+        let mut sorted = Sorted {
+            row,
+            head: Vec::new(),
+            attributes,
+            relabel: None,
+            slots: Vec::new(),
+            extra: None,
+        };
+        let Some(row) = &sorted.row else { return sorted };
+        let slash = fields.iter().position(|field| field.kind == FieldKind::Slash);
+        let (head, data) = match slash {
+            Some(at) => (&fields[..at], &fields[at + 1..]),
+            None => {
+                let divisions = match row.class.dimension() {
+                    Some(1) => 1,
+                    Some(2) if matches!(fields.get(2), Some(f) if is_pair(f)) => 3,
+                    Some(2) => 5,
+                    _ => 0,
+                };
+                fields.split_at(fields.len().min(2 + divisions))
+            }
+        };
+        sorted.head = head.to_vec();
+
+        let columns = row.columns.unwrap_or("");
+        let mut columns: Vec<&str> = columns.split_ascii_whitespace().collect();
+        let own_relabel = columns.first() == Some(&"relabel") && row.field("relabel").is_none();
+        let first = data.first();
+        let star = first.is_some_and(|f| f.kind == FieldKind::Star && self.written(f) == "*");
+        let has_relabel = if own_relabel {
+            let count = columns.len();
+            columns.remove(0);
+            star || (data.len() >= count && matches!(first, Some(f) if f.kind == FieldKind::Word))
+        } else {
+            // Versions differ in which kinds have the column.
+            star && data.len() > columns.len() && row.class.dimension() > Some(0)
+        };
+        let data = if has_relabel { &data[1..] } else { data };
+        sorted.relabel = first.copied().filter(|_| has_relabel && !star);
+        let fields = columns.iter().filter_map(|column| row.field(column));
+        sorted.slots = fields.zip(data.iter().copied()).collect();
+        sorted.extra = data.get(columns.len()).copied();
+        sorted
+    }
+
+    fn written(&self, field: &Written) -> &str {
+        self.model.slice(field.span)
+    }
+
+    /// The objects, parents before children, otherwise in the order of the file; and the cycles,
+    /// each as the path round it.
+    pub fn order(&self, sorted: &[Sorted]) -> (Vec<usize>, Vec<Vec<usize>>) {
+        #[derive(Clone, Copy, PartialEq)]
+        enum Mark {
+            New,
+            Open,
+            Done,
+        }
+        let mut marks = vec![Mark::New; sorted.len()];
+        let mut order = Vec::with_capacity(sorted.len());
+        let mut cycles = Vec::new();
+        // The path from the object under way to what it is built on: each with its parents, and
+        // how many of them were visited.
+        let mut path: Vec<(usize, Vec<usize>, usize)> = Vec::new();
+        for start in 0..sorted.len() {
+            if marks[start] != Mark::New {
+                continue;
+            }
+            marks[start] = Mark::Open;
+            path.push((start, self.parents(&sorted[start]), 0));
+            while let Some((at, parents, visited)) = path.last_mut() {
+                let Some(&parent) = parents.get(*visited) else {
+                    marks[*at] = Mark::Done;
+                    order.push(*at);
+                    path.pop();
+                    continue;
+                };
+                *visited += 1;
+                match marks[parent] {
+                    Mark::Done => {}
+                    Mark::New => {
+                        marks[parent] = Mark::Open;
+                        path.push((parent, self.parents(&sorted[parent]), 0));
+                    }
+                    Mark::Open => {
+                        let from = path.iter().position(|(at, ..)| *at == parent);
+                        let round = path[from.unwrap_or(0)..].iter().map(|(at, ..)| *at);
+                        cycles.push(round.collect());
+                    }
+                }
+            }
+        }
+        (order, cycles)
+    }
+
+    /// The objects that the arguments name.
+    fn parents(&self, sorted: &Sorted) -> Vec<usize> {
+        let mut parents = Vec::new();
+        let Some(row) = &sorted.row else { return parents };
+        for (at, field) in &sorted.slots {
+            if row.fields[*at].class != Class::Text {
+                self.names_in(field, &mut parents);
+            }
+        }
+        parents
+    }
+
+    fn names_in(&self, field: &Written, found: &mut Vec<usize>) {
+        match field.kind {
+            FieldKind::Word => found.extend(self.names.get(self.written(field))),
+            FieldKind::List(items) | FieldKind::Tuple(items) => {
+                self.model[items].iter().for_each(|item| self.names_in(item, found));
+            }
+            _ => {}
+        }
+    }
+
+    /// How an object is drawn and divided; what is wrong with that is pushed.
+    fn head(&self, sorted: &Sorted, line: &Line, errors: &mut Vec<Diagnostic>) -> Head {
+        let class = sorted.row.as_ref().map_or(Class::Any, |row| row.class);
+        let mut head = Head::of(class);
+        let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
+        let mut parts: Vec<Part> = Vec::with_capacity(5);
+        for (k, name) in ["colour", "visible"].into_iter().enumerate() {
+            match sorted.head.get(k).map(|field| (field, field.kind)) {
+                Some((field, FieldKind::Number(id))) => parts.push((name, vec![id], field.span)),
+                Some((field, _)) => errors.push(
+                    Diagnostic::error("wrong-field", format!("`{name}` must be a whole number"))
+                        .at(field.span)
+                        .expected("a whole number")
+                        .found(format!("`{}`", self.written(field))),
+                ),
+                None => errors.push(
+                    Diagnostic::error("missing-field", format!("`{name}` is missing"))
+                        .at(end)
+                        .expected("a name, then colour, visibility, divisions and data"),
+                ),
+            }
+        }
+        let fields = sorted.head.get(2..).unwrap_or(&[]);
+        match divisions(class, fields) {
+            Ok(divided) => parts.extend(divided),
+            // What comes after a fault in colour or visibility may only be out of step.
+            Err(_) if !errors.is_empty() => {}
+            Err(expected) => {
+                let ends = fields.first().zip(fields.last());
+                let place = ends.map_or(end, |(first, last)| first.span.to(last.span));
+                let message = format!("these are no divisions of {}", class.a());
+                let found = format!("`{}`", self.model.slice(place));
+                let diagnostic = Diagnostic::error("wrong-field", message).at(place);
+                errors.push(diagnostic.expected(expected).found(found));
+            }
+        }
+        for (name, ids, span) in parts {
+            let number = |id: &NumberId| Value::<f64>::Number(self.model[*id].value);
+            let value = match &ids[..] {
+                [id] => number(id),
+                ids => Value::list(ids.iter().map(number)),
+            };
+            if let Err(fault) = head.set(name, &value) {
+                errors.push(place::unplaced(&fault).at(span));
+            }
+        }
+        for attribute in &sorted.attributes {
+            if let FieldKind::Attribute { name, value } = attribute.kind
+                && self.model.slice(name) == "Layer"
+                && let Ok(layer) = self.model.slice(value).trim().parse::<u8>()
+            {
+                head.layer = layer.into();
+            }
+        }
+        head.attributes = self.attributes_text(sorted);
+        head
+    }
+
+    /// The attributes as one text, without a layer in front, which the head has by itself.
+    fn attributes_text(&self, sorted: &Sorted) -> Option<Arc<str>> {
+        let texts: Vec<&str> = sorted.attributes.iter().map(|f| self.written(f)).collect();
+        let rest = match texts.first() {
+            Some(first) if is_layer(first) => &texts[1..],
+            _ => &texts[..],
+        };
+        (!rest.is_empty()).then(|| rest.join(" ").into())
+    }
+
+    /// Where the fault of an object lies.
+    pub fn fault_span<T: Scalar>(&self, object: &Object<T>, fault: &Fault) -> Option<Span> {
+        let line = self.lines.get(object.origin as usize)?;
+        let whole = Some(line.entity.to(line.name));
+        let Some(at) = fault.place else { return whole };
+        let sorted = self.sorted_as(&object.row, line);
+        self.place(&sorted, at.field, at.item).or(whole)
+    }
+
+    /// Where an object is declared.
+    pub fn declared_at<T: Scalar>(&self, object: &Object<T>) -> Option<Span> {
+        self.lines.get(object.origin as usize).map(|line| line.name)
+    }
+
+    fn sorted_as(&self, row: &Arc<Row>, line: &Line) -> Sorted {
+        self.sorted(&Registry::new([Row::clone(row)]), line)
+    }
+
+    /// Where an argument stands, or an item of it.
+    fn place(&self, sorted: &Sorted, field: usize, item: Option<usize>) -> Option<Span> {
+        let (_, written) = sorted.slots.iter().find(|(at, _)| *at == field)?;
+        let item = item.and_then(|k| self.items(written)?.get(k));
+        Some(item.unwrap_or(written).span)
+    }
+
+    fn items(&self, field: &Written) -> Option<&[Written]> {
+        match field.kind {
+            FieldKind::List(items) | FieldKind::Tuple(items) => Some(&self.model[items]),
+            _ => None,
+        }
+    }
+
+    /// The number of the file that a number of an object is.
+    pub fn literal(
+        &self,
+        object: &Object<f64>,
+        path: &NumberPath,
+    ) -> Result<ModelNumber, NotLiteral> {
+        let line = self.lines.get(object.origin as usize).ok_or(NotLiteral::Default)?;
+        let sorted = self.sorted_as(&object.row, line);
+        let slot = sorted.slots.iter().find(|(at, _)| *at == path.field);
+        let (at, mut field) = *slot.ok_or(NotLiteral::Default)?;
+        for k in [path.item, path.component].into_iter().flatten() {
+            let item = self.items(&field).and_then(|items| items.get(k));
+            field = *item.ok_or(NotLiteral::Default)?;
+        }
+        match field.kind {
+            FieldKind::Number(id) => {
+                Ok(ModelNumber { id, angle: object.row.fields[at].unit == Unit::Angle })
+            }
+            FieldKind::Formula => {
+                let names = vec![self.written(&field).trim_start_matches('=').to_string()];
+                Err(NotLiteral::Expression { span: field.span, names })
+            }
+            _ => Err(NotLiteral::Default),
+        }
+    }
+
+    /// Gives a number of the file another value, in the argument's unit.
+    pub fn set(&mut self, number: ModelNumber, value: f64) -> Result<(), Diagnostic> {
+        self.model.set_number(number.id, if number.angle { degrees(value) } else { value })
+    }
+
+    /// The text, with the changed numbers written into it.
+    pub fn text(&self) -> String {
+        self.model.text_with_edits()
+    }
+
+    /// The planes in which the model is mirrored, as "y" or "xy".
+    pub fn symmetry(&self) -> String {
+        self.model.symmetry()
+    }
+}
+
+/// Makes the objects of an [`Extent::Whole`] application.
+struct Producer<'a, 'g, T: Scalar> {
+    source: &'a ModelFileSource,
+    registry: &'a Registry,
+    inputs: Inputs<'a, T>,
+    run: &'a mut Run<'g, T>,
+    /// By the place of the object in the file.
+    outcomes: Vec<Option<Outcome>>,
+    roots: Vec<Root>,
+    /// How often a nearest name was looked for, which takes long in large models.
+    suggestions: usize,
+}
+
+impl<T: Scalar> Producer<'_, '_, T> {
+    fn root(&mut self, diagnostics: Vec<Diagnostic>) -> Outcome {
+        self.roots.push(Root { diagnostics, blocked: Vec::new(), first_use: None });
+        Outcome::Missing(self.roots.len() - 1)
+    }
+
+    fn report_cycle(&mut self, cycle: &[usize]) {
+        let source = self.source;
+        let name = |at: usize| source.model.slice(source.lines[at].name);
+        let round = cycle.iter().chain(cycle.first()).map(|&at| name(at));
+        // A long way round is told by its ends.
+        let mut shown: Vec<&str> = round.collect();
+        let left_out = shown.len().saturating_sub(1000);
+        let text = if left_out > 0 {
+            let tail = shown.split_off(shown.len() - 500);
+            shown.truncate(500);
+            format!("{} -> ({left_out} more) -> {}", shown.join(" -> "), tail.join(" -> "))
+        } else {
+            shown.join(" -> ")
+        };
+        let first = source.lines[cycle[0]].name;
+        let message = format!("`{}` depends on itself", name(cycle[0]));
+        let mut diagnostic = Diagnostic::error("cycle", message)
+            .at(first)
+            .expected("objects built on others that are not built on them")
+            .found(text)
+            .object(name(cycle[0]));
+        for &at in cycle[1..].iter().take(5) {
+            diagnostic = diagnostic.note_at(source.lines[at].name, "on the way round");
+        }
+        let missing = self.root(vec![diagnostic]);
+        for &at in cycle {
+            self.outcomes[at] = Some(missing);
+        }
+    }
+
+    fn object(&mut self, at: usize, sorted: &Sorted) {
+        let source = self.source;
+        let line = &source.lines[at];
+        let name = source.model.slice(line.name);
+        if !line.complete || source.names.get(name) != Some(&at) {
+            // Reported when the text was read.
+            self.outcomes[at] = Some(self.root(Vec::new()));
+            return;
+        }
+        let Some(row) = &sorted.row else {
+            let entity = source.model.slice(line.entity);
+            let kinds = self.registry.rows().filter(|r| r.kind && r.columns.is_some());
+            let diagnostic =
+                Diagnostic::warning("unknown-entity", format!("there is no entity `{entity}`"))
+                    .at(line.entity)
+                    .suggest(entity, kinds.map(|r| &*r.name))
+                    .note(format!("`{name}` is kept as it stands, and not built"))
+                    .object(name);
+            self.outcomes[at] = Some(self.root(vec![diagnostic]));
+            return;
+        };
+        let mut errors = Vec::new();
+        let head = source.head(sorted, line, &mut errors);
+        let mut warnings = Vec::new();
+        if let Some(relabel) = &sorted.relabel {
+            let message = format!("`{name}` is built without its relabel");
+            warnings.push(
+                Diagnostic::warning("unsupported-relabel", message)
+                    .at(relabel.span)
+                    .expected("`*`, the parameter as it is")
+                    .found(format!("`{}`", source.written(relabel)))
+                    .object(name),
+            );
+        }
+        let (args, blocked) = self.arguments(row, line, sorted, &mut errors);
+        if let (true, Some((root, span))) = (errors.is_empty(), blocked) {
+            let root = &mut self.roots[root];
+            root.blocked.push(name.to_string());
+            root.first_use.get_or_insert_with(|| (span, name.to_string()));
+            let missing = blocked.map(|(root, _)| Outcome::Missing(root));
+            self.outcomes[at] = missing;
+            return;
+        }
+        let arranged = if errors.is_empty() {
+            let given = Given { positional: args, named: Vec::new() };
+            arrange(row, given, |key| self.run.class_of(key))
+                .map_err(|fault| errors.push(self.misfit(line, sorted, &fault)))
+                .ok()
+        } else {
+            None
+        };
+        let Some((mut args, _)) = arranged else {
+            let named = errors.into_iter().map(|d| d.object(name)).collect();
+            self.outcomes[at] = Some(self.root(named));
+            return;
+        };
+        if !self.inputs.seeded_objects.is_empty() && self.inputs.seeded_objects.contains(name) {
+            place::seed(row, &mut args, name, self.inputs.seed);
+        }
+        let declaration = Declaration { name, row, args, head, origin: at as u32 };
+        let outcome = match self.run.declare(declaration) {
+            Ok(key) => {
+                if !warnings.is_empty() {
+                    self.root(warnings);
+                }
+                Outcome::Built(key)
+            }
+            Err(fault) => self.root(vec![place::unplaced(&fault).at(line.name).object(name)]),
+        };
+        self.outcomes[at] = Some(outcome);
+    }
+
+    /// The arguments in the order of the row's fields, or the root that one of them waits for.
+    fn arguments(
+        &mut self,
+        row: &Row,
+        line: &Line,
+        sorted: &Sorted,
+        errors: &mut Vec<Diagnostic>,
+    ) -> (Vec<Value<T>>, Option<(usize, Span)>) {
+        let mut blocked = None;
+        let mut args = vec![Value::Unset; row.fields.len()];
+        for (at, written) in &sorted.slots {
+            match self.value(&row.fields[*at], written) {
+                Ok(value) => args[*at] = value,
+                Err(Trouble::Wrong(diagnostic)) => errors.push(*diagnostic),
+                Err(Trouble::Blocked { root, span }) => blocked = blocked.or(Some((root, span))),
+            }
+        }
+        for (at, field) in row.fields.iter().enumerate() {
+            let there = sorted.slots.iter().any(|(slot, _)| *slot == at);
+            if !there && field.default.is_none() && errors.is_empty() {
+                let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
+                let message = format!("{} needs `{}`", row.name, field.name);
+                errors.push(
+                    Diagnostic::error("missing-field", message)
+                        .at(end)
+                        .expected(format!("data in the order {}", row.columns.unwrap_or("")))
+                        .found(format!("{} fields of data", sorted.slots.len())),
+                );
+            }
+        }
+        if let Some(extra) = &sorted.extra {
+            errors.push(
+                Diagnostic::error("too-many-fields", format!("{} has too many fields", row.name))
+                    .at(extra.span)
+                    .expected(format!("data in the order {}", row.columns.unwrap_or("")))
+                    .found(format!("`{}`", self.source.written(extra))),
+            );
+        }
+        (args, blocked)
+    }
+
+    /// The value of a column.
+    fn value(&mut self, field: &Field, written: &Written) -> Result<Value<T>, Trouble> {
+        if !field.many {
+            return self.single(field, written);
+        }
+        match written.kind {
+            FieldKind::List(items) => self.list(field, items),
+            FieldKind::Star if field.default.is_some() => Ok(Value::Unset),
+            _ => Err(wrong(
+                Diagnostic::error("not-a-list", format!("`{}` must be a list", field.name))
+                    .at(written.span)
+                    .expected(format!("a list {{ ... }} of {}s", field.class.name()))
+                    .found(format!("`{}`", self.source.written(written))),
+            )),
+        }
+    }
+
+    fn list(&mut self, field: &Field, items: Fields) -> Result<Value<T>, Trouble> {
+        let source = self.source;
+        let mut values = Vec::with_capacity(items.len());
+        let mut trouble = None;
+        for item in &source.model[items] {
+            match self.single(field, item) {
+                Ok(value) => values.push(value),
+                Err(other @ Trouble::Wrong(_)) => return Err(other),
+                Err(blocked) => trouble = trouble.or(Some(blocked)),
+            }
+        }
+        trouble.map_or_else(|| Ok(Value::list(values)), Err)
+    }
+
+    fn single(&mut self, field: &Field, written: &Written) -> Result<Value<T>, Trouble> {
+        let text = self.source.written(written);
+        let unexpected = |id, message: String| {
+            Diagnostic::error(id, message)
+                .at(written.span)
+                .expected(field.class.a())
+                .found(format!("`{text}`"))
+        };
+        match written.kind {
+            FieldKind::Number(id) => {
+                let x = self.source.model[id].value;
+                Ok(Value::Number(T::from(if field.unit == Unit::Angle { x.to_radians() } else { x })))
+            }
+            FieldKind::Text => Ok(Value::text(text.trim_matches('"'))),
+            FieldKind::Word => self.word(field, written, text),
+            FieldKind::Star if text == "*" => match field.default {
+                Some(_) => Ok(Value::Unset),
+                None => {
+                    let message = format!("`{}` has no default", field.name);
+                    Err(wrong(unexpected("missing-argument", message)))
+                }
+            },
+            FieldKind::Star => match system_name(text) {
+                Some(plane) if field.class.accepts(Class::Text) => Ok(Value::text(&plane)),
+                Some(_) => Err(wrong(unexpected(
+                    "wrong-class",
+                    format!("expected {}, found a plane", field.class.a()),
+                ))),
+                None => Err(wrong(
+                    unexpected("unknown-object", format!("there is no `{text}`"))
+                        .help("the system knows *X=0, *Y=0 and *Z=0"),
+                )),
+            },
+            FieldKind::Formula => Err(wrong(
+                unexpected("unsupported-formula", format!("the formula `{text}` is not computed"))
+                    .help("write its value, or convert the model to .sdl and use a parameter"),
+            )),
+            FieldKind::List(items) => self.list(field, items),
+            FieldKind::Tuple(_)
+            | FieldKind::Pair(..)
+            | FieldKind::Slash
+            | FieldKind::Attribute { .. } => Err(wrong(unexpected(
+                "wrong-field",
+                format!("`{}` must be {}", field.name, field.class.a()),
+            ))),
+        }
+    }
+
+    fn word(
+        &mut self,
+        field: &Field,
+        written: &Written,
+        text: &str,
+    ) -> Result<Value<T>, Trouble> {
+        if field.class == Class::Text {
+            return Ok(Value::text(text));
+        }
+        let source = self.source;
+        if let Some(&at) = source.names.get(text) {
+            return match self.outcomes[at] {
+                Some(Outcome::Built(key)) => Ok(Value::Object(key)),
+                Some(Outcome::Missing(root)) => Err(Trouble::Blocked { root, span: written.span }),
+                None => unreachable!("parents come before their children"),
+            };
+        }
+        if matches!(field.class, Class::Number | Class::Integer) {
+            let message = format!("`{}` must be a number", field.name);
+            return Err(wrong(
+                Diagnostic::error("not-a-number", message)
+                    .at(written.span)
+                    .expected("a finite number")
+                    .found(format!("`{text}`")),
+            ));
+        }
+        if field.class == Class::Any {
+            return Ok(Value::text(text));
+        }
+        let mut diagnostic =
+            Diagnostic::error("unknown-object", format!("there is no object `{text}`"))
+                .at(written.span)
+                .expected(field.class.a());
+        if self.suggestions < 20 {
+            self.suggestions += 1;
+            let names = source.lines.iter().map(|line| source.model.slice(line.name));
+            diagnostic = diagnostic.suggest(text, names);
+        }
+        Err(wrong(diagnostic))
+    }
+
+    /// The diagnostic of arguments that do not fit.
+    fn misfit(&self, line: &Line, sorted: &Sorted, fault: &Fault) -> Diagnostic {
+        let source = self.source;
+        let at = fault.place.and_then(|p| source.place(sorted, p.field, p.item));
+        let diagnostic = place::unplaced(fault).at(at.unwrap_or(line.entity.to(line.name)));
+        let parent = at.and_then(|span| source.names.get(source.model.slice(span)));
+        match parent {
+            Some(&parent) if fault.id == "wrong-class" => {
+                let name = source.lines[parent].name;
+                let text = format!("`{}` is defined here", source.model.slice(name));
+                diagnostic.note_at(name, text)
+            }
+            _ => diagnostic,
+        }
+    }
+}
+
+impl Root {
+    fn into_diagnostics(self) -> Vec<Diagnostic> {
+        let Root { mut diagnostics, blocked, first_use } = self;
+        let Some((span, name)) = first_use else { return diagnostics };
+        let Some(first) = diagnostics.first_mut() else { return diagnostics };
+        let shown = blocked.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = match blocked.len().saturating_sub(5) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        if first.is_error() {
+            *first = first.clone().note(format!("not built for want of it: {shown}{more}"));
+            return diagnostics;
+        }
+        // The cause is only a warning, but what is built on it is missing.
+        let cause = first.clone();
+        let wanted = cause.object.as_deref().unwrap_or_default();
+        diagnostics.push(
+            Diagnostic::error("blocked", format!("`{name}` is built on `{wanted}`, which is not"))
+                .at(span)
+                .note_at(cause.span(), cause.message.clone())
+                .note(format!("not built for want of it: {shown}{more}"))
+                .object(name),
+        );
+        diagnostics
+    }
+}
+
+/// A part of a head: its name, its numbers and where they stand.
+type Part = (&'static str, Vec<NumberId>, Span);
+
+/// The divisions of an object of `class`, or what they should look like.
+fn divisions(class: Class, fields: &[Written]) -> Result<Vec<Part>, &'static str> {
+    let kinds: Vec<FieldKind> = fields.iter().map(|field| field.kind).collect();
+    let span = |from: usize, to: usize| fields[from].span.to(fields[to].span);
+    let two = |n: [NumberId; 2], m: [NumberId; 2], span| {
+        vec![("divisions", n.to_vec(), span), ("subdivisions", m.to_vec(), span)]
+    };
+    match (class.dimension(), &kinds[..]) {
+        (Some(1), [FieldKind::Number(n)]) => Ok(vec![("divisions", vec![*n], fields[0].span)]),
+        (Some(1), [FieldKind::Pair(n, m)]) => Ok(vec![
+            ("divisions", vec![*n], fields[0].span),
+            ("subdivisions", vec![*m], fields[0].span),
+        ]),
+        (Some(1), _) => Err("divisions, such as 8x4 or 8"),
+        (Some(2), [FieldKind::Pair(nu, mu), FieldKind::Pair(nv, mv), rest @ ..]) => {
+            let mut parts = two([*nu, *nv], [*mu, *mv], span(0, 1));
+            match rest {
+                [] => Ok(parts),
+                [FieldKind::Number(orientation)] => {
+                    parts.push(("orientation", vec![*orientation], fields[2].span));
+                    Ok(parts)
+                }
+                _ => Err("divisions and orientation, such as 8x1 8x1 0"),
+            }
+        }
+        (
+            Some(2),
+            [
+                FieldKind::Number(nu),
+                FieldKind::Number(mu),
+                FieldKind::Number(nv),
+                FieldKind::Number(mv),
+                FieldKind::Number(orientation),
+            ],
+        ) => {
+            let mut parts = two([*nu, *nv], [*mu, *mv], span(0, 3));
+            parts.push(("orientation", vec![*orientation], fields[4].span));
+            Ok(parts)
+        }
+        (Some(2), _) => Err("divisions and orientation, such as 8x1 8x1 0 or 8 1 8 1 0"),
+        (_, []) => Ok(Vec::new()),
+        _ => Err("data after colour and visibility: there is nothing to divide"),
+    }
+}
+
+fn is_pair(field: &Written) -> bool {
+    matches!(field.kind, FieldKind::Pair(..))
+}
+
+/// True for `A:Layer(3)`, spelled as the writer does.
+pub(crate) fn is_layer(attribute: &str) -> bool {
+    let number = attribute.strip_prefix("A:Layer(").and_then(|rest| rest.strip_suffix(')'));
+    number.is_some_and(|n| n.parse::<u8>().is_ok_and(|layer| layer > 0 && layer.to_string() == n))
+}
+
+/// The plane "y=0" of the name `*Y=0`.
+pub(crate) fn system_name(text: &str) -> Option<String> {
+    let plane = text.strip_prefix('*')?.to_ascii_lowercase();
+    matches!(&*plane, "x=0" | "y=0" | "z=0").then_some(plane)
+}
+
+/// The angle in degrees: the shortest decimal that reads back as these very radians.
+pub(crate) fn degrees(radians: f64) -> f64 {
+    let near = radians.to_degrees();
+    let shortest = (0..17).filter_map(|digits| format!("{near:.digits$e}").parse::<f64>().ok());
+    let neighbours = [near.next_up(), near.next_down()];
+    let exact = |x: &f64| x.to_radians() == radians;
+    shortest.chain(neighbours).find(exact).unwrap_or(near)
+}
+
+/// The name of an object as an identifier of the language; [`plain_name`] takes it back.
+///
+/// A character that no identifier has becomes `_x2d_`, its code in hexadecimal digits; so do the
+/// first letter of a reserved word and a `_` that would look like the beginning of such a code.
+pub(crate) fn identifier(name: &str) -> String {
+    let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let code = |c: char| format!("_x{:02x}_", u32::from(c));
+    let mut out = String::with_capacity(name.len());
+    for (at, c) in name.char_indices() {
+        let rest = &name[at + c.len_utf8()..];
+        let like_code = c == '_'
+            && rest.strip_prefix('x').is_some_and(|rest| {
+                let after = rest.trim_start_matches(|c| matches!(c, '0'..='9' | 'a'..='f'));
+                let ends = after.starts_with('_') || after.starts_with(|c| !word(c));
+                rest.len() - after.len() >= 2 && ends
+            });
+        if !word(c) || like_code || (at == 0 && c.is_ascii_digit()) {
+            out.push_str(&code(c));
+        } else {
+            out.push(c);
+        }
+    }
+    let may_be_reserved = !out.is_empty() && out.bytes().all(|b| b.is_ascii_lowercase());
+    if may_be_reserved && !stands_as_name(&out) {
+        let first = out.remove(0);
+        out.insert_str(0, &code(first));
+    }
+    out
+}
+
+fn stands_as_name(word: &str) -> bool {
+    use moldloft_syntax::sdl;
+    if matches!(word, "param" | "assert" | "field" | "set" | "in") {
+        return false;
+    }
+    let (program, expr, found) = sdl::parse_expr(word.to_string(), FileId(0));
+    found.is_empty() && program.as_name(expr).is_some()
+}
+
+/// The name that became this identifier.
+pub(crate) fn plain_name(identifier: &str) -> String {
+    let mut out = String::with_capacity(identifier.len());
+    let mut rest = identifier;
+    while let Some(at) = rest.find("_x") {
+        out.push_str(&rest[..at]);
+        let digits = &rest[at + 2..];
+        let length = digits.find(|c| !matches!(c, '0'..='9' | 'a'..='f')).unwrap_or(digits.len());
+        let c = u32::from_str_radix(&digits[..length], 16).ok().and_then(char::from_u32);
+        match c {
+            Some(c) if length >= 2 && digits[length..].starts_with('_') => {
+                out.push(c);
+                rest = &digits[length + 1..];
+            }
+            _ => {
+                out.push('_');
+                rest = &rest[at + 1..];
+            }
+        }
+    }
+    out + rest
+}
+
+/// Lets an expression find the objects that a model file made, by their names or by the
+/// identifiers that stand for them.
+pub(crate) fn bind_objects<T: Scalar>(
+    modules: &Modules,
+    expression: &Module,
+    graph: &Graph<T>,
+    env: &mut Environment<T>,
+) {
+    env.globals.resize_with(modules.name_count(), || None);
+    for &name in &expression.names {
+        let text = modules.text(name);
+        let known = &mut env.globals[name.0 as usize];
+        if known.is_none()
+            && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
+        {
+            *known = Some(Bound { span: Span::UNKNOWN, what: Binding::Object(key) });
+        }
+    }
+}
+
+/// A number as model files spell it.
+pub(crate) fn spelled(value: f64, unit: Unit) -> String {
+    number::plain(if unit == Unit::Angle { degrees(value) } else { value })
+}
