@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic, __version__
+    from moldloft.builder import Builder, model, param
     from moldloft.errors import Error, FileError, ModelError, UnknownNameError
     from moldloft.hydrostatics import Hydrostatics
     from moldloft.mesh import Mesh, Patch
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from moldloft.objects import Object
 
 __all__ = [
+    "Builder",
     "Diagnostic",
     "Error",
     "FileError",
@@ -42,9 +44,12 @@ __all__ = [
     "__version__",
     "load",
     "loads",
+    "model",
+    "param",
 ]
 
 _HOMES = {
+    "Builder": "moldloft.builder",
     "Diagnostic": "moldloft._core",
     "__version__": "moldloft._core",
     "Error": "moldloft.errors",
@@ -58,6 +63,8 @@ _HOMES = {
     "Param": "moldloft.model",
     "load": "moldloft.model",
     "loads": "moldloft.model",
+    "model": "moldloft.builder",
+    "param": "moldloft.builder",
     "Object": "moldloft.objects",
 }
 

@@ -289,6 +289,7 @@ class Kind:
         self.name = name
 
     def __call__(self, name: str, *args: object, **named: object) -> Handle:
+        """Declare an object of this kind; the arguments are those of the language."""
         return Builder.current().declare(self.name, name, args, named)
 
     def __repr__(self) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -44,6 +45,7 @@ def load(
     path: str | os.PathLike[str],
     *,
     library: Sequence[str | os.PathLike[str]] = (),
+    functions: Mapping[str, Callable[..., Any]] | None = None,
     strict: bool = True,
 ) -> Model:
     """Load a model from a file.
@@ -54,6 +56,11 @@ def load(
         An ``.sdl`` program or an ``.ms2`` model file.
     library
         Folders, besides the model's own, from which it may load.
+    functions
+        Python functions that the model may call, by the names it calls them. They take and
+        return floats, vectors ``(3,)`` and arrays; where derivatives are asked for they are given
+        :class:`moldloft.numbers.Dual` numbers, on which arithmetic and NumPy's elementary
+        functions work.
     strict
         Whether errors raise. Without it they are told by :attr:`Model.diagnostics` only, and
         what does not depend on a failed object lives on.
@@ -67,6 +74,7 @@ def load(
     """
     folders = [os.fspath(folder) for folder in library]
     model = Model(_core.Document.open(os.fspath(path), folders))
+    _add_functions(model, functions)
     if strict:
         unread = [d for d in model.diagnostics if d.id == "cannot-read"]
         if unread and not model.text:
@@ -80,6 +88,7 @@ def loads(
     *,
     name: str = "model.sdl",
     library: Sequence[str | os.PathLike[str]] = (),
+    functions: Mapping[str, Callable[..., Any]] | None = None,
     strict: bool = True,
 ) -> Model:
     """Load a model from a text.
@@ -92,6 +101,8 @@ def loads(
         The name that messages show; ``.ms2`` at its end means a model file.
     library
         Folders from which the text may load.
+    functions
+        As for :func:`load`.
     strict
         As for :func:`load`.
 
@@ -99,12 +110,32 @@ def loads(
     ------
     ModelError
         When the model has an error.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> def rise(x):
+    ...     return np.sqrt(x) + 1
+    >>> text = "param float a = 4 in [1, 9]; AbsPoint P(0, 0, rise(a));"
+    >>> m = loads(text, functions={"rise": rise})
+    >>> m["P"].z, m.derivative("P.z", "a")
+    (3.0, 0.25)
     """
     folders = [os.fspath(folder) for folder in library]
     model = Model(_core.Document.from_text(name, text, None, folders))
+    _add_functions(model, functions)
     if strict:
         model.check()
     return model
+
+
+def _add_functions(model: Model, functions: Mapping[str, Callable[..., Any]] | None) -> None:
+    for name, function in (functions or {}).items():
+        if not name.isidentifier() or not name.isascii():
+            raise ValueError(f"{name!r} is no name: expected a letter, then letters, digits and _")
+        arguments = list(inspect.signature(function).parameters)
+        doc = inspect.getdoc(function) or f"The Python function {name}."
+        model._document.add_function(name, arguments, doc, function)
 
 
 class Model:

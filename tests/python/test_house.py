@@ -57,6 +57,21 @@ def test_the_oldest_tools_are_stated_alike():
     assert f"Rust {rust}" in readme and f"Python {python}" in readme
 
 
+def test_the_readme_s_model_runs(tmp_path: Path, monkeypatch):
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```(\w*)\n(.*?)```", readme, re.S)
+    (program,) = [text for _, text in blocks if text.startswith("# hull.sdl")]
+    (python,) = [text for language, text in blocks if language == "python"]
+    (tmp_path / "hull.sdl").write_text(program)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    exec(python, names)
+    mesh = names["mesh"]
+    assert names["by_beam"].shape == (len(mesh.vertices), 3, 1)
+    assert (tmp_path / "hull.gdf").exists()
+    assert moldloft.load("hull.sdl").hydrostatics().volume > 0
+
+
 def test_the_version_is_the_workspace_s():
     version = re.search(r'^version = "([\d.]+)"', (ROOT / "Cargo.toml").read_text(), re.M)[1]
     assert moldloft.__version__ == version

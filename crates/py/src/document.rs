@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The most points of one grid.
@@ -33,6 +33,8 @@ const LARGE: usize = 50_000;
 pub struct PyDocument {
     inner: Arc<Mutex<Document>>,
     cancel: Arc<AtomicBool>,
+    /// True once the model may call Python: a run then needs Python's lock on another thread.
+    calls_python: AtomicBool,
 }
 
 type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
@@ -40,7 +42,7 @@ type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
 impl PyDocument {
     fn new(document: Document) -> Self {
         let cancel = document.cancel_handle();
-        Self { inner: Arc::new(Mutex::new(document)), cancel }
+        Self { inner: Arc::new(Mutex::new(document)), cancel, calls_python: AtomicBool::new(false) }
     }
 
     fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Document> {
@@ -167,7 +169,7 @@ impl PyDocument {
 
     fn set(&self, py: Python<'_>, assignments: Vec<(String, f64)>) -> PyResult<()> {
         let mut document = self.lock(py);
-        if document.graph().len() >= LARGE {
+        if document.graph().len() >= LARGE || self.calls_python.load(Ordering::Relaxed) {
             drop(document);
             return self.long_checked(py, move |d| d.set(&assignments).map(drop));
         }
@@ -233,7 +235,26 @@ impl PyDocument {
         self.long_checked(py, move |d| d.delete(&name).map(drop).map_err(|e| vec![e]))
     }
 
+    /// Makes a Python function callable in the model under `name`.
+    fn add_function(
+        &self,
+        py: Python<'_>,
+        name: String,
+        arguments: Vec<String>,
+        doc: String,
+        function: Py<PyAny>,
+    ) -> PyResult<()> {
+        self.calls_python.store(true, Ordering::Relaxed);
+        let row = crate::foreign::row(name, arguments, doc, function);
+        self.long(py, move |d| drop(d.add_row(row)))
+    }
+
     fn eval<'py>(&self, py: Python<'py>, expression: &str) -> PyResult<Bound<'py, PyAny>> {
+        if self.calls_python.load(Ordering::Relaxed) {
+            let expression = expression.to_owned();
+            let value = self.long_checked(py, move |d| d.eval(&expression))?;
+            return to_python(py, &value);
+        }
         let mut document = self.lock(py);
         match document.eval(expression) {
             Ok(value) => to_python(py, &value),
@@ -272,11 +293,8 @@ impl PyDocument {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let surface = self.surface_of(py, name)?;
         let (us, vs) = (u.as_slice()?, v.as_slice()?);
-        let fill = |out: &mut [Vec3]| {
-            for ((x, &u), &v) in out.iter_mut().zip(us).zip(vs) {
-                *x = surface.jet(u, v, Order::Zero).p;
-            }
-        };
+        let uv: Vec<[f64; 2]> = us.iter().zip(vs).map(|(&u, &v)| [u, v]).collect();
+        let fill = |out: &mut [Vec3]| surface.scattered(&uv, out);
         Ok(arrays::filled(py, [us.len(), 3], |out| py.detach(|| fill(out))).0)
     }
 
@@ -287,8 +305,7 @@ impl PyDocument {
         nu: usize,
         nv: usize,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let (us, vs) = (parameters(nu)?, parameters(nv)?);
-        check_size(nu, nv)?;
+        let [us, vs] = parameters(nu, nv)?;
         let surface = self.surface_of(py, name)?;
         let fill = |out: &mut [Vec3]| py.detach(|| surface.grid(&us, &vs, out, None));
         Ok(arrays::filled(py, [nu, nv, 3], fill).0)
@@ -301,8 +318,7 @@ impl PyDocument {
         nu: usize,
         nv: usize,
     ) -> PyResult<(Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>)> {
-        let (us, vs) = (parameters(nu)?, parameters(nv)?);
-        check_size(nu, nv)?;
+        let [us, vs] = parameters(nu, nv)?;
         let surface = self.surface_of(py, name)?;
         let (points, normals) = arrays::filled(py, [nu, nv, 3], |points| {
             let fill = |normals: &mut [Vec3]| {
@@ -425,16 +441,14 @@ fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr {
     plain_error(format!("{takes}, but `{name}` is {}", found.class().a()))
 }
 
-fn parameters(n: usize) -> PyResult<Vec<f64>> {
-    if n < 2 {
-        return Err(plain_error(format!("a grid has at least 2 points along each side, not {n}")));
+/// Even parameters along both sides of a grid.
+fn parameters(nu: usize, nv: usize) -> PyResult<[Vec<f64>; 2]> {
+    if nu < 2 || nv < 2 {
+        let message = format!("a grid has at least 2 points along each side, not {nu} x {nv}");
+        return Err(plain_error(message));
     }
-    Ok((0..n).map(|i| i as f64 / (n - 1) as f64).collect())
-}
-
-fn check_size(nu: usize, nv: usize) -> PyResult<()> {
-    match nu.checked_mul(nv) {
-        Some(points) if points <= MOST_POINTS => Ok(()),
-        _ => Err(plain_error(format!("{nu} x {nv} are more than {MOST_POINTS} points"))),
+    if nu.checked_mul(nv).is_none_or(|points| points > MOST_POINTS) {
+        return Err(plain_error(format!("{nu} x {nv} are more than {MOST_POINTS} points")));
     }
+    Ok([nu, nv].map(|n| (0..n).map(|i| i as f64 / (n - 1) as f64).collect()))
 }

@@ -10,6 +10,7 @@ mod arrays;
 mod diagnostics;
 mod document;
 mod error;
+mod foreign;
 mod mesh;
 mod reference;
 mod value;
