@@ -1,0 +1,335 @@
+//! Curves over the points of an object: arc, circle, quadratic, cubic, elliptical arc, ellipse.
+//!
+//! The 1983 products of matrices (align, rotate by 5°, align back) drift and, for the ellipse, lack a
+//! scale; here every curve has its closed form. The printed matrix of the quadratic has a wrong sign:
+//! the third entry of its second row must be -1, or the curve misses its last point.
+
+use crate::{Expr, PointId};
+use moldloft_num::{Real, Vec3};
+use std::collections::BTreeMap;
+
+/// The kinds, numbered as in 1983.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveKind {
+    /// 1: circular arc tangent to two lines with a common end.
+    Arc,
+    /// 2: full circle tangent to the two lines.
+    Circle,
+    /// 3: parametric quadratic through three points.
+    Quadratic,
+    /// 4: Overhauser cubics through a chain of points, from the second to the last but one.
+    Cubic,
+    /// 5: elliptical arc tangent to two lines at given distances from their common end.
+    EllipticalArc,
+    /// 6: the full ellipse.
+    Ellipse,
+}
+
+impl CurveKind {
+    /// The command word, with `ARC` after it for the elliptical arc.
+    pub fn word(self) -> &'static str {
+        match self {
+            CurveKind::Arc => "ARC",
+            CurveKind::Circle => "CIRCLE",
+            CurveKind::Quadratic => "QUADRATIC",
+            CurveKind::Cubic => "CUBIC",
+            CurveKind::EllipticalArc => "ELLIPSE ARC",
+            CurveKind::Ellipse => "ELLIPSE",
+        }
+    }
+
+    /// Whether it is drawn into the corner of two lines.
+    pub fn at_corner(self) -> bool {
+        !matches!(self, CurveKind::Quadratic | CurveKind::Cubic)
+    }
+}
+
+/// A curve of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// As the user wrote it.
+    pub name: String,
+    /// What it is.
+    pub kind: CurveKind,
+    /// The points it hangs on: for a corner the ends of the lines with the corner in the middle.
+    pub points: Vec<PointId>,
+    /// Radius of an arc or circle.
+    pub radius: Option<Expr>,
+    /// Distances along the two lines of an ellipse.
+    pub semi: Option<[Expr; 2]>,
+    /// Chords to draw it with; by tolerance when `None`.
+    pub steps: Option<u32>,
+    /// Whether it takes the place of lines in the solid.
+    pub replaces: bool,
+    /// Cubic: knots by the square root of the chord instead of uniform.
+    pub centripetal: bool,
+}
+
+/// A smooth piece, run through by s in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Piece<T> {
+    /// `centre + a cos(s sweep) + b sin(s sweep)`
+    Conic {
+        /// Centre.
+        centre: Vec3<T>,
+        /// From the centre to the start.
+        a: Vec3<T>,
+        /// Conjugate to `a`.
+        b: Vec3<T>,
+        /// Angle in radians.
+        sweep: T,
+    },
+    /// A cubic in Bézier form.
+    Cubic([Vec3<T>; 4]),
+}
+
+impl<T: Real> Piece<T> {
+    /// The straight piece.
+    pub fn straight(p: Vec3<T>, q: Vec3<T>) -> Piece<T> {
+        let third = T::from(1.0 / 3.0);
+        Piece::Cubic([p, p.lerp(q, third), q.lerp(p, third), q])
+    }
+
+    /// The point at `s`.
+    pub fn at(&self, s: T) -> Vec3<T> {
+        match *self {
+            Piece::Conic { centre, a, b, sweep } => {
+                centre + a * (s * sweep).cos() + b * (s * sweep).sin()
+            }
+            Piece::Cubic([p, q, r, e]) => {
+                let w = -s + 1.0;
+                p * (w * w * w) + q * (w * w * s * 3.0) + r * (w * s * s * 3.0) + e * (s * s * s)
+            }
+        }
+    }
+
+    /// The derivative by `s`.
+    pub fn velocity(&self, s: T) -> Vec3<T> {
+        match *self {
+            Piece::Conic { a, b, sweep, .. } => {
+                (b * (s * sweep).cos() - a * (s * sweep).sin()) * sweep
+            }
+            Piece::Cubic([p, q, r, e]) => {
+                let w = -s + 1.0;
+                ((q - p) * (w * w) + (r - q) * (w * s * 2.0) + (e - r) * (s * s)) * T::from(3.0)
+            }
+        }
+    }
+
+    /// The same piece from its other end.
+    #[must_use]
+    pub fn reversed(&self) -> Piece<T> {
+        match *self {
+            Piece::Conic { centre, a, b, sweep } => {
+                let (c, s) = (sweep.cos(), sweep.sin());
+                Piece::Conic { centre, a: a * c + b * s, b: a * s - b * c, sweep }
+            }
+            Piece::Cubic([p, q, r, e]) => Piece::Cubic([e, r, q, p]),
+        }
+    }
+
+    /// Its length, by Gauss's rule (to rounding for arcs, to about nine digits for cubics).
+    pub fn length(&self) -> T {
+        let mut sum = T::zero();
+        for k in 0..4 {
+            for (x, w) in GAUSS {
+                let s = (k as f64 + x) / 4.0;
+                sum += self.velocity(T::from(s)).norm() * (w / 4.0);
+            }
+        }
+        sum
+    }
+
+    /// How many chords keep within `tolerance` of the curve.
+    pub fn chords(&self, tolerance: f64) -> usize {
+        // A chord over ds misses by |p''| ds² / 8.
+        let bend = match self {
+            Piece::Conic { a, b, sweep, .. } => {
+                let radius = a.re().norm().max(b.re().norm());
+                radius * sweep.re() * sweep.re()
+            }
+            Piece::Cubic([p, q, r, e]) => {
+                let (p, q, r, e) = (p.re(), q.re(), r.re(), e.re());
+                6.0 * (p - q * 2.0 + r).norm().max((q - r * 2.0 + e).norm())
+            }
+        };
+        let n = Real::sqrt(bend / (8.0 * tolerance.max(f64::MIN_POSITIVE))).ceil();
+        if n.is_finite() { (n as usize).clamp(1, 720) } else { 1 }
+    }
+}
+
+/// Gauss's eight-point rule on [0, 1] (Abramowitz and Stegun, table 25.4).
+pub(crate) const GAUSS: [(f64, f64); 8] = [
+    (0.019_855_071_751_231_856, 0.050_614_268_145_188_13),
+    (0.101_666_761_293_186_64, 0.111_190_517_226_687_24),
+    (0.237_233_795_041_835_5, 0.156_853_322_938_943_65),
+    (0.408_282_678_752_175_1, 0.181_341_891_689_181),
+    (0.591_717_321_247_825, 0.181_341_891_689_181),
+    (0.762_766_204_958_164_5, 0.156_853_322_938_943_65),
+    (0.898_333_238_706_813_4, 0.111_190_517_226_687_24),
+    (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
+];
+
+/// Why a curve cannot be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CurveFault {
+    /// A size has no value.
+    NoValue {
+        /// What it reads.
+        reads: String,
+    },
+    /// A size is not positive.
+    NotPositive {
+        /// The size.
+        value: f64,
+    },
+    /// 300: the lines of the corner are parallel, or two of its points coincide.
+    Degenerate,
+    /// 310: the tangent point falls beyond the end of a line.
+    TooLarge {
+        /// The greatest radius or distance that fits.
+        largest: f64,
+    },
+    /// A point is not determined yet.
+    Undetermined,
+}
+
+/// A curve in space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traced<T> {
+    /// Its pieces, end to start.
+    pub pieces: Vec<Piece<T>>,
+    /// For a corner: the tangent points on the first and on the second line.
+    pub tangents: Option<[Vec3<T>; 2]>,
+    /// For a conic: its centre.
+    pub centre: Option<Vec3<T>>,
+}
+
+/// Traces a curve; `at` gives positions, `value` evaluates names.
+///
+/// # Errors
+/// What is wrong with its sizes or points.
+pub fn trace<T: Real>(
+    curve: &Curve,
+    at: &dyn Fn(PointId) -> Option<Vec3<T>>,
+    values: &BTreeMap<String, T>,
+) -> Result<Traced<T>, CurveFault> {
+    let p: Vec<Vec3<T>> = (curve.points.iter())
+        .map(|&id| at(id))
+        .collect::<Option<_>>()
+        .ok_or(CurveFault::Undetermined)?;
+    let size = |e: &Expr| -> Result<T, CurveFault> {
+        let value = e.eval(&|n| values.get(n).copied());
+        let value = value.map_err(|no| CurveFault::NoValue { reads: no.name })?;
+        if value.re() > 0.0 && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(CurveFault::NotPositive { value: value.re() })
+        }
+    };
+    match (curve.kind, p.as_slice()) {
+        (CurveKind::Quadratic, &[a, m, b]) => {
+            // p(t) = (2t²-3t+1) P1 + (-4t²+4t) P2 + (2t²-t) P3, as a Bézier curve, cut at P2.
+            let q = m * T::from(2.0) - (a + b) * T::from(0.5);
+            let two = |x: Vec3<T>, y: Vec3<T>| x.lerp(y, T::from(0.5));
+            let half = |s: Vec3<T>, c: Vec3<T>, e: Vec3<T>| {
+                let third = T::from(2.0 / 3.0);
+                Piece::Cubic([s, s.lerp(c, third), e.lerp(c, third), e])
+            };
+            let pieces = vec![half(a, two(a, q), m), half(m, two(q, b), b)];
+            Ok(Traced { pieces, tangents: None, centre: None })
+        }
+        (CurveKind::Cubic, p) if p.len() >= 4 => {
+            let piece = |w: &[Vec3<T>]| overhauser([w[0], w[1], w[2], w[3]], curve.centripetal);
+            let pieces = p.windows(4).map(piece).collect::<Option<Vec<_>>>();
+            let pieces = pieces.ok_or(CurveFault::Degenerate)?;
+            Ok(Traced { pieces, tangents: None, centre: None })
+        }
+        (_, &[first, corner, second]) => {
+            let (to_a, to_b) = (first - corner, second - corner);
+            let (long_a, long_b) = (to_a.norm(), to_b.norm());
+            let unit = |v: Vec3<T>| v.normalized().ok_or(CurveFault::Degenerate);
+            let (a, b) = (unit(to_a)?, unit(to_b)?);
+            let sine = a.cross(b).norm();
+            if sine.re() < 1e-9 {
+                return Err(CurveFault::Degenerate);
+            }
+            let phi = sine.atan2(a.dot(b));
+            if matches!(curve.kind, CurveKind::Arc | CurveKind::Circle) {
+                let half = phi * 0.5;
+                let radius = match &curve.radius {
+                    Some(e) => size(e)?,
+                    None => long_a * 0.5,
+                };
+                let reach = long_a.min(long_b).re();
+                let d = radius / half.tan();
+                if d.re() > reach * (1.0 + 1e-12) {
+                    return Err(CurveFault::TooLarge { largest: reach * Real::tan(half.re()) });
+                }
+                let bisector = unit(a + b)?;
+                let centre = corner + bisector * (radius / half.sin());
+                let (t1, t2) = (corner + a * d, corner + b * d);
+                let start = t1 - centre;
+                // Perpendicular to the start within the plane, towards the second tangent point.
+                let side =
+                    unit((t2 - centre) - start * (start.dot(t2 - centre) / start.norm_sq()))?;
+                let full = curve.kind == CurveKind::Circle;
+                let sweep = if full {
+                    T::from(2.0 * std::f64::consts::PI)
+                } else {
+                    -phi + std::f64::consts::PI
+                };
+                let pieces = vec![Piece::Conic { centre, a: start, b: side * radius, sweep }];
+                Ok(Traced { pieces, tangents: Some([t1, t2]), centre: Some(centre) })
+            } else {
+                let [m, n] = match &curve.semi {
+                    Some([m, n]) => [size(m)?, size(n)?],
+                    None => [long_a * 0.5, long_b * 0.5],
+                };
+                for (length, line) in [(m, long_a), (n, long_b)] {
+                    if length.re() > line.re() * (1.0 + 1e-12) {
+                        return Err(CurveFault::TooLarge { largest: line.re() });
+                    }
+                }
+                // p(θ) = C - m a sin θ - n b cos θ, a quarter from P2 + m a to P2 + n b.
+                let centre = corner + a * m + b * n;
+                let turns = if curve.kind == CurveKind::Ellipse { 2.0 } else { 0.5 };
+                let sweep = T::from(turns * std::f64::consts::PI);
+                let pieces = vec![Piece::Conic { centre, a: -(b * n), b: -(a * m), sweep }];
+                let tangents = Some([corner + a * m, corner + b * n]);
+                Ok(Traced { pieces, tangents, centre: Some(centre) })
+            }
+        }
+        _ => Err(CurveFault::Degenerate),
+    }
+}
+
+/// The cubic between the second and third of four points with tangents (P3 - P1)/2 and (P4 - P2)/2
+/// (Brewer and Anderson, SIGGRAPH 1977), in Bézier form; with centripetal knots the non-uniform
+/// Catmull-Rom form of it. `None` when neighbouring points coincide (centripetal only).
+fn overhauser<T: Real>(p: [Vec3<T>; 4], centripetal: bool) -> Option<Piece<T>> {
+    let third = T::from(1.0 / 3.0);
+    let (m1, m2) = if centripetal {
+        let [d1, d2, d3] = [0, 1, 2].map(|k| p[k].distance(p[k + 1]).sqrt());
+        if [d1, d2, d3].iter().any(|d| d.re() <= 0.0) {
+            return None;
+        }
+        let slope = |a: usize, da: T, db: T| {
+            (p[a + 1] - p[a]) / da - (p[a + 2] - p[a]) / (da + db) + (p[a + 2] - p[a + 1]) / db
+        };
+        (slope(0, d1, d2) * d2, slope(1, d2, d3) * d2)
+    } else {
+        let half = T::from(0.5);
+        ((p[2] - p[0]) * half, (p[3] - p[1]) * half)
+    };
+    Some(Piece::Cubic([p[1], p[1] + m1 * third, p[2] - m2 * third, p[2]]))
+}
+
+/// The semi-axes of an ellipse of conjugate half-diameters `a` and `b`, longer first: the singular
+/// values of [a b].
+pub fn semi_axes(a: Vec3, b: Vec3) -> [f64; 2] {
+    let (trace, area) = (a.norm_sq() + b.norm_sq(), a.cross(b).norm());
+    let (sum, difference) =
+        (Real::sqrt(trace + 2.0 * area), Real::sqrt((trace - 2.0 * area).max(0.0)));
+    [(sum + difference) / 2.0, (sum - difference) / 2.0]
+}

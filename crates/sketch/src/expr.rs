@@ -1,0 +1,285 @@
+//! Values of dimensions and variables: expressions over names.
+
+use moldloft_diag::FileId;
+use moldloft_num::Real;
+use moldloft_syntax::sdl::{self, BinaryOp, ExprId, ExprKind, Grouping, Program, Step, UnaryOp};
+use std::fmt;
+
+/// The functions an expression may call, of one argument.
+pub const FUNCTIONS: [&str; 10] =
+    ["sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln"];
+
+#[derive(Clone, Debug, PartialEq)]
+enum Op {
+    Number(f64),
+    Name(String),
+    Negate,
+    Binary(BinaryOp),
+    Call(usize),
+}
+
+/// An expression in the grammar of SDL, of numbers only; angles are in degrees, as in all of this
+/// language. It is parsed once and evaluated over any scalar.
+///
+/// ```
+/// use moldloft_sketch::Expr;
+/// let e = Expr::parse("2*W1 + 0.5").unwrap();
+/// assert_eq!(e.eval(&|name| (name == "w1").then_some(3.0)), Ok(6.5));
+/// assert_eq!(e.names().collect::<Vec<_>>(), ["w1"]);
+/// assert!(Expr::parse("2*").is_err());
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    text: String,
+    ops: Vec<Op>,
+}
+
+/// Why an expression has no value: a name is unknown or has none itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoValue {
+    /// The name, folded.
+    pub name: String,
+}
+
+impl Expr {
+    /// A plain number.
+    pub fn number(value: f64) -> Expr {
+        Expr { text: moldloft_syntax::number::plain(value), ops: vec![Op::Number(value)] }
+    }
+
+    /// Parses a text.
+    ///
+    /// # Errors
+    /// Says what is not understood.
+    pub fn parse(text: &str) -> Result<Expr, String> {
+        let text = text.trim();
+        let (program, root, diagnostics) = sdl::parse_expr(text, FileId(0));
+        if let Some(d) = diagnostics.first() {
+            return Err(d.message.clone());
+        }
+        let mut ops = Vec::new();
+        compile(&program, root, &mut ops)?;
+        Ok(Expr { text: text.to_owned(), ops })
+    }
+
+    /// As written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The number, when the expression is nothing else.
+    pub fn literal(&self) -> Option<f64> {
+        match self.ops.as_slice() {
+            [Op::Number(x)] => Some(*x),
+            [Op::Number(x), Op::Negate] => Some(-x),
+            _ => None,
+        }
+    }
+
+    /// The names it reads, in lower case.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.ops.iter().filter_map(|op| match op {
+            Op::Name(name) => Some(name.as_str()),
+            _ => None,
+        })
+    }
+
+    /// The same with every name changed by `rename` (given and giving lower case).
+    pub fn renamed(&self, rename: &dyn Fn(&str) -> Option<String>) -> Expr {
+        let mut names: Vec<&str> = self.names().filter(|n| rename(n).is_some()).collect();
+        names.sort_unstable();
+        names.dedup();
+        if names.is_empty() {
+            return self.clone();
+        }
+        let mut out = String::new();
+        let mut word = String::new();
+        let lower = |w: &str| w.to_ascii_lowercase();
+        for c in self.text.chars().chain(['\n']) {
+            if c.is_ascii_alphanumeric() || c == '_' || (c == '.' && !word.is_empty()) {
+                word.push(c);
+                continue;
+            }
+            let replaced = names.iter().find(|n| **n == lower(&word)).and_then(|n| rename(n));
+            out.push_str(replaced.as_deref().unwrap_or(&word));
+            word.clear();
+            if c != '\n' {
+                out.push(c);
+            }
+        }
+        Expr::parse(&out).unwrap_or_else(|_| self.clone())
+    }
+
+    /// The value, with names looked up in lower case.
+    ///
+    /// # Errors
+    /// The first name without a value.
+    pub fn eval<T: Real>(&self, value: &dyn Fn(&str) -> Option<T>) -> Result<T, NoValue> {
+        let mut stack: Vec<T> = Vec::with_capacity(4);
+        for op in &self.ops {
+            let next = match op {
+                Op::Number(x) => T::from(*x),
+                Op::Name(name) => value(name).ok_or_else(|| NoValue { name: name.clone() })?,
+                Op::Negate => -pop(&mut stack),
+                Op::Binary(op) => {
+                    let (right, left) = (pop(&mut stack), pop(&mut stack));
+                    match op {
+                        BinaryOp::Add => left + right,
+                        BinaryOp::Sub => left - right,
+                        BinaryOp::Mul => left * right,
+                        BinaryOp::Div => left / right,
+                        _ => power(left, right),
+                    }
+                }
+                Op::Call(k) => {
+                    let x = pop(&mut stack);
+                    let degree = std::f64::consts::PI / 180.0;
+                    match FUNCTIONS[*k] {
+                        "sqrt" => x.sqrt(),
+                        "abs" => x.abs(),
+                        "sin" => (x * degree).sin(),
+                        "cos" => (x * degree).cos(),
+                        "tan" => (x * degree).tan(),
+                        "asin" => x.asin() / degree,
+                        "acos" => x.acos() / degree,
+                        "atan" => x.atan() / degree,
+                        "exp" => x.exp(),
+                        _ => x.ln(),
+                    }
+                }
+            };
+            stack.push(next);
+        }
+        Ok(pop(&mut stack))
+    }
+}
+
+/// Whole powers by multiplication, so that a negative base is allowed.
+fn power<T: Real>(base: T, exponent: T) -> T {
+    let e = exponent.re();
+    if exponent.is_constant() && e == e.trunc() && e.abs() < 1000.0 {
+        base.powi(e as i32)
+    } else {
+        base.powf(exponent)
+    }
+}
+
+/// The compiler leaves as many values as it takes, so the stack is never empty here.
+fn pop<T: Real>(stack: &mut Vec<T>) -> T {
+    stack.pop().unwrap_or_default()
+}
+
+fn compile(program: &Program, id: ExprId, ops: &mut Vec<Op>) -> Result<(), String> {
+    let expr = &program[id];
+    let refused = || Err(format!("`{}` is not a number", program.slice(expr.span)));
+    match expr.kind {
+        ExprKind::Number(literal) => ops.push(Op::Number(program[literal].value)),
+        ExprKind::Name(symbol) => {
+            let name = program.name(symbol).to_ascii_lowercase();
+            ops.push(if name == "pi" { Op::Number(std::f64::consts::PI) } else { Op::Name(name) });
+        }
+        ExprKind::Member { .. } => {
+            let name: String =
+                program.slice(expr.span).chars().filter(|c| !c.is_whitespace()).collect();
+            if !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '.') {
+                return refused();
+            }
+            ops.push(Op::Name(name.to_ascii_lowercase()));
+        }
+        ExprKind::Paren(inner) => compile(program, inner, ops)?,
+        ExprKind::Unary { op, operand } => {
+            compile(program, operand, ops)?;
+            sign(op, ops)?;
+        }
+        ExprKind::Binary { op, left, right } => {
+            compile(program, left, ops)?;
+            compile(program, right, ops)?;
+            ops.push(binary(op)?);
+        }
+        ExprKind::Chain(items) => {
+            for step in program.grouped(items, Grouping::Numbers) {
+                match step {
+                    Step::Push(operand) => compile(program, operand, ops)?,
+                    Step::Unary(op, _) => sign(op, ops)?,
+                    Step::Binary(op, _) => ops.push(binary(op)?),
+                }
+            }
+        }
+        ExprKind::Call { callee, args } => {
+            let name = program.slice(program[callee].span).to_ascii_lowercase();
+            let Some(k) = FUNCTIONS.iter().position(|f| *f == name) else {
+                return Err(format!(
+                    "there is no function `{name}` here; there are {}",
+                    FUNCTIONS.join(", ")
+                ));
+            };
+            let args = &program[args];
+            let [arg] = args else { return Err(format!("`{name}` takes one argument")) };
+            compile(program, arg.value, ops)?;
+            ops.push(Op::Call(k));
+        }
+        _ => return refused(),
+    }
+    Ok(())
+}
+
+fn sign(op: UnaryOp, ops: &mut Vec<Op>) -> Result<(), String> {
+    match op {
+        UnaryOp::Plus => {}
+        UnaryOp::Minus => ops.push(Op::Negate),
+        UnaryOp::Not => return Err("`not` does not apply to numbers".to_owned()),
+    }
+    Ok(())
+}
+
+fn binary(op: BinaryOp) -> Result<Op, String> {
+    use BinaryOp::{Add, Caret, Div, Mul, Sub};
+    match op {
+        Add | Sub | Mul | Div | Caret => Ok(Op::Binary(op)),
+        _ => Err(format!("`{}` does not combine numbers to a number", op.spelling())),
+    }
+}
+
+impl fmt::Display for Expr {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_names() {
+        let value = |text: &str| {
+            let names = |n: &str| match n {
+                "a" => Some(2.0),
+                "b.w" => Some(5.0),
+                _ => None,
+            };
+            Expr::parse(text).map(|e| e.eval::<f64>(&names))
+        };
+        for (text, expected) in [
+            ("-A^2", -4.0),
+            ("2^3^2", 512.0),
+            ("(1+2)*3/4-1", 1.25),
+            ("sqrt(B.w*5)", 5.0),
+            ("sin(30)", 0.5),
+            ("atan(1)", 45.0),
+            ("(-A)^3", -8.0),
+            ("pi/PI", 1.0),
+        ] {
+            let got = value(text).unwrap().unwrap();
+            assert!((got - expected).abs() < 1e-14, "{text}: {got}");
+        }
+        assert_eq!(value("c+1").unwrap(), Err(NoValue { name: "c".into() }));
+        for bad in ["", "1 +", "foo(1)", "sin(1,2)", "{1,2}", "a < b", "\"x\"", "not a"] {
+            assert!(value(bad).is_err(), "{bad}");
+        }
+        let renamed = Expr::parse("W1 + w10*2").unwrap();
+        let renamed = renamed.renamed(&|n| (n == "w1").then(|| "a.w1".to_owned()));
+        assert_eq!(renamed.text(), "a.w1 + w10*2");
+        assert_eq!(Expr::parse("-3").unwrap().literal(), Some(-3.0));
+    }
+}

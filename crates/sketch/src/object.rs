@@ -1,0 +1,225 @@
+//! One named object: a drawing, its dimensions, faces and curves.
+
+use crate::curve::Curve;
+use crate::{Axis, Drawing, Expr, FaceId, LineId, PointId};
+use indexmap::IndexMap;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a dimension fixes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// `coordinate(q) - coordinate(p)` on an axis. The sign never changes by itself.
+    Along {
+        /// The axis.
+        axis: Axis,
+        /// From.
+        p: PointId,
+        /// To.
+        q: PointId,
+    },
+    /// The coordinate of a point (and so of its plane).
+    Datum {
+        /// The axis.
+        axis: Axis,
+        /// The point.
+        point: PointId,
+    },
+    /// The true length of a line.
+    Length(LineId),
+    /// Run per rise of a line: horizontal length divided by the difference in height (1V : n H).
+    Slope(LineId),
+    /// The angle between two lines in degrees, as vectors away from their common point.
+    Angle(LineId, LineId),
+    /// The second line is `value` times as long as the first.
+    Equal(LineId, LineId),
+}
+
+/// Whether a dimension drives the shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// It does.
+    Driving,
+    /// It only shows what follows from others.
+    Reference,
+}
+
+/// A dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dimension {
+    /// As the user wrote it.
+    pub name: String,
+    /// What it fixes.
+    pub measure: Measure,
+    /// Its value, in model units or degrees; `None` when it was unset.
+    pub value: Option<Expr>,
+    /// What it is for.
+    pub role: Role,
+    /// The values that make sense, for sliders and studies.
+    pub range: Option<[f64; 2]>,
+}
+
+/// A named number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// As the user wrote it.
+    pub name: String,
+    /// Its value.
+    pub value: Expr,
+    /// The values that make sense.
+    pub range: Option<[f64; 2]>,
+}
+
+/// A plane face: cycles of points, counter-clockwise seen from outside, holes clockwise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Face {
+    /// The outer cycle.
+    pub outer: Vec<PointId>,
+    /// The cycles of its holes.
+    pub holes: Vec<Vec<PointId>>,
+}
+
+impl Face {
+    /// The outer cycle, then the holes.
+    pub fn loops(&self) -> impl Iterator<Item = &[PointId]> {
+        std::iter::once(self.outer.as_slice()).chain(self.holes.iter().map(Vec::as_slice))
+    }
+
+    /// The face seen from the other side.
+    #[must_use]
+    pub fn reversed(&self) -> Face {
+        let turn = |cycle: &Vec<PointId>| {
+            let mut turned = cycle.clone();
+            turned.reverse();
+            turned
+        };
+        Face { outer: turn(&self.outer), holes: self.holes.iter().map(turn).collect() }
+    }
+}
+
+/// The point whose coordinates are given outright.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// The point.
+    pub point: PointId,
+    /// Where it is.
+    pub at: [f64; 3],
+}
+
+/// An object.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Object {
+    /// Its name, as written.
+    pub name: String,
+    /// Whether it is shown.
+    pub display: bool,
+    /// The unit of its lengths, as a tag (`FT`, `M`, …).
+    pub units: Option<String>,
+    /// The picture; shared, so that what follows from it is computed once.
+    pub drawing: Arc<Drawing>,
+    /// The reference point; the first point at the origin when `None`.
+    pub reference: Option<Reference>,
+    /// Dimensions by folded name, in order of entry.
+    pub dimensions: IndexMap<String, Dimension>,
+    /// Variables by folded name, in order of entry.
+    pub variables: IndexMap<String, Variable>,
+    /// The accepted faces.
+    pub faces: BTreeMap<FaceId, Face>,
+    /// Curves by folded name, in order of entry.
+    pub curves: IndexMap<String, Curve>,
+}
+
+impl Object {
+    /// An empty object of a name; a cross section perpendicular to `section` if given.
+    pub fn new(name: &str, section: Option<Axis>) -> Object {
+        let drawing = Drawing {
+            section,
+            projection: section.map(crate::Projection::section).unwrap_or_default(),
+            ..Drawing::default()
+        };
+        Object {
+            name: name.to_owned(),
+            display: true,
+            drawing: Arc::new(drawing),
+            ..Object::default()
+        }
+    }
+
+    /// The drawing, to change it.
+    pub fn draw(&mut self) -> &mut Drawing {
+        Arc::make_mut(&mut self.drawing)
+    }
+
+    /// The reference point and where it is.
+    pub fn reference(&self) -> Option<Reference> {
+        let first = self.drawing.points.keys().next();
+        self.reference
+            .filter(|r| self.drawing.points.contains_key(&r.point))
+            .or_else(|| first.map(|&point| Reference { point, at: [0.0; 3] }))
+    }
+
+    /// The first unused `prefix` + number among dimensions, variables and curves.
+    pub fn fresh_name(&self, prefix: &str) -> String {
+        let taken = |name: &str| self.has_name(name);
+        let start = self.dimensions.len() + self.curves.len();
+        (1..=start + self.variables.len() + 1)
+            .map(|k| format!("{prefix}{k}"))
+            .find(|name| !taken(name))
+            .unwrap_or_else(|| format!("{prefix}{start}_"))
+    }
+
+    /// Whether a dimension, variable or curve has this name.
+    pub fn has_name(&self, name: &str) -> bool {
+        let key = name.to_ascii_lowercase();
+        self.dimensions.contains_key(&key)
+            || self.variables.contains_key(&key)
+            || self.curves.contains_key(&key)
+    }
+
+    /// Adds a dimension.
+    pub fn add_dimension(&mut self, dimension: Dimension) {
+        self.dimensions.insert(dimension.name.to_ascii_lowercase(), dimension);
+    }
+
+    /// The label after the highest one.
+    pub fn next_face(&self) -> FaceId {
+        FaceId(self.faces.keys().last().map_or(1, |f| f.0.saturating_add(1)))
+    }
+
+    /// Removes what mentions points or lines that are gone: faces, curves and dimensions.
+    /// Returns the names of dimensions and curves removed.
+    pub fn drop_dangling(&mut self) -> Vec<String> {
+        let drawing = Arc::clone(&self.drawing);
+        let point = |p: &PointId| drawing.points.contains_key(p);
+        let line = |l: &LineId| drawing.lines.contains_key(l);
+        let mut gone = Vec::new();
+        self.dimensions.retain(|_, d| {
+            let stays = match &d.measure {
+                Measure::Along { p, q, .. } => point(p) && point(q),
+                Measure::Datum { point: p, .. } => point(p),
+                Measure::Length(l) | Measure::Slope(l) => line(l),
+                Measure::Angle(a, b) | Measure::Equal(a, b) => line(a) && line(b),
+            };
+            if !stays {
+                gone.push(d.name.clone());
+            }
+            stays
+        });
+        self.curves.retain(|_, c| {
+            let stays = c.points.iter().all(point);
+            if !stays {
+                gone.push(c.name.clone());
+            }
+            stays
+        });
+        let closed = |cycle: &[PointId]| {
+            (0..cycle.len())
+                .all(|k| drawing.line_between(cycle[k], cycle[(k + 1) % cycle.len()]).is_some())
+        };
+        self.faces.retain(|_, f| f.loops().all(closed));
+        if self.reference.is_some_and(|r| !point(&r.point)) {
+            self.reference = None;
+        }
+        gone
+    }
+}
