@@ -7,7 +7,7 @@ use moldloft_spline::distribution::{self, DistributionError};
 use std::sync::Arc;
 
 /// The longest row.
-const MOST_NUMBERS: u32 = 10_000_000;
+const MOST_NUMBERS: u32 = 1_000_000;
 
 fn numbers<T: Real>(row: Result<Vec<T>, DistributionError>) -> Result<Value<T>, Fault> {
     match row {

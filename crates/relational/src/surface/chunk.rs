@@ -4,7 +4,7 @@ use moldloft_num::{Real, Vec3};
 use std::marker::PhantomData;
 
 /// How many parameters v are evaluated together: few enough for the fastest cache.
-pub const LANES: usize = 32;
+pub const LANES: usize = 64;
 
 /// One plain number at each of the parameters.
 pub type Plane = [f64; LANES];

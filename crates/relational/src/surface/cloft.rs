@@ -3,7 +3,7 @@ use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
 use crate::faults;
 use moldloft_num::trace::Edges;
-use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Vec3, surface_jet_of};
+use moldloft_num::{Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
 use moldloft_spline::{Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
 
@@ -99,8 +99,12 @@ impl<T: Real> Loft<T> {
         spline.ok()
     }
 
-    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
-        self.column(&self.masters.at(u)).map_or_else(nowhere, |spline| spline.pieces().eval(v))
+    /// Position and derivatives by v, carrying their derivatives by u.
+    fn across<J: Jet<T>>(&self, u: J, v: T, order: Order) -> CurveJet<J> {
+        match self.column(&self.masters.at(u)) {
+            Some(spline) => spline.jet(J::fixed(v), order),
+            None => [nowhere(); 3],
+        }
     }
 }
 
@@ -110,7 +114,20 @@ fn nowhere<S: Real>() -> Vec3<S> {
 
 impl<T: Real> Surface<T> for Loft<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
-        surface_jet_of!(self, Self::at, u, v, order)
+        let mut jet = SurfJet::default();
+        match order {
+            Order::Zero => jet.p = self.across(u, v, order)[0],
+            Order::First => {
+                let [p, d, _] = self.across(Uni1::parameter(u), v, order);
+                (jet.p, jet.u, jet.v) = (p.map(|a| a.f), p.map(|a| a.t), d.map(|a| a.f));
+            }
+            Order::Second => {
+                let [p, d, dd] = self.across(Uni2::parameter(u), v, order);
+                (jet.p, jet.u, jet.v) = (p.map(|a| a.f), p.map(|a| a.t), d.map(|a| a.f));
+                (jet.uu, jet.uv, jet.vv) = (p.map(|a| a.tt), d.map(|a| a.t), dd.map(|a| a.f));
+            }
+        }
+        jet
     }
 
     fn grid(

@@ -3,7 +3,7 @@
 use super::chunk::{Chunk, LANES, Part, Plane};
 use super::masters::{Masters, Points};
 use moldloft_num::trace::Edges;
-use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Vec3, surface_jet_of};
+use moldloft_num::{Order, Real, SurfJet, Surface, Uni1, Vec3};
 use moldloft_spline::{Basis, KnotVector};
 
 /// Masters blended by the basis functions of a clamped knot vector.
@@ -14,13 +14,33 @@ pub struct Blend<T: Real> {
 }
 
 impl<T: Real> Blend<T> {
-    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
-        let basis = self.knots.basis(v, Order::Zero);
-        let mut sum = Vec3::zero();
-        for (&b, curve) in basis.rows[0].iter().zip(&self.masters.curves()[basis.first..]) {
-            sum += curve.at(u) * b;
+    /// The jet from basis functions; `times` multiplies a coordinate with a basis function, which
+    /// is a plain number wherever v is.
+    fn combine<S: Real>(
+        &self,
+        u: T,
+        basis: &Basis<S>,
+        order: Order,
+        times: impl Fn(T, S) -> T,
+    ) -> SurfJet<T> {
+        let mut jet = SurfJet::default();
+        let [values, slopes, bends] = &basis.rows;
+        for (r, curve) in self.masters.curves()[basis.first..].iter().enumerate().take(values.len())
+        {
+            let [p, d, dd] = curve.jet(u, order);
+            let share = |v: Vec3<T>, b: S| v.map(|x| times(x, b));
+            jet.p += share(p, values[r]);
+            if order >= Order::First {
+                jet.u += share(d, values[r]);
+                jet.v += share(p, slopes[r]);
+            }
+            if order == Order::Second {
+                jet.uu += share(dd, values[r]);
+                jet.uv += share(d, slopes[r]);
+                jet.vv += share(p, bends[r]);
+            }
         }
-        sum
+        jet
     }
 }
 
@@ -69,7 +89,12 @@ fn blend(planes: &[Plane], q: impl Fn(usize) -> f64, n: usize, out: &mut Plane) 
 
 impl<T: Real> Surface<T> for Blend<T> {
     fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
-        surface_jet_of!(self, Self::at, u, v, order)
+        if v.is_constant() {
+            let basis = self.knots.basis(v.re(), order);
+            self.combine(u, &basis, order, |x, b: f64| x * b)
+        } else {
+            self.combine(u, &self.knots.basis(v, order), order, |x, b: T| x * b)
+        }
     }
 
     fn grid(
