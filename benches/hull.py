@@ -30,25 +30,29 @@ def master_basis(t: np.ndarray) -> np.ndarray:
     return BSpline.design_matrix(np.minimum(t, 1 - 1e-16), knots, 2).toarray()
 
 
-def numpy_grid() -> object:
-    """The product of cached basis matrices: a tensor surface, a lower bound from Python."""
-    u = master_basis(np.linspace(0, 1, NU))
-    v = np.linspace(0, 1, NV)
-    # The parabola through three masters at v = 0, 1/2, 1.
-    w = np.stack([(1 - v) * (1 - 2 * v), 4 * v * (1 - v), v * (2 * v - 1)])
-    net = np.stack([STEM, MIDSHIP, TRANSOM])
+def numpy_grid(arranged: bool = False) -> object:
+    """The product of cached basis matrices: the tensor surface of the same net.
 
-    def work() -> np.ndarray:
-        net[1, 1, 1] = next(EDITS)
-        return np.einsum("ia,akc->ikc", u, np.tensordot(net, w, ([0], [0])).transpose(0, 2, 1))
+    It is another surface than ours, whose loft follows the chord lengths at every u; it stands for
+    what NumPy needs at least. ``arranged`` orders the product by hand for the fewest operations.
+    """
+    u = master_basis(np.linspace(0, 1, NU))
+    t = np.linspace(0, 1, NV)
+    # The parabola through three masters at v = 0, 1/2, 1.
+    v = np.stack([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)], axis=1)
+    net = np.stack([STEM, MIDSHIP, TRANSOM], axis=1)
 
     def product() -> np.ndarray:
         net[1, 1, 1] = next(EDITS)
-        across = w.T @ net.reshape(3, 12)  # (NV, 12)
-        return u @ across.reshape(NV, 4, 3)  # (NV, NU, 3)
+        return np.einsum("ia,jb,abc->ijc", u, v, net, optimize=True)
 
-    assert np.allclose(work(), product().transpose(1, 0, 2), atol=1e-2)
-    return product
+    def by_hand() -> np.ndarray:
+        net[1, 1, 1] = next(EDITS)
+        along = (u @ net.reshape(4, 9)).reshape(NU, 3, 3)
+        return v @ along
+
+    assert np.allclose(product(), by_hand(), atol=1e-2)
+    return by_hand if arranged else product
 
 
 def splipy_grid() -> object:
@@ -140,7 +144,8 @@ def main() -> None:
         return hull.grid(NU, NV, normals=True)
 
     peers = {
-        "NumPy, cached basis matrices": (numpy_grid, 50),
+        "NumPy, cached basis matrices": (numpy_grid, 20),
+        "NumPy, product arranged by hand": (lambda: numpy_grid(arranged=True), 20),
         "splipy": (splipy_grid, 10),
         "splinepy": (splinepy_grid, 5),
         "OCP (ThruSections, D0)": (ocp_grid, 1),

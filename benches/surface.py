@@ -42,10 +42,13 @@ def scipy_tensor(t: np.ndarray) -> object:
 
 def geomcore_scattered(uv: np.ndarray) -> object:
     """Geomcore, a list of parameters in and points out."""
-    import geomcore
+    from geomcore import Point
+    from geomcore.surfaces import BSplineSurface
 
-    points = [[tuple(p) for p in row] for row in NET.tolist()]
-    spline = geomcore.BSplineSurface(3, 3, KNOTS.tolist(), KNOTS.tolist(), points)
+    poles = [[Point(*p) for p in row] for row in NET.tolist()]
+    knots, counts = np.unique(KNOTS, return_counts=True)
+    once = (knots.tolist(), counts.tolist())
+    spline = BSplineSurface(3, 3, poles, *once, *once, False, False)
     pairs = [tuple(p) for p in uv.tolist()]
     return lambda: spline.eval_points(pairs)
 
