@@ -174,19 +174,25 @@ impl ToProgram<'_> {
         if first != usual_first {
             lines.push((0, format!("MultiSurf {version} {first}").trim_end().to_string()));
         }
+        let comments = model.header_comments.iter();
+        lines.extend(comments.map(|span| (span.start, model.slice(*span).to_string())));
+        lines.sort();
+        let first_other = lines.iter().map(|(at, _)| *at).find(|at| *at > 0).unwrap_or(u32::MAX);
+        let mut told_others = false;
         for line in &model.header {
             let (key, rest) = (model.slice(line.key), model.slice(line.rest));
+            // Where the way back would put them, the arguments tell enough.
             let told = match key {
+                _ if told_others || line.key.start > first_other => false,
                 "Units" => rest == units && !rest.is_empty(),
                 "Symmetry" => !legacy && !symmetry.is_empty() && rest == planes(&symmetry),
                 _ => false,
             };
             if !told {
+                told_others = true;
                 lines.push((line.key.start, format!("{key}: {rest}").trim_end().to_string()));
             }
         }
-        let comments = model.header_comments.iter();
-        lines.extend(comments.map(|span| (span.start, model.slice(*span).to_string())));
         lines.sort();
         let mut named = Vec::new();
         for (key, value) in [("symmetry", &*symmetry), ("units", units), ("version", version)] {
@@ -369,8 +375,14 @@ impl<'a> ToModelFile<'a> {
             let _ = writeln!(out, "Symmetry: {}", planes(&symmetry));
         }
         for line in lines.iter().filter(|line| !line.starts_with("MultiSurf ")) {
-            *out += line;
-            out.push('\n');
+            // The arguments stand, should they have been changed.
+            if line.starts_with("Units:") && !units.is_empty() {
+                let _ = writeln!(out, "Units: {units}");
+            } else if line.starts_with("Symmetry:") && first.is_none() {
+                let _ = writeln!(out, "Symmetry: {}", planes(&symmetry));
+            } else {
+                let _ = writeln!(out, "{line}");
+            }
         }
         if !self.legacy {
             *out += "BeginModel;\n";
@@ -404,7 +416,8 @@ impl<'a> ToModelFile<'a> {
             self.out.push('\n');
         } else {
             let rest = &text[1..];
-            let blank = rest.starts_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | ':' | '#'));
+            let blank =
+                rest.starts_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | ':' | '#'));
             let _ = writeln!(self.out, "Rem{}{rest}", if blank { " " } else { "" });
         }
     }

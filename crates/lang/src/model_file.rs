@@ -27,6 +27,9 @@ use std::sync::atomic::Ordering;
 /// More diagnostics of one run than this are counted, not listed.
 const MOST_DIAGNOSTICS: usize = 100;
 
+/// More cycles than this are not told: their paths may be long.
+const MOST_CYCLES: usize = 20;
+
 /// A parsed model file and the places of its objects.
 pub(crate) struct ModelFileSource {
     model: ModelFile,
@@ -123,7 +126,8 @@ impl ModelFileSource {
     ) -> Applied {
         evaluation.env = Environment::default();
         let Evaluation { graph, env } = evaluation;
-        let sorted: Vec<Sorted> = self.lines.iter().map(|line| self.sorted(registry, line)).collect();
+        let sorted: Vec<Sorted> =
+            self.lines.iter().map(|line| self.sorted(registry, line)).collect();
         let (order, cycles) = self.order(&sorted);
         let (mut roots, applied) = graph.apply(Extent::Whole, |run| {
             let mut producer = Producer {
@@ -135,8 +139,12 @@ impl ModelFileSource {
                 roots: Vec::new(),
                 suggestions: 0,
             };
-            for cycle in &cycles {
-                producer.report_cycle(cycle);
+            for (k, cycle) in cycles.iter().enumerate() {
+                if k < MOST_CYCLES {
+                    producer.report_cycle(cycle);
+                } else {
+                    producer.outcomes[cycle[0]] = Some(producer.root(Vec::new()));
+                }
             }
             for (k, &at) in order.iter().enumerate() {
                 if k % 1024 == 0 && producer.inputs.cancelled.load(Ordering::Relaxed) {
@@ -275,9 +283,11 @@ impl ModelFileSource {
                         path.push((parent, self.parents(&sorted[parent]), 0));
                     }
                     Mark::Open => {
-                        let from = path.iter().position(|(at, ..)| *at == parent);
-                        let round = path[from.unwrap_or(0)..].iter().map(|(at, ..)| *at);
-                        cycles.push(round.collect());
+                        // Without the object at the end of the path none of the others is built.
+                        let known = cycles.len() < MOST_CYCLES;
+                        let from = path.iter().position(|(at, ..)| known && *at == parent);
+                        let round = path[from.unwrap_or(path.len() - 1)..].iter();
+                        cycles.push(round.map(|(at, ..)| *at).collect());
                     }
                 }
             }
@@ -653,7 +663,11 @@ impl<T: Scalar> Producer<'_, '_, T> {
         match written.kind {
             FieldKind::Number(id) => {
                 let x = self.source.model[id].value;
-                Ok(Value::Number(T::from(if field.unit == Unit::Angle { x.to_radians() } else { x })))
+                Ok(Value::Number(T::from(if field.unit == Unit::Angle {
+                    x.to_radians()
+                } else {
+                    x
+                })))
             }
             FieldKind::Text => Ok(Value::text(text.trim_matches('"'))),
             FieldKind::Word => self.word(field, written, text),
@@ -690,12 +704,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         }
     }
 
-    fn word(
-        &mut self,
-        field: &Field,
-        written: &Written,
-        text: &str,
-    ) -> Result<Value<T>, Trouble> {
+    fn word(&mut self, field: &Field, written: &Written, text: &str) -> Result<Value<T>, Trouble> {
         if field.class == Class::Text {
             return Ok(Value::text(text));
         }
