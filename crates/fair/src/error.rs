@@ -1,0 +1,147 @@
+use std::fmt;
+
+/// Why something cannot be faired.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FairError {
+    /// Too few control points for the degree.
+    TooFew {
+        /// The fewest that make sense.
+        expected: usize,
+        /// The number given.
+        actual: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    NotFinite {
+        /// Index of the point, from 0.
+        index: usize,
+    },
+    /// Two neighbouring data points coincide where a parameter range between them is needed.
+    Coincident {
+        /// Index of the first of the two, from 0.
+        first: usize,
+    },
+    /// A tolerance is negative, NaN or infinite.
+    Tolerance {
+        /// The number given.
+        value: f64,
+    },
+    /// A closed curve shrinks to a point when nothing holds it: it needs a tolerance.
+    ClosedWithoutTolerance,
+    /// A mark lies outside the list of control points.
+    Mark {
+        /// The mark.
+        index: usize,
+        /// The number of control points.
+        count: usize,
+    },
+    /// A weight is not a positive number.
+    Weight {
+        /// Its index.
+        index: usize,
+        /// The weight.
+        weight: f64,
+    },
+    /// Two lists that belong together differ in length.
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// The number that is needed.
+        expected: usize,
+        /// The number given.
+        actual: usize,
+    },
+    /// Knots or parameters are not increasing.
+    Unsorted {
+        /// Index of the first that is smaller than the one before it.
+        index: usize,
+    },
+    /// The knots are at fault.
+    Knots(moldloft_spline::KnotError),
+    /// The degree is too low for the measure.
+    Degree {
+        /// The lowest degree at which the measure exists.
+        expected: usize,
+        /// The degree given.
+        actual: usize,
+    },
+    /// Linear conditions cannot all hold within the tolerance.
+    Contradiction {
+        /// The conditions that could not be met, by position in the list given.
+        conditions: Vec<usize>,
+        /// The largest amount by which one of them is missed.
+        miss: f64,
+    },
+    /// A solver met a matrix that it could not factor.
+    Singular,
+    /// The problem is larger than the direct solver takes on.
+    TooLarge {
+        /// Numbers of storage that the factor would need.
+        needed: usize,
+        /// The most that is allowed.
+        allowed: usize,
+    },
+}
+
+impl From<moldloft_spline::KnotError> for FairError {
+    fn from(error: moldloft_spline::KnotError) -> Self {
+        Self::Knots(error)
+    }
+}
+
+impl fmt::Display for FairError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooFew { expected, actual } => {
+                write!(f, "expected at least {expected} points, found {actual}")
+            }
+            Self::NotFinite { index } => write!(f, "point {} is not finite", index + 1),
+            Self::Coincident { first } => {
+                write!(f, "points {} and {} coincide", first + 1, first + 2)
+            }
+            Self::Tolerance { value } => {
+                write!(f, "expected a tolerance of at least 0, found {value}")
+            }
+            Self::ClosedWithoutTolerance => {
+                write!(f, "a closed curve without a tolerance shrinks to a point: give a tolerance")
+            }
+            Self::Mark { index, count } => {
+                write!(f, "expected marks below {count}, the number of points, found {index}")
+            }
+            Self::Weight { index, weight } => {
+                write!(f, "weight {} is {weight}, expected a positive number", index + 1)
+            }
+            Self::Count { what, expected, actual } => {
+                write!(f, "expected {expected} {what}, found {actual}")
+            }
+            Self::Unsorted { index } => {
+                write!(f, "parameter or knot {index} is not larger than the one before it")
+            }
+            Self::Knots(error) => error.fmt(f),
+            Self::Degree { expected, actual } => {
+                write!(f, "this measure needs degree {expected} or more, found {actual}")
+            }
+            Self::Contradiction { conditions, miss } => {
+                let list: Vec<_> = conditions.iter().map(|c| (c + 1).to_string()).collect();
+                write!(
+                    f,
+                    "conditions {} cannot hold within the tolerance (missed by {miss:.3e})",
+                    list.join(", ")
+                )
+            }
+            Self::Singular => write!(f, "the equations have no unique solution"),
+            Self::TooLarge { needed, allowed } => {
+                write!(f, "the factor needs {needed} numbers, {allowed} are allowed")
+            }
+        }
+    }
+}
+
+impl std::error::Error for FairError {}
+
+/// Refuses points that are not finite.
+pub(crate) fn check_finite(points: &[moldloft_num::Vec3<f64>]) -> Result<(), FairError> {
+    match points.iter().position(|p| !p.is_finite()) {
+        Some(index) => Err(FairError::NotFinite { index }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,32 @@
+//! Fairing of curves, surfaces and networks within a certified tolerance.
+
+mod band;
+mod certificate;
+mod cone;
+mod deviation;
+mod error;
+mod heap;
+mod job;
+mod jump;
+mod limit;
+mod local;
+mod measure;
+mod optimum;
+mod rows;
+pub mod shape;
+mod solver;
+mod space;
+#[cfg(test)]
+mod testing;
+
+pub use certificate::{Certificate, ball_gap};
+pub use deviation::{Deviation, certified, deviation};
+pub use error::FairError;
+pub use job::{End, Job};
+pub use jump::Jumps;
+pub use limit::{Limit, Motion};
+pub use local::{Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, replay, sweeps};
+pub use measure::{Measure, Norm, value};
+pub use optimum::{Bound, Condition, Optimum, OptimumOptions, optimum};
+pub use rows::Rows;
+pub use space::Space;

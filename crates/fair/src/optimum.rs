@@ -1,0 +1,412 @@
+//! The fairest curve within the limits, with a proof.
+
+use crate::job::End;
+use crate::solver::{self, Bounds, Problem, V};
+use crate::{Certificate, FairError, Job, Measure, Motion, Norm, Rows, Space};
+use moldloft_num::{Order, Vec3};
+
+/// What the tolerance is a bound on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// Each control point stays near its original place.
+    ControlPoints,
+    /// Each Bézier point of the displacement stays small, which bounds the displacement of the
+    /// curve everywhere and leaves the control points more room.
+    Bezier,
+}
+
+/// A linear condition on the control points: the sum of factor . point over the entries is `value`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    /// Control points and factors.
+    pub entries: Vec<(usize, Vec3<f64>)>,
+    /// What the sum must be.
+    pub value: f64,
+}
+
+const AXES: [Vec3<f64>; 3] = [
+    Vec3 { x: 1.0, y: 0.0, z: 0.0 },
+    Vec3 { x: 0.0, y: 1.0, z: 0.0 },
+    Vec3 { x: 0.0, y: 0.0, z: 1.0 },
+];
+
+impl Condition {
+    /// The left side at `points`.
+    pub fn at(&self, points: &[Vec3<f64>]) -> f64 {
+        self.entries.iter().map(|(i, f)| f.dot(points[*i])).sum()
+    }
+
+    /// A derivative (order 0 to 2) of the polynomial curve at `t` takes a value: three conditions.
+    pub fn derivative(space: &Space, t: f64, order: Order, value: Vec3<f64>) -> Vec<Self> {
+        let k = space.span_of(t);
+        let basis = space.basis(k, t);
+        let row = &basis.rows[order as usize];
+        let entry = |axis: Vec3<f64>| -> Vec<_> {
+            space.columns(k).zip(row.iter()).map(|(c, &b)| (c, axis * b)).collect()
+        };
+        AXES.iter().map(|&a| Self { entries: entry(a), value: a.dot(value) }).collect()
+    }
+
+    /// The curve passes through a point at `t`.
+    pub fn point(space: &Space, t: f64, through: Vec3<f64>) -> Vec<Self> {
+        Self::derivative(space, t, Order::Zero, through)
+    }
+
+    /// The curve's tangent at `t` is parallel to a direction: two conditions.
+    pub fn tangent(space: &Space, t: f64, direction: Vec3<f64>) -> Vec<Self> {
+        let k = space.span_of(t);
+        let basis = space.basis(k, t);
+        let (a, b) = across(direction);
+        let entry = |axis: Vec3<f64>| -> Vec<_> {
+            space.columns(k).zip(basis.rows[1].iter()).map(|(c, &x)| (c, axis * x)).collect()
+        };
+        [a, b].into_iter().map(|axis| Self { entries: entry(axis), value: 0.0 }).collect()
+    }
+
+    /// The sum of all control points stays: the centroid of a closed uniform curve.
+    pub fn centroid(points: &[Vec3<f64>]) -> Vec<Self> {
+        AXES.iter()
+            .map(|&a| {
+                let entries: Vec<_> = (0..points.len()).map(|i| (i, a)).collect();
+                let mut condition = Self { entries, value: 0.0 };
+                condition.value = condition.at(points);
+                condition
+            })
+            .collect()
+    }
+
+    /// The area that the curve sweeps round the origin in the plane of `normal` keeps its value to
+    /// first order: area is quadratic in the control points, its slope is taken at `points`.
+    pub fn area(space: &Space, points: &[Vec3<f64>], normal: Vec3<f64>) -> Self {
+        let mut slope = vec![Vec3::zero(); points.len()];
+        for k in space.spans() {
+            let (a, b) = (space.knot(k), space.knot(k + 1));
+            // The 8-point rule is exact to degree 15; x x x' has degree 2p - 1.
+            let (half, mid) = (0.5 * (b - a), 0.5 * (a + b));
+            let mut nodes = Vec::with_capacity(8);
+            moldloft_num::gauss_legendre(-1.0, 1.0, |x: f64| {
+                nodes.push(x);
+                0.0
+            });
+            for (at, &x) in nodes.iter().enumerate() {
+                // The weight of a node is the rule applied to its own unit function.
+                let mut seen = 0;
+                let w = moldloft_num::gauss_legendre(-1.0, 1.0, |_: f64| {
+                    seen += 1;
+                    if seen == at + 1 { 1.0 } else { 0.0 }
+                }) * half;
+                let basis = space.basis(k, mid + half * x);
+                let mut p = [Vec3::zero(); 2];
+                for (j, c) in space.columns(k).enumerate() {
+                    p[0] += points[c] * basis.rows[0][j];
+                    p[1] += points[c] * basis.rows[1][j];
+                }
+                // d/dc of (n . (x x x')) / 2.
+                for (j, c) in space.columns(k).enumerate() {
+                    let by_value = p[1].cross(normal) * (0.5 * w * basis.rows[0][j]);
+                    let by_slope = normal.cross(p[0]) * (0.5 * w * basis.rows[1][j]);
+                    slope[c] += by_value + by_slope;
+                }
+            }
+        }
+        let entries: Vec<_> = slope.into_iter().enumerate().collect();
+        let mut condition = Self { entries, value: 0.0 };
+        condition.value = condition.at(points);
+        condition
+    }
+
+    /// The curve meets a neighbour with continuous curvature at its clamped end: `rows` are the
+    /// neighbour's last three Bézier points, from far to near (the near one is the common point),
+    /// and b1 = p + beta (p - a1), b2 - 2 b1 + p = beta^2 (p - 2 a1 + a2) + gamma (b1 - p), where
+    /// the own first three Bézier points are p, b1, b2. Linear once beta and gamma are fixed, which
+    /// are read off the original. `at_end` says at which end of the own curve.
+    ///
+    /// # Errors
+    /// [`FairError::Singular`] when the neighbour's Bézier points give no direction.
+    pub fn seam(
+        space: &Space,
+        points: &[Vec3<f64>],
+        [a2, a1, p]: [Vec3<f64>; 3],
+        at_end: bool,
+    ) -> Result<Vec<Self>, FairError> {
+        let rows = space.bezier(None);
+        let row = |k: usize| -> Vec<(usize, f64)> {
+            let k = if at_end { rows.len() - 1 - k } else { k };
+            let (c, f) = rows.row(k);
+            c.iter().map(|&c| c as usize).zip(f.iter().copied()).collect()
+        };
+        let own = |k: usize| row(k).iter().fold(Vec3::zero(), |s, &(c, f)| s + points[c] * f);
+        let back = p - a1;
+        if back.norm_sq() == 0.0 {
+            return Err(FairError::Singular);
+        }
+        let (b1, b2) = (own(1), own(2));
+        let beta = (b1 - p).dot(back) / back.norm_sq();
+        let curve = (p - a1 * 2.0 + a2) * (beta * beta);
+        let first = back * beta;
+        let rest = (b2 - b1 * 2.0 + p) - curve;
+        let gamma = if first.norm_sq() > 0.0 { rest.dot(first) / first.norm_sq() } else { 0.0 };
+        let wanted = [p, p + first, curve + first * gamma + (p + first) * 2.0 - p];
+        let mut out = Vec::new();
+        for (k, target) in wanted.into_iter().enumerate() {
+            for axis in AXES {
+                let entries = row(k).into_iter().map(|(c, f)| (c, axis * f)).collect();
+                out.push(Self { entries, value: axis.dot(target) });
+            }
+        }
+        Ok(out)
+    }
+}
+
+/// Two unit vectors across a direction.
+fn across(direction: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
+    let d = direction.normalized().unwrap_or(Vec3::of(0.0, 0.0, 1.0));
+    let a = d.perpendicular();
+    let a = a.normalized().unwrap_or(Vec3::of(1.0, 0.0, 0.0));
+    (a, d.cross(a))
+}
+
+/// How to look for the optimum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OptimumOptions {
+    /// What there is to be little of.
+    pub measure: Measure,
+    /// What the tolerance bounds.
+    pub bound: Bound,
+    /// Conditions besides the ends.
+    pub conditions: Vec<Condition>,
+    /// The certified gap to reach, as a share of the measure.
+    pub accuracy: f64,
+}
+
+impl OptimumOptions {
+    /// The fairest curve by a measure under balls round the control points, to a relative gap
+    /// of 1e-9.
+    pub fn of(measure: Measure) -> Self {
+        Self { measure, bound: Bound::ControlPoints, conditions: Vec::new(), accuracy: 1e-9 }
+    }
+}
+
+/// The fairest curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Optimum {
+    /// The control points; those that must not move have their original bits.
+    pub points: Vec<Vec3<f64>>,
+    /// The measure and the proven bound on what is left to gain.
+    pub certificate: Certificate,
+    /// Newton steps taken.
+    pub iterations: usize,
+    /// How many limits are reached: their multiplier outweighs their slack.
+    pub active: usize,
+}
+
+/// The frame that points move in: the directions that matter.
+pub(crate) struct Frame {
+    pub axes: Vec<Vec3<f64>>,
+    pub separate: bool,
+}
+
+impl Frame {
+    /// The frame of a motion; coordinates in which nothing varies are left out.
+    pub fn of(motion: Motion, points: &[Vec3<f64>], conditions: &[Condition]) -> Self {
+        let axes: Vec<Vec3<f64>> = match motion {
+            Motion::Along(d) => vec![d],
+            Motion::Across(d) => {
+                let (a, b) = across(d);
+                vec![a, b]
+            }
+            Motion::Ball | Motion::Box => AXES.to_vec(),
+        };
+        let varies = |a: &Vec3<f64>| {
+            points.iter().any(|p| p.dot(*a) != points[0].dot(*a))
+                || conditions.iter().any(|c| c.entries.iter().any(|(_, f)| f.dot(*a) != 0.0))
+        };
+        Self { axes: axes.into_iter().filter(varies).collect(), separate: motion == Motion::Box }
+    }
+
+    pub fn down(&self, v: Vec3<f64>) -> V {
+        let mut out = [0.0; 3];
+        for (o, a) in out.iter_mut().zip(&self.axes) {
+            *o = v.dot(*a);
+        }
+        out
+    }
+
+    pub fn up(&self, v: V) -> Vec3<f64> {
+        self.axes.iter().zip(v).fold(Vec3::zero(), |s, (a, c)| s + *a * c)
+    }
+}
+
+/// The fairest curve within the limits of a job.
+///
+/// The result is a continuous function of the input, and the same bits whatever was computed
+/// before. The certificate does not trust the solver: any curve within the limits, met conditions
+/// included, measures at least `value - gap`.
+///
+/// # Errors
+/// [`FairError::Contradiction`] when the conditions cannot hold within the limits; others as for
+/// [`Job::check`].
+///
+/// # Example
+/// ```
+/// use moldloft_fair::{Job, Measure, OptimumOptions, optimum};
+/// use moldloft_num::Vec3;
+/// let bent = |i: i32| Vec3::of(f64::from(i), if i == 5 { 0.01 } else { 0.0 }, 0.0);
+/// let job = Job::of_points(3, (0..11).map(bent).collect(), false, 0.02).unwrap();
+/// let faired = optimum(&job, &OptimumOptions::of(Measure::Second)).unwrap();
+/// assert!(faired.points[5].y.abs() < 1e-6);
+/// ```
+pub fn optimum(job: &Job, options: &OptimumOptions) -> Result<Optimum, FairError> {
+    job.check()?;
+    let measure = job.measure_rows(options.measure)?;
+    let (frozen, mut conditions) = kept(job);
+    let own = conditions.len();
+    conditions.extend(options.conditions.iter().cloned());
+    let problem = assemble(job, options, measure, frozen, &conditions)?;
+    let solution = solver::solve(&problem.1, options.accuracy, floor(job, &problem.1.measure))?;
+    let missed: Vec<usize> = (0..conditions.len()).filter(|&k| solution.misses[k] > 1e-7).collect();
+    if !missed.is_empty() {
+        let miss = |k: usize| {
+            let moved: Vec<_> = moved(job, &problem.0, &solution.x);
+            (conditions[k].at(&moved) - conditions[k].value).abs()
+        };
+        let miss = missed.iter().map(|&k| miss(k)).fold(0.0, f64::max);
+        let conditions = missed.into_iter().map(|k| k.saturating_sub(own)).collect();
+        return Err(FairError::Contradiction { conditions, miss });
+    }
+    let points = moved(job, &problem.0, &solution.x);
+    // Squares are solved as halves.
+    let unit = if options.measure.norm() == Norm::Square { 2.0 } else { 1.0 };
+    let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
+    let active = active(&problem.1, &solution);
+    Ok(Optimum { points, certificate, iterations: solution.iterations, active })
+}
+
+/// Gaps below the rounding of the measure are no gaps.
+fn floor(job: &Job, rows: &Rows) -> f64 {
+    let size = job.relative(&job.points).iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let noise = 4.0 * f64::EPSILON * size;
+    noise * noise * rows.len() as f64
+}
+
+/// The limits that are reached.
+fn active(p: &Problem, s: &solver::Solution) -> usize {
+    let groups = if p.bounds.separate { p.dimension } else { 1 };
+    let mut count = 0;
+    for k in 0..p.bounds.rows.len() {
+        let (columns, factors) = p.bounds.rows.row(k);
+        let mut sum = [0.0; 3];
+        for (&c, &a) in columns.iter().zip(factors) {
+            for (q, x) in sum.iter_mut().zip(s.x[c as usize]) {
+                *q += a * x;
+            }
+        }
+        let r = p.bounds.radii[k];
+        for g in 0..groups {
+            let length = if p.bounds.separate {
+                sum[g].abs()
+            } else {
+                sum.map(|q| q * q).iter().sum::<f64>().sqrt()
+            };
+            count += usize::from(length > r * (1.0 - 1e-4));
+        }
+    }
+    count
+}
+
+/// Frozen points, and the conditions that keep the ends of a spline that is not clamped.
+pub(crate) fn kept(job: &Job) -> (Vec<bool>, Vec<Condition>) {
+    let mut conditions = Vec::new();
+    let mut freer = job.clone();
+    if !job.space.is_closed() && !job.space.is_clamped() {
+        let (start, end) = job.space.domain();
+        for (at, t) in [start, end].into_iter().enumerate() {
+            for order in
+                [Order::Zero, Order::First, Order::Second].into_iter().take(job.ends[at].kept())
+            {
+                let mut three = Condition::derivative(&job.space, t, order, Vec3::zero());
+                for c in &mut three {
+                    c.value = c.at(&job.points);
+                }
+                conditions.extend(three);
+                freer.ends[at] = End::Free;
+            }
+        }
+    }
+    (freer.frozen(), conditions)
+}
+
+fn moved(job: &Job, frame: &Frame, x: &[V]) -> Vec<Vec3<f64>> {
+    let zero = |v: &V| v.iter().all(|&c| c == 0.0);
+    let place = |(&p, v): (&Vec3<f64>, &V)| if zero(v) { p } else { p + frame.up(*v) };
+    job.points.iter().zip(x).map(place).collect()
+}
+
+/// The problem in the frame of its motion.
+fn assemble(
+    job: &Job,
+    options: &OptimumOptions,
+    measure: Rows,
+    frozen: Vec<bool>,
+    conditions: &[Condition],
+) -> Result<(Frame, Problem), FairError> {
+    let frame = Frame::of(job.limit.motion, &job.points, conditions);
+    let relative = job.relative(&job.points);
+    let offsets = (0..measure.len()).map(|k| frame.down(measure.apply(k, &relative))).collect();
+    let n = job.points.len();
+    let radii = &job.limit.radii;
+    let corner = if frame.separate { (frame.axes.len() as f64).sqrt() } else { 1.0 };
+    let mut bounds =
+        Bounds { rows: Rows::new(), direct: true, radii: Vec::new(), separate: frame.separate };
+    let mut reach: Vec<f64> = radii.iter().map(|r| r * corner).collect();
+    match options.bound {
+        Bound::ControlPoints => {
+            for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
+                bounds.rows.push([(i, 1.0)]);
+                bounds.radii.push(radii[i]);
+            }
+        }
+        Bound::Bezier => {
+            bounds.direct = false;
+            let all = job.space.bezier(job.weights.as_deref());
+            for k in 0..all.len() {
+                let (columns, factors) = all.row(k);
+                let near = columns.iter().map(|&c| c as usize).filter(|&c| radii[c] > 0.0);
+                let radius = near.map(|c| radii[c]).fold(f64::INFINITY, f64::min);
+                if radius.is_finite() && columns.iter().any(|&c| !frozen[c as usize]) {
+                    bounds
+                        .rows
+                        .push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
+                    bounds.radii.push(radius);
+                }
+            }
+            let largest = radii.iter().copied().fold(0.0, f64::max);
+            reach = job.space.reach(job.weights.as_deref());
+            reach.iter_mut().for_each(|r| *r *= largest * corner);
+        }
+    }
+    let conditions = conditions
+        .iter()
+        .map(|c| solver::Condition {
+            entries: c
+                .entries
+                .iter()
+                .filter(|(i, _)| !frozen[*i])
+                .map(|(i, f)| (*i, frame.down(*f)))
+                .collect(),
+            value: c.value - c.at(&job.points),
+        })
+        .filter(|_| true)
+        .collect();
+    let problem = Problem {
+        dimension: frame.axes.len(),
+        measure,
+        norm: options.measure.norm(),
+        offsets,
+        bounds,
+        frozen,
+        conditions,
+        reach,
+    };
+    Ok((frame, problem))
+}
