@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from moldloft.errors import Error, FileError, ModelError, UnknownNameError
     from moldloft.hydrostatics import Hydrostatics
     from moldloft.mesh import Mesh, Patch
-    from moldloft.model import Model, Param, load, loads
+    from moldloft.models import Model, Param, load, loads
     from moldloft.objects import Object
 
 __all__ = [
@@ -59,10 +59,10 @@ _HOMES = {
     "Hydrostatics": "moldloft.hydrostatics",
     "Mesh": "moldloft.mesh",
     "Patch": "moldloft.mesh",
-    "Model": "moldloft.model",
-    "Param": "moldloft.model",
-    "load": "moldloft.model",
-    "loads": "moldloft.model",
+    "Model": "moldloft.models",
+    "Param": "moldloft.models",
+    "load": "moldloft.models",
+    "loads": "moldloft.models",
     "model": "moldloft.builder",
     "param": "moldloft.builder",
     "Object": "moldloft.objects",

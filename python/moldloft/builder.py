@@ -18,7 +18,7 @@ from functools import update_wrapper
 from typing import Any
 
 from moldloft import _core
-from moldloft.model import Model
+from moldloft.models import Model
 
 __all__ = ["Builder", "Expr", "Handle", "Kind", "ModelFunction", "Range", "model", "param"]
 
@@ -109,8 +109,8 @@ class Expr:
             ".value where only the number matters"
         )
 
-    __int__ = __float__  # type: ignore[assignment]
-    __index__ = __float__  # type: ignore[assignment]
+    __int__ = __float__
+    __index__ = __float__
 
     def __bool__(self) -> bool:
         return bool(self.value)
@@ -375,7 +375,7 @@ class Builder:
 
     def model(self) -> Model:
         """The model of what was declared."""
-        from moldloft.model import loads
+        from moldloft.models import loads
 
         return loads(self.text, name="model.py.sdl")
 

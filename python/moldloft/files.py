@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from moldloft.errors import Error, FileError
 
 if TYPE_CHECKING:
-    from moldloft.model import Model
+    from moldloft.models import Model
 
 __all__ = ["FORMATS", "Output", "commit", "format_named", "produce"]
 

@@ -53,9 +53,9 @@ class Hydrostatics:
     """Second moment of the waterplane about its longitudinal axis."""
     waterplane_il: float | None = None
     """Second moment of the waterplane about its transverse axis."""
-    waterline_aft: float | None = None
+    waterline_low_x: float | None = None
     """Lowest x of the waterline."""
-    waterline_fore: float | None = None
+    waterline_high_x: float | None = None
     """Highest x of the waterline."""
     waterline_length: float | None = None
     """Extent of the waterline in x."""

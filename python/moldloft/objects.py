@@ -5,14 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
     from moldloft._core import Document
+
+    Floats = NDArray[np.float64]
 
 __all__ = ["Object"]
 
-Floats = NDArray[np.float64]
 _OWN = frozenset({"_document", "name"})
 
 

@@ -103,11 +103,11 @@ def test_model_files(cli, model_file, name):
 
 
 def test_an_unknown_entity_is_kept_and_reported(cli, model_file):
-    line = "Bcurv MC1 11 1 10 * 2 { A A };"
+    line = "BCurv MC1 11 1 10 * 2 { A A };"
     path = model_file(f"{HEAD}AbsPoint A 14 1 0 0 0;\n{line}\nEndModel\n", "model.ms2")
     done = cli("convert", path, "--to", "ms2")
     assert line in done.stdout
-    assert "Bcurv" in done.stderr and "BCurve" in done.stderr
+    assert "`BCurv`" in done.stderr and "`BCurve`" in done.stderr
 
 
 def test_a_failed_object_blocks_its_children_only(cli, model_file):

@@ -41,7 +41,7 @@ param float height = 1 in [0.5, 2];
 AbsPoint a(0, 0, 0); AbsPoint b(2, 0, 0); AbsPoint c(2, 0, height); AbsPoint d(0, 0, height);
 Line axis(a, d);
 BCurve profile({a, b, c, d}, degree = 1);
-RevSurf drum(profile, axis, 0, 2 * pi, divisions = {6, 12});
+RevSurf drum(profile, axis, divisions = {6, 12});
 """
 BASE = 12 * 2 * 2 * np.sin(2 * np.pi / 12) / 2
 

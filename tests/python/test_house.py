@@ -30,8 +30,15 @@ def test_the_version_answers_at_once():
 
 
 def test_the_import_adds_little_to_numpy():
-    together = "import numpy; import moldloft; moldloft.load; moldloft.Mesh"
-    assert seconds("-c", together) - seconds("-c", "import numpy") < 0.05
+    code = """
+import numpy, time
+start = time.process_time()
+import moldloft
+moldloft.load, moldloft.Mesh
+print(time.process_time() - start)
+"""
+    runs = (subprocess.check_output([sys.executable, "-c", code], text=True) for _ in range(TRIES))
+    assert min(map(float, runs)) < 0.05
 
 
 def test_no_extra_is_imported():

@@ -77,8 +77,8 @@ def fine(nu: int, nv: int) -> moldloft.Model:
 def test_the_waterline_and_the_volume():
     figures = fine(160, 240).hydrostatics()
     assert figures.sides == "both"
-    assert figures.waterline_aft == pytest.approx(1.781, abs=2e-3)
-    assert figures.waterline_fore == pytest.approx(29.167, abs=2e-3)
+    assert figures.waterline_low_x == pytest.approx(1.781, abs=2e-3)
+    assert figures.waterline_high_x == pytest.approx(29.167, abs=2e-3)
     assert figures.volume == pytest.approx(117.45, abs=0.1)
 
 

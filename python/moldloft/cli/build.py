@@ -19,7 +19,7 @@ from moldloft.cli.console import (
 from moldloft.errors import Error
 from moldloft.hydrostatics import Hydrostatics
 from moldloft.mesh import Mesh, Patch
-from moldloft.model import Model
+from moldloft.models import Model
 
 __all__ = ["add", "facts", "run", "summary"]
 

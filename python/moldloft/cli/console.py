@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic
-    from moldloft.model import Model
+    from moldloft.models import Model
 
 __all__ = [
     "Progress",
@@ -60,7 +60,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
-    from moldloft.model import load
+    from moldloft.models import load
 
     model = load(options.model, library=options.library, strict=False)
     if options.set and not model._document.has_errors():
