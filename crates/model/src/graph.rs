@@ -6,7 +6,7 @@ use moldloft_num::trace::Key;
 use moldloft_registry::{Class, Context, Fault, Head, Row, Scalar, Value};
 use rayon::prelude::*;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashSet};
+use std::collections::{BTreeSet, BinaryHeap, HashSet};
 use std::sync::Arc;
 
 /// Shapes nested deeper than this are refused, so that evaluating one never exhausts the stack.
@@ -25,6 +25,16 @@ pub struct Graph<T: Scalar> {
     /// By key; `None` where an object has gone.
     objects: Vec<Option<Object<T>>>,
     names: IndexMap<Arc<str>, Key>,
+    /// Keys of objects that have gone, free for others; and those that will be so after a run.
+    free: Vec<Key>,
+    gone: Vec<Key>,
+    /// (parent, child) that the parent still lists though it is no longer so.
+    loose: HashSet<(Key, Key)>,
+    /// Objects whose rank must be looked at; and those of them that the run has yet to declare.
+    unranked: Vec<Key>,
+    unranked_later: HashSet<Key>,
+    /// True while a run declares objects.
+    running: bool,
     /// Objects that must be evaluated, by rank, then key.
     pending: BinaryHeap<Reverse<(u32, Key)>>,
     /// Counts applications.
@@ -100,11 +110,18 @@ impl<T: Scalar> Graph<T> {
             self.declared = 0;
             self.any_read = false;
         }
+        self.running = extent == Extent::Whole;
         let produced = produce(&mut Run { graph: self, extent });
+        self.running = false;
         if extent == Extent::Whole {
             self.remove_undeclared();
         }
+        self.unlink();
         self.evaluate_pending();
+        if extent == Extent::Whole {
+            // Nothing refers to them any more: everything was declared anew or has gone.
+            self.free.append(&mut self.gone);
+        }
         self.memo.forget_unused(self.clock);
         let applied =
             Applied { evaluated: self.evaluated, objects: self.names.len(), failed: self.failed };
@@ -209,21 +226,23 @@ impl<T: Scalar> Graph<T> {
         if !gone.is_empty() {
             self.last_change = self.clock;
         }
-        let mut bereft: Vec<Key> = Vec::new();
-        for key in gone {
+        for &key in gone {
             let object = self.objects[key.0 as usize].take().expect("a living object");
             self.names.swap_remove(&object.name);
             self.failed -= usize::from(object.state.is_failure());
-            bereft.extend(object.parents);
+            self.loose.extend(object.parents.iter().map(|&parent| (parent, key)));
+            self.gone.push(key);
         }
-        bereft.sort_unstable();
-        bereft.dedup();
-        let objects = &mut self.objects;
-        for parent in bereft {
-            if let Some(mut parent) = objects[parent.0 as usize].take() {
-                parent.children.retain(|child| objects[child.0 as usize].is_some());
-                let at = parent.key.0 as usize;
-                objects[at] = Some(parent);
+    }
+
+    /// Takes children that are none any more out of their parents' lists, all at once: one by one
+    /// would be quadratic.
+    fn unlink(&mut self) {
+        let loose = std::mem::take(&mut self.loose);
+        let parents: HashSet<Key> = loose.iter().map(|(parent, _)| *parent).collect();
+        for parent in parents {
+            if let Some(parent) = &mut self.objects[parent.0 as usize] {
+                parent.children.retain(|&child| !loose.contains(&(parent.key, child)));
             }
         }
     }
@@ -240,6 +259,7 @@ impl<T: Scalar> Graph<T> {
     /// Evaluates all that is pending, rank by rank: objects of one rank do not depend on each
     /// other, so they may be evaluated at once, in any order, with the same bits.
     fn evaluate_pending(&mut self) {
+        self.rank_all();
         let mut batch = Vec::new();
         while let Some(&Reverse((rank, _))) = self.pending.peek() {
             batch.clear();
@@ -268,6 +288,7 @@ impl<T: Scalar> Graph<T> {
 
     /// Evaluates `key` and what it depends on, as far as pending.
     fn force(&mut self, key: Key) {
+        self.rank_all();
         let mut wanted = vec![key];
         let mut seen = HashSet::from([key]);
         let mut at = 0;
@@ -363,7 +384,9 @@ impl<T: Scalar> Graph<T> {
         self.failed = self.failed + usize::from(is) - usize::from(was);
         for at in 0..self.object(key).children.len() {
             let child = self.object(key).children[at];
-            self.mark_pending(child);
+            if self.loose.is_empty() || !self.loose.contains(&(key, child)) {
+                self.mark_pending(child);
+            }
         }
     }
 
@@ -382,13 +405,16 @@ impl<T: Scalar> Graph<T> {
         }
         let old = std::mem::take(&mut self.object_mut(key).parents);
         if old.as_slice() != parents.as_slice() {
-            for parent in old {
-                if let Some(parent) = &mut self.objects[parent.0 as usize] {
-                    parent.children.retain(|&child| child != key);
+            let (before, now): (HashSet<Key>, HashSet<Key>) =
+                (old.iter().copied().collect(), parents.iter().copied().collect());
+            self.loose.extend(before.difference(&now).map(|&parent| (parent, key)));
+            for &parent in parents.iter().filter(|parent| !before.contains(parent)) {
+                if !self.loose.remove(&(parent, key)) {
+                    self.object_mut(parent).children.push(key);
                 }
             }
-            for &parent in &parents {
-                self.object_mut(parent).children.push(key);
+            if !self.running {
+                self.unlink();
             }
         }
         let object = self.object_mut(key);
@@ -397,22 +423,61 @@ impl<T: Scalar> Graph<T> {
         self.rank(key);
     }
 
-    /// Sets the rank of `key` above its parents', and those of its dependents above it.
+    fn rank_above_parents(&self, key: Key) -> u32 {
+        self.object(key).parents.iter().map(|&p| self.object(p).rank + 1).max().unwrap_or(0)
+    }
+
+    /// Ranks `key` above its parents, or notes that this must be done.
     fn rank(&mut self, key: Key) {
-        let mut stack = vec![key];
-        while let Some(key) = stack.pop() {
-            let object = self.object(key);
-            let rank = object.parents.iter().map(|&p| self.object(p).rank + 1).max().unwrap_or(0);
-            if rank == object.rank {
+        if self.unranked.is_empty() {
+            let rank = self.rank_above_parents(key);
+            if rank == self.object(key).rank {
+                return;
+            }
+            if self.object(key).children.is_empty() {
+                self.set_rank(key, rank);
+                return;
+            }
+        }
+        self.unranked.push(key);
+    }
+
+    fn set_rank(&mut self, key: Key, rank: u32) {
+        let object = self.object_mut(key);
+        object.rank = rank;
+        if std::mem::take(&mut object.pending) {
+            self.mark_pending(key);
+        }
+    }
+
+    /// Ranks what was noted and all that depends on it, in the order of declaration, so that each
+    /// object is ranked after its parents, once. What a run has yet to declare must wait: its
+    /// parents may still change.
+    fn rank_all(&mut self) {
+        if !self.running {
+            self.unranked.extend(self.unranked_later.drain());
+        }
+        if self.unranked.is_empty() {
+            return;
+        }
+        let noted = std::mem::take(&mut self.unranked);
+        let mut todo: BTreeSet<(u32, Key)> =
+            noted.into_iter().filter_map(|key| self.get(key)).map(|o| (o.order, o.key)).collect();
+        while let Some((_, key)) = todo.pop_first() {
+            let rank = self.rank_above_parents(key);
+            if rank == self.object(key).rank {
                 continue;
             }
-            let object = self.object_mut(key);
-            object.rank = rank;
-            let children = object.children.clone();
-            if std::mem::take(&mut object.pending) {
-                self.mark_pending(key);
+            self.set_rank(key, rank);
+            for at in 0..self.object(key).children.len() {
+                let Some(child) = self.get(self.object(key).children[at]) else { continue };
+                if self.running && child.declared_at != self.clock {
+                    let later = child.key;
+                    self.unranked_later.insert(later);
+                } else {
+                    todo.insert((child.order, child.key));
+                }
             }
-            stack.extend(children);
         }
     }
 }
@@ -456,6 +521,9 @@ impl<T: Scalar> Run<'_, T> {
             object.order = order;
             object.read_by_program = false;
             self.graph.declared += 1;
+            if !self.graph.unranked_later.is_empty() && self.graph.unranked_later.remove(&key) {
+                self.graph.unranked.push(key);
+            }
         }
         let object = self.graph.object_mut(key);
         if object.head != head {
@@ -502,7 +570,10 @@ impl<T: Scalar> Run<'_, T> {
         origin: u32,
     ) -> Key {
         let graph = &mut *self.graph;
-        let key = Key(u32::try_from(graph.objects.len()).expect("fewer than 2^32 objects"));
+        let key = graph.free.pop().unwrap_or_else(|| {
+            graph.objects.push(None);
+            Key(u32::try_from(graph.objects.len() - 1).expect("fewer than 2^32 objects"))
+        });
         let name: Arc<str> = name.into();
         let order = if self.extent == Extent::Whole {
             graph.declared
@@ -512,15 +583,8 @@ impl<T: Scalar> Run<'_, T> {
         };
         graph.declared = graph.declared.max(order + 1);
         graph.names.insert(name.clone(), key);
-        graph.objects.push(Some(Object::new(
-            key,
-            name,
-            row.clone(),
-            head,
-            origin,
-            order,
-            graph.clock,
-        )));
+        let object = Object::new(key, name, row.clone(), head, origin, order, graph.clock);
+        graph.objects[key.0 as usize] = Some(object);
         graph.connect(key, args);
         graph.mark_pending(key);
         key
@@ -598,6 +662,11 @@ impl<T: Scalar> Run<'_, T> {
         self.graph.memo.call(row, args, clock, &context)
     }
 
+    /// Whether this is a run or an edit.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
     /// The graph as it stands.
     pub fn graph(&self) -> &Graph<T> {
         self.graph
@@ -611,6 +680,7 @@ impl<T: Scalar> Run<'_, T> {
         let object = self.graph.object(key);
         if object.children.is_empty() {
             self.graph.remove(&[key]);
+            self.graph.unlink();
             return Ok(());
         }
         let mut names: Vec<_> = object

@@ -14,7 +14,15 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The most panels of a model.
-const MOST_PANELS: u64 = 20_000_000;
+pub const MOST_PANELS: u64 = 20_000_000;
+
+/// The fault of `count` panels.
+pub fn too_many_panels(count: u64) -> Fault {
+    Fault::new("too-many-panels", format!("{count} panels are too many"))
+        .expected(format!("at most {MOST_PANELS}"))
+        .found(count.to_string())
+        .help("lower the divisions of the surfaces")
+}
 
 /// Two patches whose shared vertices disagree by more than this share of the model's size are
 /// reported.
@@ -250,10 +258,7 @@ impl<'g> Planner<'g> {
             }
         }
         if total > MOST_PANELS {
-            return Err(Fault::new("too-many-panels", format!("the model has {total} panels"))
-                .expected(format!("at most {MOST_PANELS}"))
-                .found(total.to_string())
-                .help("lower the divisions of its surfaces"));
+            return Err(too_many_panels(total));
         }
         let mut first = 0;
         for draft in &mut drafts {
