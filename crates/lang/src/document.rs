@@ -9,7 +9,7 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph, Panelling};
 use moldloft_num::Dual4;
-use moldloft_registry::{Context, Registry, Row, Scalar};
+use moldloft_registry::{Class, Context, Registry, Row, Scalar};
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -168,12 +168,8 @@ impl Document {
         report: bool,
     ) -> Applied {
         let mut found = Vec::new();
-        let inputs = Inputs {
-            overrides: &self.overrides,
-            seed,
-            seeded_objects,
-            cancelled: &self.cancelled,
-        };
+        let inputs =
+            Inputs { overrides: &self.overrides, seed, seeded_objects, cancelled: &self.cancelled };
         let applied = match &self.source {
             Source::Program => {
                 let program = Program {
@@ -184,9 +180,7 @@ impl Document {
                 };
                 program.run(evaluation, inputs, &mut found)
             }
-            Source::ModelFile(source) => {
-                source.run(&self.registry, evaluation, inputs, &mut found)
-            }
+            Source::ModelFile(source) => source.run(&self.registry, evaluation, inputs, &mut found),
             Source::None => evaluation.graph.apply(Extent::Whole, |_| ()).1,
         };
         if report {
@@ -213,7 +207,9 @@ impl Document {
             let mut diagnostic = crate::place::unplaced(fault);
             diagnostic.message = format!("`{}`: {}", object.name, diagnostic.message);
             let span = match &self.source {
-                Source::Program => program::fault_span(&self.modules, &evaluation.env, object, fault),
+                Source::Program => {
+                    program::fault_span(&self.modules, &evaluation.env, object, fault)
+                }
                 Source::ModelFile(source) => source.fault_span(object, fault),
                 Source::None => None,
             };
@@ -222,7 +218,9 @@ impl Document {
                 diagnostic = diagnostic.at(span);
             }
             for (key, label) in &fault.related {
-                if let Some(span) = evaluation.graph.get(*key).and_then(|o| self.declared_at(evaluation, o)) {
+                if let Some(span) =
+                    evaluation.graph.get(*key).and_then(|o| self.declared_at(evaluation, o))
+                {
                     diagnostic = diagnostic.note_at(span, label.clone());
                 }
             }
@@ -230,7 +228,8 @@ impl Document {
                 let shown = names.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
                 let more = names.len().saturating_sub(5);
                 let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-                diagnostic = diagnostic.note(format!("blocked by `{}`: {shown}{more}", object.name));
+                diagnostic =
+                    diagnostic.note(format!("blocked by `{}`: {shown}{more}", object.name));
             }
             diagnostics.push(diagnostic);
         }
@@ -336,7 +335,7 @@ impl Document {
                 self.overrides.insert(name.clone(), *value);
                 rerun = true;
             } else {
-                match self.literal(name, *value) {
+                match self.literal(name, *value).and_then(|edit| self.in_range(name, edit)) {
                     Ok(edit) => edits.push(edit),
                     Err(diagnostic) => errors.push(diagnostic),
                 }
@@ -389,36 +388,59 @@ impl Document {
         let graph = &self.plain.graph;
         // The object's own name may contain dots: the longest that is one wins.
         let split = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
-        let found = split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)));
+        let found =
+            split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)));
         let Some((key, path)) = found else {
             let params = self.params().iter().map(|p| p.name.as_str());
             let objects = graph.objects().map(|o| o.name.as_ref());
             let stem = name.split('.').next().unwrap_or(name);
-            return Err(Diagnostic::error("unknown-name", format!("there is nothing called `{name}` to set"))
-                .expected("a parameter, or a number of an object such as P21.y")
-                .suggest(stem, params.chain(objects)));
+            return Err(Diagnostic::error(
+                "unknown-name",
+                format!("there is nothing called `{name}` to set"),
+            )
+            .expected("a parameter, or a number of an object such as P21.y")
+            .suggest(stem, params.chain(objects)));
         };
         let object = graph.get(key).expect("found above");
         let fields = || object.row.fields.iter().map(|f| f.name).collect::<Vec<_>>().join(", ");
         let Some(path) = NumberPath::parse(&object.row, path) else {
-            return Err(Diagnostic::error("unknown-member", format!("{} `{}` has no number `{}`", object.row.name, object.name, &path[1..]))
-                .expected(fields()));
+            return Err(Diagnostic::error(
+                "unknown-member",
+                format!("{} `{}` has no number `{}`", object.row.name, object.name, &path[1..]),
+            )
+            .expected(fields()));
         };
         let mut args = object.args.clone();
         if path.change(&mut args, |_| value).is_none() {
             return Err(Diagnostic::error("not-a-number", format!("`{name}` is not a number"))
-                .help("only numbers can be set; edit the text to change what an object is built on"));
+                .help(
+                    "only numbers can be set; edit the text to change what an object is built on",
+                ));
         }
         let place = match &self.source {
             Source::Program => program::literal(&self.modules, &self.plain.env, object, &path)
                 .map(LiteralPlace::Program),
-            Source::ModelFile(source) => {
-                source.literal(object, &path).map(LiteralPlace::ModelFile)
-            }
+            Source::ModelFile(source) => source.literal(object, &path).map(LiteralPlace::ModelFile),
             Source::None => unreachable!("there are objects"),
         };
         let place = place.map_err(|why| self.not_literal(name, why))?;
         Ok(LiteralEdit { key, path, place, value })
+    }
+
+    /// The edit, when a run of the edited text would take the number.
+    fn in_range(&self, name: &str, edit: LiteralEdit) -> Result<LiteralEdit, Diagnostic> {
+        let object = self.plain.graph.get(edit.key).expect("the object of an edit");
+        let (field, x) = (&object.row.fields[edit.path.field], edit.value);
+        let low = field.min.unwrap_or(f64::NEG_INFINITY);
+        let high = field.max.unwrap_or(f64::INFINITY);
+        let whole = field.class != Class::Integer || x.fract() == 0.0;
+        if whole && (low..=high).contains(&x) {
+            return Ok(edit);
+        }
+        let kind = if field.class == Class::Integer { "a whole number" } else { "a number" };
+        Err(Diagnostic::error("out-of-range", format!("`{name}` = {x} is out of range"))
+            .expected(format!("{kind} from {low} to {high}"))
+            .found(x.to_string()))
     }
 
     fn not_literal(&self, name: &str, why: program::NotLiteral) -> Diagnostic {
@@ -508,7 +530,8 @@ impl Document {
         {
             return Ok(panelled.clone());
         }
-        let panelling = Panelling::new(&self.plain.graph).map_err(|f| crate::place::unplaced(&f))?;
+        let panelling =
+            Panelling::new(&self.plain.graph).map_err(|f| crate::place::unplaced(&f))?;
         let mesh = panelling.mesh(&self.plain.graph).ok_or_else(|| {
             Diagnostic::error("no-mesh", "the model has no panels").help("show a surface")
         })?;

@@ -1,6 +1,6 @@
 //! Runs a program: expressions.
 
-use crate::env::Binding;
+use crate::env::{Binding, Bound};
 use crate::interpreter::{Interpreter, silent};
 use crate::module::Module;
 use crate::ops;
@@ -33,7 +33,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
                 let value = self.compound(m, id, expr.kind, expr.span);
                 self.depth -= 1;
-                value.map_err(|d| d.or_at(expr.span))
+                let value = value.map_err(|d| d.or_at(expr.span))?;
+                self.charge(&value, expr.span)?;
+                Ok(value)
             }
         }
     }
@@ -97,19 +99,25 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn read(&mut self, value: Value<T>, span: Span) -> Evaluated<T> {
         match value {
             Value::Object(key) => self.run.force(key).map_err(|failure| {
+                let root = match failure {
+                    Failure::Blocked { by } => by,
+                    Failure::Fault(_) => key,
+                };
+                // The first reader of a failed object is told; the others would say the same.
+                if !self.blocked.insert(root) {
+                    return silent();
+                }
                 let object = self.run.graph().get(key);
                 let name = object.map_or("", |o| &*o.name);
-                let cause = match failure {
-                    Failure::Blocked { by } => {
-                        self.run.graph().get(by).map_or(String::new(), |o| o.name.to_string())
-                    }
-                    Failure::Fault(_) => name.to_string(),
-                };
+                let cause = self.run.graph().get(root).map_or("", |o| &*o.name);
                 Diagnostic::error("blocked", format!("`{name}` has no value"))
                     .at(span)
                     .found(format!("blocked by `{cause}`, which failed"))
             }),
-            Value::List(items) if items.iter().any(|v| matches!(v, Value::Object(_) | Value::List(_))) => {
+            Value::List(items)
+                if items.iter().any(|v| matches!(v, Value::Object(_) | Value::List(_))) =>
+            {
+                self.charge(&Value::List(items.clone()), span)?;
                 let mut read = Vec::with_capacity(items.len());
                 for item in items.iter() {
                     read.push(self.read(item.clone(), span)?);
@@ -159,7 +167,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     fn unknown_name(&self, m: &Module, symbol: Symbol, span: Span) -> Diagnostic {
         let text = m.program.name(symbol);
-        let diagnostic = Diagnostic::error("unknown-name", format!("there is no `{text}` here")).at(span);
+        let diagnostic =
+            Diagnostic::error("unknown-name", format!("there is no `{text}` here")).at(span);
+        if !self.hints() {
+            return diagnostic;
+        }
         match crate::later::declared_later(m, symbol, span) {
             Some(later) => later.explain(m, diagnostic),
             None => match self.nearest_name(text) {
@@ -262,7 +274,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     fn no_such_object(&self, text: &str) -> Diagnostic {
-        Diagnostic::error("unknown-name", format!("there is no object `{text}`"))
+        let diagnostic = Diagnostic::error("unknown-name", format!("there is no object `{text}`"));
+        if !self.hints() {
+            return diagnostic;
+        }
+        diagnostic
             .maybe_help(self.run.graph().nearest_name(text).map(|n| format!("did you mean `{n}`?")))
     }
 
@@ -361,8 +377,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Index { base, subs } => {
                 let place = self.place(m, base)?;
                 if place.section.is_some() || place.component.is_some() {
-                    return Err(Diagnostic::error("not-assignable", "subscripts come once, before the component")
-                        .at(span));
+                    return Err(Diagnostic::error(
+                        "not-assignable",
+                        "subscripts come once, before the component",
+                    )
+                    .at(span));
                 }
                 let value = self.operand(m, base)?;
                 let section = self.section(m, &value, subs).map_err(|d| d.or_at(span))?;
@@ -400,6 +419,21 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let value = self.read(value, m.program[base].span)?;
         if let Some(member) = crate::member::of_value(&value, &word) {
+            let vector = |b: &Bound<T>| {
+                matches!(
+                    &b.what,
+                    Binding::Variable { value: Value::Vector(_) | Value::Vectors(_), .. }
+                )
+            };
+            if or_dot && self.lookup(m.names[name.0 as usize]).is_some_and(vector) {
+                self.report(
+                    Diagnostic::remark("two-readings", format!("`.{word}` is the member here"))
+                        .at(m.program.member_span(id))
+                        .help(format!(
+                            "for the dot product with `{word}` put blanks round the dot"
+                        )),
+                );
+            }
             return member;
         }
         if let Some(key) = object
@@ -427,7 +461,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     ) -> Option<Evaluated<T>> {
         let object = self.run.graph().get(key)?;
         if let Some(number) = crate::member::of_patch(object, word) {
-            return Some(Ok(Value::Number(number)));
+            return Some(number.map(Value::Number));
         }
         let at = object.row.field(word)?;
         Some(Ok(object.args[at].clone()))
@@ -471,16 +505,20 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .call(&row, filled)
             .map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
         if !value.is_finite() {
-            return Err(Diagnostic::error("not-finite", format!("the result of {} is not a finite number", row.name))
-                .at(span)
-                .expected("arguments inside the function's domain"));
+            return Err(Diagnostic::error(
+                "not-finite",
+                format!("the result of {} is not a finite number", row.name),
+            )
+            .at(span)
+            .expected("arguments inside the function's domain"));
         }
         Ok(value)
     }
 
     fn unknown_function(&self, m: &Module, symbol: Symbol) -> Diagnostic {
         let text = m.program.name(symbol);
-        let diagnostic = Diagnostic::error("unknown-name", format!("there is no function `{text}`"));
+        let diagnostic =
+            Diagnostic::error("unknown-name", format!("there is no function `{text}`"));
         match self.nearest_name(text) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None => diagnostic,
@@ -488,7 +526,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// A shape called with parameters: its point or points there.
-    fn call_value(&mut self, m: &Module, value: Value<T>, args: List<Arg>, span: Span) -> Evaluated<T> {
+    fn call_value(
+        &mut self,
+        m: &Module,
+        value: Value<T>,
+        args: List<Arg>,
+        span: Span,
+    ) -> Evaluated<T> {
         let mut given = Vec::new();
         for arg in &m.program[args] {
             given.push(self.operand(m, arg.value)?);
@@ -515,6 +559,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
     let parameters = |arg: &Value<T>| -> Result<Option<Vec<T>>, Diagnostic> {
         match arg {
             Value::Number(_) => Ok(None),
+            Value::Vector(v) => Ok(Some(v.to_array().to_vec())),
             other => many(other).map(Some).map_err(|f| place::unplaced(&f)),
         }
     };

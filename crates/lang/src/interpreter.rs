@@ -1,25 +1,31 @@
 //! Runs a program: statements.
 
-use crate::env::{Binding, Bound, Environment, Frame, Origin, Param, Turn};
+use crate::env::{Binding, Bound, Environment, Frame, Param, Turn};
 use crate::module::{Loader, Module, Modules, Name, RoutineAt};
 use crate::ops;
 use crate::variables::{self, Taken};
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Span, nearest};
-use moldloft_model::{Declaration, Run};
+use moldloft_model::Run;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Given, Scalar, Value, arrange};
+use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
-    Arg, AssignOp, ChainItem, Declarator, ExprId, ExprKind, Formal, Ident, List, StmtId, StmtKind,
-    Type,
+    AssignOp, ChainItem, Declarator, ExprId, ExprKind, Ident, List, StmtId, StmtKind, Type,
 };
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most statements and calls of a run.
 pub const MOST_STEPS: u64 = 20_000_000;
+
+/// The most errors of a run; hints that take a search go with the first of them only.
+const MOST_ERRORS: usize = 1_000;
+const MOST_HINTS: usize = 100;
+
+/// The most elements of all arrays that are declared at a time.
+const MOST_HELD: usize = 50_000_000;
 
 /// Statements, expressions and calls nest at most this deep while running.
 pub(crate) const DEEPEST: u32 = 2_500;
@@ -65,6 +71,13 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub depth: u32,
     steps: u64,
     turns: u64,
+    errors: usize,
+    /// Elements of the declared arrays.
+    pub held: usize,
+    /// What was told already: a statement that is executed often tells each fault once.
+    told: HashSet<(Cow<'static, str>, Span)>,
+    /// Failed objects that the program was told of when it read them.
+    pub blocked: HashSet<Key>,
     executed: HashSet<usize>,
     /// Names that are declared somewhere in the main file: for hints at what comes later.
     pub(crate) current: usize,
@@ -93,6 +106,10 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             depth: 0,
             steps: 0,
             turns: 0,
+            errors: 0,
+            held: 0,
+            told: HashSet::new(),
+            blocked: HashSet::new(),
             executed: HashSet::new(),
             current: 0,
         }
@@ -104,6 +121,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return Flow::Next;
         }
         let module = self.modules.get(at).clone();
+        module.faults.iter().for_each(|fault| self.report(fault.clone()));
         self.env.globals.resize_with(self.modules.name_count(), || None);
         self.declare_routines(&module, at);
         let outer = std::mem::replace(&mut self.current, at);
@@ -116,9 +134,41 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     }
 
     pub fn report(&mut self, diagnostic: Diagnostic) {
-        if diagnostic.id != SILENT {
+        if diagnostic.id == SILENT {
+            return;
+        }
+        self.errors += usize::from(diagnostic.is_error());
+        let span = diagnostic.span();
+        if self.told.insert((diagnostic.id.clone(), span)) {
             self.loader.diagnostics.push(diagnostic);
         }
+        if self.errors >= MOST_ERRORS && !self.env.stopped {
+            self.stop(
+                Diagnostic::error("too-many-errors", "the run was given up: too many errors")
+                    .at(span)
+                    .expected(format!("fewer than {MOST_ERRORS} errors"))
+                    .help("mend the first ones, then run again"),
+            );
+        }
+    }
+
+    /// Counts the elements of a new value as steps, so that no program eats the machine.
+    ///
+    /// # Errors
+    /// When the run must stop; that was reported.
+    pub fn charge(&mut self, value: &Value<T>, span: Span) -> Result<(), Diagnostic> {
+        let n = match value {
+            Value::Numbers(a) => a.items.len(),
+            Value::Vectors(a) => a.items.len(),
+            Value::List(items) => items.len(),
+            _ => return Ok(()),
+        };
+        // Large ones count for the memory they take, small ones for the time.
+        self.steps += (n / if n > 100_000 { 4 } else { 16 }) as u64;
+        if self.steps > MOST_STEPS && self.step(span) {
+            return Err(silent());
+        }
+        Ok(())
     }
 
     fn declare_routines(&mut self, module: &Module, at: usize) {
@@ -162,10 +212,10 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 Diagnostic::error("too-many-steps", "the program does not come to an end")
                     .at(span)
                     .expected(format!("at most {MOST_STEPS} statements"))
-                    .help("look for a loop whose condition always holds"),
+                    .help("look for a loop whose condition always holds, or for arrays too large"),
             );
         }
-        if self.steps % 1024 == 0 && self.inputs.cancelled.load(Ordering::Relaxed) {
+        if self.steps.is_multiple_of(1024) && self.inputs.cancelled.load(Ordering::Relaxed) {
             return self.stop(Diagnostic::error("cancelled", "the run was cancelled").at(span));
         }
         false
@@ -229,7 +279,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         self.env.globals.get_mut(name.0 as usize)?.as_mut()
     }
 
-    fn statements(&mut self, m: &Module, list: List<StmtId>) -> Flow<T> {
+    pub fn statements(&mut self, m: &Module, list: List<StmtId>) -> Flow<T> {
         for &stmt in &m.program[list] {
             match self.statement(m, stmt) {
                 Flow::Next => {}
@@ -266,14 +316,13 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 for item in &m.program[items] {
                     if let Err(diagnostic) = self.declare(m, global, ty.0, ty.1, item) {
                         self.report(diagnostic.or_at(item.name.span));
-                        let name = m.names[item.name.symbol.0 as usize];
-                        self.bind(name, item.name.span, Binding::Poisoned);
+                        self.poison(m, item.name);
                     }
                 }
             }
             StmtKind::Param { ty, name, value, range } => {
                 if let Err(diagnostic) = self.param(m, ty, name, value, range) {
-                    self.bind(m.names[name.symbol.0 as usize], name.span, Binding::Poisoned);
+                    self.poison(m, name);
                     return Err(diagnostic);
                 }
             }
@@ -453,14 +502,13 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             {
                 return Ok(Flow::Next);
             }
-            let label = variable.and_then(|symbol| {
-                match &self.lookup(m.names[symbol.0 as usize])?.what {
+            let label =
+                variable.and_then(|symbol| match &self.lookup(m.names[symbol.0 as usize])?.what {
                     Binding::Variable { value: Value::Number(x), .. } => {
                         Some(number::plain(x.re()))
                     }
                     _ => None,
-                }
-            });
+                });
             match self.turn(m, label, body, span) {
                 Flow::Break => return Ok(Flow::Next),
                 Flow::Next | Flow::Continue => {}
@@ -499,9 +547,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         for (k, item) in items.into_iter().enumerate() {
             let what = match item {
                 Value::Object(key) => Binding::Object(key),
-                value => {
-                    Binding::Variable { ty: variables::type_of(&value), value, fixed: false }
-                }
+                value => Binding::Variable { ty: variables::type_of(&value), value, fixed: false },
             };
             self.bind(name, variable.span, what);
             match self.turn(m, Some((k + 1).to_string()), body, span) {
@@ -538,6 +584,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             }
             None => None,
         };
+        if !dims.is_empty() {
+            let count = dims.iter().fold(1usize, |count, &n| count.saturating_mul(n));
+            let held = self.held.saturating_add(count);
+            if held > MOST_HELD {
+                return Err(variables::too_many(held as f64, MOST_HELD as f64));
+            }
+            self.held = held;
+        }
         let value = variables::initial(ty, &dims, value)?;
         let what = Binding::Variable { ty, value, fixed: !dims.is_empty() };
         let name = m.names[item.name.symbol.0 as usize];
@@ -560,16 +614,34 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .help("an object is declared with its data in parentheses: AbsPoint P(0, 0, 1);")
     }
 
+    /// The binding of a name in the innermost frame.
+    fn own(&self, name: Name) -> Option<&Bound<T>> {
+        let frame = self.frames.last().expect("there is always a frame");
+        if frame.global {
+            return self.env.globals.get(name.0 as usize)?.as_ref();
+        }
+        frame.locals.iter().find(|(n, _)| *n == name).map(|(_, b)| b)
+    }
+
+    /// Marks the name of a failed declaration, so that its uses stay silent; a name that something
+    /// else has by right keeps its meaning.
+    pub fn poison(&mut self, m: &Module, ident: Ident) {
+        let name = m.names[ident.symbol.0 as usize];
+        let turn = self.frame().loops.last().map(|turn| turn.id);
+        let kept = self.own(name).is_some_and(|known| match known.what {
+            Binding::Turn { turn: made, .. } => turn == Some(made),
+            Binding::Object(_) | Binding::Param(_) | Binding::Instance(_) => true,
+            Binding::Variable { .. } | Binding::Poisoned => false,
+        });
+        if !kept {
+            self.bind(name, ident.span, Binding::Poisoned);
+        }
+    }
+
     /// An object must not take a name that means something already; a variable may be declared
     /// again in another turn of a loop.
-    fn check_free(&self, name: Name, span: Span, variable: bool) -> Result<(), Diagnostic> {
-        let frame = self.frames.last().expect("there is always a frame");
-        let known = if frame.global {
-            self.env.globals.get(name.0 as usize).and_then(Option::as_ref)
-        } else {
-            frame.locals.iter().find(|(n, _)| *n == name).map(|(_, b)| b)
-        };
-        let Some(known) = known else { return Ok(()) };
+    pub fn check_free(&self, name: Name, span: Span, variable: bool) -> Result<(), Diagnostic> {
+        let Some(known) = self.own(name) else { return Ok(()) };
         let clash = match &known.what {
             Binding::Poisoned => false,
             Binding::Variable { .. } => !variable,
@@ -605,8 +677,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             None | Some((Type::Float, _)) => false,
             Some((Type::Int, _)) => true,
             Some((_, span)) => {
-                return Err(Diagnostic::error("wrong-type", "a parameter is a float or an int")
-                    .at(span));
+                return Err(
+                    Diagnostic::error("wrong-type", "a parameter is a float or an int").at(span)
+                );
             }
         };
         let text = self.modules.text(m.names[name.symbol.0 as usize]).to_string();
@@ -639,6 +712,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             && !(low..=high).contains(&x)
         {
             return Err(wrong(format!("a number from {low} to {high}")));
+        }
+        if !x.is_finite() {
+            return Err(wrong("a finite number".into()));
         }
         if is_int && x.fract() != 0.0 {
             return Err(wrong("a whole number".into()));
@@ -692,331 +768,6 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         Ok(Flow::Next)
     }
 
-    /// Calls a routine; `instance` goes before the names of the objects that it declares.
-    pub fn call_routine(
-        &mut self,
-        m: &Module,
-        at: RoutineAt,
-        args: List<Arg>,
-        instance: Option<Arc<str>>,
-        span: Span,
-    ) -> Result<Option<Value<T>>, Diagnostic> {
-        let callee = self.modules.get(at.module).clone();
-        let routine = callee.program[at.routine];
-        let name = callee.program.name(routine.name.symbol).to_string();
-        let formals: Vec<Formal> = callee.program[routine.formals].to_vec();
-        let given: Vec<Arg> = m.program[args].to_vec();
-        let ordered = self.order_arguments(m, &callee, &name, &formals, &given, span)?;
-
-        let prefix = instance.clone().unwrap_or_else(|| self.frame().prefix.clone());
-        let mut frame = Frame::new(false, prefix);
-        if instance.is_none() {
-            frame.loops = self.frame().loops.clone();
-        }
-        let mut returns = Vec::new();
-        for (formal, exprs) in formals.iter().zip(ordered) {
-            let local = callee.names[formal.name.symbol.0 as usize];
-            let what = if formal.multiple {
-                let mut items = Vec::new();
-                for expr in exprs {
-                    items.push(self.argument(m, formal, expr)?);
-                }
-                Binding::Variable { ty: formal.ty.0, value: Value::list(items), fixed: false }
-            } else {
-                let expr = exprs[0];
-                if formal.returned {
-                    returns.push((local, self.place(m, expr)?, m.program[expr].span));
-                }
-                match self.argument(m, formal, expr)? {
-                    Value::Object(key) => Binding::Object(key),
-                    value => {
-                        // A returned argument keeps the shape of what is passed.
-                        Binding::Variable { ty: formal.ty.0, value, fixed: formal.returned }
-                    }
-                }
-            };
-            frame.locals.push((local, Bound { span: formal.name.span, what }));
-        }
-        if !self.deeper(span) {
-            return Err(silent());
-        }
-        self.frames.push(frame);
-        let outer = std::mem::replace(&mut self.current, at.module);
-        let flow = self.statements(&callee, routine.body);
-        self.current = outer;
-        let frame = self.frames.pop().expect("pushed above");
-        self.depth -= 1;
-        for (local, place, span) in returns {
-            let bound = frame.locals.iter().find(|(n, _)| *n == local).map(|(_, b)| b);
-            if let Some(Bound { what: Binding::Variable { value, .. }, .. }) = bound {
-                self.store(place, value.clone()).map_err(|d| d.or_at(span))?;
-            }
-        }
-        match flow {
-            Flow::Return(value) => Ok(value),
-            Flow::Stop => Err(silent()),
-            _ => Ok(None),
-        }
-    }
-
-    /// The expressions for each formal argument, in order.
-    fn order_arguments(
-        &self,
-        m: &Module,
-        callee: &Module,
-        name: &str,
-        formals: &[Formal],
-        given: &[Arg],
-        span: Span,
-    ) -> Result<Vec<Vec<ExprId>>, Diagnostic> {
-        let spelled: Vec<&str> =
-            formals.iter().map(|f| callee.program.name(f.name.symbol)).collect();
-        let signature = format!("{name}({})", spelled.join(", "));
-        let mut ordered: Vec<Vec<ExprId>> = vec![Vec::new(); formals.len()];
-        for (k, arg) in given.iter().enumerate() {
-            let at = match arg.name {
-                Some(ident) => {
-                    let word = m.program.name(ident.symbol);
-                    spelled.iter().position(|s| *s == word).ok_or_else(|| {
-                        Diagnostic::error(
-                            "unknown-argument",
-                            format!("{name} has no argument `{word}`"),
-                        )
-                        .at(ident.span)
-                        .expected(&signature)
-                        .suggest(word, spelled.iter().copied())
-                    })?
-                }
-                None if k < formals.len() => k,
-                None if formals.last().is_some_and(|f| f.multiple) => formals.len() - 1,
-                None => {
-                    return Err(Diagnostic::error(
-                        "too-many-arguments",
-                        format!("{name} takes {} arguments", formals.len()),
-                    )
-                    .at(m.program[arg.value].span)
-                    .expected(&signature)
-                    .found(format!("{} arguments", given.len())));
-                }
-            };
-            if !ordered[at].is_empty() && !formals[at].multiple {
-                return Err(Diagnostic::error(
-                    "argument-twice",
-                    format!("`{}` of {name} is given twice", spelled[at]),
-                )
-                .at(m.program[arg.value].span));
-            }
-            ordered[at].push(arg.value);
-        }
-        for (k, formal) in formals.iter().enumerate() {
-            if ordered[k].is_empty() && !formal.multiple {
-                return Err(Diagnostic::error(
-                    "missing-argument",
-                    format!("{name} needs `{}`", spelled[k]),
-                )
-                .at(span)
-                .expected(&signature)
-                .found(format!("{} arguments", given.len()))
-                .note_at(formal.name.span, "declared here"));
-            }
-        }
-        Ok(ordered)
-    }
-
-    /// The value of an argument of a routine, of the formal's type. An argument of an object class
-    /// (`AbsPoint p`, or any other word) takes an object as it is.
-    fn argument(
-        &mut self,
-        m: &Module,
-        formal: &Formal,
-        expr: ExprId,
-    ) -> Result<Value<T>, Diagnostic> {
-        let span = m.program[expr].span;
-        let value = self.expr(m, expr)?;
-        let shape = matches!(formal.ty.0, Type::Pcurve | Type::Psurface | Type::Other(_));
-        if shape && matches!(value, Value::Object(_)) {
-            return Ok(value);
-        }
-        let value = self.read(value, span)?;
-        if formal.returned && matches!(value, Value::Unset) {
-            return Ok(value);
-        }
-        variables::converted(formal.ty.0, value)
-            .map_err(|d| d.or_at(span).note_at(formal.ty.1, "asked for here"))
-    }
-
-    fn object(
-        &mut self,
-        m: &Module,
-        id: StmtId,
-        kind: Ident,
-        name: Ident,
-        args: List<Arg>,
-        span: Span,
-    ) -> Result<(), Diagnostic> {
-        let outcome = self.object_of(m, id, kind, name, args, span);
-        if outcome.is_err() {
-            let name_id = m.names[name.symbol.0 as usize];
-            let taken = self.lookup(name_id).is_some_and(|b| !matches!(b.what, Binding::Poisoned));
-            if !taken {
-                self.bind(name_id, name.span, Binding::Poisoned);
-            }
-        }
-        outcome
-    }
-
-    fn object_of(
-        &mut self,
-        m: &Module,
-        id: StmtId,
-        kind: Ident,
-        name: Ident,
-        args: List<Arg>,
-        span: Span,
-    ) -> Result<(), Diagnostic> {
-        let name_id = m.names[name.symbol.0 as usize];
-        let word = m.program.name(kind.symbol);
-        let row = match &m.rows[kind.symbol.0 as usize] {
-            Some(row) if row.kind => row,
-            other => {
-                if let Some(&routine) = self.env.routines.get(&m.names[kind.symbol.0 as usize]) {
-                    return self.instance(m, routine, name, args, span);
-                }
-                if other.is_some() {
-                    return Err(Diagnostic::error(
-                        "not-a-kind",
-                        format!("`{word}` is a function, not a kind of object"),
-                    )
-                    .at(kind.span)
-                    .help(format!("call it in an expression: curve x = {word}(...);")));
-                }
-                return Err(self.unknown_kind(word).at(kind.span));
-            }
-        };
-        let mut given = Given { positional: Vec::with_capacity(args.len()), named: Vec::new() };
-        let mut failed = None;
-        for arg in &m.program[args] {
-            match (self.expr(m, arg.value), arg.name) {
-                (Ok(value), None) => given.positional.push(value),
-                (Ok(value), Some(ident)) => {
-                    given.named.push((m.program.name(ident.symbol), value));
-                }
-                // Go on: the other arguments may have errors worth telling as well.
-                (Err(diagnostic), _) => {
-                    let shown = diagnostic.or_at(m.program[arg.value].span);
-                    if let Some(earlier) = failed.replace(shown) {
-                        self.report(earlier);
-                    }
-                }
-            }
-        }
-        if let Some(diagnostic) = failed {
-            return Err(diagnostic);
-        }
-        let positional = given.positional.len();
-        let (mut filled, head) = arrange(row, given, |key| self.run.class_of(key))
-            .map_err(|fault| crate::place::diagnostic(m, args, row, positional, &fault, span))?;
-
-        let (full, turn) = self.full_name(m, name)?;
-        let known = self.lookup(name_id).map(|b| b.span);
-        if turn.is_none() {
-            self.check_free(name_id, name.span, false)?;
-        }
-        let full = full.as_deref().unwrap_or_else(|| m.program.name(name.symbol));
-        if !self.inputs.seeded_objects.is_empty() && self.inputs.seeded_objects.contains(full) {
-            let seed = self.inputs.seed;
-            crate::place::seed(row, &mut filled, full, seed);
-        }
-        let origin = self.env.origins.len() as u32;
-        let declaration = Declaration { name: full, row, args: filled, head, origin };
-        let key = self.run.declare(declaration).map_err(|fault| {
-            let diagnostic = crate::place::unplaced(&fault).at(name.span);
-            match known {
-                Some(first) => diagnostic.note_at(first, "first declared here"),
-                None => diagnostic,
-            }
-        })?;
-        let frame = self.frames.last().expect("there is always a frame");
-        let repeated = !frame.global || !frame.loops.is_empty() || !frame.prefix.is_empty();
-        self.env.origins.push(Origin { module: self.current as u32, stmt: id, repeated });
-        let what = match turn {
-            None => Binding::Object(key),
-            Some((family, turn)) => Binding::Turn { now: key, turn, family },
-        };
-        self.enter_families(full, key);
-        self.bind(name_id, name.span, what);
-        Ok(())
-    }
-
-    /// The name of an object, when it differs from the one written: with the call it is made in
-    /// and the values of the loop variables; and in loops the family and the turn.
-    #[allow(clippy::type_complexity)]
-    fn full_name(
-        &mut self,
-        m: &Module,
-        name: Ident,
-    ) -> Result<(Option<String>, Option<(Arc<str>, u64)>), Diagnostic> {
-        let text = m.program.name(name.symbol);
-        let frame = self.frames.last().expect("there is always a frame");
-        let family = if frame.prefix.is_empty() { None } else { Some(format!("{}{text}", frame.prefix)) };
-        let Some(turn) = frame.loops.last() else { return Ok((family, None)) };
-        let family: Arc<str> = family.as_deref().unwrap_or(text).into();
-        let mut labels = Vec::new();
-        for turn in &frame.loops {
-            let Some(label) = &turn.label else {
-                return Err(Diagnostic::error(
-                    "no-loop-variable",
-                    "an object in a loop takes its name from the loop variable, and this loop has \
-                     none",
-                )
-                .at(name.span)
-                .help("use `for (i = 1:n)`"));
-            };
-            labels.push(label.as_str());
-        }
-        Ok((Some(format!("{family}[{}]", labels.join(","))), Some((family, turn.id))))
-    }
-
-    /// Lists an object under the names that stand for several.
-    fn enter_families(&mut self, full: &str, key: Key) {
-        if let Some((family, _)) = full.rsplit_once('[')
-            && full.ends_with(']')
-        {
-            match self.env.families.get_mut(family) {
-                Some(keys) => keys.push(key),
-                None => drop(self.env.families.insert(family.into(), vec![key])),
-            }
-        }
-    }
-
-    /// A named call of a subroutine: `leg fore(...)`.
-    fn instance(
-        &mut self,
-        m: &Module,
-        routine: RoutineAt,
-        name: Ident,
-        args: List<Arg>,
-        span: Span,
-    ) -> Result<(), Diagnostic> {
-        let name_id = m.names[name.symbol.0 as usize];
-        let (full, turn) = self.full_name(m, name)?;
-        if turn.is_none() {
-            self.check_free(name_id, name.span, false)?;
-        }
-        let full: Arc<str> = match full {
-            Some(full) => full.into(),
-            None => m.program.name(name.symbol).into(),
-        };
-        let family = match turn {
-            Some((family, _)) => family,
-            None => full.clone(),
-        };
-        self.bind(name_id, name.span, Binding::Instance(family));
-        let prefix: Arc<str> = format!("{full}.").into();
-        self.call_routine(m, routine, args, Some(prefix), span)?;
-        Ok(())
-    }
-
     pub fn unknown_kind(&self, word: &str) -> Diagnostic {
         let kinds = self.loader.registry.rows().filter(|r| r.kind).map(|r| &*r.name);
         let routines = self.env.routines.keys().map(|&name| &**self.modules.text(name));
@@ -1026,8 +777,16 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .help("`moldloft doc --list` lists all kinds")
     }
 
+    /// True while hints are worth a search.
+    pub fn hints(&self) -> bool {
+        self.errors < MOST_HINTS
+    }
+
     /// The most alike of the names that mean something here.
     pub fn nearest_name(&self, word: &str) -> Option<String> {
+        if !self.hints() {
+            return None;
+        }
         let frame = self.frames.last().expect("there is always a frame");
         let locals = frame.locals.iter().map(|(name, _)| *name);
         let globals = self.env.globals.iter().enumerate();
@@ -1045,7 +804,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         })
     }
 
-    fn store(&mut self, place: variables::Place, value: Value<T>) -> Result<(), Diagnostic> {
+    pub fn store(&mut self, place: variables::Place, value: Value<T>) -> Result<(), Diagnostic> {
         let name = place.name;
         let text = self.modules.text(name).clone();
         let Some(bound) = self.lookup_mut(name) else { return Err(silent()) };
@@ -1055,10 +814,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 variables::store(taken, old, &place, value)
             }
             Binding::Poisoned => Err(silent()),
-            _ => Err(Diagnostic::error("not-assignable", format!("`{text}` cannot be assigned to"))
-                .found("an object or parameter")
-                .note_at(bound.span, "declared here")
-                .help("objects are named once; change their data, or use a variable")),
+            _ => {
+                Err(Diagnostic::error("not-assignable", format!("`{text}` cannot be assigned to"))
+                    .found("an object or parameter")
+                    .note_at(bound.span, "declared here")
+                    .help("objects are named once; change their data, or use a variable"))
+            }
         }
     }
 }

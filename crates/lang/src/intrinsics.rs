@@ -40,11 +40,7 @@ fn each<T: Real>(value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault
     }
 }
 
-fn pairs<T: Real>(
-    a: &Value<T>,
-    b: &Value<T>,
-    f: impl Fn(T, T) -> T,
-) -> Result<Value<T>, Fault> {
+fn pairs<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Result<Value<T>, Fault> {
     let array = |shape, items| Ok(Value::Numbers(Arc::new(Array { shape, items })));
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(f(*a, *b))),
@@ -57,11 +53,10 @@ fn pairs<T: Real>(
         (Value::Numbers(a), Value::Numbers(b)) if a.shape == b.shape => {
             array(a.shape, a.items.iter().zip(&b.items).map(|(&x, &y)| f(x, y)).collect())
         }
-        (Value::Numbers(a), Value::Numbers(b)) => Err(Fault::new(
-            "shapes-differ",
-            format!("shapes differ: {} and {}", a.shape, b.shape),
-        )
-        .expected("equal shapes, or a single number on one side")),
+        (Value::Numbers(a), Value::Numbers(b)) => {
+            Err(Fault::new("shapes-differ", format!("shapes differ: {} and {}", a.shape, b.shape))
+                .expected("equal shapes, or a single number on one side"))
+        }
         (Value::Number(_) | Value::Numbers(_), other) => Err(not_a_number(other, 1)),
         (other, _) => Err(not_a_number(other, 0)),
     }
@@ -135,7 +130,12 @@ fn optional(name: &'static str) -> Field {
 }
 
 fn several() -> Vec<Field> {
-    vec![argument("a", "A number, vector or row of numbers."), optional("b"), optional("c"), optional("d")]
+    vec![
+        argument("a", "A number, vector or row of numbers."),
+        optional("b"),
+        optional("c"),
+        optional("d"),
+    ]
 }
 
 /// The rows of this file.
@@ -182,8 +182,26 @@ pub fn rows() -> Vec<Row> {
             T::from((a.re() / b.re()).floor())
         };
     });
-    rows.push(row!("min", "The least of all numbers given.", several(), "assert min(3, 1) == 1;", least));
-    rows.push(row!("max", "The greatest of all numbers given.", several(), "assert max(3, 1) == 3;", greatest));
-    rows.push(row!("sum", "The sum of all numbers given.", several(), "assert sum({1, 2, 4}) == 7;", total));
+    rows.push(row!(
+        "min",
+        "The least of all numbers given.",
+        several(),
+        "assert min(3, 1) == 1;",
+        least
+    ));
+    rows.push(row!(
+        "max",
+        "The greatest of all numbers given.",
+        several(),
+        "assert max(3, 1) == 3;",
+        greatest
+    ));
+    rows.push(row!(
+        "sum",
+        "The sum of all numbers given.",
+        several(),
+        "assert sum({1, 2, 4}) == 7;",
+        total
+    ));
     rows
 }

@@ -54,7 +54,9 @@ pub(crate) fn declared_later(m: &Module, symbol: Symbol, used: Span) -> Option<L
             _ => {}
         }
     }
-    let &(name, _) = objects.get(&symbol).filter(|(name, _)| name.span.end > used.start)?;
+    let &(name, _) = objects
+        .get(&symbol)
+        .filter(|(name, _)| name.span.end > used.start || user == Some(symbol))?;
     let cycle = user.and_then(|user| path(m, &objects, symbol, user)).map(|mut path| {
         path.push(symbol);
         path

@@ -77,10 +77,7 @@ impl Document {
         let patch = mesh.patches().iter().position(|p| p.info.name == group);
         let numbers = if patch.is_some() || group == "mesh" {
             let measures = patch.map_or_else(|| measure(mesh), |k| measure_patch(mesh, k));
-            vec![
-                ("area", Value::Number(measures.area)),
-                ("volume", Value::Number(measures.volume)),
-            ]
+            vec![("area", Value::Number(measures.area)), ("volume", Value::Number(measures.volume))]
         } else {
             crate::hydro::numbers(mesh, &self.hydrostatic_options())?
         };
@@ -117,9 +114,14 @@ impl Document {
                 };
                 for k in 0..count {
                     column.push(derivative_part(&value, k).ok_or_else(|| {
-                        vec![Diagnostic::error("not-a-number", format!("`{text}` has no derivative"))
+                        vec![
+                            Diagnostic::error(
+                                "not-a-number",
+                                format!("`{text}` has no derivative"),
+                            )
                             .expected("a number, a vector, or a row or grid of them")
-                            .found(value.class().a())]
+                            .found(value.class().a()),
+                        ]
                     })?);
                 }
             }
@@ -151,11 +153,7 @@ impl Document {
     fn passes(
         &mut self,
         by: &[String],
-        mut each: impl FnMut(
-            &mut Self,
-            &mut Evaluation<Dual4>,
-            usize,
-        ) -> Result<(), Vec<Diagnostic>>,
+        mut each: impl FnMut(&mut Self, &mut Evaluation<Dual4>, usize) -> Result<(), Vec<Diagnostic>>,
     ) -> Result<(), Vec<Diagnostic>> {
         let mut seeded_objects = HashSet::new();
         for name in by {

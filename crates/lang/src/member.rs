@@ -2,8 +2,8 @@
 
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
-use moldloft_model::Object;
-use moldloft_num::{Real, Vec3};
+use moldloft_model::{MOST_PANELS, Object, too_many_panels};
+use moldloft_num::{Order, Real, Vec3, gauss_legendre};
 use moldloft_registry::{Array, ArrayShape, Scalar, Value};
 use std::sync::Arc;
 
@@ -28,7 +28,13 @@ pub(crate) fn of_value<T: Scalar>(
             _ => None,
         },
         (Value::Curve(curve), None) if name == "length" => {
-            number(moldloft_spline::arclen(&**curve, T::zero(), T::one(), 1e-10))
+            // To about twelve digits, as the function of this name.
+            let speed = |t: f64| curve.jet(T::from(t), Order::First)[1].re().norm();
+            let rough = gauss_legendre(0.0, 1.0, speed);
+            if rough == 0.0 {
+                return number(T::zero());
+            }
+            number(moldloft_spline::arclen(&**curve, T::zero(), T::one(), 1e-12 * rough))
         }
         (Value::Numbers(_) | Value::Vectors(_) | Value::List(_), None) => {
             let extents = crate::variables::extents(value)?;
@@ -65,17 +71,21 @@ pub(crate) fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
 }
 
 /// The area of a surface object, measured on its panels.
-pub(crate) fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<T> {
+pub(crate) fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<T, Diagnostic>> {
     let Value::Surface(surface) = object.value()? else { return None };
     if name != "area" {
         return None;
     }
     let [nu, nv] = object.head.divisions.map(|n| n as usize);
+    let panels = nu as u64 * nv as u64;
+    if panels > MOST_PANELS {
+        return Some(Err(crate::place::unplaced(&too_many_panels(panels))));
+    }
     let steps = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();
     let mut points = vec![Vec3::zero(); (nu + 1) * (nv + 1)];
     surface.grid(&steps(nu), &steps(nv), &mut points, None);
     let mut builder = TopologyBuilder::new();
     let vertices = builder.add_vertices(points.len()).ok()?;
     builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), false).ok()?;
-    Some(measure(&Mesh::new(builder.build().into(), points).ok()?).area)
+    Some(Ok(measure(&Mesh::new(builder.build().into(), points).ok()?).area))
 }

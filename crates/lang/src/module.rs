@@ -26,6 +26,8 @@ pub(crate) struct Module {
     pub names: Vec<Name>,
     /// The registry's row of each symbol.
     pub rows: Vec<Option<Arc<Row>>>,
+    /// What is wrong with the text of a loaded file; told whenever it is run.
+    pub faults: Vec<Diagnostic>,
 }
 
 /// All files of a model: parsed once, executed often.
@@ -80,7 +82,8 @@ impl Modules {
         at: Option<usize>,
     ) -> usize {
         let (names, rows) = self.resolve(&program, registry);
-        let module = Arc::new(Module { path: path.into(), program, names, rows });
+        let module =
+            Arc::new(Module { path: path.into(), program, names, rows, faults: Vec::new() });
         match at {
             Some(at) => {
                 self.modules[at] = module;
@@ -154,17 +157,19 @@ impl Modules {
         loader: &mut Loader<'_>,
     ) -> Result<usize, Diagnostic> {
         let from_path = self.modules[from].path.clone();
-        let read = loader.world.read(path, Some(&from_path)).map_err(|e| {
-            Diagnostic::error("cannot-read", e.message).at(span).maybe_help(e.help)
-        })?;
+        let read = loader
+            .world
+            .read(path, Some(&from_path))
+            .map_err(|e| Diagnostic::error("cannot-read", e.message).at(span).maybe_help(e.help))?;
         if let Some(at) = self.modules.iter().position(|m| m.path == read.name) {
             return Ok(at);
         }
         let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
         let file = loader.sources.add(read.name.clone(), text);
         let (program, found) = sdl::parse(text, file);
-        loader.diagnostics.extend(found);
-        Ok(self.add(&read.name, program, loader.registry, None))
+        let at = self.add(&read.name, program, loader.registry, None);
+        self.get_mut(at).faults = found;
+        Ok(at)
     }
 }
 

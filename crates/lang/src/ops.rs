@@ -23,9 +23,12 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
         Value::Vectors(a) => Elements::Vectors(a),
         other => {
             let class = other.class().a();
-            return Err(Diagnostic::error("wrong-operand", format!("`{op}` does not take {class}"))
-                .expected("numbers, vectors, or rows and grids of them")
-                .found(class));
+            return Err(Diagnostic::error(
+                "wrong-operand",
+                format!("`{op}` does not take {class}"),
+            )
+            .expected("numbers, vectors, or rows and grids of them")
+            .found(class));
         }
     })
 }
@@ -74,7 +77,11 @@ struct Rules<T> {
 fn power<T: Real>(a: T, b: T) -> T {
     // Small whole powers by multiplication: exact for whole numbers, defined for negative bases.
     let k = b.re();
-    if b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0 { a.powi(k as i32) } else { a.powf(b) }
+    if b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0 {
+        a.powi(k as i32)
+    } else {
+        a.powf(b)
+    }
 }
 
 fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {
@@ -124,7 +131,9 @@ pub(crate) fn binary<T: Real>(
                  {a, a, a}",
             ),
             BinaryOp::Caret => d.help("only numbers have powers; use . for a dot product"),
-            BinaryOp::Dot | BinaryOp::Cross => d.help("both sides must be vectors; multiply with *"),
+            BinaryOp::Dot | BinaryOp::Cross => {
+                d.help("both sides must be vectors; multiply with *")
+            }
             _ => d,
         }
     };

@@ -56,12 +56,15 @@ impl Program<'_> {
             sources: self.sources,
             diagnostics: found,
         };
-        with_stack(|| {
-            graph.apply(Extent::Whole, |run| {
-                Interpreter::new(self.modules, loader, run, env, inputs).module(0);
+        // What is left to evaluate after the program is evaluated in the caller's thread pool.
+        let modules = self.modules;
+        graph
+            .apply(Extent::Whole, |run| {
+                with_stack(|| {
+                    Interpreter::new(modules, loader, run, env, inputs).module(0);
+                });
             })
-        })
-        .1
+            .1
     }
 
     /// The value of an expression in the names that the last run left behind.
@@ -161,8 +164,8 @@ pub(crate) fn literal(
     let StmtKind::Object { args, .. } = stmt.kind else { return Err(NotLiteral::Default) };
     let args = &m.program[args];
     let unnamed = args.iter().filter(|a| a.name.is_none()).count();
-    let mut expr = place::argument(m, args, &object.row, unnamed, path.field)
-        .ok_or(NotLiteral::Default)?;
+    let mut expr =
+        place::argument(m, args, &object.row, unnamed, path.field).ok_or(NotLiteral::Default)?;
     for k in [path.item, path.component].into_iter().flatten() {
         match place::item(m, expr, k) {
             Some(item) => expr = item,

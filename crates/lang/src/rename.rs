@@ -166,7 +166,8 @@ fn other_meaning(m: &Module, symbol: Symbol) -> Option<Span> {
                 stack.push(then);
                 stack.extend(otherwise);
             }
-            StmtKind::ForRange { variable, body, .. } | StmtKind::Foreach { variable, body, .. } => {
+            StmtKind::ForRange { variable, body, .. }
+            | StmtKind::Foreach { variable, body, .. } => {
                 if variable.symbol == symbol {
                     return Some(variable.span);
                 }

@@ -7,9 +7,8 @@ use moldloft_syntax::number;
 /// The value on one line, numbers in their shortest exact spelling.
 pub fn plain<T: Real>(value: &Value<T>) -> String {
     let number = |x: T| number::plain(if x.re() == 0.0 { 0.0 } else { x.re() });
-    let vector = |v: moldloft_num::Vec3<T>| {
-        format!("{{{}, {}, {}}}", number(v.x), number(v.y), number(v.z))
-    };
+    let vector =
+        |v: moldloft_num::Vec3<T>| format!("{{{}, {}, {}}}", number(v.x), number(v.y), number(v.z));
     let list = |items: Vec<String>| format!("{{{}}}", items.join(", "));
     match value {
         Value::Unset => "nothing".into(),
@@ -20,7 +19,9 @@ pub fn plain<T: Real>(value: &Value<T>) -> String {
         Value::Numbers(a) => list(a.items.iter().map(|&x| number(x)).collect()),
         Value::Vectors(a) => list(a.items.iter().map(|&v| vector(v)).collect()),
         Value::List(items) => list(items.iter().map(plain).collect()),
-        Value::Plane(p) => format!("plane through {} with normal {}", vector(p.point), vector(p.normal)),
+        Value::Plane(p) => {
+            format!("plane through {} with normal {}", vector(p.point), vector(p.normal))
+        }
         other => other.class().a().to_string(),
     }
 }

@@ -8,7 +8,7 @@ use moldloft_syntax::sdl::Type;
 use std::sync::Arc;
 
 /// The most elements of an array.
-const MOST_ELEMENTS: f64 = 1e8;
+const MOST_ELEMENTS: f64 = 1e7;
 
 /// A part of a variable that is assigned to, or passed by reference.
 #[derive(Clone, Debug)]
@@ -144,6 +144,13 @@ pub(crate) fn extent(n: f64) -> Result<usize, Diagnostic> {
         .found(n.to_string()))
 }
 
+/// More elements than there may be.
+pub(crate) fn too_many(found: f64, most: f64) -> Diagnostic {
+    Diagnostic::error("too-many-elements", "the array is too large")
+        .expected(format!("at most {most} elements"))
+        .found(format!("{found}"))
+}
+
 /// The first value of a variable with declared dimensions `dims`.
 ///
 /// # Errors
@@ -153,10 +160,9 @@ pub(crate) fn initial<T: Real>(
     dims: &[usize],
     value: Option<Value<T>>,
 ) -> Result<Value<T>, Diagnostic> {
-    if dims.iter().map(|&n| n as f64).product::<f64>() > MOST_ELEMENTS {
-        return Err(Diagnostic::error("too-many-elements", "the array is too large")
-            .expected(format!("at most {MOST_ELEMENTS} elements"))
-            .found(format!("{dims:?}")));
+    let count = dims.iter().map(|&n| n as f64).product::<f64>();
+    if count > MOST_ELEMENTS {
+        return Err(too_many(count, MOST_ELEMENTS));
     }
     let empty = match (ty, dims) {
         (Type::Farray, [n]) => Value::Numbers(Arc::new(Array::row(vec![T::zero(); *n]))),
@@ -236,8 +242,11 @@ pub(crate) fn positions(
             Ok((a.positions.clone(), kept))
         }
         (Some(_), Some([a, b])) => {
-            let flat =
-                a.positions.iter().flat_map(|i| b.positions.iter().map(move |j| i * n + j)).collect();
+            let flat = a
+                .positions
+                .iter()
+                .flat_map(|i| b.positions.iter().map(move |j| i * n + j))
+                .collect();
             let (ka, kb) = (a.positions.len(), b.positions.len());
             let kept = match (a.keeps_dimension, b.keeps_dimension) {
                 (true, true) => Some(ArrayShape::Grid(ka, kb)),
@@ -247,12 +256,14 @@ pub(crate) fn positions(
             };
             Ok((flat, kept))
         }
-        (_, Some(section)) => Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
-            .expected(match shape {
-                ArrayShape::Row(_) => "one subscript, as in c[3]",
-                ArrayShape::Grid(..) => "two subscripts, as in s[3,4]",
-            })
-            .found(format!("{} subscripts", section.len()))),
+        (_, Some(section)) => {
+            Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
+                .expected(match shape {
+                    ArrayShape::Row(_) => "one subscript, as in c[3]",
+                    ArrayShape::Grid(..) => "two subscripts, as in s[3,4]",
+                })
+                .found(format!("{} subscripts", section.len())))
+        }
     }
 }
 
@@ -278,7 +289,10 @@ fn fill<T: Real>(
     };
     let value = match value {
         Value::Point(p) => Value::Vector(p.xyz),
-        Value::List(_) if matches!(old, Value::Numbers(_)) => converted(Type::Farray, value)?,
+        Value::List(_) | Value::Vector(_) if matches!(old, Value::Numbers(_)) => {
+            converted(Type::Farray, value)?
+        }
+        Value::List(_) | Value::Vector(_) if component.is_some() => converted(Type::Farray, value)?,
         Value::List(_) => converted(Type::Curve, value)?,
         other => other,
     };
@@ -326,7 +340,10 @@ fn fill<T: Real>(
         },
         (other, _) => {
             let class: Class = other.class();
-            return Err(Diagnostic::error("not-indexable", format!("{} has no such part", class.a())));
+            return Err(Diagnostic::error(
+                "not-indexable",
+                format!("{} has no such part", class.a()),
+            ));
         }
     }
     Ok(())
@@ -354,15 +371,11 @@ pub(crate) fn part<T: Real>(
     Ok(match value {
         Value::Numbers(array) => match positions(array.shape, Some(section))? {
             (at, None) => Value::Number(array.items[at[0]]),
-            (at, Some(shape)) => {
-                Value::Numbers(Arc::new(Array { shape, items: pick(array, &at) }))
-            }
+            (at, Some(shape)) => Value::Numbers(Arc::new(Array { shape, items: pick(array, &at) })),
         },
         Value::Vectors(array) => match positions(array.shape, Some(section))? {
             (at, None) => Value::Vector(array.items[at[0]]),
-            (at, Some(shape)) => {
-                Value::Vectors(Arc::new(Array { shape, items: pick(array, &at) }))
-            }
+            (at, Some(shape)) => Value::Vectors(Arc::new(Array { shape, items: pick(array, &at) })),
         },
         Value::List(items) => match section {
             [one] if !one.keeps_dimension => items[one.positions[0]].clone(),

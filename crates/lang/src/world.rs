@@ -34,6 +34,9 @@ pub struct NoFiles;
 
 impl World for NoFiles {
     fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, ReadError> {
-        Err(ReadError { message: format!("cannot read `{path}`: there are no files here"), help: None })
+        Err(ReadError {
+            message: format!("cannot read `{path}`: there are no files here"),
+            help: None,
+        })
     }
 }

@@ -135,7 +135,8 @@ fn ridders(mut f: impl FnMut(f64) -> f64, h: f64) -> f64 {
 #[test]
 fn derivatives_of_volume_and_vertices_equal_differences() {
     let mut document = hull();
-    let names: Vec<String> = ["P22.y", "P12.z", "P31.x", "P14.x", "P24.z"].map(String::from).to_vec();
+    let names: Vec<String> =
+        ["P22.y", "P12.z", "P31.x", "P14.x", "P24.z"].map(String::from).to_vec();
     let volumes = document.derivatives(&["hydrostatics.volume".into()], &names).unwrap();
     let vertices = document.jacobian(&names).unwrap();
     for (k, name) in names.iter().enumerate() {
@@ -154,7 +155,10 @@ fn derivatives_of_volume_and_vertices_equal_differences() {
             for axis in 0..3 {
                 let centred = ridders(|h| at(h).1[vertex][axis], 1e-1);
                 let exact = vertices[k][vertex][axis];
-                assert!((exact - centred).abs() < 1e-8, "{name} {vertex} {axis}: {exact} {centred}");
+                assert!(
+                    (exact - centred).abs() < 1e-8,
+                    "{name} {vertex} {axis}: {exact} {centred}"
+                );
             }
         }
     }

@@ -137,14 +137,21 @@ fn check<T: Real>(
         Value::Numbers(a) => a.items.len(),
         Value::Vectors(a) => a.items.len(),
         Value::Unset if field.default.is_some() => return Ok(()),
-        Value::Object(_) | Value::Unset => 0,
+        Value::Unset => 0,
         other => {
+            let found = match other {
+                Value::Object(key) => class_of(*key),
+                other => other.class(),
+            };
+            if found == Class::Any {
+                return Ok(());
+            }
             return Err(Fault::new(
                 "not-a-list",
-                format!("expected a list of {}s, found {}", field.class.name(), other.class().a()),
+                format!("expected a list of {}s, found {}", field.class.name(), found.a()),
             )
             .expected(expectation(field))
-            .found(other.class().a())
+            .found(found.a())
             .help("write the items in braces: {a, b}"));
         }
     };
