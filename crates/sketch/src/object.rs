@@ -212,11 +212,7 @@ impl Object {
             }
             stays
         });
-        let closed = |cycle: &[PointId]| {
-            (0..cycle.len())
-                .all(|k| drawing.line_between(cycle[k], cycle[(k + 1) % cycle.len()]).is_some())
-        };
-        self.faces.retain(|_, f| f.loops().all(closed));
+        self.faces.retain(|_, f| f.loops().all(|cycle| cycle.iter().all(point)));
         if self.reference.is_some_and(|r| !point(&r.point)) {
             self.reference = None;
         }

@@ -153,3 +153,43 @@ pub fn cuboid(size: [f64; 3]) -> Object {
     add_dimension(&mut object, &format!("Z 1 5 {}", size[2]));
     object
 }
+
+/// Finds and stores the faces of the likeliest solid.
+pub fn with_faces(mut object: Object) -> Object {
+    let (planes, layout) = layout(&object);
+    let positions = layout.positions(&planes).unwrap();
+    let at = |p: PointId| planes.ids().binary_search(&p).unwrap();
+    let edges: Vec<[usize; 2]> =
+        object.drawing.lines.values().map(|l| [at(l.p), at(l.q)]).collect();
+    let fitted = moldloft_sketch::faces::fit(&positions, &edges);
+    let points = |c: &Vec<usize>| c.iter().map(|&k| planes.ids()[k]).collect();
+    for f in &fitted.fits[0].faces {
+        let face = Face { outer: points(&f.outer), holes: f.holes.iter().map(points).collect() };
+        object.faces.insert(object.next_face(), face);
+    }
+    object
+}
+
+pub fn built(object: &Object) -> Solid<f64> {
+    let (planes, layout) = layout(object);
+    solid(object, &planes, &layout).unwrap()
+}
+
+pub fn curve(name: &str, kind: curve::CurveKind, points: &[u32], size: &[&str]) -> curve::Curve {
+    let size: Vec<Expr> = size.iter().map(|s| Expr::parse(s).unwrap()).collect();
+    let corner = matches!(kind, curve::CurveKind::Arc | curve::CurveKind::Circle);
+    curve::Curve {
+        name: name.into(),
+        kind,
+        points: points.iter().map(|&p| PointId(p)).collect(),
+        radius: size.first().filter(|_| corner).cloned(),
+        semi: (size.len() == 2).then(|| [size[0].clone(), size[1].clone()]),
+        steps: None,
+        replaces: true,
+        centripetal: false,
+    }
+}
+
+pub fn add_curve(object: &mut Object, c: curve::Curve) {
+    object.curves.insert(c.name.to_ascii_lowercase(), c);
+}

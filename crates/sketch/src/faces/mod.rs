@@ -1,0 +1,219 @@
+//! Faces and solids from a wireframe.
+//!
+//! A cell decomposition after G. Markowsky and M. A. Wesley, *Fleshing Out Wire Frames* (IBM J. Res.
+//! Dev. 24, 1980): edges span planes, planes are divided into candidate faces, candidates divide space
+//! into cells, and cells are labelled solid or void so that every drawn edge is an edge of the solid.
+//! Internal polygons drop out by themselves (solid on both sides), holes and cavities are void cells,
+//! orientation is free, and an ambiguous wireframe gives all its solids.
+//!
+//! `edges -> sheets -> regions (cut where they cross) -> cells -> labels -> faces`
+
+mod cells;
+mod label;
+mod regions;
+mod wire;
+
+use cells::{Cells, Forest};
+use moldloft_num::Vec3;
+use regions::{Half, Region, Sheet};
+use wire::Wire;
+
+/// More edges than this, after cutting, are refused.
+pub const MAX_EDGES: usize = 20_000;
+
+/// A face as cycles of vertices, counter-clockwise from outside; holes clockwise.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Polygon {
+    /// The outer cycle, from its lowest vertex.
+    pub outer: Vec<usize>,
+    /// Holes, each from its lowest vertex.
+    pub holes: Vec<Vec<usize>>,
+}
+
+/// One solid that fits the wireframe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Its faces, in the order of their cycles.
+    pub faces: Vec<Polygon>,
+    /// Candidates that are no faces (solid or void on both sides), as outer cycles.
+    pub internal: Vec<Vec<usize>>,
+    /// Edges with more than two faces.
+    pub branching: Vec<[usize; 2]>,
+    /// Edges between two faces of one plane.
+    pub scribed: Vec<[usize; 2]>,
+    /// Its volume.
+    pub volume: f64,
+}
+
+/// All that was found about a wireframe.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fitted {
+    /// Candidate faces.
+    pub candidates: usize,
+    /// The candidates as polygons, against the normals of their sheets; for choosing by hand.
+    pub polygons: Vec<Polygon>,
+    /// Cells between them.
+    pub cells: usize,
+    /// The solids, the likeliest first.
+    pub fits: Vec<Fit>,
+    /// Whether these are all.
+    pub complete: bool,
+    /// Edges with a loose end; they were left out.
+    pub dangling: Vec<[usize; 2]>,
+    /// Edges that fewer than two candidates share: there the faces do not close.
+    pub open: Vec<[usize; 2]>,
+    /// Places where edges cross without a vertex.
+    pub crossings: Vec<Vec3>,
+    /// Whether it was given up as too large.
+    pub too_large: bool,
+}
+
+/// Finds the solids of a wireframe. Vertices are numbered as given.
+pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
+    let mut fitted = Fitted { complete: true, ..Fitted::default() };
+    let mut wire = Wire::new(positions, edges);
+    fitted.dangling = wire.prune();
+    let drawn = wire.vertices.len();
+    fitted.crossings = wire.vertices[positions.len()..].to_vec();
+    let sheets = regions::sheets(&wire);
+    let regions = loop {
+        let mut regions: Vec<Region> = (sheets.iter().enumerate())
+            .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
+            .collect();
+        regions::drop_unshared(&wire, &mut regions);
+        let cuts = regions::cuts(&wire, &sheets, &regions);
+        let before = wire.edges.len();
+        for [p, q] in cuts {
+            let (a, b) = (wire.vertex(p), wire.vertex(q));
+            wire.insert(a, b, true);
+            if wire.edges.len() > MAX_EDGES {
+                fitted.too_large = true;
+                return fitted;
+            }
+        }
+        if wire.edges.len() == before {
+            break regions;
+        }
+    };
+    fitted.candidates = regions.len();
+    let cells = Cells::build(&wire, &sheets, &regions);
+    fitted.cells = cells.volume.len();
+    let build = Build { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
+    fitted.polygons = regions.iter().map(|r| build.polygon(&r.loops, true)).collect();
+    fitted.open = (wire.edges.iter().zip(&cells.wings))
+        .filter(|(e, wings)| !e.cut && wings.len() < 2)
+        .map(|(e, _)| e.ends)
+        .collect();
+    if !fitted.open.is_empty() || regions.is_empty() {
+        return fitted;
+    }
+    let (answers, complete) = label::label(&wire, &regions, &cells);
+    fitted.complete = complete;
+    fitted.fits = answers.iter().map(|a| build.solid(&a.solid, a.volume)).collect();
+    fitted
+}
+
+/// The regions of a wireframe that lies in one plane, counter-clockwise against `normal`: the faces of
+/// a cross section. Edges with a loose end are left out.
+pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<Polygon> {
+    let mut wire = Wire::new(positions, edges);
+    wire.prune();
+    let drawn = wire.vertices.len();
+    let sheets = regions::sheets(&wire);
+    let regions: Vec<Region> = (sheets.iter().enumerate())
+        .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
+        .collect();
+    let cells = Cells { side: vec![], volume: vec![], wings: vec![] };
+    let build = Build { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
+    let up = |r: &Region| sheets[r.sheet].normal.dot(normal) > 0.0;
+    let mut faces: Vec<Polygon> = regions.iter().map(|r| build.polygon(&r.loops, up(r))).collect();
+    faces.sort();
+    faces
+}
+
+struct Build<'a> {
+    wire: &'a Wire,
+    sheets: &'a [Sheet],
+    regions: &'a [Region],
+    cells: &'a Cells,
+    /// Vertices from here on were made by cutting.
+    drawn: usize,
+}
+
+impl Build<'_> {
+    fn solid(&self, solid: &[bool], volume: f64) -> Fit {
+        let is = |side: usize| self.cells.side[side].is_some_and(|c| solid[c]);
+        // Per region: whether its outward normal is that of its sheet.
+        let outward: Vec<Option<bool>> = (0..self.regions.len())
+            .map(|r| match (is(2 * r), is(2 * r + 1)) {
+                (false, true) => Some(true),
+                (true, false) => Some(false),
+                _ => None,
+            })
+            .collect();
+        let mut joined = Forest::new(self.regions.len());
+        let (mut branching, mut scribed) = (Vec::new(), Vec::new());
+        for (edge, around) in self.wire.edges.iter().zip(&self.cells.wings) {
+            let faces: Vec<usize> =
+                around.iter().map(|w| w.region).filter(|&r| outward[r].is_some()).collect();
+            match faces[..] {
+                [a, b] if edge.cut => joined.join(a, b),
+                [a, b] if self.regions[a].sheet == self.regions[b].sheet => scribed.push(edge.ends),
+                [] | [_, _] => {}
+                _ => branching.push(edge.ends),
+            }
+        }
+        let mut faces = Vec::new();
+        for first in 0..self.regions.len() {
+            let Some(up) = outward[first].filter(|_| joined.root(first) == first) else { continue };
+            let mut halves: Vec<Half> = (first..self.regions.len())
+                .filter(|&r| outward[r].is_some() && joined.root(r) == first)
+                .flat_map(|r| self.regions[r].loops.iter().flatten().copied())
+                .collect();
+            // Both sides of an edge: the joint of two parts, or a line scribed on the face.
+            halves.sort_unstable();
+            let both = |h: &Half| halves.binary_search(&(h.0, !h.1)).is_ok();
+            let single: Vec<Half> = halves.iter().filter(|h| !both(h)).copied().collect();
+            let sheet = &self.sheets[self.regions[first].sheet];
+            let loops = regions::walk(self.wire, sheet, &single);
+            for face in regions::nested(self.wire, sheet, loops) {
+                faces.push(self.polygon(&face, up));
+            }
+        }
+        faces.sort();
+        let internal = (self.regions.iter().zip(&outward))
+            .filter(|(_, up)| up.is_none())
+            .map(|(r, _)| self.cycle(&r.loops[0], true))
+            .collect();
+        Fit { faces, internal, branching, scribed, volume }
+    }
+
+    fn polygon(&self, loops: &[Vec<Half>], up: bool) -> Polygon {
+        let mut cycles = loops.iter().map(|cycle| self.cycle(cycle, up));
+        let outer = cycles.next().unwrap_or_default();
+        let mut holes: Vec<Vec<usize>> = cycles.collect();
+        holes.sort();
+        Polygon { outer, holes }
+    }
+
+    /// The vertices of a loop, turned over if `up` is false, without those that cutting left inside
+    /// straight edges, from the lowest one.
+    fn cycle(&self, halves: &[Half], up: bool) -> Vec<usize> {
+        let mut all: Vec<usize> = halves.iter().map(|&h| self.wire.tail(h)).collect();
+        let n = all.len();
+        let straight = |k: usize| {
+            let at = |k: usize| self.wire.vertices[all[k % n]];
+            let (a, b) = (at(k) - at(k + n - 1), at(k + 1) - at(k));
+            a.cross(b).norm() <= self.wire.tolerance * a.norm().max(b.norm()) && a.dot(b) > 0.0
+        };
+        let keep: Vec<usize> =
+            (0..n).filter(|&k| all[k] < self.drawn || !straight(k)).map(|k| all[k]).collect();
+        all = keep;
+        if !up {
+            all.reverse();
+        }
+        let lowest = (0..all.len()).min_by_key(|&k| all[k]).unwrap_or(0);
+        all.rotate_left(lowest);
+        all
+    }
+}
