@@ -58,7 +58,7 @@ pub struct Waterplane<T> {
     pub transverse_moment: T,
     /// Second moment about the transverse axis through the centre: the integral of (x - xc)^2.
     pub longitudinal_moment: T,
-    /// The aft and forward ends of the waterline, its lowest and highest x.
+    /// The ends of the waterline, its lowest and highest x.
     pub ends: [T; 2],
     /// Extent in x.
     pub length: T,
@@ -159,8 +159,8 @@ impl<T: Real> Hydrostatics<T> {
                 ("tcf", w.centre.y),
                 ("waterplane_it", w.transverse_moment),
                 ("waterplane_il", w.longitudinal_moment),
-                ("waterline_aft", w.ends[0]),
-                ("waterline_fore", w.ends[1]),
+                ("waterline_low_x", w.ends[0]),
+                ("waterline_high_x", w.ends[1]),
                 ("waterline_length", w.length),
                 ("waterline_beam", w.beam),
                 ("midship_area", w.midship_area),

@@ -1,4 +1,4 @@
-use crate::{Basis, KnotError, KnotVector};
+use crate::{Basis, KnotError, KnotVector, PiecewiseCubic};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use std::fmt;
 
@@ -149,6 +149,33 @@ impl<T: Real> BSplineCurve<T> {
         self.weights.as_deref()
     }
 
+    /// The same curve as polynomials between its knots, which are quicker to evaluate; `None` for
+    /// degrees above 3, weights or multiple interior knots.
+    pub fn power_form(&self) -> Option<PiecewiseCubic<T>> {
+        let knots = &self.knots.as_slice()[self.degree()..=self.knots.points()];
+        let simple = knots.is_sorted_by(|a, b| a < b);
+        if self.degree() > 3 || self.weights.is_some() || !simple {
+            return None;
+        }
+        let jets: Vec<CurveJet<T>> =
+            knots.iter().map(|&t| self.jet(T::from(t), Order::Second)).collect();
+        let coefficients = knots.windows(2).zip(jets.windows(2)).map(|(knots, jets)| {
+            let [a, b, second] = jets[0];
+            // The second derivative is continuous, and linear between simple knots of a cubic.
+            let d = if self.degree() == 3 {
+                let shrink = T::from(6.0 * (knots[1] - knots[0]));
+                (jets[1][2] - second) / shrink
+            } else {
+                Vec3::zero()
+            };
+            let half = T::from(0.5);
+            [a, b, if self.degree() == 1 { Vec3::zero() } else { second * half }, d]
+        });
+        let end = jets[jets.len() - 1][0];
+        let knots: Vec<T> = knots.iter().map(|&t| T::from(t)).collect();
+        Some(PiecewiseCubic::closed_off(&knots, coefficients.collect(), end))
+    }
+
     /// The jet from basis functions; `times` multiplies a coordinate with a basis function, which
     /// is a plain number wherever the parameter is.
     #[inline(always)]
@@ -199,5 +226,39 @@ impl<T: Real> Curve<T> for BSplineCurve<T> {
 
     fn breaks(&self) -> Vec<f64> {
         self.knots.breaks()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldloft_num::Dual;
+
+    #[test]
+    fn the_power_form_is_the_same_curve() {
+        for degree in 1..=3 {
+            for n in degree + 1..degree + 8 {
+                let point = |k: usize| {
+                    let x = Dual::<2>::seeded((k * k) as f64 * 0.3 - k as f64, k % 2);
+                    Vec3::new(x, x * 0.5 + 1.0, Dual::from((k as f64).sin()))
+                };
+                let curve = BSplineCurve::uniform(degree, (0..n).map(point).collect()).unwrap();
+                let power = curve.power_form().expect("low degree, simple knots");
+                for step in -1..=41 {
+                    let t = Dual::from(step as f64 / 40.0);
+                    let (a, b) = (curve.jet(t, Order::Second), power.jet(t, Order::Second));
+                    for (order, (a, b)) in a.into_iter().zip(b).enumerate() {
+                        let scale = (n as f64).powi(2 + order as i32);
+                        assert!((a - b).re().norm() < 1e-14 * scale, "{degree} {n} {step}");
+                        for k in 0..2 {
+                            let gap = (a - b).map(|x| x.eps[k]).norm();
+                            assert!(gap < 1e-14 * scale, "{degree} {n} {step}");
+                        }
+                    }
+                }
+            }
+        }
+        let quartic = BSplineCurve::<f64>::uniform(4, vec![Vec3::zero(); 9]).unwrap();
+        assert!(quartic.power_form().is_none());
     }
 }

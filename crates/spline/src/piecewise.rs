@@ -154,7 +154,20 @@ impl<T: Real> Curve<T> for PiecewiseCubic<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let k = self.piece(t.re());
         let (s, [a, b, c, d]) = (t - self.knots[k], self.coefficients[k]);
-        let mut jet = [((d * s + c) * s + b) * s + a, Vec3::zero(), Vec3::zero()];
+        let mut jet = [Vec3::zero(); 3];
+        if s.is_constant() {
+            // The same operations, without the products of derivatives that are zero.
+            let s = s.re();
+            jet[0] = step(step(step(d, s, c), s, b), s, a);
+            if order >= Order::First {
+                jet[1] = step(step(d, s * 3.0, c.map(|x| x * 2.0)), s, b);
+            }
+            if order == Order::Second {
+                jet[2] = step(d, s * 6.0, c.map(|x| x * 2.0));
+            }
+            return jet;
+        }
+        jet[0] = ((d * s + c) * s + b) * s + a;
         if order >= Order::First {
             jet[1] = (d * (s * 3.0) + c.map(|x| x * 2.0)) * s + b;
         }

@@ -32,7 +32,10 @@ impl<T: Real> Build<T> for BCurve<T> {
         let degree = degree.min(points.len() - 1);
         let curve = BSplineCurve::uniform(degree, points.iter().map(|p| p.xyz).collect())
             .map_err(|error| faults::of_spline(error, 0, 1))?;
-        Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
+        Ok(Value::Curve(match curve.power_form() {
+            Some(curve) => CurveRef::new(Ended { curve, ends }, 0),
+            None => CurveRef::new(Ended { curve, ends }, 0),
+        }))
     }
 }
 

@@ -9,6 +9,12 @@ pub const LANES: usize = 64;
 /// One plain number at each of the parameters.
 pub type Plane = [f64; LANES];
 
+/// Runs loops with the widest registers that the processor has. Each number is computed as it is
+/// with narrow ones, in the same order, without fused operations: the bits are the same.
+pub fn widest<R>(loops: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(loops)
+}
+
 /// What a chunk holds.
 #[derive(Clone, Copy)]
 pub enum Part {
@@ -46,11 +52,13 @@ impl<T: Real> Chunk<T> {
     }
 
     /// Writes the positions.
+    #[inline(always)]
     pub fn write_points(&self, out: &mut [Vec3<T>]) {
         write(&self.planes[..3 * T::PARTS], out);
     }
 
     /// Writes the unit normals along S_u x S_v, zero where that vanishes.
+    #[inline(always)]
     pub fn write_normals(&mut self, out: &mut [Vec3<T>]) {
         if !T::FIRST_ORDER {
             return self.write_normals_by_numbers(out);
@@ -100,6 +108,7 @@ impl<T: Real> Chunk<T> {
     }
 }
 
+#[inline(always)]
 fn write<T: Real>(planes: &[Plane], out: &mut [Vec3<T>]) {
     let (x, rest) = planes.split_at(T::PARTS);
     let (y, z) = rest.split_at(T::PARTS);

@@ -1,4 +1,4 @@
-use super::chunk::{Chunk, LANES, Part, Plane};
+use super::chunk::{Chunk, LANES, Part, Plane, widest};
 use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
 use crate::faults;
@@ -106,6 +106,38 @@ impl<T: Real> Loft<T> {
             None => [nowhere(); 3],
         }
     }
+
+    #[inline(always)]
+    fn columns(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        mut normals: Option<&mut [Vec3<T>]>,
+    ) {
+        let mut chunk = Chunk::new();
+        for (i, &u) in us.iter().enumerate() {
+            let row = i * vs.len()..(i + 1) * vs.len();
+            let points = &mut points[row.clone()];
+            let Some(normals) = normals.as_deref_mut() else {
+                match self.column(&self.masters.at(T::from(u))) {
+                    Some(spline) => fill(spline.pieces(), vs, &mut chunk, points),
+                    None => points.fill(nowhere()),
+                }
+                continue;
+            };
+            let normals = &mut normals[row];
+            match self.column(&self.masters.with_slopes(u)) {
+                Some(spline) => {
+                    fill_with_normals(spline.pieces(), vs, &mut chunk, points, normals);
+                }
+                None => {
+                    points.fill(nowhere());
+                    normals.fill(Vec3::zero());
+                }
+            }
+        }
+    }
 }
 
 fn nowhere<S: Real>() -> Vec3<S> {
@@ -135,30 +167,12 @@ impl<T: Real> Surface<T> for Loft<T> {
         us: &[f64],
         vs: &[f64],
         points: &mut [Vec3<T>],
-        mut normals: Option<&mut [Vec3<T>]>,
+        normals: Option<&mut [Vec3<T>]>,
     ) {
-        let mut chunk = Chunk::new();
-        for (i, &u) in us.iter().enumerate() {
-            let row = i * vs.len()..(i + 1) * vs.len();
-            let points = &mut points[row.clone()];
-            let Some(normals) = normals.as_deref_mut() else {
-                match self.column(&self.masters.at(T::from(u))) {
-                    Some(spline) => fill(spline.pieces(), vs, &mut chunk, points),
-                    None => points.fill(nowhere()),
-                }
-                continue;
-            };
-            let normals = &mut normals[row];
-            match self.column(&self.masters.with_slopes(u)) {
-                Some(spline) => {
-                    fill_with_normals(spline.pieces(), vs, &mut chunk, points, normals);
-                }
-                None => {
-                    points.fill(nowhere());
-                    normals.fill(Vec3::zero());
-                }
-            }
-        }
+        widest(
+            #[inline(always)]
+            || self.columns(us, vs, points, normals),
+        );
     }
 
     /// The knots across the masters move with u, so no line v = const is one at which only
@@ -216,6 +230,7 @@ fn stretches<'a, S: Real>(
     })
 }
 
+#[inline(always)]
 fn steps(vs: &[f64], base: f64) -> Plane {
     let mut s = [0.0; LANES];
     for (s, &v) in s.iter_mut().zip(vs) {
@@ -227,11 +242,16 @@ fn steps(vs: &[f64], base: f64) -> Plane {
 /// The cubic of coefficients `[a, b, c, d]` at the first `n` of the numbers `s`.
 #[inline(always)]
 fn horner([a, b, c, d]: [f64; 4], s: &Plane, n: usize, out: &mut Plane) {
-    for (o, &s) in out.iter_mut().zip(s).take(n) {
-        *o = ((d * s + c) * s + b) * s + a;
+    let out = out.iter_mut().zip(s).take(n);
+    // Parabolas are frequent: lofts through three masters.
+    if d == 0.0 {
+        out.for_each(|(o, &s)| *o = (c * s + b) * s + a);
+    } else {
+        out.for_each(|(o, &s)| *o = ((d * s + c) * s + b) * s + a);
     }
 }
 
+#[inline(always)]
 fn fill<T: Real>(
     spline: &PiecewiseCubic<T>,
     vs: &[f64],
@@ -251,6 +271,7 @@ fn fill<T: Real>(
     }
 }
 
+#[inline(always)]
 fn fill_with_normals<T: Real>(
     spline: &PiecewiseCubic<Uni1<T>>,
     vs: &[f64],
