@@ -1,10 +1,12 @@
 //! Fairing of curves, surfaces and networks within a certified tolerance.
 
 mod band;
+mod breaks;
 mod certificate;
 mod cone;
 mod deviation;
 mod error;
+mod fit;
 mod heap;
 mod job;
 mod jump;
@@ -19,9 +21,11 @@ mod space;
 #[cfg(test)]
 mod testing;
 
+pub use breaks::{Finding, findings, with_findings};
 pub use certificate::{Certificate, ball_gap};
 pub use deviation::{Deviation, certified, deviation};
 pub use error::FairError;
+pub use fit::{Fit, Spacing, fit, interpolate, least_squares, parameters};
 pub use job::{End, Job};
 pub use jump::Jumps;
 pub use limit::{Limit, Motion};

@@ -38,7 +38,7 @@ impl Condition {
 
     /// A derivative (order 0 to 2) of the polynomial curve at `t` takes a value: three conditions.
     pub fn derivative(space: &Space, t: f64, order: Order, value: Vec3<f64>) -> Vec<Self> {
-        let k = space.span_of(t);
+        let (k, t) = space.locate(t);
         let basis = space.basis(k, t);
         let row = &basis.rows[order as usize];
         let entry = |axis: Vec3<f64>| -> Vec<_> {
@@ -54,7 +54,7 @@ impl Condition {
 
     /// The curve's tangent at `t` is parallel to a direction: two conditions.
     pub fn tangent(space: &Space, t: f64, direction: Vec3<f64>) -> Vec<Self> {
-        let k = space.span_of(t);
+        let (k, t) = space.locate(t);
         let basis = space.basis(k, t);
         let (a, b) = across(direction);
         let entry = |axis: Vec3<f64>| -> Vec<_> {

@@ -93,6 +93,17 @@ pub fn sample_in(
     Sample { t, point, derivatives: [d1, d2, d3] }
 }
 
+/// The curve at `t`.
+pub fn sample_at(
+    space: &Space,
+    points: &[Vec3<f64>],
+    weights: Option<&[f64]>,
+    t: f64,
+) -> Sample {
+    let (k, t) = space.locate(t);
+    sample_in(space, points, weights, k, t)
+}
+
 /// `per_span + 1` samples on each span, both ends included: at a knot the curve is sampled from
 /// either side.
 pub fn samples(

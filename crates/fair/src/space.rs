@@ -143,20 +143,23 @@ impl Space {
         (k - self.degree as isize..=k).map(|s| self.column(s))
     }
 
-    /// The span that holds `t`; the first or last one outside the domain.
-    pub fn span_of(&self, t: f64) -> isize {
+    /// The span that holds `t` (outside the domain the first or last one), and `t` itself, moved
+    /// into the first period of a closed space.
+    pub fn locate(&self, t: f64) -> (isize, f64) {
         let t = match self.period {
-            Some(period) => self.knots[0] + (t - self.knots[0]).rem_euclid(period),
+            Some(period) => {
+                let away = (t - self.knots[0]).rem_euclid(period);
+                self.knots[0] + if away < period { away } else { 0.0 }
+            }
             None => t,
         };
-        let (low, high) =
-            if self.is_closed() { (0, self.count) } else { (self.degree, self.count) };
+        let (low, high) = if self.is_closed() { (0, self.count) } else { (self.degree, self.count) };
         let inner = &self.knots[low + 1..high];
         let mut k = (low + inner.partition_point(|&u| u <= t)) as isize;
         while self.knot(k) == self.knot(k + 1) {
             k -= 1;
         }
-        k
+        (k, t)
     }
 
     /// The simple interior knots: where the derivative of order `degree` may jump and a local

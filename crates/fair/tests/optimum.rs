@@ -204,7 +204,7 @@ fn boxes_stations_and_planes_limit_the_motion() {
 fn conditions_hold_and_contradictions_are_named() {
     let f = f2b();
     let job = job(&f);
-    let at = shape::sample_in(&job.space, &f.points, None, job.space.span_of(28.5), 28.5);
+    let at = shape::sample_at(&job.space, &f.points, None, 28.5);
     let target = at.point + Vec3::of(0.0, 0.5 * f.tolerance, 0.0);
     let mut options = OptimumOptions::of(Measure::Second);
     options.conditions = Condition::point(&job.space, 28.5, target);
@@ -217,7 +217,7 @@ fn conditions_hold_and_contradictions_are_named() {
 
     options.conditions = Condition::point(&job.space, 28.5, target);
     let result = optimum(&job, &options).unwrap();
-    let now = shape::sample_in(&job.space, &result.points, None, job.space.span_of(28.5), 28.5);
+    let now = shape::sample_at(&job.space, &result.points, None, 28.5);
     assert!((now.point - target).norm() < 1e-9 * f.tolerance.max(1.0));
     assert!(result.certificate.relative() < 1e-8);
     assert!(result.certificate.value > best(&job, Measure::Second).certificate.value);

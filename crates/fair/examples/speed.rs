@@ -1,0 +1,61 @@
+//! Times of fairing by size: `cargo run --release -p moldloft-fair --example speed [points]`.
+
+use moldloft_fair::{
+    Bound, Job, LocalOptions, Measure, OptimumOptions, certified, local, optimum, sweeps,
+};
+use moldloft_num::Vec3;
+use std::time::Instant;
+
+fn wavy(n: usize, depth: f64) -> Vec<Vec3<f64>> {
+    let mut seed = 1u64;
+    let mut unit = || {
+        seed = (1_103_515_245 * seed + 12_345) % (1 << 31);
+        seed as f64 / (1u64 << 31) as f64 - 0.5
+    };
+    (0..n)
+        .map(|i| {
+            let x = i as f64 * 0.02;
+            Vec3::of(
+                x,
+                0.1 * (0.5 * x).sin() + 1e-4 * unit(),
+                depth * ((0.3 * x).cos() + 1e-4 * unit()),
+            )
+        })
+        .collect()
+}
+
+fn main() {
+    let sizes: Vec<usize> = match std::env::args().nth(1).and_then(|a| a.parse().ok()) {
+        Some(n) => vec![n],
+        None => vec![1_000, 10_000, 100_000],
+    };
+    for n in sizes {
+        for (name, depth) in [("plane", 0.0), ("space", 0.1)] {
+            let job = Job::of_points(3, wavy(n, depth), false, 1e-4).expect("the data is good");
+            let start = Instant::now();
+            let faired = local(&job, &LocalOptions::faithful(n)).expect("the job is good");
+            println!("{n} {name}: faithful, {} steps {:?}", faired.steps, start.elapsed());
+            let start = Instant::now();
+            sweeps(&job, Measure::Second, 10).expect("the job is good");
+            println!("{n} {name}: ten sweeps {:?}", start.elapsed());
+            let start = Instant::now();
+            let moved: Vec<_> =
+                faired.points.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
+            println!("{n} {name}: certified {:.3e} {:?}", certified(&job, &moved), start.elapsed());
+            for bound in [Bound::ControlPoints, Bound::Bezier] {
+                for measure in [Measure::Second, Measure::Jumps, Measure::JumpLengths] {
+                    let start = Instant::now();
+                    let options = OptimumOptions { bound, ..OptimumOptions::of(measure) };
+                    let best = optimum(&job, &options).expect("the job is good");
+                    println!(
+                        "{n} {name}: optimum of {} under {bound:?}, gap {:.1e} in {} iterations {:?}",
+                        measure.name(),
+                        best.certificate.relative(),
+                        best.iterations,
+                        start.elapsed()
+                    );
+                }
+            }
+        }
+    }
+}
