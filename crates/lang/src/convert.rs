@@ -117,6 +117,17 @@ fn planes(symmetry: &str) -> String {
     symmetry.chars().map(String::from).collect::<Vec<_>>().join(" ")
 }
 
+/// True when a layer is among the attributes, outside the parentheses of the others.
+fn tells_layer(attributes: &str) -> bool {
+    let depth = |text: &str| text.matches('(').count() as i64 - text.matches(')').count() as i64;
+    attributes.match_indices("A:Layer(").any(|(at, _)| depth(&attributes[..at]) == 0)
+}
+
+/// The planes of a header line.
+fn letters(rest: &str) -> String {
+    rest.chars().filter(|c| matches!(c, 'x' | 'y' | 'z')).collect()
+}
+
 fn is_legacy(version: &str) -> bool {
     version.parse::<f64>().is_ok_and(|v| v < 1.0)
 }
@@ -131,15 +142,17 @@ impl ToProgram<'_> {
     fn text(&self) -> String {
         let model = self.source.model();
         let mut out = self.header();
-        // What stands before each object, and after the last.
-        let mut before: Vec<String> = Vec::with_capacity(self.source.lines().len());
-        let mut pending = String::new();
+        // What stands before each object, and after the last: each piece with its place.
+        let mut before: Vec<Vec<(u32, String)>> = Vec::with_capacity(self.source.lines().len());
+        let mut pending = Vec::new();
         for item in &model.items {
             if item.after_gap {
-                pending.push('\n');
+                pending.push((0, "\n".to_string()));
             }
             match item.kind {
-                ItemKind::Comment => pending += &comment(model.slice(item.span)),
+                ItemKind::Comment => {
+                    pending.push((item.span.start, comment(model.slice(item.span))));
+                }
                 ItemKind::Object(_) => before.push(std::mem::take(&mut pending)),
                 // Reported as an error, which stands in the way of converting.
                 ItemKind::Unknown => {}
@@ -149,10 +162,13 @@ impl ToProgram<'_> {
         let lines = self.source.lines();
         let sorted: Vec<Sorted> = lines.iter().map(|l| self.source.sorted(registry, l)).collect();
         for at in self.source.order(&sorted).0 {
-            out += &before[at];
-            self.object(&lines[at], at, &sorted[at], &mut out);
+            let object = self.object(&lines[at], at, &sorted[at]);
+            // A comment inside an object comes before it, unless the object has it in its text.
+            let inside = |start: u32| object.is_none() && start > lines[at].span.start;
+            out.extend(before[at].iter().filter(|(start, _)| !inside(*start)).map(|(_, t)| &**t));
+            out += &object.unwrap_or_else(|| self.verbatim(&lines[at]));
         }
-        out += &pending;
+        out.extend(pending.iter().map(|(_, text)| &**text));
         if let Some(trailer) = model.trailer {
             for line in model.slice(trailer).lines() {
                 let _ = writeln!(out, "#ms2-trailer {line}");
@@ -211,18 +227,20 @@ impl ToProgram<'_> {
         format!("{} {name}({});\n", header::KIND, named.join(", "))
     }
 
-    fn object(&self, line: &Line, at: usize, sorted: &Sorted, out: &mut String) {
+    /// The text of an object, in lines that are comments.
+    fn verbatim(&self, line: &Line) -> String {
+        let text = self.source.model().slice_with_edits(line.span);
+        text.lines().map(|line| format!("{VERBATIM}{}\n", line.trim_end())).collect()
+    }
+
+    /// The statement of an object that was built.
+    fn object(&self, line: &Line, at: usize, sorted: &Sorted) -> Option<String> {
         let model = self.source.model();
         let name = model.slice(line.name);
         let graph = self.document.graph();
-        let object = graph.find(name).and_then(|key| graph.get(key));
-        let (Some(object), Some(row)) = (object.filter(|o| o.origin == at as u32), &sorted.row)
-        else {
-            for line in model.slice_with_edits(line.span).lines() {
-                let _ = writeln!(out, "{VERBATIM}{}", line.trim_end());
-            }
-            return;
-        };
+        let object = graph.get(graph.find(name)?).filter(|o| o.origin == at as u32)?;
+        let row = sorted.row.as_ref()?;
+        let mut out = String::new();
         if let Some(relabel) = &sorted.relabel {
             let _ = writeln!(out, "{RELABEL}{}", model.slice(relabel.span));
         }
@@ -238,6 +256,7 @@ impl ToProgram<'_> {
         }
         args.extend(head_arguments(&object.head, row.class));
         let _ = writeln!(out, "{} {}({});", row.name, identifier(name), args.join(", "));
+        Some(out)
     }
 
     fn value(&self, field: &Field, written: &Written) -> String {
@@ -378,7 +397,9 @@ impl<'a> ToModelFile<'a> {
             // The arguments stand, should they have been changed.
             if line.starts_with("Units:") && !units.is_empty() {
                 let _ = writeln!(out, "Units: {units}");
-            } else if line.starts_with("Symmetry:") && first.is_none() {
+            } else if line.strip_prefix("Symmetry:").is_some_and(|rest| letters(rest) != symmetry)
+                && first.is_none()
+            {
                 let _ = writeln!(out, "Symmetry: {}", planes(&symmetry));
             } else {
                 let _ = writeln!(out, "{line}");
@@ -493,7 +514,7 @@ impl<'a> ToModelFile<'a> {
         };
         let attributes = head.attributes.as_deref().unwrap_or("");
         let layer = format!("A:Layer({})", head.layer);
-        if is_layer(&layer) && !attributes.contains("A:Layer(") {
+        if is_layer(&layer) && !tells_layer(attributes) {
             let _ = write!(out, " {layer}");
         }
         if !attributes.is_empty() {

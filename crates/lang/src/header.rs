@@ -2,8 +2,8 @@
 
 use moldloft_model::Graph;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Row, Scalar, Value};
 use moldloft_registry::export::StaticRow;
+use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Row, Scalar, Value};
 use std::marker::PhantomData;
 use std::sync::Arc;
 

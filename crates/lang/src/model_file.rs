@@ -597,18 +597,20 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 Err(Trouble::Blocked { root, span }) => blocked = blocked.or(Some((root, span))),
             }
         }
-        for (at, field) in row.fields.iter().enumerate() {
-            let there = sorted.slots.iter().any(|(slot, _)| *slot == at);
-            if !there && field.default.is_none() && errors.is_empty() {
-                let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
-                let message = format!("{} needs `{}`", row.name, field.name);
-                errors.push(
-                    Diagnostic::error("missing-field", message)
-                        .at(end)
-                        .expected(format!("data in the order {}", row.columns.unwrap_or("")))
-                        .found(format!("{} fields of data", sorted.slots.len())),
-                );
-            }
+        // Columns have their places: one left out would give the next its meaning.
+        let columns = row.columns.unwrap_or("").split_ascii_whitespace();
+        let mut fields = columns.filter_map(|column| row.field(column));
+        if let Some(missing) = fields.nth(sorted.slots.len())
+            && errors.is_empty()
+        {
+            let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
+            let message = format!("{} needs `{}`", row.name, row.fields[missing].name);
+            errors.push(
+                Diagnostic::error("missing-field", message)
+                    .at(end)
+                    .expected(format!("data in the order {}", row.columns.unwrap_or("")))
+                    .found(format!("{} fields of data", sorted.slots.len())),
+            );
         }
         if let Some(extra) = &sorted.extra {
             errors.push(

@@ -412,7 +412,8 @@ fn damaged_files() {
                 1 => other.to_string(),
                 2 => format!("{word} {other}"),
                 3 => word.chars().take(word.len() / 2).collect(),
-                _ => [";", "*", "{", "}", "nan", "-1", "1e300", "#", "\"", "=x", "/"][random(11)].into(),
+                _ => [";", "*", "{", "}", "nan", "-1", "1e300", "#", "\"", "=x", "/"][random(11)]
+                    .into(),
             };
             let range = at..at + word.len();
             text.replace_range(range, &new);
@@ -422,11 +423,16 @@ fn damaged_files() {
         converted += 1;
         let again = open_sdl(&program);
         let told = again.diagnostics();
-        let built = |d: &moldloft_diag::Diagnostic| d.object.as_deref().is_some_and(|o| again.graph().find(o).is_some());
+        let built = |d: &moldloft_diag::Diagnostic| {
+            d.object.as_deref().is_some_and(|o| again.graph().find(o).is_some())
+        };
         let ours: Vec<_> = told.iter().filter(|d| d.is_error() && !built(d)).collect();
         assert!(ours.is_empty(), "{text}\n{program}\n{ours:#?}");
         let back = again.convert(Format::ModelFile).unwrap();
-        assert_eq!(open(&back).convert(Format::Sdl).unwrap(), program, "{text}\n{back}");
+        let reread = open(&back);
+        assert_eq!(objects(&reread), objects(&document), "{text}\n{back}");
+        let second = open_sdl(&reread.convert(Format::Sdl).unwrap());
+        assert_eq!(second.convert(Format::ModelFile).unwrap(), back);
     }
     assert!(converted > rounds / 8, "{converted} of {rounds}");
 }
