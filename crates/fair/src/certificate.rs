@@ -1,6 +1,6 @@
 //! Bounds on what is left to gain, computed from the result alone.
 
-use crate::{Job, Motion, Norm, Rows};
+use crate::{Job, Limit, Motion, Norm, Rows};
 use moldloft_num::Vec3;
 
 /// How near a result is to the best within its limits.
@@ -27,23 +27,34 @@ impl Certificate {
 /// the slope there is not zero.
 pub fn ball_gap(job: &Job, rows: &Rows, norm: Norm, points: &[Vec3<f64>]) -> Certificate {
     let relative = job.relative(points);
+    gap(&job.points, &job.limit, &job.frozen(), rows, norm, points, &relative)
+}
+
+/// The same for anything that is made of rows.
+pub(crate) fn gap(
+    original: &[Vec3<f64>],
+    limit: &Limit,
+    frozen: &[bool],
+    rows: &Rows,
+    norm: Norm,
+    points: &[Vec3<f64>],
+    relative: &[Vec3<f64>],
+) -> Certificate {
     let n = points.len();
     let mut slope = vec![Vec3::zero(); n];
     let part = |k: usize| {
-        let row = rows.apply(k, &relative);
+        let row = rows.apply(k, relative);
         match norm {
             Norm::Square => row * 2.0,
             Norm::Length => row.normalized().unwrap_or_default(),
         }
     };
     rows.add_transposed(part, &mut slope);
-    let frozen = job.frozen();
-    let limit = &job.limit;
     let gap = crate::rows::chunked_sum(n, |i| {
         if frozen[i] {
             return 0.0;
         }
-        let (g, away, r) = (slope[i], points[i] - job.points[i], limit.radii[i]);
+        let (g, away, r) = (slope[i], points[i] - original[i], limit.radii[i]);
         let reach = match limit.motion {
             Motion::Ball => g.norm(),
             Motion::Box => g.x.abs() + g.y.abs() + g.z.abs(),
@@ -52,5 +63,5 @@ pub fn ball_gap(job: &Job, rows: &Rows, norm: Norm, points: &[Vec3<f64>]) -> Cer
         };
         if reach == 0.0 { 0.0 } else { g.dot(away) + r * reach }
     });
-    Certificate { value: crate::measure::value(rows, norm, &relative), gap: gap.max(0.0) }
+    Certificate { value: crate::measure::value(rows, norm, relative), gap: gap.max(0.0) }
 }

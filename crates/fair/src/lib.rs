@@ -13,6 +13,7 @@ mod jump;
 mod limit;
 mod local;
 mod measure;
+pub mod network;
 mod optimum;
 mod rows;
 pub mod shape;
@@ -29,8 +30,11 @@ pub use fit::{Fit, Spacing, fit, interpolate, least_squares, parameters};
 pub use job::{End, Job};
 pub use jump::Jumps;
 pub use limit::{Limit, Motion};
-pub use local::{Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, replay, sweeps};
+pub use local::{
+    Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, local_from, replay, sweeps,
+};
 pub use measure::{Measure, Norm, value};
+pub use network::{Network, Strand};
 pub use optimum::{Bound, Condition, Optimum, OptimumOptions, optimum};
 pub use rows::Rows;
 pub use space::Space;

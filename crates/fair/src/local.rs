@@ -225,7 +225,24 @@ impl Steps {
 /// # Errors
 /// [`FairError`] when the measure does not exist for the degree.
 pub fn local(job: &Job, options: &LocalOptions) -> Result<Local, FairError> {
+    local_from(job, job.points.clone(), options)
+}
+
+/// Makes local steps from points that are not the original any more: limits are measured from the
+/// original of the job, across all passes.
+///
+/// # Errors
+/// As [`local`].
+pub fn local_from(
+    job: &Job,
+    from: Vec<Vec3<f64>>,
+    options: &LocalOptions,
+) -> Result<Local, FairError> {
     job.check()?;
+    if from.len() != job.points.len() {
+        let (expected, actual) = (job.points.len(), from.len());
+        return Err(FairError::Count { what: "control points", expected, actual });
+    }
     let n = job.points.len();
     let rows = job.measure_rows(options.measure)?;
     let steps = Steps::of(job, options.step, &rows);
@@ -237,7 +254,7 @@ pub fn local(job: &Job, options: &LocalOptions) -> Result<Local, FairError> {
         _ => None,
     };
     let origin = job.origin();
-    let mut points = job.points.clone();
+    let mut points = from;
     let place = |j: usize, points: &[Vec3<f64>]| {
         let (wanted, form) = steps.wanted(j, points, origin);
         (job.limit.nearest(j, job.points[j], points[j], wanted), form)
@@ -268,8 +285,8 @@ pub fn local(job: &Job, options: &LocalOptions) -> Result<Local, FairError> {
     let radius = job.limit.radii.iter().copied().filter(|r| r.is_finite()).fold(0.0, f64::max);
     let least = (stops.least_move * radius).max(4.0 * f64::EPSILON * size);
     let watch = stops.gap > 0.0 || stops.pieces;
-    let value = || rows.sum_sq(&job.points);
-    let mut total = if stops.least_drop > 0.0 { value() } else { 0.0 };
+    let relative = |p: &[Vec3<f64>]| job.relative(p);
+    let mut total = if stops.least_drop > 0.0 { rows.sum_sq(&relative(&points)) } else { 0.0 };
     let mut pieces = if stops.pieces { shape::pieces(&job.space, &points) } else { 0 };
     let mut log = Vec::new();
     let mut done = 0;

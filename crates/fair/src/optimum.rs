@@ -2,7 +2,7 @@
 
 use crate::job::End;
 use crate::solver::{self, Bounds, Problem, V};
-use crate::{Certificate, FairError, Job, Measure, Motion, Norm, Rows, Space};
+use crate::{Certificate, FairError, Job, Limit, Measure, Motion, Norm, Rows, Space};
 use moldloft_num::{Order, Vec3};
 
 /// What the tolerance is a bound on.
@@ -258,35 +258,137 @@ impl Frame {
 /// ```
 pub fn optimum(job: &Job, options: &OptimumOptions) -> Result<Optimum, FairError> {
     job.check()?;
-    let measure = job.measure_rows(options.measure)?;
     let (frozen, mut conditions) = kept(job);
     let own = conditions.len();
     conditions.extend(options.conditions.iter().cloned());
-    let problem = assemble(job, options, measure, frozen, &conditions)?;
-    let solution = solver::solve(&problem.1, options.accuracy, floor(job, &problem.1.measure))?;
-    let missed: Vec<usize> = (0..conditions.len()).filter(|&k| solution.misses[k] > 1e-7).collect();
-    if !missed.is_empty() {
-        let miss = |k: usize| {
-            let moved: Vec<_> = moved(job, &problem.0, &solution.x);
-            (conditions[k].at(&moved) - conditions[k].value).abs()
-        };
-        let miss = missed.iter().map(|&k| miss(k)).fold(0.0, f64::max);
-        let conditions = missed.into_iter().map(|k| k.saturating_sub(own)).collect();
-        return Err(FairError::Contradiction { conditions, miss });
-    }
-    let points = moved(job, &problem.0, &solution.x);
-    // Squares are solved as halves.
-    let unit = if options.measure.norm() == Norm::Square { 2.0 } else { 1.0 };
-    let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
-    let active = active(&problem.1, &solution);
-    Ok(Optimum { points, certificate, iterations: solution.iterations, active })
+    let weights = job.weights.as_deref();
+    let parts = Parts {
+        points: &job.points,
+        relative: job.relative(&job.points),
+        limit: &job.limit,
+        measure: job.measure_rows(options.measure)?,
+        norm: options.measure.norm(),
+        frozen,
+        conditions,
+        own,
+        bezier: match options.bound {
+            Bound::ControlPoints => None,
+            Bound::Bezier => Some((job.space.bezier(weights), job.space.reach(weights))),
+        },
+        accuracy: options.accuracy,
+    };
+    parts.solve()
 }
 
-/// Gaps below the rounding of the measure are no gaps.
-fn floor(job: &Job, rows: &Rows) -> f64 {
-    let size = job.relative(&job.points).iter().map(|p| p.norm()).fold(0.0, f64::max);
-    let noise = 4.0 * f64::EPSILON * size;
-    noise * noise * rows.len() as f64
+/// What curves, nets and networks have in common.
+pub(crate) struct Parts<'a> {
+    pub points: &'a [Vec3<f64>],
+    /// The points as the measure sees them.
+    pub relative: Vec<Vec3<f64>>,
+    pub limit: &'a Limit,
+    pub measure: Rows,
+    pub norm: Norm,
+    pub frozen: Vec<bool>,
+    pub conditions: Vec<Condition>,
+    /// How many of the conditions are not the caller's.
+    pub own: usize,
+    /// Bézier points of the displacement, and how far control points can move under them.
+    pub bezier: Option<(Rows, Vec<f64>)>,
+    pub accuracy: f64,
+}
+
+impl Parts<'_> {
+    /// The optimum.
+    pub fn solve(self) -> Result<Optimum, FairError> {
+        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let problem = self.problem(&frame);
+        // Gaps below the rounding of the measure are no gaps.
+        let size = self.relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let noise = 4.0 * f64::EPSILON * size;
+        let floor = noise * noise * problem.measure.len() as f64;
+        let solution = solver::solve(&problem, self.accuracy, floor)?;
+        let points = self.moved(&frame, &solution.x);
+        let count = self.conditions.len();
+        let missed: Vec<usize> = (0..count).filter(|&k| solution.misses[k] > 1e-7).collect();
+        if !missed.is_empty() {
+            let off = |k: &usize| {
+                let condition = &self.conditions[*k];
+                (condition.at(&points) - condition.value).abs()
+            };
+            let miss = missed.iter().map(off).fold(0.0, f64::max);
+            let conditions = missed.into_iter().map(|k| k.saturating_sub(self.own)).collect();
+            return Err(FairError::Contradiction { conditions, miss });
+        }
+        // Squares are solved as halves.
+        let unit = if self.norm == Norm::Square { 2.0 } else { 1.0 };
+        let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
+        let active = active(&problem, &solution);
+        Ok(Optimum { points, certificate, iterations: solution.iterations, active })
+    }
+
+    fn moved(&self, frame: &Frame, x: &[V]) -> Vec<Vec3<f64>> {
+        let zero = |v: &V| v.iter().all(|&c| c == 0.0);
+        let place = |(&p, v): (&Vec3<f64>, &V)| if zero(v) { p } else { p + frame.up(*v) };
+        self.points.iter().zip(x).map(place).collect()
+    }
+
+    /// The problem in the frame of its motion.
+    pub fn problem(&self, frame: &Frame) -> Problem {
+        let (n, radii, frozen) = (self.points.len(), &self.limit.radii, &self.frozen);
+        let rows = &self.measure;
+        let offsets = (0..rows.len()).map(|k| frame.down(rows.apply(k, &self.relative))).collect();
+        let corner = if frame.separate { (frame.axes.len() as f64).sqrt() } else { 1.0 };
+        let mut reach: Vec<f64> = radii.iter().map(|r| r * corner).collect();
+        let mut bounds = Bounds {
+            rows: Rows::new(),
+            direct: self.bezier.is_none(),
+            radii: Vec::new(),
+            separate: frame.separate,
+        };
+        match &self.bezier {
+            None => {
+                for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
+                    bounds.rows.push([(i, 1.0)]);
+                    bounds.radii.push(radii[i]);
+                }
+            }
+            Some((all, most)) => {
+                for k in 0..all.len() {
+                    let (columns, factors) = all.row(k);
+                    let columns = || columns.iter().map(|&c| c as usize);
+                    let near = columns().map(|c| radii[c]).filter(|&r| r > 0.0);
+                    let radius = near.fold(f64::INFINITY, f64::min);
+                    if radius.is_finite() && columns().any(|c| !frozen[c]) {
+                        bounds.rows.push(columns().zip(factors.iter().copied()));
+                        bounds.radii.push(radius);
+                    }
+                }
+                let largest = radii.iter().copied().fold(0.0, f64::max);
+                reach = most.iter().map(|r| r * largest * corner).collect();
+            }
+        }
+        let conditions = self
+            .conditions
+            .iter()
+            .map(|c| {
+                let free = c.entries.iter().filter(|(i, _)| !frozen[*i]);
+                solver::Condition {
+                    entries: free.map(|(i, f)| (*i, frame.down(*f))).collect(),
+                    value: c.value - c.at(self.points),
+                }
+            })
+            .collect();
+        Problem {
+            dimension: frame.axes.len(),
+            measure: self.measure.clone(),
+            norm: self.norm,
+            offsets,
+            bounds,
+            frozen: self.frozen.clone(),
+            conditions,
+            reach,
+        }
+    }
 }
 
 /// The limits that are reached.
@@ -334,79 +436,4 @@ pub(crate) fn kept(job: &Job) -> (Vec<bool>, Vec<Condition>) {
         }
     }
     (freer.frozen(), conditions)
-}
-
-fn moved(job: &Job, frame: &Frame, x: &[V]) -> Vec<Vec3<f64>> {
-    let zero = |v: &V| v.iter().all(|&c| c == 0.0);
-    let place = |(&p, v): (&Vec3<f64>, &V)| if zero(v) { p } else { p + frame.up(*v) };
-    job.points.iter().zip(x).map(place).collect()
-}
-
-/// The problem in the frame of its motion.
-fn assemble(
-    job: &Job,
-    options: &OptimumOptions,
-    measure: Rows,
-    frozen: Vec<bool>,
-    conditions: &[Condition],
-) -> Result<(Frame, Problem), FairError> {
-    let frame = Frame::of(job.limit.motion, &job.points, conditions);
-    let relative = job.relative(&job.points);
-    let offsets = (0..measure.len()).map(|k| frame.down(measure.apply(k, &relative))).collect();
-    let n = job.points.len();
-    let radii = &job.limit.radii;
-    let corner = if frame.separate { (frame.axes.len() as f64).sqrt() } else { 1.0 };
-    let mut bounds =
-        Bounds { rows: Rows::new(), direct: true, radii: Vec::new(), separate: frame.separate };
-    let mut reach: Vec<f64> = radii.iter().map(|r| r * corner).collect();
-    match options.bound {
-        Bound::ControlPoints => {
-            for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
-                bounds.rows.push([(i, 1.0)]);
-                bounds.radii.push(radii[i]);
-            }
-        }
-        Bound::Bezier => {
-            bounds.direct = false;
-            let all = job.space.bezier(job.weights.as_deref());
-            for k in 0..all.len() {
-                let (columns, factors) = all.row(k);
-                let near = columns.iter().map(|&c| c as usize).filter(|&c| radii[c] > 0.0);
-                let radius = near.map(|c| radii[c]).fold(f64::INFINITY, f64::min);
-                if radius.is_finite() && columns.iter().any(|&c| !frozen[c as usize]) {
-                    bounds
-                        .rows
-                        .push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
-                    bounds.radii.push(radius);
-                }
-            }
-            let largest = radii.iter().copied().fold(0.0, f64::max);
-            reach = job.space.reach(job.weights.as_deref());
-            reach.iter_mut().for_each(|r| *r *= largest * corner);
-        }
-    }
-    let conditions = conditions
-        .iter()
-        .map(|c| solver::Condition {
-            entries: c
-                .entries
-                .iter()
-                .filter(|(i, _)| !frozen[*i])
-                .map(|(i, f)| (*i, frame.down(*f)))
-                .collect(),
-            value: c.value - c.at(&job.points),
-        })
-        .filter(|_| true)
-        .collect();
-    let problem = Problem {
-        dimension: frame.axes.len(),
-        measure,
-        norm: options.measure.norm(),
-        offsets,
-        bounds,
-        frozen,
-        conditions,
-        reach,
-    };
-    Ok((frame, problem))
 }

@@ -94,12 +94,7 @@ pub fn sample_in(
 }
 
 /// The curve at `t`.
-pub fn sample_at(
-    space: &Space,
-    points: &[Vec3<f64>],
-    weights: Option<&[f64]>,
-    t: f64,
-) -> Sample {
+pub fn sample_at(space: &Space, points: &[Vec3<f64>], weights: Option<&[f64]>, t: f64) -> Sample {
     let (k, t) = space.locate(t);
     sample_in(space, points, weights, k, t)
 }

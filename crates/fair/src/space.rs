@@ -153,7 +153,8 @@ impl Space {
             }
             None => t,
         };
-        let (low, high) = if self.is_closed() { (0, self.count) } else { (self.degree, self.count) };
+        let (low, high) =
+            if self.is_closed() { (0, self.count) } else { (self.degree, self.count) };
         let inner = &self.knots[low + 1..high];
         let mut k = (low + inner.partition_point(|&u| u <= t)) as isize;
         while self.knot(k) == self.knot(k + 1) {

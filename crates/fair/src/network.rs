@@ -1,0 +1,329 @@
+//! Curves that share points: control nets of surfaces, and hulls of stations, waterlines and
+//! buttocks.
+
+use crate::certificate::gap;
+use crate::error::check_finite;
+use crate::optimum::{Optimum, Parts};
+use crate::{
+    Bound, Certificate, Condition, End, FairError, Job, Limit, LocalOptions, Measure, Rows, Space,
+    local_from,
+};
+use moldloft_num::Vec3;
+
+/// One curve of a network.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strand {
+    /// Its spline.
+    pub space: Space,
+    /// Its control points: places in the network's list.
+    pub points: Vec<usize>,
+    /// Weights of a rational curve.
+    pub weights: Option<Vec<f64>>,
+    /// Its own places that are intended breaks.
+    pub marks: Vec<usize>,
+    /// What its ends keep when it is faired by itself.
+    pub ends: [End; 2],
+}
+
+/// Curves over common points. A shared point is one point: it moves for all its curves at once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Network {
+    /// The original points.
+    pub points: Vec<Vec3<f64>>,
+    /// How far they may move, across all passes.
+    pub limit: Limit,
+    /// The curves, in the order of passes.
+    pub strands: Vec<Strand>,
+    /// Points that do not move in the joint optimum.
+    pub kept: Vec<usize>,
+    /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
+    net: Option<[Space; 2]>,
+    weights: Option<Vec<f64>>,
+}
+
+impl Network {
+    /// A network of curves.
+    ///
+    /// # Errors
+    /// [`FairError`] when a curve refers to points that do not exist, or as for [`Job::check`].
+    pub fn new(
+        points: Vec<Vec3<f64>>,
+        strands: Vec<Strand>,
+        limit: Limit,
+    ) -> Result<Self, FairError> {
+        let network = Self { points, limit, strands, kept: Vec::new(), net: None, weights: None };
+        network.check()?;
+        Ok(network)
+    }
+
+    /// The control net of a surface with point (i, j) at `i * v.count() + j`. Passes run over the
+    /// curves of constant v first, as the report of 1991 has it, then over those of constant u.
+    /// Each curve keeps two points at open ends; the joint optimum keeps the four corners, two by
+    /// two points each, of open directions.
+    ///
+    /// # Errors
+    /// As [`Network::new`].
+    pub fn net(
+        spaces: [Space; 2],
+        points: Vec<Vec3<f64>>,
+        weights: Option<Vec<f64>>,
+        limit: Limit,
+    ) -> Result<Self, FairError> {
+        let [nu, nv] = [spaces[0].count(), spaces[1].count()];
+        for (what, actual) in [
+            ("control points", points.len()),
+            ("weights", weights.as_ref().map_or(nu * nv, Vec::len)),
+        ] {
+            if actual != nu * nv {
+                return Err(FairError::Count { what, expected: nu * nv, actual });
+            }
+        }
+        let strand = |space: &Space, own: Vec<usize>| Strand {
+            space: space.clone(),
+            weights: weights.as_ref().map(|w| own.iter().map(|&i| w[i]).collect()),
+            points: own,
+            marks: Vec::new(),
+            ends: [End::Points(2); 2],
+        };
+        let along_u = (0..nv).map(|j| strand(&spaces[0], (0..nu).map(|i| i * nv + j).collect()));
+        let along_v = (0..nu).map(|i| strand(&spaces[1], (0..nv).map(|j| i * nv + j).collect()));
+        let strands = along_u.chain(along_v).collect();
+        let rim = |k: usize, n: usize| k < 2 || k + 2 >= n;
+        let corners = !spaces[0].is_closed() && !spaces[1].is_closed();
+        let kept = (0..nu * nv).filter(|k| corners && rim(k / nv, nu) && rim(k % nv, nv)).collect();
+        let network = Self { points, limit, strands, kept, net: Some(spaces), weights };
+        network.check()?;
+        Ok(network)
+    }
+
+    /// Refuses what cannot be faired.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn check(&self) -> Result<(), FairError> {
+        check_finite(&self.points)?;
+        let count = self.points.len();
+        if self.limit.radii.len() != count {
+            let (expected, actual) = (count, self.limit.radii.len());
+            return Err(FairError::Count { what: "tolerances", expected, actual });
+        }
+        let all = self.strands.iter().flat_map(|s| &s.points).chain(&self.kept);
+        if let Some(&index) = all.into_iter().find(|&&i| i >= count) {
+            return Err(FairError::Mark { index, count });
+        }
+        (0..self.strands.len()).try_for_each(|k| {
+            let strand = &self.strands[k];
+            let (expected, actual) = (strand.space.count(), strand.points.len());
+            if expected != actual {
+                return Err(FairError::Count { what: "points of a curve", expected, actual });
+            }
+            self.job(k, &self.points).check()
+        })
+    }
+
+    /// Curve `k` as a job of its own, at these points.
+    fn job(&self, k: usize, points: &[Vec3<f64>]) -> Job {
+        let strand = &self.strands[k];
+        let pick = |i: &usize| points[*i];
+        Job {
+            space: strand.space.clone(),
+            points: strand.points.iter().map(pick).collect(),
+            weights: strand.weights.clone(),
+            limit: Limit {
+                motion: self.limit.motion,
+                radii: strand.points.iter().map(|&i| self.limit.radii[i]).collect(),
+            },
+            marks: strand.marks.clone(),
+            ends: strand.ends,
+        }
+    }
+
+    /// The value of a measure over some of the curves.
+    ///
+    /// # Errors
+    /// [`FairError::Degree`].
+    pub fn value(
+        &self,
+        measure: Measure,
+        strands: std::ops::Range<usize>,
+        points: &[Vec3<f64>],
+    ) -> Result<f64, FairError> {
+        let mut sum = 0.0;
+        for k in strands {
+            let job = self.job(k, points);
+            sum += job.value(measure, &job.points)?;
+        }
+        Ok(sum)
+    }
+
+    /// Fairs curve after curve by local steps, `passes` times over: the faithful way. The limit is
+    /// kept from the original across passes. The direction faired first gets rougher again, so
+    /// passes do not converge to the joint optimum.
+    ///
+    /// `steps` is the number of steps per control point of each curve.
+    ///
+    /// # Errors
+    /// As [`crate::local`].
+    pub fn passes(&self, passes: usize, steps: usize) -> Result<Vec<Vec3<f64>>, FairError> {
+        self.check()?;
+        let mut points = self.points.clone();
+        for _ in 0..passes {
+            for k in 0..self.strands.len() {
+                let job = self.job(k, &self.points);
+                let from = self.strands[k].points.iter().map(|&i| points[i]).collect();
+                let options = LocalOptions::faithful(steps * job.points.len());
+                let faired = local_from(&job, from, &options)?.points;
+                for (&i, p) in self.strands[k].points.iter().zip(faired) {
+                    points[i] = p;
+                }
+            }
+        }
+        Ok(points)
+    }
+
+    /// The rows of a measure over all curves.
+    fn rows(&self, measure: Measure) -> Result<Rows, FairError> {
+        let mut all = Rows::new();
+        for k in 0..self.strands.len() {
+            let rows = self.job(k, &self.points).measure_rows(measure)?;
+            let own = &self.strands[k].points;
+            for r in 0..rows.len() {
+                let (c, f) = rows.row(r);
+                all.push(c.iter().map(|&c| own[c as usize]).zip(f.iter().copied()));
+            }
+        }
+        Ok(all)
+    }
+
+    /// Which points stand still in the joint optimum.
+    fn frozen(&self) -> Vec<bool> {
+        let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
+        let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
+        for i in self.kept.iter().copied().chain(marked) {
+            frozen[i] = true;
+        }
+        frozen
+    }
+
+    /// The point that rational measures refer to; see [`Job::check`].
+    fn relative(&self) -> Vec<Vec3<f64>> {
+        if self.strands.iter().all(|s| s.weights.is_none()) {
+            return self.points.clone();
+        }
+        let sum = self.points.iter().fold(Vec3::zero(), |s, &p| s + p);
+        let origin = sum * (1.0 / self.points.len() as f64);
+        self.points.iter().map(|&p| p - origin).collect()
+    }
+
+    /// The Bézier points of the net's displacement and how far control points can move under them.
+    fn bezier(&self) -> Option<(Rows, Vec<f64>)> {
+        let [su, sv] = self.net.as_ref()?;
+        let (bu, bv, nv) = (su.bezier(None), sv.bezier(None), sv.count());
+        let mut rows = Rows::new();
+        for a in 0..bu.len() {
+            let (cu, fu) = bu.row(a);
+            for b in 0..bv.len() {
+                let (cv, fv) = bv.row(b);
+                let mut entries = Vec::with_capacity(cu.len() * cv.len());
+                for (&i, &x) in cu.iter().zip(fu) {
+                    for (&j, &y) in cv.iter().zip(fv) {
+                        let at = i as usize * nv + j as usize;
+                        entries.push((at, x * y * self.weights.as_ref().map_or(1.0, |w| w[at])));
+                    }
+                }
+                if self.weights.is_some() {
+                    let total: f64 = entries.iter().map(|e| e.1).sum();
+                    entries.iter_mut().for_each(|e| e.1 /= total);
+                }
+                rows.push(entries);
+            }
+        }
+        // With weights the inverse's norm grows at most by their ratio.
+        let spread = self.weights.as_ref().map_or(1.0, |w| {
+            let (low, high) =
+                w.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &x| (l.min(x), h.max(x)));
+            high / low
+        });
+        let (ru, rv) = (su.reach(None), sv.reach(None));
+        let reach = ru.iter().flat_map(|a| rv.iter().map(move |b| a * b * spread)).collect();
+        Some((rows, reach))
+    }
+
+    /// A certified bound on the displacement of the surface of a net: the largest Bézier point of
+    /// the displacement; for other networks the largest move of a point.
+    pub fn certified(&self, points: &[Vec3<f64>]) -> f64 {
+        let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+        match self.bezier() {
+            Some((rows, _)) => {
+                let largest = (0..rows.len()).map(|k| rows.apply(k, &moved).norm());
+                largest.fold(0.0, f64::max) * (1.0 + 32.0 * f64::EPSILON)
+            }
+            None => moved.iter().map(|m| m.norm()).fold(0.0, f64::max),
+        }
+    }
+
+    /// All curves faired together: the sum of the measure over all of them is the least within the
+    /// limits, with a certificate. `conditions` are over the network's points.
+    ///
+    /// The factor of a net of m by n points takes about m n min(m, n) numbers.
+    ///
+    /// # Errors
+    /// [`FairError::TooLarge`] beyond that ([`Network::sweeps`] is for such nets); others as for
+    /// [`crate::optimum`]. [`Bound::Bezier`] is for nets only.
+    pub fn optimum(
+        &self,
+        measure: Measure,
+        bound: Bound,
+        conditions: Vec<Condition>,
+        accuracy: f64,
+    ) -> Result<Optimum, FairError> {
+        self.check()?;
+        let parts = Parts {
+            points: &self.points,
+            relative: self.relative(),
+            limit: &self.limit,
+            measure: self.rows(measure)?,
+            norm: measure.norm(),
+            frozen: self.frozen(),
+            conditions,
+            own: 0,
+            bezier: if bound == Bound::Bezier { self.bezier() } else { None },
+            accuracy,
+        };
+        parts.solve()
+    }
+
+    /// Joint sweeps over single points, each to its limited minimiser: for nets beyond the direct
+    /// solver. Never worse from sweep to sweep; says how far from the optimum it is.
+    ///
+    /// # Errors
+    /// As [`crate::sweeps`].
+    pub fn sweeps(
+        &self,
+        measure: Measure,
+        count: usize,
+    ) -> Result<(Vec<Vec3<f64>>, Certificate), FairError> {
+        self.check()?;
+        let n = self.points.len();
+        let rows = self.rows(measure)?;
+        let gram = rows.gram(n);
+        let frozen = self.frozen();
+        let mut relative = self.relative();
+        let origin = self.points.first().map_or(Vec3::zero(), |p| *p - relative[0]);
+        let mut points = self.points.clone();
+        for _ in 0..count {
+            for j in (0..n).filter(|&j| !frozen[j]) {
+                let (columns, factors) = gram.row(j);
+                let Some(at) = columns.iter().position(|&c| c as usize == j) else { continue };
+                if factors[at] > 0.0 {
+                    let wanted = points[j] - gram.apply(j, &relative) * (1.0 / factors[at]);
+                    points[j] = self.limit.nearest(j, self.points[j], points[j], wanted);
+                    relative[j] = points[j] - origin;
+                }
+            }
+        }
+        let norm = measure.norm();
+        let certificate = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
+        Ok((points, certificate))
+    }
+}
