@@ -146,7 +146,7 @@ def test_svg_sheets_have_their_scale(hull, tmp_path):
     for path in paths:
         root = ElementTree.parse(path).getroot()
         text = " ".join(root.itertext())
-        assert "1 : " in text, path
+        assert "1 : " in text and " ft" in text, path
         lines = [e for e in root.iter() if e.tag.endswith(("path", "polyline"))]
         assert lines, path
 

@@ -142,9 +142,7 @@ fn encode<T: Number>(value: &Value<T>) -> Option<Encoded> {
         Value::Number(x) => (None, Vec::new(), vec![x.parts()]),
         Value::Vector(v) => (None, vec![3], vector(v).to_vec()),
         Value::Point(p) => (None, vec![3], vector(&p.xyz).to_vec()),
-        Value::Numbers(a) => {
-            (None, extents(a.shape), a.items.iter().map(|x| x.parts()).collect())
-        }
+        Value::Numbers(a) => (None, extents(a.shape), a.items.iter().map(|x| x.parts()).collect()),
         Value::Vectors(a) => {
             let mut shape = extents(a.shape);
             shape.push(3);

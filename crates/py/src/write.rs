@@ -80,11 +80,28 @@ fn lines(document: &mut Document, stem: &str) -> Outcome<Vec<NamedFile>> {
         (View::Buttocks, "buttocks"),
     ];
     let sheet = |(view, word): (View, &str)| {
-        let options = drawing::Options { title: stem.into(), ..drawing::Options::default() };
+        let (unit, unit_mm) = length_unit(document);
+        let title = stem.into();
+        let options = drawing::Options { title, unit, unit_mm, ..drawing::Options::default() };
         let bytes = drawing::draw(view, &contours, &options);
         NamedFile { name: format!("{stem}.{word}.svg"), bytes }
     };
     Ok(views.into_iter().map(sheet).collect())
+}
+
+/// The model's unit of length and its size in millimetres; metres when it names none that is known.
+fn length_unit(document: &Document) -> (String, f64) {
+    const KNOWN: [(&str, f64); 5] =
+        [("m", 1000.0), ("cm", 10.0), ("mm", 1.0), ("ft", 304.8), ("in", 25.4)];
+    let header = document.graph().objects().find(|o| o.row.name == "Model");
+    let units = header.and_then(|o| match o.args.get(o.row.field("units")?) {
+        Some(Value::Text(units)) => Some(units.to_lowercase()),
+        _ => None,
+    });
+    let length = units.as_deref().and_then(|units| units.split_whitespace().next());
+    let known = KNOWN.into_iter().find(|(name, _)| Some(*name) == length);
+    let (name, size) = known.unwrap_or(KNOWN[0]);
+    (name.into(), size)
 }
 
 fn contour(section: Section) -> drawing::Contour {
