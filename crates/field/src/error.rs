@@ -1,0 +1,169 @@
+use moldloft_num::{Box3, Vec3};
+use std::fmt;
+
+/// Why a primitive, a set, a blend or a question to them is refused.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// A number that is infinite or not a number.
+    NotFinite {
+        /// Which quantity.
+        what: &'static str,
+    },
+    /// A size that must be above zero.
+    NotPositive {
+        /// Which quantity.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A direction of no length, or points that coincide or lie in one plane.
+    Degenerate {
+        /// Which quantity.
+        what: &'static str,
+    },
+    /// Primitives may be divided by a real other than zero only.
+    Division,
+    /// Exponents are whole numbers from 0 to 1000.
+    Exponent {
+        /// What was given.
+        value: f64,
+    },
+    /// The weight of a blend lies strictly between 0 and 1.
+    Lambda {
+        /// What was given.
+        value: f64,
+    },
+    /// The two rails of a transition meet, or could not be shown to keep apart.
+    RailsMeet {
+        /// Where.
+        place: Box3,
+    },
+    /// On its rail the blend meets a body with its inside out: the rail lies inside the other body.
+    RailInside {
+        /// Which body it should leave outside.
+        body: usize,
+        /// Where.
+        place: Box3,
+    },
+    /// The body has no direction at its rail (zero gradient), so nothing can be tangent to it.
+    RailSingular {
+        /// Which body.
+        body: usize,
+        /// Where.
+        place: Box3,
+    },
+    /// The box has no volume, or is not finite.
+    EmptyBox {
+        /// Low corner.
+        low: Vec3,
+        /// High corner.
+        high: Vec3,
+    },
+    /// The accuracy would need more boxes than allowed.
+    TooFine {
+        /// How many boxes it would need, estimated.
+        boxes: f64,
+        /// How many are allowed.
+        limit: f64,
+    },
+    /// The caller asked to stop.
+    Cancelled,
+    /// A primitive had no finite value.
+    NoValue {
+        /// Where.
+        at: Vec3,
+    },
+}
+
+impl fmt::Display for FieldError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::NotFinite { what } => write!(f, "the {what} is not a finite number"),
+            Self::NotPositive { what, value } => {
+                write!(f, "the {what} must be above 0, found {value}")
+            }
+            Self::Degenerate { what } => write!(f, "the {what} is degenerate"),
+            Self::Division => {
+                write!(f, "a field can be divided by a number other than 0 only, not by a field")
+            }
+            Self::Exponent { value } => {
+                write!(f, "the exponent of a field is a whole number from 0 to 1000, found {value}")
+            }
+            Self::Lambda { value } => {
+                write!(f, "the weight of a blend lies between 0 and 1, found {value}")
+            }
+            Self::RailsMeet { place } => write!(f, "the rails meet near {}", Corners(place)),
+            Self::RailInside { body, place } => write!(
+                f,
+                "the rail lies inside body {body} near {}, where the blend would be inside out",
+                Corners(place)
+            ),
+            Self::RailSingular { body, place } => {
+                write!(f, "body {body} has no normal on its rail near {}", Corners(place))
+            }
+            Self::EmptyBox { low, high } => write!(
+                f,
+                "the box from ({}, {}, {}) to ({}, {}, {}) has no volume",
+                low.x, low.y, low.z, high.x, high.y, high.z
+            ),
+            Self::TooFine { boxes, limit } => write!(
+                f,
+                "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed"
+            ),
+            Self::Cancelled => write!(f, "cancelled"),
+            Self::NoValue { at } => {
+                write!(f, "the field has no finite value at ({}, {}, {})", at.x, at.y, at.z)
+            }
+        }
+    }
+}
+
+impl std::error::Error for FieldError {}
+
+struct Corners<'a>(&'a Box3);
+
+impl fmt::Display for Corners<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let c = self.0.centre();
+        write!(f, "({:.4}, {:.4}, {:.4})", c.x, c.y, c.z)
+    }
+}
+
+/// The box with a positive, finite volume, or an error.
+pub(crate) fn solid_box(b: Box3) -> Result<Box3, FieldError> {
+    let sound =
+        (0..3).all(|k| b.low[k] < b.high[k] && b.low[k].is_finite() && b.high[k].is_finite());
+    if sound { Ok(b) } else { Err(FieldError::EmptyBox { low: b.low, high: b.high }) }
+}
+
+/// `value`, if it is finite and above zero.
+pub(crate) fn positive<T: moldloft_num::Real>(
+    what: &'static str,
+    value: T,
+) -> Result<T, FieldError> {
+    if !value.is_finite() {
+        return Err(FieldError::NotFinite { what });
+    }
+    if value.re() > 0.0 {
+        Ok(value)
+    } else {
+        Err(FieldError::NotPositive { what, value: value.re() })
+    }
+}
+
+/// `v`, if it is finite.
+pub(crate) fn finite<T: moldloft_num::Real>(
+    what: &'static str,
+    v: moldloft_num::Vec3<T>,
+) -> Result<moldloft_num::Vec3<T>, FieldError> {
+    if v.is_finite() { Ok(v) } else { Err(FieldError::NotFinite { what }) }
+}
+
+/// The unit vector along `v`, if it has a direction.
+pub(crate) fn unit<T: moldloft_num::Real>(
+    what: &'static str,
+    v: moldloft_num::Vec3<T>,
+) -> Result<moldloft_num::Vec3<T>, FieldError> {
+    finite(what, v)?.normalized().ok_or(FieldError::Degenerate { what })
+}

@@ -1,0 +1,372 @@
+//! Eight by eight by eight cells: signs at the corners, crossings of the edges, vertices.
+
+use super::cell::{CASES, NONE, faces_of, start_corner};
+use super::grid::Grid;
+use super::vertex::{Placed, Solver, Surfaces};
+use crate::set::Leaf;
+use crate::tape::{NO_LEAF, Room, Tape};
+use moldloft_num::{Box3, Vec3};
+use smallvec::SmallVec;
+
+/// Cells along a side.
+pub(super) const SIDE: usize = 8;
+/// Corners along a side.
+const CORNERS: usize = SIDE + 1;
+
+/// Where the surface crosses an edge of the grid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossing {
+    /// Lattice position of the edge's start, within the block.
+    pub(super) at: [u8; 3],
+    /// Axis of the edge.
+    pub(super) axis: u8,
+    /// True when the edge runs from solid to air.
+    pub(super) outward: bool,
+    /// The leaf that decides there.
+    pub(super) leaf: u32,
+    /// Where.
+    pub(super) point: Vec3,
+}
+
+/// The vertex of a piece of surface in a cell.
+#[derive(Clone, Debug)]
+pub(super) struct Vertex {
+    pub(super) placed: Placed,
+    /// The cell, in the block.
+    pub(super) cell: [u8; 3],
+    /// True when the cell has several pieces of surface, or the vertex is not in it or not on all
+    /// its surfaces: nothing is known of its triangles then.
+    pub(super) doubtful: bool,
+    pub(super) surfaces: Surfaces,
+}
+
+/// What a block contributes.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    /// Position in blocks.
+    pub(super) at: [u32; 3],
+    /// Signs of every cell's corners.
+    cases: Box<[u8; SIDE * SIDE * SIDE]>,
+    /// First vertex of every cell.
+    first: Box<[u32; SIDE * SIDE * SIDE]>,
+    pub(super) vertices: Vec<Vertex>,
+    /// Crossings of the edges that start in the block, its far faces excepted.
+    pub(super) crossings: Vec<Crossing>,
+    /// How many cells the surface passes through.
+    pub(super) active: usize,
+}
+
+fn cell_index(c: [usize; 3]) -> usize {
+    (c[0] * SIDE + c[1]) * SIDE + c[2]
+}
+
+fn corner_index(c: [usize; 3]) -> usize {
+    (c[0] * CORNERS + c[1]) * CORNERS + c[2]
+}
+
+/// Reusable room.
+#[derive(Default)]
+pub(super) struct Scratch {
+    points: Vec<Vec3>,
+    values: Vec<f64>,
+    room: Room,
+    registers: Vec<f64>,
+    solver: Solver,
+}
+
+impl Block {
+    /// The signs of a cell's corners.
+    pub(super) fn case(&self, cell: [usize; 3]) -> u8 {
+        self.cases[cell_index(cell)]
+    }
+
+    /// The vertex in `cell` of the piece that crosses `edge`.
+    pub(super) fn vertex(&self, cell: [usize; 3], edge: usize) -> Option<usize> {
+        let k = cell_index(cell);
+        let number = CASES[self.cases[k] as usize].loop_of[edge];
+        (number != NONE).then(|| self.first[k] as usize + number as usize)
+    }
+
+    /// Computes the block; the point where the set has no value is the error.
+    pub(super) fn compute(
+        grid: &Grid,
+        at: [u32; 3],
+        tape: &Tape<f64>,
+        leaves: &[Leaf],
+        scratch: &mut Scratch,
+    ) -> Result<Self, Vec3> {
+        let base = at.map(|b| b as usize * SIDE);
+        let corner = |c: [usize; 3]| grid.corner([0, 1, 2].map(|k| base[k] + c[k]));
+        let Scratch { points, values, room, registers, solver } = scratch;
+        points.clear();
+        for i in 0..CORNERS {
+            for j in 0..CORNERS {
+                points.extend((0..CORNERS).map(|k| corner([i, j, k])));
+            }
+        }
+        values.resize(points.len(), 0.0);
+        tape.bulk(points, values, room);
+        if let Some(k) = values.iter().position(|v| v.is_nan()) {
+            return Err(points[k]);
+        }
+
+        let mut crossings = Vec::new();
+        let mut crossing_at = vec![u32::MAX; 3 * CORNERS * CORNERS * CORNERS];
+        for i in 0..CORNERS {
+            for j in 0..CORNERS {
+                for k in 0..CORNERS {
+                    let c = [i, j, k];
+                    let here = corner_index(c);
+                    for axis in 0..3 {
+                        if c[axis] == SIDE {
+                            continue;
+                        }
+                        let there = here + [CORNERS * CORNERS, CORNERS, 1][axis];
+                        let (f0, f1) = (values[here], values[there]);
+                        if (f0 <= 0.0) == (f1 <= 0.0) {
+                            continue;
+                        }
+                        let (point, leaf) =
+                            cross(tape, points[here], points[there], [f0, f1], registers);
+                        crossing_at[3 * here + axis] = crossings.len() as u32;
+                        crossings.push(Crossing {
+                            at: c.map(|x| x as u8),
+                            axis: axis as u8,
+                            outward: f0 <= 0.0,
+                            leaf,
+                            point,
+                        });
+                    }
+                }
+            }
+        }
+
+        let mut block = Self {
+            at,
+            cases: Box::new([0; SIDE * SIDE * SIDE]),
+            first: Box::new([0; SIDE * SIDE * SIDE]),
+            vertices: Vec::new(),
+            crossings: Vec::new(),
+            active: 0,
+        };
+        if crossings.is_empty() {
+            return Ok(block);
+        }
+        for i in 0..SIDE {
+            for j in 0..SIDE {
+                for k in 0..SIDE {
+                    let cell = [i, j, k];
+                    let mut signs = 0usize;
+                    for c in 0..8 {
+                        let at = corner_index([i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)]);
+                        signs |= usize::from(values[at] <= 0.0) << c;
+                    }
+                    let index = cell_index(cell);
+                    block.cases[index] = signs as u8;
+                    if signs == 0 || signs == 255 {
+                        continue;
+                    }
+                    block.active += 1;
+                    block.first[index] = block.vertices.len() as u32;
+                    let sides = Box3 { low: corner(cell), high: corner([i + 1, j + 1, k + 1]) };
+                    let case = &CASES[signs];
+                    let several = case.loops > 1;
+                    for number in 0..case.loops {
+                        let edges = (0..12).filter(|&e| case.loop_of[e] == number).map(|e| {
+                            let start = start_corner(e);
+                            let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
+                            (e, &crossings[crossing_at[3 * corner_index(c) + e / 4] as usize])
+                        });
+                        let mut settling = Settling {
+                            tape,
+                            leaves,
+                            cell: &sides,
+                            goal: grid.goal,
+                            solver,
+                            registers,
+                        };
+                        let (placed, surfaces) = settling.settle(edges);
+                        let doubtful = several || placed.residual > grid.goal || placed.strayed;
+                        let cell = cell.map(|x| x as u8);
+                        block.vertices.push(Vertex { placed, cell, doubtful, surfaces });
+                    }
+                }
+            }
+        }
+        crossings.retain(|c| c.at.iter().all(|&x| (x as usize) < SIDE));
+        block.crossings = crossings;
+        Ok(block)
+    }
+}
+
+/// Where the set changes sign between `p` and `q`, and the leaf that decides there.
+///
+/// The Illinois rule, with every third step a bisection.
+fn cross(
+    tape: &Tape<f64>,
+    p: Vec3,
+    q: Vec3,
+    [mut fa, mut fb]: [f64; 2],
+    registers: &mut Vec<f64>,
+) -> (Vec3, u32) {
+    let (mut a, mut b) = (0.0f64, 1.0f64);
+    let mut side = 0;
+    // A step on from here would move by a millionth of a millionth of the edge.
+    let small = 1e-13 * fa.abs().max(fb.abs());
+    let mut at = |t: f64| {
+        let x = p + (q - p) * t;
+        let value = tape.eval::<f64>(&x, registers);
+        let leaf = tape.leaf[tape.winner(registers, |v: f64| v)];
+        (x, value, leaf)
+    };
+    for step in 0..80 {
+        let mut t = (a * fb - b * fa) / (fb - fa);
+        if step % 3 == 2 || !(t > a && t < b) {
+            t = 0.5 * (a + b);
+        }
+        let (x, value, leaf) = at(t);
+        if value.abs() <= small || b - a < 1e-14 {
+            return (x, leaf);
+        }
+        if (value <= 0.0) == (fa <= 0.0) {
+            if side == 1 {
+                fb *= 0.5;
+            }
+            side = 1;
+            (a, fa) = (t, value);
+        } else {
+            if side == -1 {
+                fa *= 0.5;
+            }
+            side = -1;
+            (b, fb) = (t, value);
+        }
+    }
+    let (x, _, leaf) = at(0.5 * (a + b));
+    (x, leaf)
+}
+
+/// What the vertex of a cell is settled with.
+struct Settling<'a> {
+    tape: &'a Tape<f64>,
+    leaves: &'a [Leaf],
+    cell: &'a Box3,
+    goal: f64,
+    solver: &'a mut Solver,
+    registers: &'a mut Vec<f64>,
+}
+
+impl Settling<'_> {
+    /// The vertex of the piece of surface with these crossings.
+    fn settle<'c>(
+        &mut self,
+        edges: impl Iterator<Item = (usize, &'c Crossing)> + Clone,
+    ) -> (Placed, Surfaces) {
+        let mut surfaces = Surfaces::new();
+        let mut sum = Vec3::zero();
+        let mut count = 0.0;
+        for (_, crossing) in edges.clone() {
+            sum += crossing.point;
+            count += 1.0;
+            if let Err(place) = surfaces.binary_search(&crossing.leaf) {
+                surfaces.insert(place, crossing.leaf);
+            }
+        }
+        let middle = sum / count;
+        let mut placed = self.place(&surfaces, middle);
+        if placed.residual > self.goal {
+            placed = self.by_sides(&surfaces, edges, placed);
+        }
+        if placed.residual > self.goal {
+            // The edge or corner that the crossings announce lies in a neighbour.
+            let Self { leaves, cell, goal, .. } = *self;
+            let strayed = self.solver.stray(leaves, &surfaces, middle, cell, goal);
+            if strayed.residual <= goal {
+                placed = strayed;
+            }
+        }
+        // A primitive without a crossing of its own may still cut the vertex off: an edge or corner
+        // that only pokes into the cell.
+        while surfaces.len() < 3 && placed.residual <= self.goal {
+            let value = self.tape.eval::<f64>(&placed.point, self.registers);
+            let leaf = self.tape.leaf[self.tape.winner(self.registers, |v: f64| v)];
+            let (Err(place), true) = (surfaces.binary_search(&leaf), leaf != NO_LEAF) else {
+                break;
+            };
+            let gradient =
+                self.solver.gradient(self.leaves[leaf as usize].primitive.tape(), placed.point);
+            if value.abs() <= self.goal * gradient.slope.norm() {
+                break;
+            }
+            let mut more = surfaces.clone();
+            more.insert(place, leaf);
+            let other = self.place(&more, placed.point);
+            if other.residual > self.goal {
+                break;
+            }
+            (placed, surfaces) = (Placed { strayed: placed.strayed, ..other }, more);
+        }
+        (placed, surfaces)
+    }
+
+    /// A better place than `placed`, found by way of the cell's faces. Where two neighbouring
+    /// crossings show different primitives, the surface changes from one to the other on the face
+    /// between them: so there is a point on both, and more are nearby inside.
+    fn by_sides<'c>(
+        &mut self,
+        surfaces: &[u32],
+        edges: impl Iterator<Item = (usize, &'c Crossing)> + Clone,
+        mut placed: Placed,
+    ) -> Placed {
+        let (goal, cell) = (self.goal, *self.cell);
+        let mut sum = Vec3::zero();
+        let mut count = 0.0;
+        let mut changes: SmallVec<[Placed; 4]> = SmallVec::new();
+        for (e, p) in edges.clone() {
+            for (f, q) in edges.clone().filter(|(f, q)| *f > e && q.leaf != p.leaf) {
+                let shared = faces_of(e) & faces_of(f);
+                if shared == 0 {
+                    continue;
+                }
+                let face = shared.trailing_zeros() as usize;
+                let (mut low, mut high) = (cell.low.to_array(), cell.high.to_array());
+                let at = if face.is_multiple_of(2) { low[face / 2] } else { high[face / 2] };
+                (low[face / 2], high[face / 2]) = (at, at);
+                let side = Box3 { low: low.into(), high: high.into() };
+                let both = [p.leaf.min(q.leaf), p.leaf.max(q.leaf)];
+                let start = (p.point + q.point) * 0.5;
+                let change = self.solver.place(self.leaves, &both, start, &side, goal);
+                if change.residual <= goal {
+                    sum += change.point;
+                    count += 1.0;
+                    changes.push(change);
+                }
+            }
+        }
+        if count > 0.0 {
+            let inner = self.place(surfaces, sum / count);
+            if inner.residual < placed.residual {
+                placed = inner;
+            }
+        }
+        for change in changes {
+            if placed.residual > goal && surfaces.len() == 2 {
+                placed = change;
+            }
+        }
+        for (_, crossing) in edges {
+            if placed.residual <= goal {
+                break;
+            }
+            let other = self.place(surfaces, crossing.point);
+            if other.residual < placed.residual {
+                placed = other;
+            }
+        }
+        placed
+    }
+
+    fn place(&mut self, surfaces: &[u32], start: Vec3) -> Placed {
+        self.solver.place(self.leaves, surfaces, start, self.cell, self.goal)
+    }
+}

@@ -1,0 +1,144 @@
+//! Which crossings of a cell's edges belong together, as tables.
+//!
+//! Corner k of a cell lies at (k & 1, k >> 1 & 1, k >> 2). Edge 4 a + i + 2 j runs along axis a from
+//! the corner whose coordinates along the next two axes are i and j.
+
+use std::sync::LazyLock;
+
+/// No loop: the edge is not crossed.
+pub(super) const NONE: u8 = u8::MAX;
+
+/// What the signs at a cell's corners say.
+#[derive(Clone, Copy)]
+pub(super) struct Case {
+    /// How many pieces of surface the cell has: closed loops of crossings on its boundary.
+    pub(super) loops: u8,
+    /// The loop of each crossed edge, or [`NONE`].
+    pub(super) loop_of: [u8; 12],
+    /// For each face 2 a + side: true when solid and air corners alternate round it.
+    pub(super) ambiguous: [bool; 6],
+}
+
+/// The corner from which `edge` starts.
+pub(super) fn start_corner(edge: usize) -> usize {
+    let a = edge / 4;
+    ((edge & 1) << ((a + 1) % 3)) | ((edge >> 1 & 1) << ((a + 2) % 3))
+}
+
+/// The edges of face `axis`, `side`, in order round it: edge k joins corners k and k + 1.
+pub(super) fn face_edges(axis: usize, side: usize) -> [usize; 4] {
+    let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+    let edge = |along: usize, across: usize, at: usize| {
+        // The two axes across the edge, in cyclic order, are the face's and the other one.
+        let (i, j) = if (along + 1) % 3 == axis { (side, at) } else { (at, side) };
+        debug_assert!(across != along);
+        4 * along + i + 2 * j
+    };
+    [edge(b, c, 0), edge(c, b, 1), edge(b, c, 1), edge(c, b, 0)]
+}
+
+/// Bit k says that `edge` lies in face k = 2 axis + side.
+pub(super) fn faces_of(edge: usize) -> u8 {
+    let a = edge / 4;
+    let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+    1 << (2 * b + (edge & 1)) | 1 << (2 * c + (edge >> 1 & 1))
+}
+
+fn case(signs: usize) -> Case {
+    let inside = |corner: usize| signs >> corner & 1 == 1;
+    let crossed = |e: usize| inside(start_corner(e)) != inside(start_corner(e) | 1 << (e / 4));
+    let mut joined: [Vec<usize>; 12] = Default::default();
+    let mut ambiguous = [false; 6];
+    for axis in 0..3 {
+        for side in 0..2 {
+            let edges = face_edges(axis, side);
+            let cut: Vec<usize> = (0..4).filter(|&k| crossed(edges[k])).collect();
+            let mut join = |k: usize, l: usize| {
+                joined[edges[k]].push(edges[l]);
+                joined[edges[l]].push(edges[k]);
+            };
+            match cut[..] {
+                [k, l] => join(k, l),
+                [_, _, _, _] => {
+                    ambiguous[2 * axis + side] = true;
+                    // Solid corners are kept apart, in both cells of the face alike. Corner k of the
+                    // face stands between edges k - 1 and k; corner 0 is the one at (0, 0).
+                    let corner = side << axis;
+                    if inside(corner) {
+                        join(3, 0);
+                        join(1, 2);
+                    } else {
+                        join(0, 1);
+                        join(2, 3);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    let mut out = Case { loops: 0, loop_of: [NONE; 12], ambiguous };
+    for start in 0..12 {
+        if !crossed(start) || out.loop_of[start] != NONE {
+            continue;
+        }
+        let mut pending = vec![start];
+        while let Some(e) = pending.pop() {
+            if out.loop_of[e] == NONE {
+                out.loop_of[e] = out.loops;
+                pending.extend(&joined[e]);
+            }
+        }
+        out.loops += 1;
+    }
+    out
+}
+
+/// The 256 cases, by the bits of the solid corners.
+pub(super) static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| (0..256).map(case).collect());
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_and_faces_fit() {
+        for axis in 0..3 {
+            for side in 0..2 {
+                let edges = face_edges(axis, side);
+                for e in 0..12 {
+                    let in_face = faces_of(e) >> (2 * axis + side) & 1 == 1;
+                    assert_eq!(in_face, edges.contains(&e));
+                }
+                for k in 0..4 {
+                    let ends = |e: usize| [start_corner(e), start_corner(e) | 1 << (e / 4)];
+                    let (e, f) = (ends(edges[k]), ends(edges[(k + 1) % 4]));
+                    let shared = e.iter().filter(|c| f.contains(c)).count();
+                    assert_eq!(shared, 1, "edges {k} and {} of a face share a corner", (k + 1) % 4);
+                    for corner in e {
+                        assert_eq!(corner >> axis & 1, side);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_crossed_edge_is_in_one_loop_of_at_least_three() {
+        for signs in 0..256 {
+            let case = &CASES[signs];
+            for number in 0..case.loops {
+                let edges = case.loop_of.iter().filter(|&&l| l == number).count();
+                assert!((3..=12).contains(&edges), "{signs}");
+            }
+            let crossed = (0..12).filter(|&e| {
+                let a = start_corner(e);
+                (signs >> a ^ signs >> (a | 1 << (e / 4))) & 1 == 1
+            });
+            assert!(crossed.into_iter().all(|e| case.loop_of[e] != NONE));
+        }
+        // Two solid corners at the ends of a diagonal stay apart.
+        assert_eq!(CASES[0b1000_0001].loops, 2);
+        assert_eq!(CASES[0b0000_1001].loops, 2);
+        assert_eq!(CASES[0b1111_0110].loops, 1);
+    }
+}

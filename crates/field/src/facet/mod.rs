@@ -1,0 +1,345 @@
+//! Facets: the boundary of a set as triangles, each of which knows its primitive.
+//!
+//! `set & box -> division by ranges -> blocks of cells -> a vertex per piece of surface -> triangles`
+//!
+//! The box is divided where the range of the set contains zero; in every part, primitives that do not
+//! decide are left out. A cell's vertex lies on all the primitives that its piece of surface shows:
+//! one puts it on a face, two on an edge, three on a corner. Each crossed edge of the grid gives a
+//! quadrilateral with the primitive that decides at the crossing, so faces of two primitives meet in
+//! vertices that lie on both.
+
+mod assemble;
+mod block;
+mod cell;
+mod crossing;
+mod grid;
+mod vertex;
+
+use crate::error::solid_box;
+use crate::form::Form;
+use crate::set::{Attributes, Leaf};
+use crate::tape::Tape;
+use crate::{FieldError, Set};
+use block::Block;
+pub use crossing::crossing_faces;
+use grid::Grid;
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
+use moldloft_num::{Box3, Vec3};
+use smallvec::SmallVec;
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How fine facets are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// Cells of side (longest side of the box) / 2^depth.
+    Depth(u32),
+    /// Triangle centres at most about this far from the surface: estimated by |f| / |f'| and kept by
+    /// refining, not proved.
+    Accuracy(f64),
+}
+
+/// How facets are made.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How fine they are.
+    pub resolution: Resolution,
+    /// The most cells that the surface may pass through.
+    pub limit: f64,
+    /// Set it to true from elsewhere to stop.
+    pub cancel: Option<Arc<AtomicBool>>,
+}
+
+impl Options {
+    /// Facets of that resolution, at most 20 million cells.
+    pub fn new(resolution: Resolution) -> Self {
+        Self { resolution, limit: 2e7, cancel: None }
+    }
+
+    fn cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(|c| c.load(Ordering::Relaxed))
+    }
+}
+
+/// The boundary of a set within a box.
+#[derive(Clone, Debug)]
+pub struct Facets {
+    /// The triangles: closed, manifold, oriented; one patch per primitive that shows.
+    pub mesh: Mesh,
+    /// The leaves of the set, followed by the six faces of the box.
+    pub leaves: Vec<Leaf>,
+    /// How many of the leaves are the set's own.
+    pub own_leaves: usize,
+    /// The leaf of each patch.
+    pub patch_leaves: Vec<usize>,
+    /// The leaves that each vertex lies on.
+    pub surfaces: Vec<SmallVec<[u32; 3]>>,
+    /// Cells that did not come out right: those whose vertex misses a surface that it should lie on,
+    /// and those whose triangles cut others. Elsewhere no two triangles meet except where they join:
+    /// by construction, or where a cell has several pieces of surface or a vertex outside it, by test.
+    pub undecided: Vec<Box3>,
+    /// How many cells the surface passes through.
+    pub cells: usize,
+    /// Side of a cell.
+    pub step: f64,
+    /// How many blocks of 8 x 8 x 8 cells hold the surface.
+    pub blocks: usize,
+    /// How many of them were computed; the others were taken over from the facets before.
+    pub computed: usize,
+    memory: Memory,
+}
+
+/// The blocks of the last division, to be used again.
+#[derive(Clone)]
+struct Memory {
+    grid: Grid,
+    blocks: Arc<Vec<(Arc<Tape<f64>>, Arc<Block>)>>,
+}
+
+impl std::fmt::Debug for Memory {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{} blocks", self.blocks.len())
+    }
+}
+
+/// Blocks of an earlier division by position.
+struct Reuse<'a> {
+    blocks: HashMap<[u32; 3], &'a (Arc<Tape<f64>>, Arc<Block>)>,
+}
+
+impl Reuse<'_> {
+    /// The old block, if the set was the same there.
+    fn get(&self, at: [u32; 3], tape: &Tape<f64>) -> Option<Arc<Block>> {
+        let (old, block) = self.blocks.get(&at)?;
+        (old.leaf == tape.leaf && old.same(tape)).then(|| block.clone())
+    }
+}
+
+/// The names of the box's faces.
+const CAPS: [&str; 6] = ["cap -x", "cap +x", "cap -y", "cap +y", "cap -z", "cap +z"];
+
+/// The set within a box whose faces are named.
+fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
+    let mut caps = Set::cuboid(over.low, over.high)?.leaves().into_iter();
+    let mut capped = set.clone();
+    for name in CAPS {
+        if let Some(leaf) = caps.next() {
+            let attributes = Attributes { name: Some(name.to_owned()), ..Attributes::default() };
+            capped = capped & Set::new(&leaf.primitive).with(attributes);
+        }
+    }
+    Ok(capped)
+}
+
+/// The facets of `set` within the box `over`, of whose faces those that cut the set are faces of the
+/// mesh, too.
+///
+/// # Errors
+/// A box without volume, a resolution beyond the limit, a primitive without value, a cancelled call.
+///
+/// # Example
+/// ```
+/// use moldloft_field::{Options, Primitive, Resolution, Set, facet};
+/// use moldloft_num::{Box3, Vec3};
+///
+/// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
+/// let over = Box3 { low: Vec3::of(-1.5, -1.5, 0.0), high: Vec3::of(1.5, 1.5, 1.5) };
+/// let facets = facet(&ball, &over, &Options::new(Resolution::Depth(4)))?;
+/// assert!(facets.mesh.report().closed);
+/// let names: Vec<&str> = facets.mesh.patches().iter().map(|p| p.info.name.as_str()).collect();
+/// assert_eq!(names, ["sphere", "cap -z"]);
+/// # Ok::<(), moldloft_field::FieldError>(())
+/// ```
+pub fn facet(set: &Set, over: &Box3, options: &Options) -> Result<Facets, FieldError> {
+    refacet(set, over, options, None)
+}
+
+/// As [`facet`], taking over from `before` the blocks in which the set did not change: the result is
+/// the same, bit for bit.
+///
+/// # Errors
+/// As [`facet`].
+pub fn refacet(
+    set: &Set,
+    over: &Box3,
+    options: &Options,
+    before: Option<&Facets>,
+) -> Result<Facets, FieldError> {
+    let over = solid_box(*over)?;
+    let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
+    // A surface across the whole box passes through about this many cells.
+    let crossed = |step: f64| (size / step).powi(2);
+    let check = |step: f64| {
+        let boxes = crossed(step);
+        if boxes > options.limit {
+            Err(FieldError::TooFine { boxes, limit: options.limit })
+        } else {
+            Ok(())
+        }
+    };
+    match options.resolution {
+        Resolution::Depth(depth) => {
+            let step = size / 2f64.powi(depth.min(1000) as i32);
+            check(step)?;
+            at_step(set, &over, step, options, before)
+        }
+        Resolution::Accuracy(accuracy) => {
+            crate::error::positive("accuracy", accuracy)?;
+            let mut step = size / 16.0;
+            let mut facets = at_step(set, &over, step, options, before)?;
+            // The error is of second order, so one estimate nearly hits; a few correct it.
+            for _ in 0..6 {
+                let error = facets.worst_centre();
+                if error <= accuracy {
+                    break;
+                }
+                step *= (0.8 * accuracy / error).sqrt().clamp(1e-6, 0.8);
+                let boxes = facets.cells as f64 * (facets.step / step).powi(2);
+                if boxes > options.limit {
+                    return Err(FieldError::TooFine { boxes, limit: options.limit });
+                }
+                facets = at_step(set, &over, step, options, before)?;
+            }
+            Ok(facets)
+        }
+    }
+}
+
+fn at_step(
+    set: &Set,
+    over: &Box3,
+    step: f64,
+    options: &Options,
+    before: Option<&Facets>,
+) -> Result<Facets, FieldError> {
+    let grid = Grid::new(over, step)?;
+    let compiled = capped(set, over)?.compiled();
+    let reuse = before
+        .filter(|b| b.memory.grid == grid)
+        .map(|b| Reuse { blocks: b.memory.blocks.iter().map(|pair| (pair.1.at, pair)).collect() });
+    let divided = grid::divide(&grid, &compiled.tape, &compiled.leaves, options, reuse.as_ref())?;
+    let leaves = compiled.leaves;
+    // A face of the set that lies in a face of the box is the set's.
+    let own = compiled.places.len().saturating_sub(CAPS.len());
+    let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
+    let made = assemble::assemble(&grid, &leaves, &divided.blocks);
+
+    let mut builder = TopologyBuilder::new();
+    let broken =
+        |_| FieldError::TooFine { boxes: made.triangles.len() as f64, limit: options.limit };
+    builder.add_vertices(made.positions.len()).map_err(broken)?;
+    let mut patch_leaves = Vec::new();
+    let mut by_leaf: Vec<Vec<[u32; 4]>> = vec![Vec::new(); leaves.len()];
+    for (leaf, [a, b, c]) in &made.triangles {
+        by_leaf[*leaf as usize].push([*a, *b, *c, *c]);
+    }
+    for (leaf, faces) in by_leaf.into_iter().enumerate() {
+        if !faces.is_empty() {
+            patch_leaves.push(leaf);
+            builder.add_faces(info(&leaves[leaf]), faces).map_err(broken)?;
+        }
+    }
+    let mesh = Mesh::new(builder.build().into(), made.positions).map_err(broken)?;
+
+    let undecided = undecided(&grid, &mesh, &made.doubtful, &divided.blocks);
+    Ok(Facets {
+        mesh,
+        own_leaves,
+        leaves,
+        patch_leaves,
+        surfaces: made.surfaces,
+        undecided,
+        cells: divided.blocks.iter().map(|(_, b)| b.active).sum(),
+        step,
+        blocks: divided.blocks.len(),
+        computed: divided.computed,
+        memory: Memory { grid, blocks: Arc::new(divided.blocks) },
+    })
+}
+
+/// The cells of doubtful vertices that miss a surface, or of which a triangle does cut another.
+fn undecided(
+    grid: &Grid,
+    mesh: &Mesh,
+    doubtful: &[(u32, [usize; 3])],
+    blocks: &[(Arc<Tape<f64>>, Arc<Block>)],
+) -> Vec<Box3> {
+    if doubtful.is_empty() {
+        return Vec::new();
+    }
+    let mut of_vertex = vec![false; mesh.positions().len()];
+    for (vertex, _) in doubtful {
+        of_vertex[*vertex as usize] = true;
+    }
+    let flagged: Vec<bool> =
+        mesh.faces().iter().map(|f| f.iter().any(|&v| of_vertex[v as usize])).collect();
+    let mut bad = vec![false; mesh.positions().len()];
+    for face in crossing_faces(mesh, Some(&flagged)).into_iter().flatten() {
+        for &v in &mesh.faces()[face] {
+            bad[v as usize] = true;
+        }
+    }
+    let mut missing =
+        blocks.iter().flat_map(|(_, b)| &b.vertices).map(|v| v.placed.residual > grid.goal);
+    for vertex in &mut bad {
+        *vertex |= missing.next().unwrap_or(false);
+    }
+    let mut cells: Vec<[usize; 3]> =
+        doubtful.iter().filter(|(v, _)| bad[*v as usize]).map(|d| d.1).collect();
+    cells.sort_unstable();
+    cells.dedup();
+    cells.into_iter().map(|c| grid.cell(c)).collect()
+}
+
+/// What a patch says of the leaf it shows.
+fn info(leaf: &Leaf) -> PatchInfo {
+    let kind = leaf.primitive.form().name();
+    let name = leaf.attributes.name.clone().unwrap_or_else(|| kind.to_owned());
+    PatchInfo::new(name).coloured(leaf.attributes.colour).of_kind(kind)
+}
+
+impl Facets {
+    /// The form of a patch's primitive.
+    pub fn form(&self, patch: usize) -> &Form<f64> {
+        self.leaves[self.patch_leaves[patch]].primitive.form()
+    }
+
+    /// Distances of the triangles' centres from their surfaces, |f| / |f'|, in the order of faces.
+    pub fn centre_distances(&self) -> Vec<f64> {
+        let mut solver = vertex::Solver::default();
+        let mut out = Vec::with_capacity(self.mesh.faces().len());
+        for (patch, &leaf) in self.mesh.patches().iter().zip(&self.patch_leaves) {
+            let tape = self.leaves[leaf].primitive.tape();
+            for face in &self.mesh.faces()[patch.faces.clone()] {
+                let [a, b, c] = [0, 1, 2].map(|k| self.mesh.positions()[face[k] as usize]);
+                out.push(distance(&mut solver, tape, (a + b + c) / 3.0).abs());
+            }
+        }
+        out
+    }
+
+    /// The largest of [`Facets::centre_distances`].
+    pub fn worst_centre(&self) -> f64 {
+        self.centre_distances().into_iter().fold(0.0, f64::max)
+    }
+
+    /// The largest distance |f| / |f'| of a vertex from a surface that it lies on.
+    pub fn worst_vertex(&self) -> f64 {
+        let mut solver = vertex::Solver::default();
+        let mut worst = 0.0f64;
+        for (p, surfaces) in self.mesh.positions().iter().zip(&self.surfaces) {
+            for &leaf in surfaces {
+                let tape = self.leaves[leaf as usize].primitive.tape();
+                worst = worst.max(distance(&mut solver, tape, *p).abs());
+            }
+        }
+        worst
+    }
+}
+
+/// The signed distance from a primitive's surface, to first order.
+fn distance(solver: &mut vertex::Solver, tape: &Tape<f64>, p: Vec3) -> f64 {
+    let g = solver.gradient(tape, p);
+    if g.value == 0.0 { 0.0 } else { g.value / g.slope.norm() }
+}

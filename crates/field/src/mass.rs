@@ -1,0 +1,373 @@
+//! Volume, centroid and inertia: certified brackets by ranges, and best values by facets.
+
+use crate::error::solid_box;
+use crate::facet::Facets;
+use crate::interval::{Interval, sides};
+use crate::tape::{NO_LEAF, RangeRoom, Tape};
+use crate::{FieldError, Primitive, Set};
+use moldloft_num::{Box3, Real, Vec3};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Integrals over a body of 1; x, y, z; xx, yy, zz; xy, yz, zx.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments<N>(pub [N; 10]);
+
+/// The exponents of the monomials.
+const POWERS: [[u32; 3]; 10] = [
+    [0, 0, 0],
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+    [2, 0, 0],
+    [0, 2, 0],
+    [0, 0, 2],
+    [1, 1, 0],
+    [0, 1, 1],
+    [1, 0, 1],
+];
+
+impl<N: Copy> Moments<N> {
+    /// Volume.
+    pub fn volume(&self) -> N {
+        self.0[0]
+    }
+}
+
+impl<T: Real> Moments<T> {
+    /// The centre of mass.
+    pub fn centroid(&self) -> Vec3<T> {
+        let m = &self.0;
+        Vec3::new(m[1], m[2], m[3]) / m[0]
+    }
+
+    /// The rows of the matrix of inertia about the centroid, for unit density.
+    pub fn inertia(&self) -> [Vec3<T>; 3] {
+        let (m, c) = (&self.0, self.centroid());
+        let central = |k: usize, i: usize, j: usize| m[k] - m[0] * c[i] * c[j];
+        let (xx, yy, zz) = (central(4, 0, 0), central(5, 1, 1), central(6, 2, 2));
+        let (xy, yz, zx) = (central(7, 0, 1), central(8, 1, 2), central(9, 2, 0));
+        [Vec3::new(yy + zz, -xy, -zx), Vec3::new(-xy, zz + xx, -yz), Vec3::new(-zx, -yz, xx + yy)]
+    }
+}
+
+impl Moments<Interval> {
+    const ZERO: Self = Self([Interval::ZERO; 10]);
+
+    fn add(&mut self, o: &Self) {
+        for (a, b) in self.0.iter_mut().zip(&o.0) {
+            *a = *a + *b;
+        }
+    }
+
+    /// A bracket of each coordinate of the centroid; everything when the volume may be zero.
+    pub fn centroid(&self) -> [Interval; 3] {
+        let one = self.0[0].reciprocal();
+        [1, 2, 3].map(|k| self.0[k] * one)
+    }
+
+    /// True when all of `m` lies inside.
+    pub fn contains(&self, m: &Moments<f64>) -> bool {
+        self.0.iter().zip(&m.0).all(|(range, x)| range.contains(*x))
+    }
+
+    /// Adds what a box contributes of which at least `part.low` and at most `part.high` is solid.
+    fn take(&mut self, b: &[Interval; 3], part: Interval, whole: bool) {
+        for (sum, powers) in self.0.iter_mut().zip(POWERS) {
+            let term = if whole {
+                (0..3).fold(Interval::point(1.0), |product, k| product * integral(b[k], powers[k]))
+            } else {
+                (0..3).fold(part, |product, k| product * b[k].powi(powers[k]))
+            };
+            *sum = *sum + term;
+        }
+    }
+}
+
+/// The integral of x^n over a side, rounded outward.
+fn integral(side: Interval, n: u32) -> Interval {
+    let (a, b) = (Interval::point(side.low), Interval::point(side.high));
+    let width = b - a;
+    match n {
+        0 => width,
+        1 => width * (a + b).scaled(0.5),
+        _ => width * (a.square() + a * b + b.square()).divided(3.0),
+    }
+}
+
+/// Certified brackets of the moments of a set within a box, from ranges over boxes halved `depth`
+/// times along each axis at most.
+///
+/// Boxes that are proved solid count fully. In the smallest boxes where one primitive decides, the
+/// solid part is bracketed by two parallel planes, from the range of the gradient; in others it is
+/// anything from nothing to the whole. Both make the brackets close at second order.
+///
+/// # Errors
+/// A box without volume, a depth above 12.
+///
+/// # Example
+/// ```
+/// use moldloft_field::{Primitive, Set, bracket};
+/// use moldloft_num::{Box3, Vec3};
+///
+/// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
+/// let over = Box3 { low: Vec3::of(-1.1, -1.1, -1.1), high: Vec3::of(1.1, 1.1, 1.1) };
+/// let volume = bracket(&ball, &over, 5)?.volume();
+/// assert!(volume.contains(4.0 / 3.0 * std::f64::consts::PI) && volume.width() < 0.1);
+/// # Ok::<(), moldloft_field::FieldError>(())
+/// ```
+pub fn bracket(set: &Set, over: &Box3, depth: u32) -> Result<Moments<Interval>, FieldError> {
+    let over = solid_box(*over)?;
+    if depth > 12 {
+        return Err(FieldError::TooFine { boxes: 4f64.powi(depth as i32), limit: 4f64.powi(12) });
+    }
+    let tape = set.compiled().tape;
+    // The first two levels are spread over threads; sums are taken in order of the boxes.
+    let spread = depth.min(2);
+    let n = 1usize << spread;
+    let boxes: Vec<[Interval; 3]> = (0..n * n * n)
+        .map(|k| {
+            let place = [k / (n * n), k / n % n, k % n];
+            let all = sides(&over);
+            [0, 1, 2].map(|axis| {
+                let cut = |j: usize| {
+                    if j == n {
+                        all[axis].high
+                    } else {
+                        all[axis].low + all[axis].width() * j as f64 / n as f64
+                    }
+                };
+                Interval::new(cut(place[axis]), cut(place[axis] + 1))
+            })
+        })
+        .collect();
+    let parts: Vec<Moments<Interval>> = boxes
+        .par_iter()
+        .map(|b| {
+            let mut sum = Moments::ZERO;
+            let mut room = RangeRoom::default();
+            halve(&tape, b, depth - spread, &mut room, &mut sum);
+            sum
+        })
+        .collect();
+    let mut sum = Moments::ZERO;
+    for part in &parts {
+        sum.add(part);
+    }
+    Ok(sum)
+}
+
+fn halve(
+    tape: &Arc<Tape<f64>>,
+    b: &[Interval; 3],
+    depth: u32,
+    room: &mut RangeRoom,
+    sum: &mut Moments<Interval>,
+) {
+    let range = tape.range(b, &mut room.ranges);
+    if range.low > 0.0 {
+        return;
+    }
+    let volume = b.iter().fold(Interval::point(1.0), |v, side| v * integral(*side, 0));
+    if range.high < 0.0 {
+        sum.take(b, volume, true);
+        return;
+    }
+    let tape = tape.pruned(&room.ranges).map_or_else(|| tape.clone(), Arc::new);
+    if depth == 0 {
+        let single = tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
+        let fraction =
+            if single { solid_fraction(&tape, b, room) } else { Interval::new(0.0, 1.0) };
+        sum.take(b, volume * fraction, false);
+        return;
+    }
+    for k in 0..8 {
+        let half = [0, 1, 2].map(|axis| {
+            let middle = b[axis].middle();
+            if k >> axis & 1 == 0 {
+                Interval::new(b[axis].low, middle)
+            } else {
+                Interval::new(middle, b[axis].high)
+            }
+        });
+        halve(&tape, &half, depth - 1, room, sum);
+    }
+}
+
+/// A bracket of the part of a box in which one primitive is negative.
+///
+/// With g the middle of the gradient's range, f lies within e of f(c) + g (X - c), where e sums
+/// the half widths of the gradient's range times those of the box, and the error of f(c).
+fn solid_fraction(tape: &Tape<f64>, b: &[Interval; 3], room: &mut RangeRoom) -> Interval {
+    let range = tape.mean_value(b, room);
+    if range.value.low > 0.0 {
+        return Interval::ZERO;
+    }
+    if range.value.high < 0.0 {
+        return Interval::point(1.0);
+    }
+    let centre = b.map(|side| Interval::point(side.middle()));
+    let value = tape.range(&centre, &mut room.ranges);
+    let mut error = Interval::ZERO;
+    let mut widths = [0.0; 3];
+    for k in 0..3 {
+        let reach = (b[k] - centre[k]).magnitude();
+        let middle = range.slope[k].middle();
+        error = error + (range.slope[k] - Interval::point(middle)).abs().scaled(reach);
+        widths[k] = middle.abs() * b[k].width();
+    }
+    if !(error.high.is_finite() && widths.iter().all(|w| w.is_finite())) {
+        return Interval::new(0.0, 1.0);
+    }
+    // Directions in which hardly anything changes join the error, to keep the formula well conditioned.
+    let top = widths.iter().copied().fold(0.0, f64::max);
+    let mut slack = error.high;
+    for w in &mut widths {
+        if *w < 1e-3 * top {
+            slack += *w;
+            *w = 0.0;
+        }
+    }
+    slack *= 1.0 + 1e-9;
+    // 8 terms of at most 5e6 each with a few roundings: below 1e-7.
+    let low = below(widths, -value.high - slack) - 1e-7;
+    let high = below(widths, -value.low + slack) + 1e-7;
+    Interval::new(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))
+}
+
+/// The part of the unit cube about the origin in which w . X <= t, for weights that are zero or of like
+/// size: by inclusion and exclusion of corners (Barrow and Smith, Am. Math. Monthly 86, 1979).
+fn below(w: [f64; 3], t: f64) -> f64 {
+    let kept: Vec<f64> = w.into_iter().filter(|w| *w > 0.0).collect();
+    let n = kept.len();
+    let t = t + 0.5 * kept.iter().sum::<f64>();
+    if n == 0 {
+        return if t >= 0.0 { 1.0 } else { 0.0 };
+    }
+    if t >= kept.iter().sum() {
+        return 1.0;
+    }
+    let mut sum = 0.0;
+    for corner in 0..1usize << n {
+        let inside: f64 = (0..n).filter(|k| corner >> k & 1 == 1).map(|k| kept[k]).sum();
+        let term = (t - inside).max(0.0).powi(n as i32);
+        sum += if corner.count_ones().is_multiple_of(2) { term } else { -term };
+    }
+    let factorial = [1.0, 1.0, 2.0, 6.0][n];
+    sum / (factorial * kept.iter().product::<f64>())
+}
+
+/// A bracket and the best value inside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mass {
+    /// Proved.
+    pub bracket: Moments<Interval>,
+    /// From facets, corrected for their distance from the surface, of fourth order; within the bracket.
+    pub best: Moments<f64>,
+}
+
+/// The moments of a set within a box: a proved bracket and a best value, from boxes halved `depth`
+/// times.
+///
+/// # Errors
+/// As [`bracket`] and [`crate::facet`].
+pub fn mass(set: &Set, over: &Box3, depth: u32) -> Result<Mass, FieldError> {
+    let bracket = bracket(set, over, depth)?;
+    let options = crate::Options::new(crate::Resolution::Depth(depth));
+    let facets = crate::facet(set, over, &options)?;
+    let mut best = facets.moments();
+    for (x, range) in best.0.iter_mut().zip(&bracket.0) {
+        *x = x.clamp(range.low, range.high);
+    }
+    Ok(Mass { bracket, best })
+}
+
+impl Facets {
+    /// The moments of the body, of fourth order in the size of the facets away from its edges.
+    pub fn moments(&self) -> Moments<f64> {
+        let primitives: Vec<&Primitive> = self.leaves.iter().map(|l| &l.primitive).collect();
+        self.moments_of(self.mesh.positions(), &primitives)
+    }
+
+    /// The moments with the positions and primitives given as other numbers: the polyhedron's, exact,
+    /// and the layer between it and the surface, of thickness -f / |f'|, by the midpoints of edges.
+    pub(crate) fn moments_of<T: Real>(
+        &self,
+        positions: &[Vec3<T>],
+        primitives: &[&Primitive<T>],
+    ) -> Moments<T> {
+        let mut total = [T::zero(); 10];
+        let mut values = Vec::new();
+        for (patch, &leaf) in self.mesh.patches().iter().zip(&self.patch_leaves) {
+            let tape = primitives[leaf].tape();
+            for face in &self.mesh.faces()[patch.faces.clone()] {
+                let p = [0, 1, 2].map(|k| positions[face[k] as usize]);
+                let normal = (p[1] - p[0]).cross(p[2] - p[0]);
+                let six = p[0].dot(normal);
+                let sum = p[0] + p[1] + p[2];
+                for (total, powers) in total.iter_mut().zip(POWERS) {
+                    // The tetrahedron of the origin and the face.
+                    let axes: Vec<usize> =
+                        (0..3).flat_map(|k| std::iter::repeat_n(k, powers[k] as usize)).collect();
+                    *total += match axes[..] {
+                        [] => six / 6.0,
+                        [i] => six / 24.0 * sum[i],
+                        [i, j, ..] => {
+                            let pairs = p[0][i] * p[0][j] + p[1][i] * p[1][j] + p[2][i] * p[2][j];
+                            six / 120.0 * (pairs + sum[i] * sum[j])
+                        }
+                    };
+                }
+                if normal.norm_sq().re() == 0.0 {
+                    continue;
+                }
+                let area = normal.norm() * 0.5;
+                for k in 0..3 {
+                    let middle = (p[k] + p[(k + 1) % 3]) * T::from(0.5);
+                    let g = tape.eval::<crate::Gradient<T>>(&middle, &mut values);
+                    let slope = g.slope.norm_sq();
+                    if slope.re() == 0.0 {
+                        continue;
+                    }
+                    let layer = -(g.value / slope.sqrt()) * area / 3.0;
+                    for (total, powers) in total.iter_mut().zip(POWERS) {
+                        let monomial = (0..3).fold(T::one(), |m, k| {
+                            if powers[k] == 0 { m } else { m * middle[k].powi(powers[k] as i32) }
+                        });
+                        *total += layer * monomial;
+                    }
+                }
+            }
+        }
+        Moments(total)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cut_cube_equals_counting() {
+        for (w, t) in [
+            ([1.0, 0.7, 0.4], 0.3),
+            ([1.0, 0.0, 0.4], -0.2),
+            ([0.0, 0.0, 2.0], 0.5),
+            ([1.0, 1.0, 1.0], 0.0),
+        ] {
+            let n = 60;
+            let at = |k: usize| (k as f64 + 0.5) / n as f64 - 0.5;
+            let mut count = 0;
+            for i in 0..n {
+                for j in 0..n {
+                    count +=
+                        (0..n).filter(|&k| w[0] * at(i) + w[1] * at(j) + w[2] * at(k) <= t).count();
+                }
+            }
+            let counted = count as f64 / (n * n * n) as f64;
+            assert!((below(w, t) - counted).abs() < 0.01, "{w:?} {t}: {} {counted}", below(w, t));
+        }
+        assert_eq!(below([1.0, 1.0, 1.0], 1.5), 1.0);
+        assert_eq!(below([1.0, 1.0, 1.0], -1.5), 0.0);
+    }
+}

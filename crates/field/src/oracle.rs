@@ -1,0 +1,111 @@
+//! Primitives from outside: a scan, a mesh's distance, a Python function.
+
+use crate::interval::Interval;
+use moldloft_num::{Box3, Field, Real, Vec3};
+use std::sync::Arc;
+
+/// A primitive that is no formula of ours. Its ranges must contain every value that it takes; wide
+/// ones cost time, wrong ones cost correctness.
+pub trait Oracle<T: Real>: Field<T> {
+    /// A range of the value over a box.
+    fn range(&self, over: &Box3) -> Interval;
+
+    /// A range of the gradient over a box; everything when nothing is known.
+    fn gradient_range(&self, _over: &Box3) -> [Interval; 3] {
+        [Interval::ENTIRE; 3]
+    }
+
+    /// Value, gradient and matrix of second derivatives; without knowledge the matrix is zero.
+    fn second_order(&self, p: Vec3<T>) -> (T, Vec3<T>, [Vec3<T>; 3]) {
+        let (value, gradient) = self.value_and_gradient(p);
+        (value, gradient, [Vec3::zero(); 3])
+    }
+
+    /// The same with real parts only.
+    fn re(&self) -> Arc<dyn Oracle<f64>>;
+}
+
+/// An affine map of space, here from the world to where a primitive was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affine<T> {
+    /// Rows of the matrix.
+    pub rows: [Vec3<T>; 3],
+    /// What is added after it.
+    pub shift: Vec3<T>,
+}
+
+impl<T: Real> Affine<T> {
+    /// The map that changes nothing.
+    pub fn identity() -> Self {
+        let rows = [Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 1.0, 0.0), Vec3::of(0.0, 0.0, 1.0)];
+        Self { rows, shift: Vec3::zero() }
+    }
+
+    /// The image of a point.
+    #[inline(always)]
+    pub fn apply(&self, p: Vec3<T>) -> Vec3<T> {
+        self.linear(p) + self.shift
+    }
+
+    /// The image of a vector.
+    #[inline(always)]
+    pub fn linear(&self, v: Vec3<T>) -> Vec3<T> {
+        Vec3::new(self.rows[0].dot(v), self.rows[1].dot(v), self.rows[2].dot(v))
+    }
+
+    /// The transposed matrix times `g`: the gradient of f(map(p)) from that of f.
+    pub fn pull_back(&self, g: Vec3<T>) -> Vec3<T> {
+        self.rows[0] * g.x + self.rows[1] * g.y + self.rows[2] * g.z
+    }
+
+    /// A'HA: the second derivatives of f(map(p)) from those of f.
+    pub(crate) fn pull_back_matrix(&self, h: [Vec3<T>; 3]) -> [Vec3<T>; 3] {
+        let right = h.map(|row| self.pull_back(row));
+        let column = |k: usize| Vec3::new(right[0][k], right[1][k], right[2][k]);
+        [0, 1, 2].map(|k| self.pull_back(column(k)))
+    }
+
+    /// This map after `first`.
+    pub fn after(&self, first: &Self) -> Self {
+        Self { rows: self.rows.map(|row| first.pull_back(row)), shift: self.apply(first.shift) }
+    }
+
+    /// The same with real parts only.
+    pub fn re(&self) -> Affine<f64> {
+        Affine { rows: self.rows.map(|r| r.re()), shift: self.shift.re() }
+    }
+
+    /// The determinant of the matrix.
+    pub fn determinant(&self) -> T {
+        self.rows[0].dot(self.rows[1].cross(self.rows[2]))
+    }
+
+    /// The inverse map, or `None` when the matrix is singular.
+    pub fn inverse(&self) -> Option<Self> {
+        let [a, b, c] = self.rows;
+        let det = self.determinant();
+        if !(det.re().abs() > 0.0 && det.is_finite()) {
+            return None;
+        }
+        // The columns of the inverse are cross products of the rows (Cramer).
+        let columns = [b.cross(c) / det, c.cross(a) / det, a.cross(b) / det];
+        let row = |k: usize| Vec3::new(columns[0][k], columns[1][k], columns[2][k]);
+        let linear = Self { rows: [row(0), row(1), row(2)], shift: Vec3::zero() };
+        Some(Self { shift: -linear.linear(self.shift), ..linear })
+    }
+}
+
+impl Affine<f64> {
+    pub(crate) fn range(&self, at: &[Interval; 3]) -> [Interval; 3] {
+        use crate::algebra::Algebra;
+        [0, 1, 2].map(|k| Interval::plane(self.rows[k], self.shift[k], at))
+    }
+
+    pub(crate) fn pull_back_range(&self, g: [Interval; 3]) -> [Interval; 3] {
+        use crate::algebra::Algebra;
+        [0, 1, 2].map(|k| {
+            let column = Vec3::new(self.rows[0][k], self.rows[1][k], self.rows[2][k]);
+            Interval::plane(column, 0.0, &g)
+        })
+    }
+}
