@@ -328,6 +328,8 @@ impl Document {
         let mut errors = Vec::new();
         let mut rerun = false;
         for (name, value) in assignments {
+            // Minus zero is written as zero, so it is zero.
+            let value = &(value + 0.0);
             if self.params().iter().any(|p| p.name == *name) {
                 if let Err(diagnostic) = self.check_param(name, *value) {
                     errors.push(diagnostic);

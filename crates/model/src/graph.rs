@@ -518,7 +518,12 @@ impl<T: Scalar> Run<'_, T> {
         object.declared_at = clock;
         object.origin = origin;
         if self.extent == Extent::Whole {
-            object.order = order;
+            if object.order != order {
+                // Meshes go by the order of declaration.
+                object.order = order;
+                self.graph.last_change = clock;
+            }
+            let object = self.graph.object_mut(key);
             object.read_by_program = false;
             self.graph.declared += 1;
             if !self.graph.unranked_later.is_empty() && self.graph.unranked_later.remove(&key) {
