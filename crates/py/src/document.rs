@@ -12,18 +12,22 @@ use moldloft_diag::Sources;
 use moldloft_lang::{Document, Format};
 use moldloft_mesh::{FloatOptions, Symmetry, hydrostatics};
 use moldloft_model::Object;
-use moldloft_num::{Order, Vec3};
+use moldloft_num::Vec3;
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
 use numpy::{PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
+use rayon::prelude::*;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The most points of one grid.
 const MOST_POINTS: usize = 1 << 27;
+
+/// How many scattered points a thread evaluates at a time.
+const CHUNK: usize = 1 << 14;
 
 /// A model that is at least this large is changed on another thread, so that Ctrl-C is heard.
 const LARGE: usize = 50_000;
@@ -246,7 +250,9 @@ impl PyDocument {
     ) -> PyResult<()> {
         self.calls_python.store(true, Ordering::Relaxed);
         let row = crate::foreign::row(name, arguments, doc, function);
-        self.long(py, move |d| drop(d.add_row(row)))
+        self.long(py, move |d| {
+            d.add_row(row);
+        })
     }
 
     fn eval<'py>(&self, py: Python<'py>, expression: &str) -> PyResult<Bound<'py, PyAny>> {
@@ -293,8 +299,18 @@ impl PyDocument {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let surface = self.surface_of(py, name)?;
         let (us, vs) = (u.as_slice()?, v.as_slice()?);
-        let uv: Vec<[f64; 2]> = us.iter().zip(vs).map(|(&u, &v)| [u, v]).collect();
-        let fill = |out: &mut [Vec3]| surface.scattered(&uv, out);
+        let some = |out: &mut [Vec3], us: &[f64], vs: &[f64]| {
+            let uv: Vec<[f64; 2]> = us.iter().zip(vs).map(|(&u, &v)| [u, v]).collect();
+            surface.scattered(&uv, out);
+        };
+        let fill = |out: &mut [Vec3]| {
+            if out.len() <= CHUNK {
+                return some(out, us, vs);
+            }
+            let chunks = out.par_chunks_mut(CHUNK);
+            let parameters = us.par_chunks(CHUNK).zip(vs.par_chunks(CHUNK));
+            chunks.zip(parameters).for_each(|(out, (us, vs))| some(out, us, vs));
+        };
         Ok(arrays::filled(py, [us.len(), 3], |out| py.detach(|| fill(out))).0)
     }
 
@@ -370,7 +386,7 @@ impl PyDocument {
             (true, "one") => (Symmetry::MirroredOnce, "one"),
             _ => return Err(plain_error(format!("sides are `both` or `one`, not `{sides}`"))),
         };
-        if !level.is_finite() || !(density.is_finite() && density > 0.0) {
+        if !(level.is_finite() && density.is_finite() && density > 0.0) {
             return Err(plain_error("the level must be a finite number and the density positive"));
         }
         let options = FloatOptions { level, symmetry, density };
