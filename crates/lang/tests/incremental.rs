@@ -69,6 +69,9 @@ fn bits(value: &Value<f64>, out: &mut String) {
     }
 }
 
+const HEAD: &str = "param float w = 5 in [3, 7];\nparam float h = 2*w in [0, 20];\n\
+    subroutine leg(float x, AbsPoint p) { AbsPoint foot(x, w, p.z); RelPoint toe(foot, x); Line bone(p, toe); }\n";
+
 /// A program of statements that a test adds, removes, changes and breaks.
 #[derive(Clone)]
 struct Model {
@@ -112,7 +115,7 @@ impl Model {
         let at = at.min(self.lines.len());
         let (p, c, s) = ('p', 'c', 's');
         let name = format!("n{}", self.next);
-        let (class, text, wants): (char, &str, &[char]) = match random.below(14) {
+        let (class, text, wants): (char, &str, &[char]) = match random.below(17) {
             0..3 => (p, "AbsPoint @(#, #, #)", &[]),
             3 => (p, "RelPoint @($, #, #, #)", &[p]),
             4 => (p, "MirrPoint @($, \"y=0\")", &[p]),
@@ -125,7 +128,10 @@ impl Model {
             11 if random.chance(8) => (s, "CLoftSurf @({$, $, $}, divisions = {4, 3})", &[c, c, c]),
             11 => (s, "BLoftSurf @({$, $, $}, degree = 2, divisions = {4, 3})", &[c, c, c]),
             12 => (s, "MirrSurf @($, \"y=0\", divisions = {3, 4})", &[s]),
-            _ => (p, "if (length($) > w) { AbsPoint @(w, #, #); } else AbsPoint @(#, w, #)", &[c]),
+            13 => (p, "if (length($) > w) { AbsPoint @(w, #, #); } else AbsPoint @(#, w, #)", &[c]),
+            14 => (p, "for (i = 1:round(w)) AbsPoint @(i, #, w)", &[]),
+            15 => (p, "leg @(#, $)", &[p]),
+            _ => (p, "foreach (p in {$, $}) { if (p.x < 8) RelPoint @(p, 1, #); }", &[p, p]),
         };
         let mut text = text.replace('@', &name);
         for &class in wants {
@@ -139,13 +145,19 @@ impl Model {
             text = text.replacen('$', &parent, 1);
         }
         let numbers = text.matches('#').map(|_| random.between(-9.0, 9.0)).collect();
+        // Made in loops and subroutines: how others refer to it.
+        let name = match text.split([' ', '(']).next() {
+            Some("for") => name + "[2]",
+            Some("foreach") => name + "[1]",
+            Some("leg") => name + ".toe",
+            _ => name,
+        };
         self.lines.insert(at, Line { name, class, text: text + ";", numbers });
         self.next += 1;
     }
 
     fn text(&self) -> String {
-        let mut out =
-            String::from("param float w = 5 in [3, 7];\nparam float h = 2*w in [0, 20];\n");
+        let mut out = String::from(HEAD);
         for (k, line) in self.lines.iter().enumerate() {
             let mut text = line.text.clone();
             for &x in &line.numbers {
@@ -170,13 +182,19 @@ impl Model {
                 // Renamed, everywhere or only here.
                 let (old, new) = (self.lines[at].name.clone(), format!("m{}", self.next));
                 self.next += 1;
+                let stem = old.split(['[', '.']).next().unwrap_or(&old);
                 let everywhere = random.chance(80);
                 for (k, line) in self.lines.iter_mut().enumerate() {
                     if everywhere || k == at {
-                        line.text = replaced(&line.text, &old, &new);
+                        line.text = replaced(&line.text, stem, &new);
                     }
                 }
-                self.lines[at].name = new;
+                self.lines[at].name = old.replacen(stem, &new, 1);
+                let renamed = self.lines[at].name.clone();
+                self.lines
+                    .iter_mut()
+                    .filter(|l| l.name == old)
+                    .for_each(|l| l.name.clone_from(&renamed));
             }
             4 => self.broken = if self.broken.is_some() { None } else { Some(at) },
             5 => {
@@ -304,7 +322,7 @@ fn edited_models_equal_those_from_scratch_at_any_thread_count() {
     let count = rounds(1000);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| (1..=4).flat_map(|seed| edited(seed, count / 4)).collect::<Vec<String>>())
+        pool.install(|| (1..=5).flat_map(|seed| edited(seed, count / 5)).collect::<Vec<String>>())
     };
     let one = run(1);
     assert!(one == run(2), "two threads differ from one");
@@ -316,7 +334,7 @@ fn edited_models_equal_those_from_scratch_at_any_thread_count() {
         "{count} edits: {errors} states with errors, {failed} with failed and {blocked} with blocked objects, {meshed} with panels"
     );
     assert!(errors > count / 10 && errors < count && meshed > count / 10);
-    assert!(!common::soak() || (failed > count / 50 && blocked > 0));
+    assert!(!common::soak() || failed + blocked > count / 50);
 }
 
 /// Many objects of one rank, so that several threads share them.
