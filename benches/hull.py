@@ -81,9 +81,7 @@ def splinepy_grid() -> object:
         midship[1, 1] = next(EDITS)
         middle = 2 * midship - 0.5 * (STEM + TRANSOM)
         points = np.concatenate([STEM, middle, TRANSOM])
-        surface = splinepy.BSpline(
-            [2, 2], [[0, 0, 0, 0.5, 1, 1, 1], [0, 0, 0, 1, 1, 1]], points
-        )
+        surface = splinepy.BSpline([2, 2], [[0, 0, 0, 0.5, 1, 1, 1], [0, 0, 0, 1, 1, 1]], points)
         return surface.sample([NU, NV])
 
     return work
