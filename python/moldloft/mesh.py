@@ -35,8 +35,9 @@ class Patch:
     """Area of its panels."""
     closed: bool
     """True when its panels alone enclose a volume."""
-    volume: float | None
-    """The volume that it encloses by itself; ``None`` for an open patch."""
+    volume: float
+    """The volume that it encloses by itself. For an open patch the signed volume of the cone from
+    the origin to it: of no meaning alone, but the sum over a closed mesh is the enclosed volume."""
     vertices: int
     """Vertices that its panels use."""
     quality: dict[str, Any]
@@ -114,10 +115,9 @@ class Mesh:
         return float(self.summary["area"])
 
     @property
-    def volume(self) -> float | None:
-        """The enclosed volume; ``None`` for an open mesh."""
-        volume = self.summary["volume"]
-        return None if volume is None else float(volume)
+    def volume(self) -> float:
+        """The enclosed volume; for an open mesh the signed volume of the cone from the origin."""
+        return float(self.summary["volume"])
 
     def __repr__(self) -> str:
         count = f"{self.summary['panels']} panels, {self.summary['vertices']} vertices"

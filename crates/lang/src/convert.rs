@@ -92,7 +92,8 @@ fn head_arguments(head: &Head, class: Class) -> Vec<String> {
     if head.layer != usual.layer {
         named.push(format!("layer = {}", head.layer));
     }
-    if head.divisions != usual.divisions {
+    // Said even when usual: an image without divisions takes its original's.
+    if head.divided || head.divisions != usual.divisions {
         named.push(format!("divisions = {}", pair(head.divisions)));
     }
     if head.subdivisions != usual.subdivisions {

@@ -460,7 +460,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         word: &str,
     ) -> Option<Evaluated<T>> {
         let object = self.run.graph().get(key)?;
-        if let Some(number) = crate::member::of_patch(object, word) {
+        if let Some(number) = crate::member::of_patch(self.run.graph(), object, word) {
             return Some(number.map(Value::Number));
         }
         let at = object.row.field(word)?;

@@ -2,7 +2,7 @@
 
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
-use moldloft_model::{MOST_PANELS, Object, too_many_panels};
+use moldloft_model::{Graph, MOST_PANELS, Object, divisions, too_many_panels};
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
 use moldloft_registry::{Array, ArrayShape, Scalar, Value};
 use std::sync::Arc;
@@ -71,12 +71,16 @@ pub(crate) fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
 }
 
 /// The area of a surface object, measured on its panels.
-pub(crate) fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<T, Diagnostic>> {
+pub(crate) fn of_patch<T: Scalar>(
+    graph: &Graph<T>,
+    object: &Object<T>,
+    name: &str,
+) -> Option<Result<T, Diagnostic>> {
     let Value::Surface(surface) = object.value()? else { return None };
     if name != "area" {
         return None;
     }
-    let [nu, nv] = object.head.divisions.map(|n| n as usize);
+    let [nu, nv] = divisions(graph, object).map(|n| n as usize);
     let panels = nu as u64 * nv as u64;
     if panels > MOST_PANELS {
         return Some(Err(crate::place::unplaced(&too_many_panels(panels))));

@@ -161,6 +161,18 @@ fn surface_of<T: Scalar>(object: &Object<T>) -> Option<&SurfaceRef<T>> {
     }
 }
 
+/// The divisions of a surface: its own or, for an image without any, those of its original.
+pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
+    let mut at = object;
+    while !at.head.divided
+        && let Some((key, _)) = surface_of(at).and_then(|s| s.image_of())
+        && let Some(original) = graph.get(key)
+    {
+        at = original;
+    }
+    at.head.divisions
+}
+
 fn uniform(n: usize) -> Vec<f64> {
     (0..=n).map(|i| i as f64 / n as f64).collect()
 }
@@ -238,7 +250,7 @@ impl<'g> Planner<'g> {
         };
         let mut by_key = HashMap::new();
         for object in graph.objects().filter(|o| o.head.shown()) {
-            if let Some(d) = draft(object, true, object.head.divisions) {
+            if let Some(d) = draft(object, true, divisions(graph, object)) {
                 by_key.insert(object.key, drafts.len());
                 drafts.push(d);
             }
@@ -247,11 +259,11 @@ impl<'g> Planner<'g> {
         let mut at = 0;
         while at < drafts.len() {
             let original = drafts[at].surface.image_of().map(|(key, _)| key);
-            let divisions = drafts[at].object.head.divisions;
+            let same = divisions(graph, drafts[at].object);
             at += 1;
             let Some(object) = original.and_then(|key| graph.get(key)) else { continue };
             if let std::collections::hash_map::Entry::Vacant(slot) = by_key.entry(object.key)
-                && let Some(d) = draft(object, false, divisions)
+                && let Some(d) = draft(object, false, same)
             {
                 slot.insert(drafts.len());
                 drafts.push(d);

@@ -43,7 +43,7 @@ impl PyMesh {
         dict.set_item("vertices", report.vertices)?;
         dict.set_item("closed", report.closed)?;
         dict.set_item("area", measures.area)?;
-        dict.set_item("volume", report.closed.then_some(measures.volume))?;
+        dict.set_item("volume", measures.volume)?;
         dict.set_item("manifold", report.manifold)?;
         dict.set_item("oriented", report.oriented)?;
         dict.set_item("outward", report.outward)?;
@@ -84,7 +84,7 @@ impl PyMesh {
         dict.set_item("divisions", divisions)?;
         dict.set_item("area", measures.area)?;
         dict.set_item("closed", closed)?;
-        dict.set_item("volume", closed.then_some(measures.volume))?;
+        dict.set_item("volume", measures.volume)?;
         dict.set_item("vertices", report.map_or(0, |r| r.vertices))?;
         dict.set_item("quality", self.quality(py, k)?)?;
         Ok(dict)

@@ -21,6 +21,8 @@ pub struct Head {
     pub orientation: i32,
     /// Attributes of a model file, such as `A:Note(port side)`, kept as they are.
     pub attributes: Option<Arc<str>>,
+    /// True when divisions were given: an image without any is divided like its original.
+    pub divided: bool,
 }
 
 /// The most panels along one parameter.
@@ -63,7 +65,16 @@ impl Head {
             Some(_) => (10, [8, 8], [1, 1]),
             None => (12, [1, 1], [1, 1]),
         };
-        Self { colour, visible: 1, layer: 0, divisions, subdivisions, orientation: 0, attributes: None }
+        Self {
+            colour,
+            visible: 1,
+            layer: 0,
+            divisions,
+            subdivisions,
+            orientation: 0,
+            attributes: None,
+            divided: false,
+        }
     }
 
     /// True when the object is drawn and meshed.
@@ -103,7 +114,10 @@ impl Head {
             "colour" => self.colour = whole(0.0, 255.0, value)? as i32,
             "visible" => self.visible = whole(-65536.0, 65535.0, value)? as i32,
             "layer" => self.layer = whole(0.0, 255.0, value)? as i32,
-            "divisions" => self.divisions = pair(value, self.divisions)?,
+            "divisions" => {
+                self.divisions = pair(value, self.divisions)?;
+                self.divided = true;
+            }
             "subdivisions" => self.subdivisions = pair(value, self.subdivisions)?,
             "orientation" => self.orientation = whole(0.0, 1.0, value)? as i32,
             "attributes" => match value {

@@ -210,7 +210,8 @@ def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[
         rows = [_row(patch) for patch in mesh.patches]
         total = mesh.summary
         whole = [str(total["panels"]), str(total["vertices"]), _number(total["area"])]
-        whole += [_number(total["volume"]), _yes(total["closed"])]
+        volume = total["volume"] if total["closed"] else None
+        whole += [_number(volume), _yes(total["closed"])]
         rows.append(["whole", "", *whole, "", "", ""])
         lines += ["", table(header, rows, left=2)]
         lines += [f"open edge: {_loop(loop)}" for loop in total["open_loops"]]
@@ -224,7 +225,7 @@ def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[
 
 def _row(patch: Patch) -> list[str]:
     worst = [f"{patch.quality[name]['max']:.3g}" for name in ("aspect", "skew", "warp")]
-    volume = _number(patch.volume)
+    volume = _number(patch.volume if patch.closed else None)
     counts = [str(patch.panels), str(patch.vertices)]
     return [
         patch.name,
