@@ -432,6 +432,14 @@ impl Document {
     /// The edit, when a run of the edited text would take the number.
     fn in_range(&self, name: &str, edit: LiteralEdit) -> Result<LiteralEdit, Diagnostic> {
         let object = self.plain.graph.get(edit.key).expect("the object of an edit");
+        if let LiteralPlace::Program((module, _)) = edit.place
+            && module != 0
+        {
+            let file = &self.modules.get(module).path;
+            return Err(Diagnostic::error("not-here", format!("`{name}` cannot be set here"))
+                .found(format!("a number in the loaded file `{file}`"))
+                .help("edit that file, or make the number a parameter of this one"));
+        }
         let (field, x) = (&object.row.fields[edit.path.field], edit.value);
         let low = field.min.unwrap_or(f64::NEG_INFINITY);
         let high = field.max.unwrap_or(f64::INFINITY);

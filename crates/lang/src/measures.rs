@@ -167,13 +167,11 @@ impl Document {
         let mut evaluation = self.dual.take().unwrap_or_default();
         let mut outcome = Ok(());
         for pass in by.chunks(4) {
-            let seed = |name: &str, x: Dual4| match pass.iter().position(|p| p == name) {
-                Some(k) => {
-                    let mut x = x;
-                    x.eps[k] = 1.0;
-                    x
+            let seed = |name: &str, mut x: Dual4| {
+                for (eps, _) in x.eps.iter_mut().zip(pass).filter(|(_, p)| *p == name) {
+                    *eps = 1.0;
                 }
-                None => x,
+                x
             };
             self.evaluate(&mut evaluation, &seed, &seeded_objects, false);
             outcome = each(self, &mut evaluation, pass.len());

@@ -74,7 +74,16 @@ impl Program<'_> {
         inputs: Inputs<'_, T>,
         text: &str,
     ) -> Result<Value<T>, Vec<Diagnostic>> {
-        let file = self.sources.add("expression", text);
+        // One place for all expressions: a long session asks for many.
+        const NAME: &str = "expression";
+        let known = self.sources.find(NAME).filter(|&file| self.sources.ids().next() != Some(file));
+        let file = match known {
+            Some(file) => {
+                self.sources.replace(file, text);
+                file
+            }
+            None => self.sources.add(NAME, text),
+        };
         let (program, expr, mut found) = sdl::parse_expr(text, file);
         if found.iter().any(Diagnostic::is_error) {
             return Err(found);

@@ -2,9 +2,9 @@
 
 use crate::document::{Document, Source};
 use crate::module::Module;
-use moldloft_diag::{Diagnostic, Span};
+use moldloft_diag::{Diagnostic, FileId, Span};
 use moldloft_model::Applied;
-use moldloft_syntax::sdl::{ExprId, ExprKind, StmtId, StmtKind, Symbol};
+use moldloft_syntax::sdl::{self, ExprId, ExprKind, StmtId, StmtKind, Symbol};
 
 impl Document {
     /// Deletes an object that nothing is built on, and its statement.
@@ -61,9 +61,11 @@ impl Document {
         let (_, span) = self.sole_statement(old)?;
         let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let head = new.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-        if !head || !new.chars().all(word) {
+        // A reserved word cannot be declared.
+        let declared = || sdl::parse(format!("float {new};"), FileId(0)).1.is_empty();
+        if !head || !new.chars().all(word) || !declared() {
             return Err(Diagnostic::error("not-a-name", format!("`{new}` is no name"))
-                .expected("a letter, then letters, digits and _"));
+                .expected("a letter, then letters, digits and _, and no reserved word"));
         }
         let m = self.modules.get(0);
         if m.program.is_edited() {
@@ -71,7 +73,8 @@ impl Document {
             self.set_text(&text);
             return self.rename(old, new);
         }
-        if m.program.symbol(new).is_some() || self.graph().find(new).is_some() {
+        let known = self.registry.get(new).is_some() || m.program.symbol(new).is_some();
+        if known || self.graph().find(new).is_some() {
             return Err(Diagnostic::error("duplicate-name", format!("`{new}` is used already"))
                 .at(span)
                 .help("choose another name"));

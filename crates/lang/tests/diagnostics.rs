@@ -282,3 +282,90 @@ fn an_expression_changes_nothing() {
     }
     assert_eq!(common::number(&mut document, "Q.x"), 2.0);
 }
+
+#[test]
+fn numbers_of_loaded_files_are_set_there() {
+    let lib = ("lib.sdl", "AbsPoint P(1, 2, 3);");
+    let mut document = with_files("load \"lib.sdl\"; RelPoint Q(P, 1);", &[lib]);
+    let faults = document.set(&[("P.x".into(), 5.0)]).unwrap_err();
+    assert_eq!(faults[0].id, "not-here");
+    assert_eq!(common::number(&mut document, "Q.x"), 2.0);
+    // Derivatives by them exist all the same.
+    let d = document
+        .derivatives(&["Q.x".into()], &["P.x".into(), "P.x".into(), "Q.dx".into()])
+        .unwrap();
+    let d: Vec<String> = d[0].iter().map(moldloft_lang::show::plain).collect();
+    assert_eq!(d, ["1", "1", "1"]);
+}
+
+#[test]
+fn deleting_and_renaming_are_checked() {
+    let text = "param w = 2; AbsPoint A(0, 0, 0); AbsPoint B(1, w, 0);\nLine l(A, B); float s = length(l);\n\
+                for (i = 1:2) AbsPoint p(i, 0, 0);\nAbsPoint C(s, B.y, 0); # far\nAbsPoint D(0, 0, 0);\n\
+                subroutine f(AbsPoint D) { RelPoint r(D, 1); } f(A);";
+    let mut document = open(text);
+    assert!(document.diagnostics().is_empty(), "{:?}", told(&document));
+    for (name, id) in [
+        ("A", "has-dependents"),
+        ("l", "has-dependents"),
+        ("p[1]", "not-here"),
+        ("r", "not-here"),
+        ("E", "unknown-name"),
+    ] {
+        let fault = document.delete(name).unwrap_err();
+        assert_eq!(fault.id, id, "{name}: {fault:?}");
+    }
+    for (old, new, id) in [
+        ("A", "B", "duplicate-name"),
+        ("A", "w", "duplicate-name"),
+        ("A", "for", "not-a-name"),
+        ("A", "while", "not-a-name"),
+        ("A", "RevSurf", "duplicate-name"),
+        ("A", "Line", "duplicate-name"),
+        ("A", "sqrt", "duplicate-name"),
+        ("A", "a b", "not-a-name"),
+        ("A", "", "not-a-name"),
+        ("A", "1a", "not-a-name"),
+        ("D", "E", "two-meanings"),
+        ("p[1]", "q", "not-here"),
+        ("E", "F", "unknown-name"),
+    ] {
+        let fault = document.rename(old, new).expect_err(old);
+        assert_eq!(fault.id, id, "{old} -> {new}: {fault:?}");
+    }
+    assert_eq!(document.text(), text);
+    document.set(&[("A.x".into(), -1234.5)]).unwrap();
+    document.rename("B", "bow").unwrap();
+    assert!(document.diagnostics().is_empty(), "{:?}\n{}", told(&document), document.text());
+    assert!(
+        document.text().contains("AbsPoint bow(1, w, 0);\nLine l(A, bow)")
+            && document.text().contains("bow.y")
+    );
+    assert_eq!(common::number(&mut document, "bow.y"), 2.0);
+    let applied = document.delete("C").unwrap();
+    assert_eq!((applied.evaluated, document.diagnostics().len()), (0, 0));
+    assert!(document.text().contains("AbsPoint p(i, 0, 0);\n # far\n"), "{}", document.text());
+    assert!(document.text().contains("-1234.5"));
+}
+
+#[test]
+fn a_long_session_of_expressions_keeps_no_texts() {
+    let mut document = open("AbsPoint A(1, 2, 3);");
+    for k in 0..2000 {
+        assert_eq!(common::number(&mut document, &format!("A.x + {k}")), 1.0 + f64::from(k));
+        assert!(document.eval("A.x + nothing").is_err());
+    }
+    assert_eq!(document.sources().len(), 2);
+}
+
+#[test]
+fn a_cancelled_run_says_so_and_can_be_made_again() {
+    let mut document = open("float x = 0; for (i = 1:1e4) x += i; AbsPoint A(x, 0, 0);");
+    let handle = document.cancel_handle();
+    handle.store(true, std::sync::atomic::Ordering::Relaxed);
+    document.run();
+    assert_eq!(ids(&document), ["cancelled"]);
+    handle.store(false, std::sync::atomic::Ordering::Relaxed);
+    document.run();
+    assert_eq!((ids(&document).len(), document.graph().len()), (0, 1));
+}
