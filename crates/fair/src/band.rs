@@ -1,6 +1,7 @@
 //! Symmetric positive definite band matrices.
 
 use crate::FairError;
+use moldloft_num::Real;
 
 /// The most numbers that a factor may hold (8 bytes each).
 pub(crate) const LARGEST: usize = 1 << 28;
@@ -81,6 +82,29 @@ impl Band {
         }
     }
 
+    /// Solves with the factor for numbers of any kind, in place.
+    pub fn solve_any<T: Real>(&self, x: &mut [T]) {
+        let (w, stride) = (self.width, self.width + 1);
+        for i in 0..self.n {
+            let first = i.saturating_sub(w);
+            let row = &self.data[i * stride..(i + 1) * stride];
+            let mut value = x[i];
+            for (&x, &l) in x[first..i].iter().zip(&row[w + first - i..w]) {
+                value -= x * l;
+            }
+            x[i] = value / row[w];
+        }
+        for i in (0..self.n).rev() {
+            let first = i.saturating_sub(w);
+            let row = &self.data[i * stride..(i + 1) * stride];
+            let value = x[i] / row[w];
+            x[i] = value;
+            for (x, &l) in x[first..i].iter_mut().zip(&row[w + first - i..w]) {
+                *x -= value * l;
+            }
+        }
+    }
+
     /// Solves with the factor, in place.
     pub fn solve(&self, x: &mut [f64]) {
         let (w, stride) = (self.width, self.width + 1);
@@ -123,7 +147,10 @@ mod tests {
             let mut b: Vec<f64> =
                 (0..n).map(|i| (0..n).map(|j| dense[i * n + j] * x[j]).sum()).collect();
             band.factor();
+            let mut other = b.clone();
             band.solve(&mut b);
+            band.solve_any(&mut other);
+            assert!(other.iter().zip(&x).all(|(p, q)| (p - q).abs() < 1e-12));
             assert!(b.iter().zip(&x).all(|(p, q)| (p - q).abs() < 1e-12));
         }
         assert!(matches!(Band::zero(1 << 20, 1 << 12), Err(FairError::TooLarge { .. })));

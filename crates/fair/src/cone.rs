@@ -38,6 +38,13 @@ impl Cone {
         cone
     }
 
+    /// The cone with its dual moved to the central path: off the path the scaling's sideways
+    /// stiffness is not that of the solution.
+    pub fn centred(&self) -> Self {
+        let share = self.y.0 / self.u.0;
+        Self::new(self.u, (self.y.0, self.u.1.map(|c| -c * share)))
+    }
+
     /// Recomputes the scaling from slack and dual.
     pub fn scale(&mut self) {
         // Rounding may put a point on its cone's surface: a trace inside is enough.
@@ -93,6 +100,12 @@ impl Cone {
             }
         }
         out
+    }
+
+    /// The side of W^-2 from u0 to y1: the force that a wider limit takes back, with its sign.
+    pub fn side(&self) -> V {
+        let scale = -2.0 * self.w.0 / (self.eta * self.eta);
+        self.w.1.map(|c| c * scale)
     }
 
     /// W^-1 (middle \ d), with d the goal of the scaled complementarity: the centre `mu`, less the

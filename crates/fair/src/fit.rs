@@ -175,12 +175,7 @@ pub fn fit(
         return Err(FairError::Weight { index, weight: weights[index] });
     }
     let n = space.count();
-    let mut rows = Rows::new();
-    for &t in &parameters {
-        let (k, t) = space.locate(t);
-        let basis = space.basis(k, t);
-        rows.push(space.columns(k).zip(basis.rows[0].iter().copied()));
-    }
+    let rows = values(&space, &parameters);
     let mut control = vec![points[0]; n];
     let mut frozen = vec![false; n];
     if space.is_clamped() {
@@ -224,4 +219,65 @@ pub fn fit(
     let largest = distances.iter().copied().fold(0.0, f64::max);
     let rms = (distances.iter().map(|d| d * d).sum::<f64>() / points.len() as f64).sqrt();
     Ok(Fit { space, points: control, parameters, largest, rms })
+}
+
+/// The basis functions at parameters, as rows over the control points.
+fn values(space: &Space, parameters: &[f64]) -> Rows {
+    let mut rows = Rows::new();
+    for &t in parameters {
+        let (k, t) = space.locate(t);
+        let basis = space.basis(k, t);
+        rows.push(space.columns(k).zip(basis.rows[0].iter().copied()));
+    }
+    rows
+}
+
+/// A sum of squares without limits.
+fn squares(measure: Rows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Problem {
+    let reach = vec![f64::INFINITY; frozen.len()];
+    let bounds = Bounds { rows: Rows::new(), direct: true, radii: Vec::new(), separate: false };
+    let conditions = Vec::new();
+    Problem {
+        dimension: 3,
+        measure,
+        norm: Norm::Square,
+        offsets,
+        bounds,
+        frozen,
+        conditions,
+        reach,
+    }
+}
+
+/// The control points of an unweighted fit for data that carry derivatives, whose real parts are
+/// those that were fitted. Knots and parameters stay as they are, so a fit is linear in its data.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_with<T: Real>(fit: &Fit, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+    let n = fit.space.count();
+    let rows = values(&fit.space, &fit.parameters);
+    let mut frozen = vec![false; n];
+    let change = |p: &Vec3<T>| *p - Vec3::lifted(p.re());
+    let mut control: Vec<Vec3<T>> = fit.points.iter().map(|&p| Vec3::lifted(p)).collect();
+    if fit.space.is_clamped() {
+        (frozen[0], frozen[n - 1]) = (true, true);
+        control[0] += change(&points[0]);
+        control[n - 1] += change(&points[points.len() - 1]);
+    }
+    let offsets: Vec<[T; 3]> = (0..rows.len())
+        .map(|k| {
+            let (columns, factors) = rows.row(k);
+            let ends = columns.iter().zip(factors).filter(|(c, _)| frozen[**c as usize]);
+            let moved = ends
+                .fold(Vec3::zero(), |s, (&c, &x)| s + change(&control[c as usize]).map(|v| v * x));
+            (moved - change(&points[k])).to_array()
+        })
+        .collect();
+    let problem = squares(rows, vec![[0.0; 3]; offsets.len()], frozen);
+    let still = solver::solve(&problem, 0.0, 0.0)?;
+    for (c, x) in control.iter_mut().zip(solver::respond(&problem, &still, &offsets, &[])?) {
+        *c += Vec3::from(x);
+    }
+    Ok(control)
 }

@@ -5,6 +5,7 @@ mod breaks;
 mod certificate;
 mod cone;
 mod deviation;
+mod entity;
 mod error;
 mod fit;
 mod heap;
@@ -25,16 +26,18 @@ mod testing;
 pub use breaks::{Finding, findings, with_findings};
 pub use certificate::{Certificate, ball_gap};
 pub use deviation::{Deviation, certified, deviation};
+pub use entity::rows;
 pub use error::FairError;
-pub use fit::{Fit, Spacing, fit, interpolate, least_squares, parameters};
+pub use fit::{Fit, Spacing, fit, fit_with, interpolate, least_squares, parameters};
 pub use job::{End, Job};
 pub use jump::Jumps;
 pub use limit::{Limit, Motion};
 pub use local::{
-    Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, local_from, replay, sweeps,
+    Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, local_from, replay, replay_with,
+    sweeps,
 };
 pub use measure::{Measure, Norm, value};
 pub use network::{Network, Strand};
-pub use optimum::{Bound, Condition, Optimum, OptimumOptions, optimum};
+pub use optimum::{Bound, Condition, Optimum, OptimumOptions, optimum, optimum_with};
 pub use rows::Rows;
 pub use space::Space;

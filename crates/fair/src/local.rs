@@ -3,7 +3,7 @@
 use crate::certificate::ball_gap;
 use crate::heap::Heap;
 use crate::{FairError, Job, Jumps, Measure, Norm, Rows, shape};
-use moldloft_num::Vec3;
+use moldloft_num::{Real, Vec3};
 
 /// Which knot comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -377,4 +377,42 @@ pub fn sweeps(job: &Job, measure: Measure, count: usize) -> Result<Vec<Vec3<f64>
         }
     }
     Ok(points)
+}
+
+/// The points after the steps of a log, with numbers that carry derivatives: which points moved is
+/// as it was, where they went follows the input. The limits must be balls; real parts are the bits
+/// of the log.
+///
+/// # Errors
+/// [`FairError`] as for [`local`].
+pub fn replay_with<T: Real>(
+    job: &Job,
+    options: &LocalOptions,
+    log: &[Move],
+    points: &[Vec3<T>],
+    tolerances: &[T],
+) -> Result<Vec<Vec3<T>>, FairError> {
+    let rows = job.measure_rows(options.measure)?;
+    let steps = Steps::of(job, options.step, &rows);
+    let mut now = points.to_vec();
+    for step in log {
+        let j = step.index as usize;
+        let (columns, factors) = steps.rows.row(j);
+        let entries = columns.iter().zip(factors);
+        let form: Vec3<T> =
+            entries.fold(Vec3::zero(), |s, (&c, &a)| s + now[c as usize].map(|x| x * a));
+        let wanted = now[j] - form.map(|x| x / steps.own[j]);
+        let away = wanted - points[j];
+        let radius = tolerances[j];
+        let moved = if away.norm_sq().re() > radius.re() * radius.re() {
+            points[j] + away * (radius / away.norm())
+        } else {
+            wanted
+        };
+        now[j] = moved + Vec3::lifted(step.to - moved.re());
+        // The sum may round in the last bit: the log decides.
+        let off = step.to - now[j].re();
+        now[j] += Vec3::lifted(off);
+    }
+    Ok(now)
 }

@@ -8,7 +8,7 @@ use crate::{
     Bound, Certificate, Condition, End, FairError, Job, Limit, LocalOptions, Measure, Rows, Space,
     local_from,
 };
-use moldloft_num::Vec3;
+use moldloft_num::{Real, Vec3};
 
 /// One curve of a network.
 #[derive(Clone, Debug, PartialEq)]
@@ -277,8 +277,33 @@ impl Network {
         conditions: Vec<Condition>,
         accuracy: f64,
     ) -> Result<Optimum, FairError> {
+        self.parts(measure, bound, conditions, accuracy)?.solve()
+    }
+
+    /// The same for numbers that carry derivatives; see [`crate::optimum_with`].
+    ///
+    /// # Errors
+    /// As [`Network::optimum`].
+    pub fn optimum_with<T: Real>(
+        &self,
+        measure: Measure,
+        bound: Bound,
+        accuracy: f64,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+    ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+        self.parts(measure, bound, Vec::new(), accuracy)?.solve_with(points, tolerances)
+    }
+
+    fn parts(
+        &self,
+        measure: Measure,
+        bound: Bound,
+        conditions: Vec<Condition>,
+        accuracy: f64,
+    ) -> Result<Parts<'_>, FairError> {
         self.check()?;
-        let parts = Parts {
+        Ok(Parts {
             points: &self.points,
             relative: self.relative(),
             limit: &self.limit,
@@ -289,8 +314,7 @@ impl Network {
             own: 0,
             bezier: if bound == Bound::Bezier { self.bezier() } else { None },
             accuracy,
-        };
-        parts.solve()
+        })
     }
 
     /// Joint sweeps over single points, each to its limited minimiser: for nets beyond the direct

@@ -3,7 +3,7 @@
 use crate::job::End;
 use crate::solver::{self, Bounds, Problem, V};
 use crate::{Certificate, FairError, Job, Limit, Measure, Motion, Norm, Rows, Space};
-use moldloft_num::{Order, Vec3};
+use moldloft_num::{Order, Real, Vec3};
 
 /// What the tolerance is a bound on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -257,27 +257,23 @@ impl Frame {
 /// assert!(faired.points[5].y.abs() < 1e-6);
 /// ```
 pub fn optimum(job: &Job, options: &OptimumOptions) -> Result<Optimum, FairError> {
-    job.check()?;
-    let (frozen, mut conditions) = kept(job);
-    let own = conditions.len();
-    conditions.extend(options.conditions.iter().cloned());
-    let weights = job.weights.as_deref();
-    let parts = Parts {
-        points: &job.points,
-        relative: job.relative(&job.points),
-        limit: &job.limit,
-        measure: job.measure_rows(options.measure)?,
-        norm: options.measure.norm(),
-        frozen,
-        conditions,
-        own,
-        bezier: match options.bound {
-            Bound::ControlPoints => None,
-            Bound::Bezier => Some((job.space.bezier(weights), job.space.reach(weights))),
-        },
-        accuracy: options.accuracy,
-    };
-    parts.solve()
+    Parts::of(job, options)?.solve()
+}
+
+/// The same for numbers that carry derivatives: `points` and `tolerances` (per control point) have
+/// the real parts of the job, whose curve is polynomial and has no weights. Derivatives follow from
+/// the conditions of optimality by the implicit function theorem; real parts are the bits of
+/// [`optimum`].
+///
+/// # Errors
+/// As [`optimum`].
+pub fn optimum_with<T: Real>(
+    job: &Job,
+    options: &OptimumOptions,
+    points: &[Vec3<T>],
+    tolerances: &[T],
+) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+    Parts::of(job, options)?.solve_with(points, tolerances)
 }
 
 /// What curves, nets and networks have in common.
@@ -297,17 +293,109 @@ pub(crate) struct Parts<'a> {
     pub accuracy: f64,
 }
 
-impl Parts<'_> {
+impl<'a> Parts<'a> {
+    /// The parts of a curve.
+    pub fn of(job: &'a Job, options: &OptimumOptions) -> Result<Self, FairError> {
+        job.check()?;
+        let (frozen, mut conditions) = kept(job);
+        let own = conditions.len();
+        conditions.extend(options.conditions.iter().cloned());
+        let weights = job.weights.as_deref();
+        Ok(Parts {
+            points: &job.points,
+            relative: job.relative(&job.points),
+            limit: &job.limit,
+            measure: job.measure_rows(options.measure)?,
+            norm: options.measure.norm(),
+            frozen,
+            conditions,
+            own,
+            bezier: match options.bound {
+                Bound::ControlPoints => None,
+                Bound::Bezier => Some((job.space.bezier(weights), job.space.reach(weights))),
+            },
+            accuracy: options.accuracy,
+        })
+    }
+
     /// The optimum.
-    pub fn solve(self) -> Result<Optimum, FairError> {
+    pub fn solve(&self) -> Result<Optimum, FairError> {
         let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
+        Ok(self.solved(&frame, &problem)?.0)
+    }
+
+    /// The optimum with the numbers or their derivatives of `points` and `tolerances` (per control
+    /// point), whose real parts are those of the job. The real parts of the result are the bits of
+    /// [`Parts::solve`].
+    pub fn solve_with<T: Real>(
+        &self,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+    ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let problem = self.problem(&frame);
+        let (optimum, solution) = self.solved(&frame, &problem)?;
+        let constant = |p: &Vec3<T>| p.to_array().iter().all(|c| c.is_constant());
+        let still = points.iter().all(constant) && tolerances.iter().all(|t| t.is_constant());
+        if still {
+            let lifted = optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
+            return Ok((lifted, optimum));
+        }
+        let change = |p: &Vec3<T>| *p - Vec3::lifted(p.re());
+        let changes: Vec<Vec3<T>> = points.iter().map(change).collect();
+        let rows = &problem.measure;
+        let down = |v: Vec3<T>| {
+            let mut out = [T::zero(); 3];
+            for (o, a) in out.iter_mut().zip(&frame.axes) {
+                *o = v.x * a.x + v.y * a.y + v.z * a.z;
+            }
+            out
+        };
+        let offsets: Vec<_> = (0..rows.len())
+            .map(|k| {
+                let (columns, factors) = rows.row(k);
+                let entries = columns.iter().zip(factors);
+                down(
+                    entries
+                        .fold(Vec3::zero(), |s, (&c, &f)| s + changes[c as usize].map(|x| x * f)),
+                )
+            })
+            .collect();
+        let limits = &problem.bounds.rows;
+        let radii: Vec<T> = (0..limits.len())
+            .map(|k| {
+                // The tolerance that set this limit's radius: the first of the smallest.
+                let near = limits.row(k).0.iter().map(|&c| c as usize);
+                let set = near
+                    .filter(|&c| self.limit.radii[c] > 0.0)
+                    .reduce(|a, b| if self.limit.radii[b] < self.limit.radii[a] { b } else { a });
+                set.map_or(T::zero(), |c| tolerances[c] - T::from(tolerances[c].re()))
+            })
+            .collect();
+        let answers = solver::respond(&problem, &solution, &offsets, &radii)?;
+        let faired = (0..points.len()).map(|i| {
+            let mut p = Vec3::lifted(optimum.points[i]) + changes[i];
+            for (a, x) in frame.axes.iter().zip(answers[i]) {
+                p += Vec3::new(x * a.x, x * a.y, x * a.z);
+            }
+            // The answer's real part is zero; adding it must not touch a bit.
+            p - Vec3::lifted(p.re() - optimum.points[i])
+        });
+        Ok((faired.collect(), optimum))
+    }
+
+    fn solved(
+        &self,
+        frame: &Frame,
+        problem: &Problem,
+    ) -> Result<(Optimum, solver::Solution), FairError> {
         // Gaps below the rounding of the measure are no gaps.
         let size = self.relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
         let noise = 4.0 * f64::EPSILON * size;
         let floor = noise * noise * problem.measure.len() as f64;
-        let solution = solver::solve(&problem, self.accuracy, floor)?;
-        let points = self.moved(&frame, &solution.x);
+        let solution = solver::solve(problem, self.accuracy, floor)?;
+        let points = self.moved(frame, &solution.x);
         let count = self.conditions.len();
         let missed: Vec<usize> = (0..count).filter(|&k| solution.misses[k] > 1e-7).collect();
         if !missed.is_empty() {
@@ -322,8 +410,9 @@ impl Parts<'_> {
         // Squares are solved as halves.
         let unit = if self.norm == Norm::Square { 2.0 } else { 1.0 };
         let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
-        let active = active(&problem, &solution);
-        Ok(Optimum { points, certificate, iterations: solution.iterations, active })
+        let active = active(problem, &solution);
+        let iterations = solution.iterations;
+        Ok((Optimum { points, certificate, iterations, active }, solution))
     }
 
     fn moved(&self, frame: &Frame, x: &[V]) -> Vec<Vec3<f64>> {

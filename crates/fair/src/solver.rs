@@ -13,6 +13,7 @@
 use crate::band::Band;
 use crate::cone::{Cone, Pair, farthest};
 use crate::{FairError, Norm, Rows};
+use moldloft_num::Real;
 
 /// One coordinate triple; only the first D are used.
 pub(crate) type V = [f64; 3];
@@ -74,6 +75,8 @@ pub(crate) struct Solution {
     pub iterations: usize,
     /// Largest miss of a condition, relative to its own scale, and which ones are missed.
     pub misses: Vec<f64>,
+    /// The cones at the solution, for [`respond`].
+    cones: Vec<Cone>,
 }
 
 const MOST_ITERATIONS: usize = 80;
@@ -600,7 +603,7 @@ pub(crate) fn solve(p: &Problem, accuracy: f64, floor: f64) -> Result<Solution, 
     }
     let (value, gap) = state.certificate();
     let misses = misses(p, &state.x);
-    Ok(Solution { x: state.x, value, gap, iterations, misses })
+    Ok(Solution { x: state.x, value, gap, iterations, misses, cones: state.cones })
 }
 
 /// By how much each condition is missed, relative to what the limits let it vary.
@@ -641,4 +644,78 @@ fn start(state: &mut State) {
         }
     }
     state.cones.extend(lengths);
+}
+
+/// How the displacements answer to small changes of the offsets (per measure row) and radii (per
+/// limit): the implicit function theorem at the solution, where each cone resists with its
+/// stiffness. The changes are numbers with a zero real part. Conditions must be none.
+///
+/// # Errors
+/// [`FairError::TooLarge`].
+pub(crate) fn respond<T: Real>(
+    p: &Problem,
+    solution: &Solution,
+    offsets: &[[T; 3]],
+    radii: &[T],
+) -> Result<Vec<[T; 3]>, FairError> {
+    let n = p.frozen.len();
+    let zero = [T::zero(); 3];
+    let (place, unknowns, span) = order(p);
+    let d = p.dimension;
+    if unknowns == 0 || d == 0 {
+        return Ok(vec![zero; n]);
+    }
+    let state = State {
+        p,
+        d,
+        place,
+        unknowns,
+        x: solution.x.clone(),
+        cones: solution.cones.iter().map(Cone::centred).collect(),
+        nu: Vec::new(),
+    };
+    let mut band = Band::zero(unknowns * d, d * (span + 1) - 1)?;
+    state.assemble(&mut band);
+    band.factor();
+    let limits = state.limits();
+    let mut right = vec![zero; n];
+    let mut spread = |rows: &Rows, k: usize, force: [T; 3]| {
+        let (columns, factors) = rows.row(k);
+        for (&c, &a) in columns.iter().zip(factors) {
+            for r in 0..3 {
+                right[c as usize][r] -= force[r] * a;
+            }
+        }
+    };
+    for (k, change) in offsets.iter().enumerate() {
+        let force = match p.norm {
+            Norm::Square => *change,
+            Norm::Length => {
+                let w = state.cones[limits + k].stiffness(true);
+                let row = |r: usize| (0..3).fold(T::zero(), |s, c| s + change[c] * w[r][c]);
+                [row(0), row(1), row(2)]
+            }
+        };
+        spread(&p.measure, k, force);
+    }
+    for c in 0..limits {
+        let (rows, k) = state.rows_of(c);
+        let side = state.part(c, state.cones[c].side());
+        spread(rows, k, side.map(|s| radii[k] * s));
+    }
+    let mut flat = vec![T::zero(); unknowns * d];
+    for (v, &at) in right.iter().zip(&state.place) {
+        if at != NONE {
+            flat[at as usize * d..][..d].copy_from_slice(&v[..d]);
+        }
+    }
+    band.solve_any(&mut flat);
+    let pick = |&at: &u32| {
+        let mut v = zero;
+        if at != NONE {
+            v[..d].copy_from_slice(&flat[at as usize * d..][..d]);
+        }
+        v
+    };
+    Ok(state.place.iter().map(pick).collect())
 }

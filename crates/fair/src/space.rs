@@ -163,6 +163,17 @@ impl Space {
         (k, t)
     }
 
+    /// The space as an open knot vector over [0, 1], and the control point that stands at each of
+    /// its places: a closed spline repeats its first `degree` points.
+    pub fn knot_vector(&self) -> (KnotVector, Vec<usize>) {
+        let (p, n) = (self.degree as isize, self.count as isize);
+        let (from, to) = if self.is_closed() { (-p, n + p) } else { (0, n + p) };
+        let knots = (from..=to).map(|i| self.knot(i)).collect();
+        let knots = KnotVector::new(self.degree, knots).expect("the knots of a space are sorted");
+        let places = (from..n).map(|s| self.column(s)).collect();
+        (knots.normalized(), places)
+    }
+
     /// The simple interior knots: where the derivative of order `degree` may jump and a local
     /// step is defined. Multiple knots are intended breaks.
     pub(crate) fn simple_knots(&self) -> impl Iterator<Item = isize> + '_ {

@@ -1,0 +1,230 @@
+//! Fairing in the graph: the kinds that store an intent and run again when their points change.
+
+mod curve;
+mod functions;
+mod shapes;
+mod snake;
+mod surface;
+
+use crate::{
+    Bound, End, FairError, Job, Limit, LocalOptions, Measure, Motion, OptimumOptions, Space,
+    Spacing, fit_with, interpolate, local, optimum_with, replay_with,
+};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::export::StaticRow;
+use moldloft_registry::{Fault, Row};
+
+/// All kinds and functions of this crate, in the order of the reference.
+///
+/// # Example
+/// ```
+/// let rows = moldloft_fair::rows();
+/// assert!(rows.iter().any(|row| row.name == "FairCurve"));
+/// ```
+pub fn rows() -> Vec<Row> {
+    vec![
+        curve::FairCurve::<f64>::row(),
+        snake::FairSnake::<f64>::row(),
+        surface::FairSurf::<f64>::row(),
+        functions::Fair::<f64>::row(),
+        functions::Jumps::<f64>::row(),
+        functions::Curvature::<f64>::row(),
+    ]
+}
+
+/// The certified gap of the kinds: as small as rounding allows, so that which limits are reached is
+/// decided and derivatives are those of the optimum itself.
+pub(crate) const ACCURACY: f64 = 1e-13;
+
+/// How points become a fair spline: what the arguments of the kinds say.
+pub(crate) struct Intent<T> {
+    pub tolerance: T,
+    pub degree: usize,
+    pub closed: bool,
+    pub role: Role,
+    pub measure: Measure,
+    pub faithful: bool,
+    pub end: End,
+    /// Intended breaks, from 1.
+    pub breaks: Vec<usize>,
+}
+
+/// What the given points are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// Points that the spline passes through before it is faired.
+    Fit,
+    /// Control points.
+    Control,
+    /// Points that are faired themselves, and then interpolated.
+    Points,
+}
+
+/// The places of the arguments that can be at fault.
+pub(crate) struct Places {
+    pub points: usize,
+    pub tolerance: usize,
+    pub degree: usize,
+    pub breaks: usize,
+}
+
+fn unknown(noun: &str, found: &str, all: &[&str], field: usize) -> Fault {
+    let all: Vec<_> = all.iter().map(|n| format!("\"{n}\"")).collect();
+    Fault::new("unknown-name", format!("there is no {noun} \"{found}\""))
+        .expected(all.join(", "))
+        .found(format!("\"{found}\""))
+        .in_field(field)
+}
+
+/// The role called `name`, an argument in `field`.
+pub(crate) fn role(name: &str, field: usize) -> Result<Role, Fault> {
+    Ok(match name {
+        "fit" => Role::Fit,
+        "control" => Role::Control,
+        "points" => Role::Points,
+        _ => return Err(unknown("role of points", name, &["fit", "control", "points"], field)),
+    })
+}
+
+/// The measure called `name`.
+pub(crate) fn measure(name: &str, field: usize) -> Result<Measure, Fault> {
+    let all = Measure::ALL.map(Measure::name);
+    Measure::named(name).ok_or_else(|| unknown("measure", name, &all, field))
+}
+
+/// True for the mode "faithful", false for "optimum".
+pub(crate) fn faithful(name: &str, field: usize) -> Result<bool, Fault> {
+    match name {
+        "optimum" => Ok(false),
+        "faithful" => Ok(true),
+        _ => Err(unknown("mode", name, &["optimum", "faithful"], field)),
+    }
+}
+
+/// The end condition called `name`.
+pub(crate) fn end(name: &str, field: usize) -> Result<End, Fault> {
+    let all = ["free", "position", "tangent", "curvature"];
+    End::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
+}
+
+/// A refusal as a fault at its argument.
+pub(crate) fn fault(error: FairError, places: &Places) -> Fault {
+    let text = error.to_string();
+    match error {
+        FairError::TooFew { expected, actual } => Fault::new("too-few-items", text)
+            .expected(format!("at least {expected} points"))
+            .found(actual.to_string())
+            .in_field(places.points),
+        FairError::NotFinite { index } => {
+            Fault::new("not-finite", text).in_item(index).in_field(places.points)
+        }
+        FairError::Coincident { first } => {
+            Fault::new("coincident-points", text).in_item(first + 1).in_field(places.points)
+        }
+        FairError::Tolerance { value } => Fault::new("out-of-range", text)
+            .expected("a tolerance of at least 0")
+            .found(value.to_string())
+            .in_field(places.tolerance),
+        FairError::Mark { index, count } => {
+            Fault::new("out-of-range", format!("there is no point {}", index + 1))
+                .expected(format!("numbers of points from 1 to {count}"))
+                .found((index + 1).to_string())
+                .in_field(places.breaks)
+        }
+        FairError::Degree { expected, actual } => Fault::new("out-of-range", text)
+            .expected(format!("degree {expected} or more for this measure"))
+            .found(actual.to_string())
+            .in_field(places.degree),
+        _ => Fault::new("not-faired", text).in_field(places.points),
+    }
+}
+
+impl<T: Real> Intent<T> {
+    /// Marks from 0.
+    fn marks(&self, count: usize) -> Result<Vec<usize>, FairError> {
+        let from_zero = |&b: &usize| match b.checked_sub(1) {
+            Some(index) if index < count => Ok(index),
+            index => Err(FairError::Mark { index: index.unwrap_or(usize::MAX - 1), count }),
+        };
+        self.breaks.iter().map(from_zero).collect()
+    }
+
+    /// The faired spline of points.
+    pub fn spline(&self, points: &[Vec3<T>]) -> Result<(Space, Vec<Vec3<T>>), FairError> {
+        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
+        let n = points.len();
+        let space = || {
+            if self.closed {
+                let knots = (0..n).map(|k| k as f64 / n as f64).collect();
+                Space::periodic(self.degree, knots, 1.0)
+            } else if n < self.degree + 2 {
+                Err(FairError::TooFew { expected: self.degree + 2, actual: n })
+            } else {
+                Space::clamped(self.degree, n)
+            }
+        };
+        match self.role {
+            Role::Control => {
+                let space = space()?;
+                let faired = self.faired(&space, points)?;
+                Ok((space, faired))
+            }
+            Role::Fit => {
+                let fit = interpolate(self.degree, &plain, Spacing::Uniform, self.closed)?;
+                let control = fit_with(&fit, points)?;
+                let faired = self.faired(&fit.space, &control)?;
+                Ok((fit.space, faired))
+            }
+            Role::Points => {
+                let moved = self.faired_points(&space()?, points)?;
+                let plain: Vec<_> = moved.iter().map(|p| p.re()).collect();
+                let fit = interpolate(self.degree, &plain, Spacing::Uniform, self.closed)?;
+                let control = fit_with(&fit, &moved)?;
+                Ok((fit.space, control))
+            }
+        }
+    }
+
+    /// Control points, faired with a bound on the curve.
+    fn faired(&self, space: &Space, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+        self.within(space, points, Bound::Bezier)
+    }
+
+    /// Points, faired with a bound on each of them.
+    pub fn faired_points(
+        &self,
+        space: &Space,
+        points: &[Vec3<T>],
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        self.within(space, points, Bound::ControlPoints)
+    }
+
+    fn within(
+        &self,
+        space: &Space,
+        points: &[Vec3<T>],
+        bound: Bound,
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let n = points.len();
+        let job = Job {
+            space: space.clone(),
+            points: points.iter().map(|p| p.re()).collect(),
+            weights: None,
+            limit: Limit::new(Motion::Ball, vec![self.tolerance.re(); n])?,
+            marks: self.marks(n)?,
+            ends: [self.end; 2],
+        };
+        let tolerances = vec![self.tolerance; n];
+        if self.faithful {
+            let mut options = LocalOptions::faithful(n);
+            options.log = true;
+            let steps = local(&job, &options)?;
+            replay_with(&job, &options, &steps.log, points, &tolerances)
+        } else {
+            let mut options = OptimumOptions::of(self.measure);
+            options.bound = bound;
+            options.accuracy = ACCURACY;
+            optimum_with(&job, &options, points, &tolerances).map(|(points, _)| points)
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! The shapes that the kinds make.
+
+use crate::Space;
+use moldloft_num::trace::{Key, Trace};
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use moldloft_registry::SurfaceRef;
+use moldloft_spline::{BSplineCurve, SplineError};
+
+/// A spline curve of its own that begins and ends at point objects.
+pub(crate) struct Ended<T> {
+    pub curve: BSplineCurve<T>,
+    pub ends: [Option<Key>; 2],
+}
+
+/// The curve of a space and its control points, over [0, 1].
+pub(crate) fn curve<T: Real>(
+    space: &Space,
+    points: &[Vec3<T>],
+) -> Result<BSplineCurve<T>, SplineError> {
+    let (knots, places) = space.knot_vector();
+    BSplineCurve::new(knots, places.into_iter().map(|i| points[i]).collect(), None)
+}
+
+impl<T: Real> Curve<T> for Ended<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        self.curve.jet(t, order)
+    }
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        self.curve.grid(ts, out);
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
+    }
+    fn trace(&self) -> Trace<T> {
+        Trace::Own(self.ends)
+    }
+}
+
+/// The curve X(t) = S(w(t)) of a spline path w(t) = (u, v, 0) in the parameters of a surface.
+pub(crate) struct OnSurface<T: Real> {
+    pub surface: SurfaceRef<T>,
+    pub path: BSplineCurve<T>,
+    pub ends: [Option<Key>; 2],
+}
+
+impl<T: Real> Curve<T> for OnSurface<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        let [w, d, dd] = self.path.jet(t, order);
+        let s = self.surface.jet(w.x, w.y, order);
+        let mut jet = [s.p, s.u * d.x + s.v * d.y, s.u * dd.x + s.v * dd.y];
+        jet[2] += s.uu * (d.x * d.x) + s.uv * (d.x * d.y * 2.0) + s.vv * (d.y * d.y);
+        jet
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.path.breaks()
+    }
+    fn trace(&self) -> Trace<T> {
+        Trace::Own(self.ends)
+    }
+    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
+        Some(self.path.jet(t, order))
+    }
+}
