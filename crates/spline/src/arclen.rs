@@ -19,17 +19,43 @@ impl fmt::Display for BeyondEnd {
 
 impl std::error::Error for BeyondEnd {}
 
-/// The parameters `a`, the breaks strictly between, `b`, in that order.
+/// The parameters `a`, the breaks strictly between, `b`, in that order; each break with the
+/// derivatives of its place.
 fn pieces<T: Real>(curve: &dyn Curve<T>, a: T, b: T) -> Vec<T> {
     let (low, high) = (a.re().min(b.re()), a.re().max(b.re()));
+    let breaks = curve.breaks();
     let mut all = vec![a];
-    let inside = curve.breaks().into_iter().filter(|&t| low < t && t < high);
-    all.extend(inside.map(T::from));
+    for (k, &t) in breaks.iter().enumerate().filter(|&(_, &t)| low < t && t < high) {
+        let before = if k == 0 { 0.0 } else { breaks[k - 1] };
+        let after = breaks.get(k + 1).copied().unwrap_or(1.0);
+        let near = (0.25 * (t - before).min(after - t)).min(1e-9);
+        all.push(T::from(t) + way(curve, t, near));
+    }
     if b.re() < a.re() {
         all[1..].reverse();
     }
     all.push(b);
     all
+}
+
+/// The derivatives of the place `t` of a corner, as a number whose real part is 0.
+///
+/// Both sides of a corner meet there whatever becomes of it: with C- and C+ the sides,
+/// dt = (dC+ - dC-) / (C-' - C+'). Where there is no corner it does not matter.
+fn way<T: Real>(curve: &dyn Curve<T>, t: f64, near: f64) -> T {
+    let side = |h: f64| {
+        let [p, d, _] = curve.jet(T::from(t + h), Order::First);
+        (p - d * T::from(h), d.re())
+    };
+    let ((low, before), (high, after)) = (side(-near), side(near));
+    let turn = before - after;
+    let square = turn.norm_sq();
+    if square <= 1e-16 * before.norm_sq().max(after.norm_sq()) {
+        return T::zero();
+    }
+    let gap = high - low;
+    let along = (gap.x * turn.x + gap.y * turn.y + gap.z * turn.z) / square;
+    along - along.re()
 }
 
 /// The length of the curve from `a` to `b`, negative when `b < a`, to about `accuracy` (a hope,
