@@ -24,6 +24,9 @@ AbsPoint transom2(length, 0.4 * beam, -0.05);
 AbsPoint transom3(length, 0, -0.10);
 BCurve transom({{transom1, transom2, transom3}}, degree = 2);
 
-# The hull is lofted through them.
+# The hull is lofted through them; the stern closes it, and shares the transom's vertices.
 CLoftSurf hull({{stem, mid, transom}}, divisions = {{12, 24}});
+AbsPoint post1(length, 0, 0.50);
+Line post(post1, transom3);
+RuledSurf stern(transom, post, divisions = {{12, 6}});
 """
