@@ -337,6 +337,23 @@ impl<T: Real> Primitive<T> {
         Arc::ptr_eq(&self.0, &o.0) || self.tape().same(o.tape())
     }
 
+    /// True for a sheet: the absolute value of a primitive, or its complement.
+    pub fn is_sheet(&self) -> bool {
+        !std::ptr::eq(self.of_sheet(), self)
+    }
+
+    /// What a sheet is the absolute value of; the primitive itself when it is none.
+    pub fn of_sheet(&self) -> &Self {
+        match &self.0.op {
+            Op::Unary(Unary::Abs, inner) => inner,
+            Op::Unary(Unary::Neg, outer) => match &outer.0.op {
+                Op::Unary(Unary::Abs, inner) => inner,
+                _ => self,
+            },
+            _ => self,
+        }
+    }
+
     /// True when no point changes its value.
     pub fn is_constant(&self) -> bool {
         self.as_real().is_some()

@@ -326,6 +326,14 @@ impl<T: Real> Set<T> {
         if union { a.join(b) } else { a.cut(b) }
     }
 
+    /// The set with leaves replaced where `new` has something else for them.
+    pub(crate) fn replaced(&self, new: &dyn Fn(&Primitive<T>) -> Option<Self>) -> Self {
+        let leaf = |p: &Primitive<T>| {
+            new(p).unwrap_or_else(|| Self::of(Kind::Leaf(p.clone()), Vec::new()))
+        };
+        self.rebuilt(&leaf, false, &Self::combined)
+    }
+
     /// Everything that is not in the set.
     pub fn complement(&self) -> Self {
         self.rebuilt(&|p| Self::of(Kind::Leaf(-p), Vec::new()), true, &Self::combined)
@@ -514,6 +522,11 @@ impl Set<f64> {
     /// A range of the value over a box.
     pub fn range(&self, over: &Box3) -> Interval {
         self.compiled().tape.range(&crate::interval::sides(over), &mut Vec::new())
+    }
+
+    /// The values at many points.
+    pub fn values(&self, points: &[Vec3], out: &mut [f64]) {
+        self.compiled().tape.bulk(points, out, &mut Default::default());
     }
 
     /// The set as it is inside a box: primitives that are all solid or all air there are left out.

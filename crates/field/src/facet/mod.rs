@@ -13,7 +13,7 @@ mod block;
 mod cell;
 mod crossing;
 mod grid;
-mod vertex;
+pub(crate) mod vertex;
 
 use crate::error::solid_box;
 use crate::form::Form;

@@ -1,0 +1,42 @@
+//! Times of the T-piece: bulk evaluation and facets. Run with `--release`.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use moldloft_num::Vec3;
+use std::time::Instant;
+
+fn best(n: usize, mut f: impl FnMut()) -> f64 {
+    let time = |f: &mut dyn FnMut()| {
+        let start = Instant::now();
+        f();
+        start.elapsed().as_secs_f64()
+    };
+    (0..n).map(|_| time(&mut f)).fold(f64::INFINITY, f64::min)
+}
+
+fn main() {
+    let set = common::t_piece();
+    let n = 1 << 18;
+    let points: Vec<Vec3> = (0..n)
+        .map(|k| {
+            let part = |a: f64| 8.0 * (k as f64 * a).fract() - 4.0;
+            Vec3::of(part(0.819_172_513), part(0.671_043_607), part(0.549_700_478))
+        })
+        .collect();
+    let mut out = vec![0.0; n];
+    let bulk = best(7, || set.values(&points, &mut out));
+    println!("bulk: {:.2} ns per point", bulk / n as f64 * 1e9);
+    for threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let Ok(pool) = pool else { continue };
+        for depth in [6, 7, 8] {
+            let mut faces = 0;
+            let time = best(7, || {
+                let f = pool.install(|| common::facets(&set, &common::cube(4.0), depth));
+                faces = f.mesh.faces().len();
+            });
+            println!("{threads} threads, depth {depth}: {:.1} ms, {faces} triangles", time * 1e3);
+        }
+    }
+}
