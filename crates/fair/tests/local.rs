@@ -331,3 +331,33 @@ fn bad_input_is_refused() {
     let job = Job::of_points(3, still.clone(), false, 0.1).unwrap();
     assert_eq!(faithful(&job, 100).points, still);
 }
+
+/// Noise correlated over some 20 points defeats single points and not bumps.
+#[test]
+fn coarser_levels_damp_long_waves() {
+    let points: Vec<_> = (0..200)
+        .map(f64::from)
+        .map(|x| Vec3::of(0.1 * x, 1e-3 * (x * std::f64::consts::TAU / 20.0).sin(), 0.0))
+        .collect();
+    let job = Job::of_points(3, points.clone(), false, 2e-3).unwrap();
+    let value = |p: Vec<Vec3<f64>>| job.value(Measure::Second, &p).unwrap();
+    let fine = value(sweeps(&job, Measure::Second, 40).unwrap());
+    let coarse = value(levels(&job, Measure::Second, 40, 3).unwrap());
+    let least = optimum(&job, &OptimumOptions::of(Measure::Second)).unwrap().certificate.value;
+    assert!(fine > 20.0 * least, "{fine} {least}");
+    assert!((least..1.02 * least).contains(&coarse), "{coarse} {least}");
+    for f in all() {
+        let job = job(&f);
+        let mut before = f64::INFINITY;
+        for cycles in 0..6 {
+            let now = levels(&job, Measure::Second, cycles, 3).unwrap();
+            let value = job.value(Measure::Second, &now).unwrap();
+            assert!(value <= before * (1.0 + 1e-14));
+            before = value;
+            for (i, (p, q)) in now.iter().zip(&f.points).enumerate() {
+                assert!((*p - *q).norm() <= f.tolerance);
+                assert!(!job.frozen()[i] || p.bits_eq(*q));
+            }
+        }
+    }
+}

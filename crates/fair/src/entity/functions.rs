@@ -13,7 +13,8 @@ use std::sync::Arc;
     class = Vectors,
     function,
     name = "fair",
-    example = "curve p = {uniform(0, 1, 9), 0, 0}; curve q = fair(p, 0.01);"
+    example = "Line l({0, 0, 0}, {1, 0, 0}); curve p = distc(l, uniform(0, 1, 9)); \
+               curve q = fair(p, 0.01);"
 )]
 pub struct Fair<T: Real> {
     /// Points, five or more (closed: eight or more).
@@ -68,7 +69,8 @@ impl<T: Real> Build<T> for Fair<T> {
     class = Numbers,
     function,
     name = "jumps",
-    example = "curve p = {uniform(0, 1, 9), 0, 0}; farray e = jumps(p);"
+    example = "Line l({0, 0, 0}, {1, 0, 0}); curve p = distc(l, uniform(0, 1, 9)); \
+               farray e = jumps(p);"
 )]
 pub struct Jumps<T: Real> {
     /// Points, five or more (closed: eight or more).

@@ -28,9 +28,10 @@ impl<T: Real> FromValue<T> for Grid<T> {
 #[derive(Kind)]
 #[kind(
     class = Surface,
-    example = "farray x = uniform(0, 1, 5); surface g[5, 5]; g[1,] = {x, 0, 0}; \
-               g[2,] = {x, 1, 0.3}; g[3,] = {x, 2, 0.37}; g[4,] = {x, 3, 0.3}; \
-               g[5,] = {x, 4, 0}; FairSurf s(g, 0.02);"
+    example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; \
+               vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
+               g[3,] = g[2,] + {0, 1, 0.1}; g[4,] = g[2,] + {0, 2, 0}; g[5,] = g[1,] + {0, 4, 0}; \
+               FairSurf s(g, 0.02);"
 )]
 pub struct FairSurf<T: Real> {
     /// A grid of points, at least degree + 2 in each direction.
