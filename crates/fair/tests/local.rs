@@ -339,11 +339,11 @@ fn coarser_levels_damp_long_waves() {
         .map(f64::from)
         .map(|x| Vec3::of(0.1 * x, 1e-3 * (x * std::f64::consts::TAU / 20.0).sin(), 0.0))
         .collect();
-    let job = Job::of_points(3, points.clone(), false, 2e-3).unwrap();
-    let value = |p: Vec<Vec3<f64>>| job.value(Measure::Second, &p).unwrap();
-    let fine = value(sweeps(&job, Measure::Second, 40).unwrap());
-    let coarse = value(levels(&job, Measure::Second, 40, 3).unwrap());
-    let least = optimum(&job, &OptimumOptions::of(Measure::Second)).unwrap().certificate.value;
+    let long = Job::of_points(3, points, false, 2e-3).unwrap();
+    let value = |p: Vec<Vec3<f64>>| long.value(Measure::Second, &p).unwrap();
+    let fine = value(sweeps(&long, Measure::Second, 40).unwrap());
+    let coarse = value(levels(&long, Measure::Second, 40, 3).unwrap());
+    let least = optimum(&long, &OptimumOptions::of(Measure::Second)).unwrap().certificate.value;
     assert!(fine > 20.0 * least, "{fine} {least}");
     assert!((least..1.02 * least).contains(&coarse), "{coarse} {least}");
     for f in all() {
