@@ -60,6 +60,13 @@ pub enum FieldError {
         /// High corner.
         high: Vec3,
     },
+    /// The set has no end along an axis, so a box must be given.
+    Unbounded {
+        /// The axis, 0 to 2.
+        axis: usize,
+        /// 1 for its positive end, -1 for its negative.
+        sign: f64,
+    },
     /// The accuracy would need more boxes than allowed.
     TooFine {
         /// How many boxes it would need, estimated.
@@ -111,6 +118,10 @@ impl fmt::Display for FieldError {
                 f,
                 "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed"
             ),
+            Self::Unbounded { axis, sign } => {
+                let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);
+                write!(f, "the set has no end towards {end}{axis}: give the box to look at")
+            }
             Self::Cancelled => write!(f, "cancelled"),
             Self::NoValue { at } => {
                 write!(f, "the field has no finite value at ({}, {}, {})", at.x, at.y, at.z)

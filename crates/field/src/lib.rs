@@ -10,6 +10,7 @@
 
 mod algebra;
 mod blend;
+mod bounds;
 mod error;
 mod facet;
 mod form;
@@ -34,6 +35,7 @@ pub use blend::{
     Blend, CIRCULAR, check_rail, check_rails, fillet, liming, liming_on_rail, round, setback_rail,
     transition, zhang,
 };
+pub use bounds::bounds;
 pub use error::FieldError;
 pub use facet::{Facets, Options, Resolution, crossing_faces, facet, refacet};
 pub use form::Form;
