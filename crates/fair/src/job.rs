@@ -180,8 +180,8 @@ impl Job {
         }
     }
 
-    /// The rows of a measure that do not cross a mark, over the control points (relative to
-    /// [`Job::origin`]).
+    /// The rows of a measure that do not cross a mark, over the control points; for a rational
+    /// curve, relative to their mean.
     ///
     /// # Errors
     /// [`FairError::Degree`].

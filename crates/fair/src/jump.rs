@@ -20,7 +20,7 @@ impl Jumps {
     /// The jumps of a space.
     ///
     /// Basis function s is a divided difference of the truncated power, so at a simple knot m its
-    /// derivative of order p jumps by (-1)^(p+1) p! (u[s+p+1] - u[s]) / prod (u[m] - u[l]) over
+    /// derivative of order p jumps by (-1)^(p+1) p! `(u[s+p+1] - u[s]) / prod (u[m] - u[l])` over
     /// the other knots l of its support. Exact for any knots; no derivative is sampled.
     pub fn of(space: &Space) -> Self {
         let p = space.degree() as isize;

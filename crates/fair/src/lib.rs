@@ -1,4 +1,73 @@
-//! Fairing of curves, surfaces and networks within a certified tolerance.
+//! Fairing of curves, surfaces and networks within a certified tolerance, and their interrogation.
+//!
+//! A fair curve has no more bends than its designer meant. Data that were digitised, rounded or
+//! fitted have many; this crate takes them out, never farther from the original than a tolerance,
+//! and says how near the result is to the best there is.
+//!
+//! `points -> (fit) -> Job { Space, control points, Limit, marks, ends } -> local | optimum -> Report`
+//!
+//! # A tour
+//!
+//! - [`Space`]: what control points mean. Any degree, any knots, open or closed. Data used directly
+//!   as control points are [`Space::floating`]; [`interpolate`] and [`least_squares`] make a spline
+//!   of data points.
+//! - [`Job`]: a curve to be faired, with what must be kept: [`Limit`] (balls, boxes, one direction,
+//!   one plane; per control point), `marks` (intended breaks), [`End`]s, weights.
+//! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] tells corners and wrong digits apart,
+//!   [`with_findings`] takes them into account.
+//! - [`local`]: the faithful way, knots removed and re-inserted one by one, the worst first, with a
+//!   log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and [`levels`] for bulk
+//!   work and long waves.
+//! - [`optimum`]: the least of a [`Measure`] under hard bounds ([`Bound`]) and linear
+//!   [`Condition`]s, with a [`Certificate`] that does not trust the solver.
+//! - [`deviation`]: certified and sampled distance from the original.
+//! - [`Network`]: nets of surfaces and curves that share points, by passes or jointly.
+//! - [`shape`] and [`surface`]: curvature, torsion, combs, monotone pieces, inflections,
+//!   logarithmic curvature graphs, orthotomics; Gaussian and mean curvature, isophotes, highlight
+//!   and reflection lines, zebra, the metric of grids.
+//! - [`report()`]: all of it about one fairing, as data ([`Report`]) and as text. This is what the
+//!   command line prints: rows of a file are control points ([`Job::of_points`]), points moved
+//!   directly (the same, and the faired points are the result), or fitted first ([`interpolate`],
+//!   then [`Job::new`] with [`Fit::space`]). `deviation_certified`, `deviation_sampled`,
+//!   `jumps_before`, `jumps_after` and `gap` are [`Deviation::certified`], [`Deviation::sampled`],
+//!   [`Numbers::jumps`] of [`Report::before`] and [`Report::after`], and [`Certificate::gap`].
+//! - [`rows`]: the kinds `FairCurve`, `FairSnake`, `FairSurf` and the functions `fair`, `jumps`,
+//!   `curvature` of the language, with derivatives ([`optimum_with`], [`replay_with`]).
+//!
+//! ```
+//! use moldloft_fair::{Job, Measure, Mode, OptimumOptions, findings, report, with_findings};
+//! use moldloft_num::Vec3;
+//!
+//! // A digitised arc: two decimals, and one wrong digit.
+//! let digitised = |i: i32| {
+//!     let x = f64::from(i) / 20.0;
+//!     let y = (100.0 * (1.0 - x * x / 4.0).sqrt()).round() / 100.0;
+//!     Vec3::of(x, if i == 9 { y + 0.2 } else { y }, 0.0)
+//! };
+//! let job = Job::of_points(3, (-20..=20).map(digitised).collect(), false, 0.005).unwrap();
+//! let found = findings(&job);
+//! assert_eq!(found.len(), 1);
+//! let job = with_findings(&job, &found);
+//! let faired = report(&job, &Mode::Optimum(OptimumOptions::of(Measure::Second))).unwrap();
+//! assert!(faired.after.jumps < 1e-2 * faired.before.jumps);
+//! assert!(faired.after.pieces < faired.before.pieces / 2);
+//! assert!(faired.certificate.relative() < 1e-6);
+//! ```
+//!
+//! # Conventions
+//!
+//! Jumps and measures are free of the parameter's unit (uniform knots count as spaced by 1), so
+//! they are lengths, squared lengths or sums of them. Curvature of a plane curve is positive where
+//! it turns left seen against +z. A measure of squares is given as the sum, not half of it.
+//! Indices of control points count from 0 here and from 1 in messages and in the language.
+//!
+//! Invariants: no control point leaves its limit by a bit; points that stand still and points that
+//! no local step touched keep their bits; results do not depend on threads, earlier results or
+//! time; this crate performs no input or output.
+//!
+//! Sources: Farin, Rein, Sapidis and Worsey, CAGD 4 (1987); Farin and Sapidis, IEEE CG&A 9 (1989);
+//! Sapidis and Farin, CAD 22 (1990); Eck and Hadenfeld, Computing Suppl. 10 (1995); NASA CR-188796
+//! (1991).
 
 mod band;
 mod breaks;

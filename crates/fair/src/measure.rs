@@ -5,7 +5,7 @@ use moldloft_num::Vec3;
 /// What a fair curve has little of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// Sum of squared second differences, sum |d[i-1] - 2 d[i] + d[i+1]|^2 on uniform knots: for
+    /// Sum of squared second differences, sum `|d[i-1] - 2 d[i] + d[i+1]|^2` on uniform knots: for
     /// cubics the squared second derivatives at the knots. Removing a knot is its exact
     /// one-vertex minimiser.
     Second,

@@ -61,7 +61,7 @@ impl<T: Real> Build<T> for Fair<T> {
 }
 
 /// How unfair a row of points is: the length of the jump of the third derivative at each knot of
-/// the uniform cubic with these control points, |d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|.
+/// the uniform cubic with these control points, `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|`.
 ///
 /// An open row has four fewer jumps than points.
 #[derive(Kind)]
