@@ -473,3 +473,29 @@ fn evaluate<T: Real>(
     });
     (values, faults)
 }
+
+/// The driving dimensions between two points as a sum of names; `None` when they are not connected,
+/// or through given coordinates only.
+pub fn chain_expression(
+    object: &Object,
+    planes: &Planes,
+    axis: Axis,
+    p: PointId,
+    q: PointId,
+) -> Option<String> {
+    let (a, b) = (planes.plane(axis, p)?, planes.plane(axis, q)?);
+    let path = graphs(object, planes).0[axis.index()].path(a, b);
+    let mut sum = String::new();
+    for (d, forward) in path {
+        let (_, dimension) = object.dimensions.get_index(d)?;
+        let Measure::Along { .. } = dimension.measure else { return None };
+        sum.push_str(match (forward, sum.is_empty()) {
+            (true, true) => "",
+            (true, false) => " + ",
+            (false, true) => "-",
+            (false, false) => " - ",
+        });
+        sum.push_str(&dimension.name);
+    }
+    (!sum.is_empty()).then_some(sum)
+}

@@ -10,26 +10,79 @@
 //! Source: R. E. Brewer, J. A. Jortner, W. N. Waggenspack, *Reference Manual: Computer Graphics
 //! Program for Generation of Engineering Geometry (SKETCH)*, WES Technical Report K-83-3, 1983.
 //!
+//! # For hosts
+//!
+//! [`Session`] is the whole command language. A host gives it lines and shows the replies:
+//!
+//! - `Session::with_files(files)`: `files` answers INPUT and RUN with texts ([`Files`]).
+//! - [`Session::run_line`] gives a list of [`Reply`]: severity, the code of 1983 if there is one, the
+//!   text, the next step, and for SAVE and EXPORT a file (name and bytes) that the host writes, whole
+//!   or not at all. A refused command has changed nothing.
+//! - [`Session::journal`] is the list of commands that made the present state. The host appends its
+//!   new items to a journal file after each line; running them again restores the session.
+//! - [`Session::objects`] (data) and [`Session::objects_json`] (`{"objects": [...]}`, each with name,
+//!   state, points, lines, faces, volume, area, centroid, inertia, missing and loose dimensions) say
+//!   what came of it; each solid gives a mesh by [`Solid::mesh`].
+//! - [`Session::complete`] completes words for a prompt; [`Session::over`] tells that QUIT was given.
+//!
+//! For derivatives, [`solve`] and [`solid()`] take any scalar: seed the values of dimensions by name.
+//!
+//! ```
+//! use moldloft_num::{Dual, Real};
+//! use moldloft_sketch::{Planes, Session, solid, solve};
+//!
+//! let mut session = Session::new();
+//! for reply in session.run_text(
+//!     "SKETCH SLAB 2D XZ
+//!      POINT 1 0 0; POINT 2 90 2; POINT 3 91 30; POINT 4 1 29
+//!      POLYLINE 1 2 3 4 CLOSE
+//!      DIMENSION W X 1 2 = 8; DIMENSION H Z 1 4 = 2; EXTRUDE 5",
+//! ) {
+//!     assert!(!reply.is_error(), "{}", reply.text);
+//! }
+//! assert_eq!(session.objects()[0].volume, Some(80.0));
+//!
+//! let object = session.object("slab").unwrap();
+//! let planes = Planes::of(&object.drawing);
+//! let seeded = [("h".to_owned(), Dual::<1>::seeded(2.0, 0))].into_iter().collect();
+//! let layout = solve(object, &planes, &seeded, &|| None);
+//! let volume = solid(object, &planes, &layout).unwrap().mass().volume;
+//! assert_eq!((volume.re(), volume.eps[0]), (80.0, 40.0));
+//! ```
+//!
+//! # What 1983 had and this has not
+//!
+//! The data manager of the manual's appendix C (routines NADD, NFIND, NDELET, …) and the scroll,
+//! menu and screen routines have no successor, nor have the errors that only they raised: 103, 104,
+//! 106, 111, 121, 122, 131, 132, 201-204, 395, 397, 399 for point records, 403, 407-410, 500-502,
+//! 999. What the user could cause among them is caught where it arises (404, 396, 701).
+//!
 //! Invariant: this crate reads no file and no clock, and no line given to it makes it panic.
 
 mod axis;
+pub mod command;
 pub mod curve;
 mod derived;
 mod drawing;
 mod estimate;
+pub mod export;
 mod expr;
 pub mod faces;
 pub mod json;
 mod layout;
 mod mass;
+pub mod merge;
 mod object;
 mod planes;
 mod projection;
+mod script;
 pub mod solid;
 mod triangulate;
+pub mod twin;
 mod typing;
 
 pub use axis::{Axis, Free, Letters, Naming};
+pub use command::{Fault, Files, NoFiles, OutFile, Reply, Session};
 pub use derived::scale;
 pub use drawing::{Align, Drawing, FaceId, Line, LineId, Point, PointId, Source};
 pub use estimate::{Estimate, FreeDepth, MAX_PLANES};
@@ -39,6 +92,7 @@ pub use mass::Mass;
 pub use object::{Dimension, Face, Measure, Object, Reference, Role, Variable};
 pub use planes::{Planes, Reason, TypeFault, why};
 pub use projection::Projection;
+pub use script::script;
 pub use solid::{Solid, solid};
 pub use triangulate::triangulate;
 pub use typing::{DOUBTFUL, NAMING_TOLERANCE};

@@ -445,7 +445,7 @@ impl<T: Real> Builder<'_, T> {
                 let thirds = [0.25, 0.5, 0.75].map(|s| piece.at(T::from(s)).re() - apex);
                 let turned = if forward { thirds } else { [thirds[2], thirds[1], thirds[0]] };
                 let way = [p, turned[0], turned[1], turned[2], q];
-                vector = vector - p.cross(q);
+                vector -= p.cross(q);
                 way.windows(2).for_each(|w| vector += w[0].cross(w[1]));
                 samples.extend(thirds);
             }

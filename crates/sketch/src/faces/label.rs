@@ -237,11 +237,7 @@ impl Search<'_> {
                 })
             };
             match (first, second) {
-                (None, _) => {
-                    if !allowed(None, false) {
-                        return false;
-                    }
-                }
+                (None, _) if !allowed(None, false) => return false,
                 (Some(cell), None) => {
                     let value = match (allowed(Some(cell), true), allowed(Some(cell), false)) {
                         (false, false) => return false,

@@ -217,3 +217,16 @@ impl Build<'_> {
         all
     }
 }
+
+/// How far points are from the plane that fits their polygon (Newell's normal through their centre).
+pub fn flatness(points: &[Vec3]) -> f64 {
+    let n = points.len();
+    if n < 4 {
+        return 0.0;
+    }
+    let centre = points.iter().fold(Vec3::zero(), |s, p| s + *p) / n as f64;
+    let normal = (0..n)
+        .fold(Vec3::zero(), |s, k| s + (points[k] - centre).cross(points[(k + 1) % n] - centre));
+    let Some(normal) = normal.normalized() else { return 0.0 };
+    points.iter().map(|p| (*p - centre).dot(normal).abs()).fold(0.0, f64::max)
+}

@@ -1,0 +1,589 @@
+//! Commands about dimensions, variables and settings.
+
+use super::Fault;
+use super::args::Args;
+use super::draw::{require_line, require_point, set_letters};
+use super::session::{Reply, Session};
+use super::solids::Question;
+use super::words::UNITS;
+use crate::layout::agree;
+use crate::{
+    Axis, Dimension, DimensionFault, Expr, Measure, Naming, Object, PointId, Reference, Role,
+    Variable, chain, chain_text,
+};
+use moldloft_syntax::number::plain;
+
+impl Session {
+    pub(super) fn dimension(&mut self, args: &mut Args) -> Result<(), Fault> {
+        const KINDS: [&str; 4] = ["LENGTH", "SLOPE", "ANGLE", "EQUAL"];
+        let kind = |a: &Args| KINDS.into_iter().find(|k| a.at(k));
+        let axis_next = args.peek().is_some_and(|t| Axis::of(&t.text).is_some());
+        let named = !args.at_number() && !axis_next && kind(args).is_none();
+        let name = if named { Some(self.new_name(args)?) } else { None };
+        let object = self.active()?.clone();
+        let name = name.unwrap_or_else(|| object.fresh_name("D"));
+        if let Some(kind) = kind(args) {
+            return self.derived(args, name, kind);
+        }
+        let axis = args.axis();
+        let (p, q) = (args.point()?, {
+            args.take_short("TO");
+            args.point()?
+        });
+        require_point(&object, p)?;
+        require_point(&object, q)?;
+        let axis = match axis.or_else(|| {
+            let line = object.drawing.line_between(p, q)?;
+            object.drawing.lines[&line].free?.single()
+        }) {
+            Some(axis) => axis,
+            None => {
+                return Err(Fault::new(
+                    105,
+                    format!("points {p} and {q} are no principal line, so the axis is unknown"),
+                    format!("DIMENSION X {p} {q}, or Y, or Z"),
+                ));
+            }
+        };
+        let view = self.view(&object);
+        if view.planes.counts()[axis.index()] == 0 {
+            return Err(Fault::new(
+                398,
+                format!("there are no planes on axis {axis}"),
+                "draw lines first",
+            ));
+        }
+        let forward = self.drawn_forward(&object, axis, p, q);
+        let at_value = args.len() > 0
+            && !args.at("REVERSED")
+            && !args.at("FORWARD")
+            && !args.tokens_at(0, "IN");
+        if !at_value {
+            args.end()?;
+            return self.suggest(&object, name, axis, if forward { (p, q) } else { (q, p) });
+        }
+        let value = args.value(object.units.as_deref())?;
+        let negative = value.literal().is_some_and(|x| x < 0.0);
+        let ahead = args.take("FORWARD");
+        let turned = args.take("REVERSED");
+        let range = args.range()?;
+        args.end()?;
+        let swap = (!ahead && !negative && !forward) != turned;
+        let (p, q) = if swap { (q, p) } else { (p, q) };
+        self.add_along(name, axis, p, q, value, range)
+    }
+
+    /// Adds a dimension along an axis, or says why not (396).
+    pub(super) fn add_along(
+        &mut self,
+        name: String,
+        axis: Axis,
+        p: PointId,
+        q: PointId,
+        value: Expr,
+        range: Option<[f64; 2]>,
+    ) -> Result<(), Fault> {
+        let object = self.active()?.clone();
+        let (view, layout) = self.laid_out(&object);
+        let planes = &view.planes;
+        let number = value.eval(&|n| layout.values.get(n).copied());
+        if planes.same(axis, p, q) {
+            let zero = number.as_ref().is_ok_and(|x| *x == 0.0);
+            if zero {
+                self.out.push(Reply::note(format!(
+                    "points {p} and {q} lie in one {axis} plane already"
+                )));
+                return Ok(());
+            }
+            let path = crate::why(&object.drawing, axis, p, q).unwrap_or_default();
+            let path: Vec<String> = path.iter().map(|r| r.text(&object.drawing)).collect();
+            return Err(Fault::new(
+                396,
+                format!("points {p} and {q} lie in one {axis} plane, by {}", path.join(", ")),
+                "dimension two different planes, or retype a line of the path",
+            ));
+        }
+        let mut role = Role::Driving;
+        if let Some((way, names)) = chain(&object, planes, axis, p, q) {
+            let ends = (layout.coordinate(planes, axis, p), layout.coordinate(planes, axis, q));
+            let measured = match ends {
+                (Some(a), Some(b)) => Some(b - a),
+                _ => along(&object, &layout.values, axis, &way, &names),
+            };
+            let asked = number.ok();
+            match (measured, asked) {
+                (Some(m), Some(a)) if agree(m, a) => {
+                    role = Role::Reference;
+                    let text = format!(
+                        "396: determined already via {}; it agrees and is kept as a reference",
+                        chain_text(&way)
+                    );
+                    self.out.push(Reply::note(text));
+                }
+                (Some(m), Some(a)) => {
+                    let text = format!(
+                        "planes {} apart already via {}; you asked {}, which differs by {}",
+                        plain(m),
+                        chain_text(&way),
+                        plain(a),
+                        plain((a - m).abs())
+                    );
+                    return Err(Fault::new(
+                        396,
+                        text,
+                        format!("change or delete one of {}", names.join(", ")),
+                    ));
+                }
+                _ => {
+                    let text = format!("the chain {} determines it already", chain_text(&way));
+                    return Err(Fault::new(
+                        396,
+                        text,
+                        format!("give values to {}", names.join(", ")),
+                    ));
+                }
+            }
+        }
+        let measure = Measure::Along { axis, p, q };
+        let object = self.active_mut()?;
+        object.add_dimension(Dimension { name, measure, value: Some(value), role, range });
+        self.tell_counts()
+    }
+
+    fn derived(&mut self, args: &mut Args, name: String, kind: &str) -> Result<(), Fault> {
+        args.skip();
+        let first = args.line()?;
+        let object = self.active()?.clone();
+        require_line(&object, first)?;
+        let second = matches!(kind, "ANGLE" | "EQUAL").then(|| args.line()).transpose()?;
+        if let Some(second) = second {
+            require_line(&object, second)?;
+            if second == first {
+                return Err(Fault::new(300, format!("line {first} twice"), "name two lines"));
+            }
+        }
+        let measure = match (kind, second) {
+            ("LENGTH", _) => Measure::Length(first),
+            ("SLOPE", _) => Measure::Slope(first),
+            ("ANGLE", Some(second)) => Measure::Angle(first, second),
+            (_, Some(second)) => Measure::Equal(first, second),
+            _ => return Err(args.wants("a second line")),
+        };
+        let value = if kind == "EQUAL" && (args.len() == 0 || args.tokens_at(0, "IN")) {
+            Expr::number(1.0)
+        } else {
+            args.value(object.units.as_deref())?
+        };
+        let range = args.range()?;
+        args.end()?;
+        let before = self.laid_out(&object).1.faults;
+        let mut role = Role::Driving;
+        let mut tried = object;
+        let dimension = Dimension { name: name.clone(), measure, value: Some(value), role, range };
+        tried.add_dimension(dimension.clone());
+        for fault in self.laid_out(&tried).1.faults {
+            match &fault {
+                DimensionFault::Redundant { name: n, .. } if *n == name => {
+                    role = Role::Reference;
+                    self.out.push(Reply::note(
+                        "396: determined already; it agrees and is kept as a reference",
+                    ));
+                }
+                _ if before.contains(&fault) => {}
+                _ => return Err(dimension_fault(&fault)),
+            }
+        }
+        self.active_mut()?.add_dimension(Dimension { role, ..dimension });
+        self.tell_counts()
+    }
+
+    /// Asks whether the estimated value is right (a dimension without a value).
+    fn suggest(
+        &mut self,
+        object: &Object,
+        name: String,
+        axis: Axis,
+        (p, q): (PointId, PointId),
+    ) -> Result<(), Fault> {
+        let (view, layout) = self.laid_out(object);
+        let (Some(e), Some(a), Some(b)) =
+            (view.estimate(), view.planes.plane(axis, p), view.planes.plane(axis, q))
+        else {
+            return Err(Fault::text("there is no estimate of this sketch", "give a value"));
+        };
+        let scale = crate::scale(object, &view.planes, &layout, e);
+        let value = rounded((e.plane(axis, b) - e.plane(axis, a)) * scale);
+        let text = format!("{name}: {axis} from {p} to {q} is about {}", plain(value));
+        let mut reply = Reply::note(text);
+        reply.next = Some("YES takes it; or give the value".to_owned());
+        self.out.push(reply);
+        self.question = Some(Question::Dimension { name, axis, p, q, value });
+        Ok(())
+    }
+
+    /// Whether `q` was drawn on the positive side of `p`; true when the drawing does not say.
+    pub(super) fn drawn_forward(
+        &mut self,
+        object: &Object,
+        axis: Axis,
+        p: PointId,
+        q: PointId,
+    ) -> bool {
+        /// Smaller gaps, as a part of the drawing, say nothing.
+        const CLEAR: f64 = 0.02;
+        let view = self.view(object);
+        let gap = view.estimate().and_then(|e| {
+            let (a, b) = (view.planes.plane(axis, p)?, view.planes.plane(axis, q)?);
+            Some((e.plane(axis, b) - e.plane(axis, a), e.extent()))
+        });
+        gap.is_none_or(|(gap, extent)| gap >= -CLEAR * extent)
+    }
+
+    /// A name that is free for a dimension, variable or curve.
+    pub(super) fn new_name(&mut self, args: &mut Args) -> Result<String, Fault> {
+        let name = args.name("a name")?;
+        let object = self.active()?;
+        let fine = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '.')
+            && name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.len() <= 64
+            && !name.ends_with('.');
+        if !fine {
+            return Err(Fault::text(
+                format!("`{name}` cannot be read in expressions"),
+                "use a letter, then letters, digits, `_` and `.`",
+            ));
+        }
+        if crate::FUNCTIONS.contains(&name.to_ascii_lowercase().as_str())
+            || name.eq_ignore_ascii_case("pi")
+        {
+            return Err(Fault::text(
+                format!("{name} means something in expressions"),
+                "choose another name",
+            ));
+        }
+        if object.has_name(&name) {
+            return Err(Fault::text(
+                format!("{name} exists already"),
+                format!("SET {name} changes its value; or choose another name"),
+            ));
+        }
+        Ok(name)
+    }
+
+    /// `X 2/3 Y 1/1 Z 0/2`.
+    pub(super) fn tell_counts(&mut self) -> Result<(), Fault> {
+        let object = self.active()?.clone();
+        let (_, layout) = self.laid_out(&object);
+        let part = |a: Axis| {
+            let c = layout.counts[a.index()];
+            format!("{a} {}/{}", c.given, c.required)
+        };
+        let mut text = Axis::ALL.map(part).join(" ");
+        if layout.complete() && !object.drawing.points.is_empty() {
+            text.push_str(": complete");
+        }
+        self.out.push(Reply::note(text));
+        Ok(())
+    }
+
+    pub(super) fn set(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if args.at("POINT") && args.number_at(1) {
+            args.skip();
+            let p = args.point()?;
+            let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+            let object = self.active()?.clone();
+            require_point(&object, p)?;
+            let value = args.value(object.units.as_deref())?;
+            args.end()?;
+            let measure = Measure::Datum { axis, point: p };
+            let old =
+                object.dimensions.iter().find(|d| d.1.measure == measure).map(|d| d.0.clone());
+            let name = match old {
+                Some(key) => object.dimensions[&key].name.clone(),
+                None => object.fresh_name("P"),
+            };
+            return self.put(Dimension {
+                name,
+                measure,
+                value: Some(value),
+                role: Role::Driving,
+                range: None,
+            });
+        }
+        if args.take_short("UP") {
+            let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+            args.end()?;
+            set_letters(self.active_mut()?.draw(), Some(axis), None);
+            return Ok(());
+        }
+        if args.at("NAMES") && (args.tokens_at(1, "SEED") || args.tokens_at(1, "STANDARD")) {
+            let naming = if args.tokens_at(1, "SEED") { Naming::Seed } else { Naming::Standard };
+            args.skip();
+            args.skip();
+            args.end()?;
+            set_letters(self.active_mut()?.draw(), None, Some(naming));
+            return Ok(());
+        }
+        if args.take("UNITS") {
+            let unit = args.name("MM, CM, M, IN or FT")?.to_ascii_uppercase();
+            args.end()?;
+            if !UNITS.iter().any(|u| u.0 == unit) {
+                return Err(Fault::text(
+                    format!("there is no unit {unit}"),
+                    "units are MM, CM, M, IN, FT",
+                ));
+            }
+            self.active_mut()?.units = Some(unit);
+            return Ok(());
+        }
+        if args.take_short("SKETCH83") {
+            let on = args.take_short("ON");
+            if !on && !args.take_short("OFF") {
+                return Err(args.wants("ON or OFF"));
+            }
+            args.end()?;
+            self.state.sketch83 = on;
+            return Ok(());
+        }
+        let name = args.name("the name of a dimension or variable, or a setting")?;
+        let object = self.active()?.clone();
+        let key = name.to_ascii_lowercase();
+        let value = args.value(object.units.as_deref())?;
+        let range = args.range()?;
+        args.end()?;
+        if let Some(old) = object.dimensions.get(&key) {
+            let range = range.or(old.range);
+            return self.put(Dimension {
+                value: Some(value),
+                range,
+                role: Role::Driving,
+                ..old.clone()
+            });
+        }
+        if let Some(old) = object.variables.get(&key) {
+            let new = Variable { value, range: range.or(old.range), ..old.clone() };
+            return self.put_variable(new);
+        }
+        let names = object.dimensions.values().map(|d| d.name.as_str());
+        let names = names.chain(object.variables.values().map(|v| v.name.as_str()));
+        let next = match moldloft_diag::nearest(&name, names) {
+            Some(near) => format!("did you mean {near}?"),
+            None => "LIST DIMENSIONS and LIST VARIABLES show what there is".to_owned(),
+        };
+        Err(Fault::text(format!("there is no dimension or variable {name}"), next))
+    }
+
+    /// Changes or adds a dimension, unless that makes a new fault.
+    fn put(&mut self, dimension: Dimension) -> Result<(), Fault> {
+        let mut object = self.active()?.clone();
+        let before = self.laid_out(&object).1.faults;
+        let name = dimension.name.clone();
+        object.add_dimension(dimension);
+        for fault in self.laid_out(&object).1.faults {
+            match &fault {
+                DimensionFault::Redundant { name: n, .. } if *n == name => {
+                    if let Some(d) = object.dimensions.get_mut(&name.to_ascii_lowercase()) {
+                        d.role = Role::Reference;
+                    }
+                    self.out.push(Reply::note(format!(
+                        "396: {name} is determined already; it agrees and is a reference"
+                    )));
+                }
+                _ if before.contains(&fault) => {}
+                _ => return Err(dimension_fault(&fault)),
+            }
+        }
+        *self.active_mut()? = object;
+        self.tell_counts()?;
+        self.tell_validity()
+    }
+
+    fn put_variable(&mut self, variable: Variable) -> Result<(), Fault> {
+        let mut object = self.active()?.clone();
+        let before = self.laid_out(&object).1.faults;
+        object.variables.insert(variable.name.to_ascii_lowercase(), variable);
+        let faults = self.laid_out(&object).1.faults;
+        if let Some(fault) = faults.iter().find(|f| !before.contains(f)) {
+            return Err(dimension_fault(fault));
+        }
+        *self.active_mut()? = object;
+        self.tell_validity()
+    }
+
+    pub(super) fn variable(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let name = self.new_name(args)?;
+        let units = self.active()?.units.clone();
+        let value = args.value(units.as_deref())?;
+        let range = args.range()?;
+        args.end()?;
+        self.put_variable(Variable { name, value, range })
+    }
+
+    pub(super) fn unset(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let name = args.name("the name of a dimension")?;
+        args.end()?;
+        let object = self.active_mut()?;
+        match object.dimensions.get_mut(&name.to_ascii_lowercase()) {
+            Some(d) => d.value = None,
+            None => {
+                return Err(Fault::text(
+                    format!("there is no dimension {name}"),
+                    "LIST DIMENSIONS shows what there is",
+                ));
+            }
+        }
+        self.tell_counts()
+    }
+
+    pub(super) fn reference(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let point = args.point()?;
+        let object = self.active()?.clone();
+        require_point(&object, point)?;
+        let mut at = object.reference().map_or([0.0; 3], |r| r.at);
+        let mut given = Vec::new();
+        while args.at_number() && given.len() < 3 {
+            given.push(args.number("a coordinate")?);
+        }
+        args.end()?;
+        match (object.drawing.section, given[..].len()) {
+            (_, 3) => at.copy_from_slice(&given),
+            (Some(normal), 2) => {
+                let plane = Axis::ALL.into_iter().filter(|a| *a != normal);
+                plane.zip(&given).for_each(|(a, x)| at[a.index()] = *x);
+            }
+            _ => return Err(args.wants("three coordinates")),
+        }
+        self.active_mut()?.reference = Some(Reference { point, at });
+        Ok(())
+    }
+
+    pub(super) fn reverse(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let name = args.name("the name of a dimension")?;
+        args.end()?;
+        let object = self.active_mut()?;
+        let dimension = object.dimensions.get_mut(&name.to_ascii_lowercase());
+        let Some(Dimension { measure: Measure::Along { p, q, .. }, .. }) = dimension else {
+            return Err(Fault::text(
+                format!("there is no dimension {name} along an axis"),
+                "LIST DIMENSIONS shows what there is",
+            ));
+        };
+        std::mem::swap(p, q);
+        self.tell_validity()
+    }
+
+    pub(super) fn convert(&mut self, args: &mut Args) -> Result<(), Fault> {
+        self.take_object(args)?;
+        args.end()?;
+        let object = self.active()?.clone();
+        if object.drawing.points.is_empty() {
+            return Err(Fault::new(
+                101,
+                format!("object {} has no points yet", object.name),
+                "draw some, or INPUT it",
+            ));
+        }
+        if object.drawing.lines.is_empty() {
+            return Err(Fault::new(
+                102,
+                format!("object {} has no lines", object.name),
+                "draw some",
+            ));
+        }
+        let (view, layout) = self.laid_out(&object);
+        if let Some(fault) = self.first_type_fault(&object, &view.planes) {
+            return Err(fault);
+        }
+        if let Some(fault) =
+            layout.faults.iter().find(|f| !matches!(f, DimensionFault::Redundant { .. }))
+        {
+            return Err(dimension_fault(fault));
+        }
+        if !layout.complete() {
+            let missing = Axis::ALL.map(|a| format!("{a}: {}", layout.counts[a.index()].missing));
+            let lines = self.loose_lines(&object, &view, &layout);
+            let text =
+                format!("dimensions are missing, {}; {}", missing.join(", "), lines.join("; "));
+            let next = "give them, or see ESTIMATE for suggested values".to_owned();
+            return Err(Fault::new(404, text, next));
+        }
+        self.out.push(Reply::note(format!(
+            "{}: {} points are exact",
+            object.name,
+            view.planes.ids().len()
+        )));
+        self.tell_validity()
+    }
+}
+
+/// The length of a chain of dimensions that does not hang on the reference.
+fn along(
+    object: &Object,
+    values: &std::collections::BTreeMap<String, f64>,
+    axis: Axis,
+    way: &[PointId],
+    names: &[String],
+) -> Option<f64> {
+    let planes = crate::Planes::of(&object.drawing);
+    let mut at = planes.plane(axis, *way.first()?)?;
+    let mut sum = 0.0;
+    for name in names {
+        let d = object.dimensions.get(&name.to_ascii_lowercase())?;
+        let Measure::Along { p, q, .. } = d.measure else { return None };
+        let (a, b) = (planes.plane(axis, p)?, planes.plane(axis, q)?);
+        let value = values.get(&name.to_ascii_lowercase())?;
+        (sum, at) = if at == a { (sum + value, b) } else { (sum - value, a) };
+    }
+    Some(sum)
+}
+
+/// Three significant digits: what a picture can tell.
+pub(super) fn rounded(x: f64) -> f64 {
+    if x == 0.0 || !x.is_finite() {
+        return 0.0;
+    }
+    format!("{x:.2e}").parse().unwrap_or(x)
+}
+
+/// A fault of a dimension in words.
+pub(super) fn dimension_fault(fault: &DimensionFault) -> Fault {
+    match fault {
+        DimensionFault::Redundant { name, path } => Fault::new(
+            396,
+            format!("{name} is determined already by {}; it agrees", path.join(", ")),
+            "delete it, or keep it as a reference",
+        ),
+        DimensionFault::Contradictory { name, asked, measured, path } => Fault::new(
+            396,
+            format!(
+                "{name} asks {}, but the others make it {}, which differs by {}, via {}",
+                plain(*asked),
+                plain(*measured),
+                plain((asked - measured).abs()),
+                if path.is_empty() { "known points".to_owned() } else { path.join(", ") }
+            ),
+            "change or delete one of them",
+        ),
+        DimensionFault::NoValue { name, reads } => Fault::text(
+            format!("{name} reads {reads}, which has no value"),
+            format!("VARIABLE {reads} defines it"),
+        ),
+        DimensionFault::Cycle { names } => Fault::text(
+            format!("{} depend on each other in a circle", names.join(", ")),
+            "give one of them a number",
+        ),
+        DimensionFault::NotFinite { name } => Fault::new(
+            300,
+            format!("the value of {name} is not a finite number"),
+            "look for a division by zero",
+        ),
+        DimensionFault::Unsolved { name, residual } => Fault::new(
+            411,
+            format!(
+                "{name} cannot be satisfied near the drawing; it is missed by {}",
+                plain(rounded(*residual))
+            ),
+            "change it or the dimensions around it",
+        ),
+    }
+}

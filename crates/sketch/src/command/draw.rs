@@ -1,0 +1,506 @@
+//! Commands that draw: objects, points, lines, types, alignments.
+
+use super::Fault;
+use super::args::Args;
+use super::session::{MAX_POINTS, Reply, Session};
+use super::words::Kind;
+use crate::{
+    Align, Axis, Drawing, FaceId, Free, Line, LineId, Naming, Object, Point, PointId, Projection,
+    Source,
+};
+
+impl Session {
+    pub(super) fn sketch(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let shape = |t: &str| ["2D", "3D"].iter().any(|d| t.eq_ignore_ascii_case(d));
+        let named = args
+            .peek()
+            .is_some_and(|t| matches!(t.kind, Kind::Word | Kind::Text) && !shape(&t.text));
+        let name = if named { args.name("a name")? } else { "NONAME".to_owned() };
+        if name.is_empty() || name.chars().count() > 32 {
+            let text =
+                format!("an object's name has 1 to 32 characters, not {}", name.chars().count());
+            return Err(Fault::text(text, "choose a shorter name"));
+        }
+        let section = if args.take_short("2D") {
+            let plane = args.peek().map(|t| t.text.to_ascii_uppercase());
+            let normal = match plane.as_deref() {
+                Some("XY") => Some(Axis::Z),
+                Some("XZ") => Some(Axis::Y),
+                Some("YZ") => Some(Axis::X),
+                _ => None,
+            };
+            if normal.is_some() {
+                args.skip();
+            }
+            Some(normal.unwrap_or(Axis::Y))
+        } else {
+            args.take_short("3D");
+            None
+        };
+        args.end()?;
+        let key = name.to_lowercase();
+        match self.state.objects.get(&key) {
+            Some(old) if section.is_none() || old.drawing.section == section => {
+                self.state.active = Some(key);
+            }
+            Some(old) if !old.drawing.points.is_empty() => {
+                return Err(Fault::new(
+                    113,
+                    format!(
+                        "{} cannot change between a section and space: it has points",
+                        old.name
+                    ),
+                    "sketch another object, or EXTRUDE this one",
+                ));
+            }
+            _ => self.insert(Object::new(&name, section)),
+        }
+        Ok(())
+    }
+
+    pub(super) fn point(&mut self, args: &mut Args) -> Result<(), Fault> {
+        // POINT 7 1 2 has a label, POINT 1 2 has none.
+        let at_word = args.second().is_some_and(|t| t.text.eq_ignore_ascii_case("AT"));
+        let labelled = at_word || args.len() >= 3;
+        let id = if labelled { Some(args.point()?) } else { None };
+        args.take_short("AT");
+        let (u, v) =
+            (args.number("the screen coordinate u")?, args.number("the screen coordinate v")?);
+        args.end()?;
+        if u.abs().max(v.abs()) > 1e9 {
+            return Err(Fault::text(
+                "the page ends at 1e9",
+                "draw smaller; dimensions give the size",
+            ));
+        }
+        let object = self.active_or_noname()?;
+        if object.drawing.points.len() >= MAX_POINTS {
+            return Err(Fault::new(
+                200,
+                format!("an object has at most {MAX_POINTS} points"),
+                "begin another object",
+            ));
+        }
+        let id = id.unwrap_or_else(|| object.drawing.next_point());
+        let new = object.draw().points.insert(id, Point { u, v }).is_none();
+        let moved: Vec<LineId> = (object.drawing.lines.iter())
+            .filter(|(_, l)| (l.p == id || l.q == id) && l.source == Source::Auto)
+            .map(|(k, _)| *k)
+            .collect();
+        if !new {
+            let drawing = object.draw();
+            moved.into_iter().for_each(|l| drawing.type_by_slope(l));
+        }
+        if !labelled {
+            self.out.push(Reply::note(format!("point {id}")));
+        }
+        Ok(())
+    }
+
+    /// The active object; an unnamed one is begun when there is none (manual: NONAME).
+    fn active_or_noname(&mut self) -> Result<&mut Object, Fault> {
+        if self.state.active.is_none() {
+            self.insert(Object::new("NONAME", None));
+        }
+        self.active_mut()
+    }
+
+    pub(super) fn line(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let from = |a: &Args| a.second().is_some_and(|t| t.text.eq_ignore_ascii_case("FROM"));
+        let three =
+            args.len() >= 3 && args.second().is_some_and(|t| matches!(t.kind, Kind::Number(..)));
+        let labelled = from(args) || three && !args.tokens_at(2, "TYPE") && args.number_at(2);
+        let id = if labelled { Some(args.line()?) } else { None };
+        args.take("FROM");
+        let p = args.point()?;
+        args.take_short("TO");
+        let q = args.point()?;
+        let object = self.active()?;
+        for end in [p, q] {
+            require_point(object, end)?;
+        }
+        if p == q {
+            return Err(Fault::new(
+                300,
+                format!("a line from point {p} to itself has no length"),
+                "give two points",
+            ));
+        }
+        if let Some(other) = object.drawing.line_between(p, q).filter(|l| Some(*l) != id) {
+            return Err(Fault::text(
+                format!("line {other} joins points {p} and {q} already"),
+                format!("use line {other}"),
+            ));
+        }
+        let drawing = &object.drawing;
+        let mut line = Line { p, q, free: None, source: Source::Auto, confidence: 0.0 };
+        let mut by_slope = true;
+        if args.take("TYPE") {
+            by_slope = false;
+            line.free = line_type(drawing, args)?;
+            (line.source, line.confidence) = (Source::User, 1.0);
+            for (word, source) in [("AUTO", Source::Auto), ("INFERRED", Source::Inferred)] {
+                if args.take(word) {
+                    line.source = source;
+                    if args.at_number() {
+                        line.confidence = args.number("the confidence")?.clamp(0.0, 1.0);
+                    }
+                }
+            }
+        }
+        args.end()?;
+        let object = self.active_mut()?;
+        let id = id.unwrap_or_else(|| object.drawing.next_line());
+        let drawing = object.draw();
+        drawing.lines.insert(id, line);
+        if by_slope {
+            drawing.type_by_slope(id);
+        }
+        let text = drawing.line_text(id);
+        if !labelled {
+            self.out.push(Reply::note(format!("line {id}: {text}")));
+        }
+        Ok(())
+    }
+
+    pub(super) fn polyline(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let mut points = Vec::new();
+        while args.at_number() {
+            points.push(args.point()?);
+        }
+        let close = args.take("CLOSE");
+        args.end()?;
+        if points.len() < 2 {
+            return Err(args.wants("two points or more"));
+        }
+        if close && points.len() > 2 {
+            points.push(points[0]);
+        }
+        let object = self.active_mut()?;
+        for &p in &points {
+            require_point(object, p)?;
+        }
+        let drawing = object.draw();
+        let mut made = Vec::new();
+        for w in points.windows(2) {
+            if w[0] != w[1] && drawing.line_between(w[0], w[1]).is_none() {
+                let id = drawing.next_line();
+                let line =
+                    Line { p: w[0], q: w[1], free: None, source: Source::Auto, confidence: 0.0 };
+                drawing.lines.insert(id, line);
+                drawing.type_by_slope(id);
+                made.push(format!("{id}: {}", drawing.line_text(id)));
+            }
+        }
+        self.out.push(Reply::note(format!("lines {}", made.join(", "))));
+        Ok(())
+    }
+
+    pub(super) fn split(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let id = args.line()?;
+        let part = args.number("a part of the length between 0 and 1")?;
+        args.end()?;
+        if !(part > 0.0 && part < 1.0) {
+            return Err(Fault::new(
+                300,
+                format!("{part} is not inside the line"),
+                "give a part between 0 and 1",
+            ));
+        }
+        let object = self.active_mut()?;
+        let line = require_line(object, id)?;
+        let (a, b) = (object.drawing.points[&line.p], object.drawing.points[&line.q]);
+        let drawing = object.draw();
+        let (m, second) = (drawing.next_point(), drawing.next_line());
+        let mix = |x: f64, y: f64| x + (y - x) * part;
+        drawing.points.insert(m, Point { u: mix(a.u, b.u), v: mix(a.v, b.v) });
+        drawing.lines.insert(id, Line { q: m, ..line });
+        drawing.lines.insert(second, Line { p: m, ..line });
+        for face in object.faces.values_mut() {
+            for cycle in std::iter::once(&mut face.outer).chain(&mut face.holes) {
+                let n = cycle.len();
+                let between = |k: &usize| {
+                    let pair = (cycle[*k], cycle[(*k + 1) % n]);
+                    pair == (line.p, line.q) || pair == (line.q, line.p)
+                };
+                if let Some(k) = (0..n).find(between) {
+                    cycle.insert(k + 1, m);
+                }
+            }
+        }
+        self.out.push(Reply::note(format!("point {m}, line {second}")));
+        Ok(())
+    }
+
+    pub(super) fn weld(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let (p, q) = (args.point()?, args.point()?);
+        args.end()?;
+        let object = self.active_mut()?;
+        require_point(object, p)?;
+        require_point(object, q)?;
+        if p == q {
+            return Err(Fault::new(300, format!("point {p} is itself already"), "give two points"));
+        }
+        object.draw().weld(p.min(q), p.max(q));
+        let gone = object.drop_dangling();
+        self.tell_gone(gone);
+        Ok(())
+    }
+
+    pub(super) fn tell_gone(&mut self, gone: Vec<String>) {
+        if !gone.is_empty() {
+            let text = format!("removed with their points or lines: {}", gone.join(", "));
+            self.out.push(Reply::warning(text));
+        }
+    }
+
+    pub(super) fn delete(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let kinds = ["POINT", "LINE", "FACE", "CURVE", "DIMENSION", "VARIABLE"];
+        // A keyword counts only with something after it, so an object may be called POINT.
+        let kind = kinds.into_iter().find(|k| args.at(k) && args.len() > 1);
+        let Some(kind) = kind else {
+            let name =
+                args.name("the name of an object, or POINT, LINE, FACE, CURVE or DIMENSION")?;
+            args.end()?;
+            self.known(&name)?;
+            let key = name.to_lowercase();
+            self.state.objects.shift_remove(&key);
+            if self.state.active.as_ref() == Some(&key) {
+                self.state.active = None;
+            }
+            return Ok(());
+        };
+        args.skip();
+        while args.len() > 0 {
+            let object = self.active_mut()?;
+            match kind {
+                "POINT" => {
+                    let p = args.point()?;
+                    require_point(object, p)?;
+                    object.draw().remove_point(p);
+                }
+                "LINE" => {
+                    let id = args.line()?;
+                    let line = require_line(object, id)?;
+                    object.draw().lines.remove(&id);
+                    let ends = [line.p, line.q];
+                    object.faces.retain(|_, f| {
+                        !f.loops().any(|c| {
+                            let n = c.len();
+                            (0..n).any(|k| ends.contains(&c[k]) && ends.contains(&c[(k + 1) % n]))
+                        })
+                    });
+                }
+                "FACE" => {
+                    let id = FaceId(args.count("the number of a face")?);
+                    if object.faces.remove(&id).is_none() {
+                        return Err(Fault::text(
+                            format!("there is no face {id}"),
+                            "LIST FACES shows what there is",
+                        ));
+                    }
+                }
+                _ => {
+                    let name = args.name("a name")?;
+                    let key = name.to_ascii_lowercase();
+                    let found = match kind {
+                        "CURVE" => object.curves.shift_remove(&key).is_some(),
+                        "VARIABLE" => object.variables.shift_remove(&key).is_some(),
+                        _ => object.dimensions.shift_remove(&key).is_some(),
+                    };
+                    if !found {
+                        let word = kind.to_ascii_lowercase();
+                        return Err(Fault::text(
+                            format!("there is no {word} {name}"),
+                            format!("LIST {kind}S shows what there is"),
+                        ));
+                    }
+                }
+            }
+        }
+        let gone = self.active_mut()?.drop_dangling();
+        self.tell_gone(gone);
+        Ok(())
+    }
+
+    pub(super) fn axes(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let object = self.active_mut()?;
+        let mut projection = object.drawing.projection;
+        if args.at_number() {
+            let (a, b) = (args.number("an angle")?, args.number("an angle")?);
+            let third = if args.at_number() { Some(args.number("an angle")?) } else { None };
+            projection.angle_deg = match (third, object.drawing.section) {
+                (Some(c), _) => [a, b, c],
+                (None, Some(Axis::X)) => [projection.angle_deg[0], a, b],
+                (None, Some(Axis::Y)) => [a, projection.angle_deg[1], b],
+                (None, Some(Axis::Z)) => [a, b, projection.angle_deg[2]],
+                (None, None) => return Err(args.wants("the angle of Z")),
+            };
+        } else if args.take("AUTO") {
+            let strokes: Vec<[f64; 2]> =
+                object.drawing.lines.values().map(|l| object.drawing.stroke(l)).collect();
+            projection = Projection::cluster(&strokes).ok_or_else(|| {
+                Fault::text(
+                    "the lines do not show three directions",
+                    "give the angles: AXES 345 40 90",
+                )
+            })?;
+        } else if !args.at("SCALE") {
+            let name = args.name("angles, AUTO or the name of a projection")?;
+            projection = Projection::preset(&name).ok_or_else(|| {
+                Fault::text(
+                    format!("there is no projection {name}"),
+                    format!("there are {}", Projection::PRESETS.join(", ")),
+                )
+            })?;
+        }
+        if args.take("SCALE") {
+            for k in 0..3 {
+                projection.scale[k] = args.number("three scales")?;
+            }
+        }
+        args.end()?;
+        if projection.scale.iter().any(|s| !(*s > 0.0 && *s < 1e6))
+            || projection.angle_deg.iter().any(|a| a.abs() > 1e6)
+        {
+            return Err(Fault::new(
+                405,
+                "a scale is not positive, or an angle is out of bounds",
+                "give positive scales and degrees",
+            ));
+        }
+        let drawing = object.draw();
+        drawing.projection = projection;
+        let auto: Vec<LineId> = (drawing.lines.iter())
+            .filter(|(_, l)| l.source == Source::Auto)
+            .map(|(id, _)| *id)
+            .collect();
+        auto.into_iter().for_each(|id| drawing.type_by_slope(id));
+        let up = drawing.letters.up;
+        let n = projection.sight(up);
+        let [a, b, c] = projection.angle_deg;
+        self.out.push(Reply::note(format!("axes at {a:.2}, {b:.2}, {c:.2} degrees")));
+        let small = 1e-9 * n.norm();
+        if n.to_array().iter().any(|x| x.abs() <= small) && self.active()?.drawing.section.is_none()
+        {
+            self.out.push(Reply::warning(
+                "one family of planes is seen edge-on: depths are hard to tell apart",
+            ));
+        }
+        Ok(())
+    }
+
+    pub(super) fn types(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if args.take("AUTO") {
+            args.end()?;
+            let drawing = self.active_mut()?.draw();
+            let proposed = drawing.type_all();
+            let text: Vec<String> = proposed.iter().map(|&l| drawing.line_text(l)).collect();
+            let lines = drawing.lines.len();
+            self.out.push(Reply::note(format!("{lines} lines typed")));
+            if !text.is_empty() {
+                let text = format!("proposed as oblique, please check: {}", text.join(", "));
+                self.out.push(Reply::warning(text));
+            }
+            return Ok(());
+        }
+        let mut lines = Vec::new();
+        while args.at_number() {
+            lines.push(args.line()?);
+        }
+        if lines.is_empty() {
+            return Err(args.wants("the numbers of lines, or AUTO"));
+        }
+        args.take_short("AS");
+        let object = self.active_mut()?;
+        let free = line_type(&object.drawing, args)?;
+        args.end()?;
+        for id in lines {
+            let line = require_line(object, id)?;
+            let typed = Line { free, source: Source::User, confidence: 1.0, ..line };
+            object.draw().lines.insert(id, typed);
+        }
+        Ok(())
+    }
+
+    pub(super) fn align(&mut self, args: &mut Args, set: bool) -> Result<(), Fault> {
+        let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+        let first = args.point()?;
+        let mut others = vec![args.point()?];
+        while args.len() > 0 {
+            others.push(args.point()?);
+        }
+        let object = self.active_mut()?;
+        require_point(object, first)?;
+        for q in others {
+            require_point(object, q)?;
+            let same = |a: &Align| a.axis == axis && [(first, q), (q, first)].contains(&(a.p, a.q));
+            let aligns = &mut object.draw().aligns;
+            let before = aligns.len();
+            aligns.retain(|a| !same(a));
+            if set && first != q {
+                aligns.push(Align { axis, p: first, q });
+            } else if !set && aligns.len() == before {
+                return Err(Fault::text(
+                    format!("points {first} and {q} are not aligned on {axis}"),
+                    "WHY shows what ties them",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A type, by letter or axes.
+pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Free>, Fault> {
+    let word = args.name("a type: X, Y, Z, H, P, F, O, XY, XZ or YZ")?;
+    if word.eq_ignore_ascii_case("NONE") {
+        return Ok(None);
+    }
+    let free = drawing.letters.free(&word, drawing.section).ok_or_else(|| {
+        Fault::new(
+            406,
+            format!("{word} is no line type"),
+            "types are X, Y, Z, H, P, F, O, XY, XZ, YZ",
+        )
+    })?;
+    match drawing.section {
+        Some(normal) if free.contains(normal) => Err(Fault::new(
+            406,
+            format!("in this cross section no line runs along {normal}"),
+            "use F for lines that are parallel to neither axis",
+        )),
+        _ => Ok(Some(free)),
+    }
+}
+
+/// The point must exist.
+pub(super) fn require_point(object: &Object, p: PointId) -> Result<(), Fault> {
+    if object.drawing.points.contains_key(&p) {
+        return Ok(());
+    }
+    let (code, text) = if object.drawing.points.is_empty() {
+        (101, format!("object {} has no points yet", object.name))
+    } else {
+        (0, format!("there is no point {p} in {}", object.name))
+    };
+    Err(Fault::new(code, text, "draw it with POINT, or see LIST POINTS"))
+}
+
+/// The line must exist.
+pub(super) fn require_line(object: &Object, id: LineId) -> Result<Line, Fault> {
+    object.drawing.lines.get(&id).copied().ok_or_else(|| {
+        let (code, text) = if object.drawing.lines.is_empty() {
+            (102, format!("object {} has no lines", object.name))
+        } else {
+            (0, format!("there is no line {id} in {}", object.name))
+        };
+        Fault::new(code, text, "draw it with LINE, or see LIST LINES")
+    })
+}
+
+/// `SET UP`, `SET NAMES`: what the letters mean.
+pub(super) fn set_letters(drawing: &mut Drawing, up: Option<Axis>, naming: Option<Naming>) {
+    drawing.letters.up = up.unwrap_or(drawing.letters.up);
+    drawing.letters.naming = naming.unwrap_or(drawing.letters.naming);
+}

@@ -1,0 +1,239 @@
+//! Commands that read and write: SAVE, INPUT, RUN, EXPORT.
+
+use super::Fault;
+use super::args::Args;
+use super::session::{Reply, Session};
+use super::words::Kind;
+use crate::json::Json;
+pub(super) use crate::script::measure_text;
+use crate::script::script;
+use crate::twin::{ObjectData, from_json, object_data, to_json};
+use crate::{Dimension, Measure, Object, Role, Variable, export};
+
+impl Session {
+    /// All objects with what follows from them.
+    pub fn objects(&mut self) -> Vec<ObjectData> {
+        let objects: Vec<Object> = self.state.objects.values().map(|o| (**o).clone()).collect();
+        objects.iter().map(|o| self.data(o)).collect()
+    }
+
+    /// The objects as JSON: `{"objects": [...]}`.
+    pub fn objects_json(&mut self) -> Json {
+        Json::map([("objects", Json::list(self.objects().iter().map(ObjectData::to_json)))])
+    }
+
+    fn data(&mut self, object: &Object) -> ObjectData {
+        let (view, layout) = self.laid_out(object);
+        let solid = crate::solid(object, &view.planes, &layout);
+        object_data(object, &view.planes, &layout, solid)
+    }
+
+    pub(super) fn save(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let mut names: Vec<String> = Vec::new();
+        let mut file = None;
+        while args.len() > 0 {
+            if args.take_short("AS") {
+                file = Some(args.name("the name of a file")?);
+                break;
+            }
+            let fault = args.wants("names of objects, then AS and a file");
+            let word = args.name("the name of an object or file").map_err(|_| fault)?;
+            let known = self.object(&word).is_some();
+            if known {
+                names.push(word);
+            } else if args.len() == 0 && (word.contains('.') || word.contains('/')) {
+                file = Some(word);
+            } else {
+                self.known(&word)?;
+            }
+        }
+        args.end()?;
+        if names.is_empty() {
+            names = self.state.objects.values().map(|o| o.name.clone()).collect();
+        }
+        if names.is_empty() {
+            return Err(Fault::new(110, "there is no object to save", "start one with SKETCH"));
+        }
+        let file = file.unwrap_or_else(|| format!("{}.skt", names[0]));
+        if file.trim().is_empty() || file.contains('\0') {
+            return Err(Fault::new(
+                600,
+                format!("cannot write \"{file}\": it is no name of a file"),
+                "SAVE object AS name.skt",
+            ));
+        }
+        let objects: Vec<&Object> = names.iter().filter_map(|n| self.object(n)).collect();
+        let text = if file.to_ascii_lowercase().ends_with(".json") {
+            Json::list(objects.iter().map(|o| to_json(o))).to_string() + "\n"
+        } else {
+            objects.iter().map(|o| script(o)).collect()
+        };
+        self.out.push(Reply::output(&file, text.into_bytes()));
+        Ok(())
+    }
+
+    pub(super) fn input(&mut self, args: &mut Args, rename: bool) -> Result<(), Fault> {
+        let file = args.name("the name of a file")?;
+        let into =
+            if rename && args.take_short("INTO") { Some(args.name("a name")?) } else { None };
+        args.end()?;
+        let text = self.read(&file)?;
+        let text = if text.trim_start().starts_with(['{', '[']) {
+            from_json(&text).map_err(|why| {
+                Fault::new(
+                    399,
+                    format!("{file} is no sketch: {why}"),
+                    "SAVE writes files that can be read",
+                )
+            })?
+        } else {
+            text
+        };
+        let before: Vec<String> = self.state.objects.keys().cloned().collect();
+        self.nested(&text)?;
+        if let Some(new) = into {
+            let added: Vec<String> =
+                self.state.objects.keys().filter(|k| !before.contains(k)).cloned().collect();
+            let [one] = &added[..] else {
+                return Err(Fault::new(
+                    110,
+                    format!("{file} brought {} objects, so INTO cannot name them", added.len()),
+                    "INPUT it without INTO, then RENAME",
+                ));
+            };
+            let name = self.state.objects[one].name.clone();
+            if !name.eq_ignore_ascii_case(&new) {
+                self.nested(&format!("RENAME \"{name}\" TO \"{new}\""))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// `GIVE name measure = value [ONLY]`: a dimension exactly as it is, for files.
+    pub(super) fn give(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let name = self.new_name(args)?;
+        let object = self.active()?.clone();
+        let line = |args: &mut Args| -> Result<crate::LineId, Fault> {
+            let id = args.line()?;
+            super::draw::require_line(&object, id).map(|_| id)
+        };
+        let point = |args: &mut Args| -> Result<crate::PointId, Fault> {
+            let p = args.point()?;
+            super::draw::require_point(&object, p).map(|()| p)
+        };
+        let measure = if let Some(axis) = args.axis() {
+            let p = point(args)?;
+            args.take_short("TO");
+            Measure::Along { axis, p, q: point(args)? }
+        } else if args.take("POINT") {
+            let p = point(args)?;
+            let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+            Measure::Datum { axis, point: p }
+        } else if args.take("LENGTH") {
+            Measure::Length(line(args)?)
+        } else if args.take("SLOPE") {
+            Measure::Slope(line(args)?)
+        } else if args.take("ANGLE") {
+            Measure::Angle(line(args)?, line(args)?)
+        } else if args.take("EQUAL") {
+            Measure::Equal(line(args)?, line(args)?)
+        } else {
+            return Err(args.wants("an axis, POINT, LENGTH, SLOPE, ANGLE or EQUAL"));
+        };
+        let value = if args.take_short("UNSET") {
+            None
+        } else {
+            Some(args.value(object.units.as_deref())?)
+        };
+        let role = if args.take_short("ONLY") { Role::Reference } else { Role::Driving };
+        let range = args.range()?;
+        args.end()?;
+        self.active_mut()?.add_dimension(Dimension { name, measure, value, role, range });
+        Ok(())
+    }
+
+    /// `DECLARE name value`: a variable whose value may read names that come later, for files.
+    pub(super) fn declare(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let name = self.new_name(args)?;
+        let units = self.active()?.units.clone();
+        let value = args.value(units.as_deref())?;
+        let range = args.range()?;
+        args.end()?;
+        let key = name.to_ascii_lowercase();
+        self.active_mut()?.variables.insert(key, Variable { name, value, range });
+        Ok(())
+    }
+
+    pub(super) fn export(&mut self, args: &mut Args) -> Result<(), Fault> {
+        const FORMATS: [&str; 8] = ["STL", "OBJ", "GLTF", "3MF", "DXF", "SVG", "JSON", "SKETCH83"];
+        let format = args.name("a format")?.to_ascii_uppercase();
+        if !FORMATS.contains(&format.as_str()) {
+            return Err(Fault::new(
+                600,
+                format!("there is no format {format} here"),
+                format!("formats are {}", FORMATS.join(", ")),
+            ));
+        }
+        let named = args
+            .peek()
+            .is_some_and(|t| self.object(&t.text).is_some() && !matches!(t.kind, Kind::Number(..)));
+        if named {
+            self.take_object(args)?;
+        }
+        let file = if args.len() > 0 { Some(args.name("the name of a file")?) } else { None };
+        args.end()?;
+        let object = self.active()?.clone();
+        let extension = format.to_ascii_lowercase();
+        let file = file.unwrap_or_else(|| format!("{}.{extension}", object.name));
+        let data = self.data(&object);
+        let bytes = match format.as_str() {
+            "JSON" => (data.to_json().to_string() + "\n").into_bytes(),
+            "SKETCH83" => {
+                if object.name.chars().count() > 6 {
+                    self.out.push(Reply::warning(format!(
+                        "the name {} is cut to 6 characters",
+                        object.name
+                    )));
+                }
+                let mut short = object.clone();
+                short.name = object.name.chars().take(6).collect();
+                script(&short).into_bytes()
+            }
+            "SVG" => {
+                let shown: Vec<Object> = self
+                    .state
+                    .objects
+                    .values()
+                    .filter(|o| o.display)
+                    .map(|o| (**o).clone())
+                    .collect();
+                if shown.is_empty() {
+                    return Err(Fault::new(112, "nothing is displayed", "DISPLAY shows objects"));
+                }
+                let all: Vec<ObjectData> = shown.iter().map(|o| self.data(o)).collect();
+                let pairs: Vec<(&Object, &ObjectData)> = shown.iter().zip(&all).collect();
+                export::svg(&pairs, &self.state.picture, self.window()).into_bytes()
+            }
+            _ => {
+                let Some(solid) = &data.solid else {
+                    return Err(Fault::new(
+                        404,
+                        format!("{} has no faces yet, or misses dimensions", object.name),
+                        "CONVERT, then GENERATE FACES",
+                    ));
+                };
+                let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
+                let mesh = export::Facets::of(&solid.mesh(1e-3 * size));
+                match format.as_str() {
+                    "STL" => export::stl(&mesh, &object.name).into_bytes(),
+                    "OBJ" => export::obj(&mesh, &object.name).into_bytes(),
+                    "GLTF" => export::gltf(&mesh, &object.name).into_bytes(),
+                    "3MF" => export::three_mf(&mesh, object.units.as_deref()),
+                    _ => export::dxf(&mesh, solid, 1e-3 * size).into_bytes(),
+                }
+            }
+        };
+        self.out.push(Reply::output(&file, bytes));
+        Ok(())
+    }
+}

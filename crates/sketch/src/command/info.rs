@@ -1,0 +1,610 @@
+//! Commands that look: CHECK, WHY, ESTIMATE, LIST, MEASURE, DISPLAY and their relatives.
+
+use super::args::Args;
+use super::dims::{dimension_fault, rounded};
+use super::draw::require_point;
+use super::session::{Reply, Session, View};
+use super::{Fault, words::Kind};
+use crate::{
+    Axis, DOUBTFUL, Layout, Measure, Object, Planes, Projection, Role, TypeFault, chain, chain_text,
+};
+use moldloft_syntax::number::plain;
+
+impl Session {
+    /// The first fault of types that stops a conversion: 300, 400, 401, 402.
+    pub(super) fn first_type_fault(&self, object: &Object, planes: &Planes) -> Option<Fault> {
+        let drawing = &object.drawing;
+        let faults = planes.faults(drawing);
+        let untyped: Vec<String> = (faults.iter())
+            .filter_map(|f| match f {
+                TypeFault::Untyped { line } => {
+                    Some(format!("{line} ({})", drawing.line_text(*line)))
+                }
+                _ => None,
+            })
+            .collect();
+        if !untyped.is_empty() {
+            return Some(Fault::new(
+                402,
+                format!("set line types first: lines {} are untyped", untyped.join(", ")),
+                "TYPE line AS type, or TYPE AUTO",
+            ));
+        }
+        faults
+            .iter()
+            .find(|f| !matches!(f, TypeFault::Degraded { .. }))
+            .map(|f| self.type_fault(object, f))
+    }
+
+    fn type_fault(&self, object: &Object, fault: &TypeFault) -> Fault {
+        let drawing = &object.drawing;
+        let text = |path: &[crate::Reason]| {
+            path.iter().map(|r| r.text(drawing)).collect::<Vec<_>>().join(", ")
+        };
+        match fault {
+            TypeFault::Contradiction { line, axis, path } => {
+                // The line of the path that is least sure is the likeliest to be wrong.
+                let suspect = (path.iter())
+                    .filter_map(|r| match r {
+                        crate::Reason::Line(id) => Some(*id),
+                        _ => None,
+                    })
+                    .min_by(|a, b| {
+                        let sure = |id| drawing.lines.get(id).map_or(1.0, |l| l.confidence);
+                        sure(a).total_cmp(&sure(b))
+                    });
+                let next = match suspect {
+                    Some(id) => {
+                        format!("retype the wrong one, perhaps line {id}: TYPE {id} AS {axis}")
+                    }
+                    None => "retype the line or remove an alignment".to_owned(),
+                };
+                Fault::new(
+                    400,
+                    format!(
+                        "line types contradict: {} cannot run along {axis}, because {} put both ends in the same {axis} plane",
+                        drawing.line_text(*line),
+                        text(path)
+                    ),
+                    next,
+                )
+            }
+            TypeFault::Degraded { line, really, path, .. } => Fault::new(
+                400,
+                format!(
+                    "{} is really {}, because of {}",
+                    drawing.line_text(*line),
+                    drawing.letters.letter(*really, drawing.section),
+                    text(path)
+                ),
+                format!("TYPE {line} AS {}, or retype a line of the path", really.spelling()),
+            ),
+            TypeFault::Coincident { p, q } => Fault::new(
+                300,
+                format!("points {p} and {q} lie in the same three planes, so they coincide"),
+                format!("WELD {p} {q}, or retype a line between them"),
+            ),
+            TypeFault::Loose { point } => Fault::new(
+                401,
+                format!("point {point} belongs to no line"),
+                format!("draw a line to it, or DELETE POINT {point}"),
+            ),
+            TypeFault::Untyped { line } => {
+                Fault::new(402, format!("line {line} is untyped"), format!("TYPE {line} AS type"))
+            }
+        }
+    }
+
+    /// What is not connected to the reference, with suggestions.
+    pub(super) fn loose_lines(
+        &self,
+        object: &Object,
+        view: &View,
+        layout: &Layout<f64>,
+    ) -> Vec<String> {
+        let planes = &view.planes;
+        let estimate = view.estimate();
+        let scale = estimate.map(|e| crate::scale(object, planes, layout, e));
+        (layout.loose.iter())
+            .map(|loose| {
+                let axis = loose.axis;
+                let points: Vec<String> = loose.points.iter().map(ToString::to_string).collect();
+                let mut text = format!(
+                    "{axis}: {} of {}; the plane of points {} is free",
+                    layout.counts[axis.index()].given,
+                    layout.counts[axis.index()].required,
+                    points.join(",")
+                );
+                let own = loose.planes[0];
+                if let (Some(e), Some(scale)) = (estimate, scale) {
+                    let known = (0..planes.counts()[axis.index()])
+                        .filter(|&k| layout.coordinates[axis.index()][k].is_some());
+                    let gap = |k: usize| (e.plane(axis, own) - e.plane(axis, k)) * scale;
+                    let near = known.min_by(|&a, &b| gap(a).abs().total_cmp(&gap(b).abs()));
+                    if let Some(k) = near
+                        && let (Some(p), Some(q)) =
+                            (planes.members(axis, k).first(), planes.members(axis, own).first())
+                    {
+                        let (p, q) = if gap(k) < 0.0 { (q, p) } else { (p, q) };
+                        text.push_str(&format!(
+                            "; from the sketch DIMENSION {axis} {p} {q} = {}",
+                            plain(rounded(gap(k).abs()))
+                        ));
+                    }
+                }
+                text
+            })
+            .collect()
+    }
+
+    pub(super) fn check(&mut self, args: &mut Args) -> Result<(), Fault> {
+        self.take_object(args)?;
+        args.end()?;
+        let object = self.active()?.clone();
+        let (view, layout) = self.laid_out(&object);
+        for fault in view.planes.faults(&object.drawing) {
+            let fault = self.type_fault(&object, &fault);
+            let mut reply = Reply::warning(fault.text);
+            (reply.code, reply.next) = (Some(fault.code), Some(fault.next));
+            self.out.push(reply);
+        }
+        for (id, line) in &object.drawing.lines {
+            if line.free.is_some() && line.confidence < DOUBTFUL {
+                let text = format!(
+                    "line {id}, {}: the type is doubtful ({:.0} %)",
+                    object.drawing.line_text(*id),
+                    100.0 * line.confidence
+                );
+                self.out.push(Reply::warning(text));
+            }
+        }
+        for fault in &layout.faults {
+            self.out.push(Reply::warning(dimension_fault(fault).text));
+        }
+        for text in self.loose_lines(&object, &view, &layout) {
+            self.out.push(Reply::warning(text));
+        }
+        self.tell_validity()?;
+        self.tell_counts()
+    }
+
+    /// What a change of values has done to an otherwise finished object: planes that passed each
+    /// other, faces that are no longer flat, curves that no longer fit.
+    pub(super) fn tell_validity(&mut self) -> Result<(), Fault> {
+        let object = self.active()?.clone();
+        let (view, layout) = self.laid_out(&object);
+        let planes = &view.planes;
+        if let Some(e) = view.estimate() {
+            let clear = 0.02 * e.extent();
+            for (id, line) in &object.drawing.lines {
+                let Some(axis) = line.free.and_then(crate::Free::single) else { continue };
+                let ends = [line.p, line.q]
+                    .map(|p| (layout.coordinate(planes, axis, p), planes.plane(axis, p)));
+                if let [(Some(a), Some(i)), (Some(b), Some(j))] = ends {
+                    let drawn = e.plane(axis, j) - e.plane(axis, i);
+                    if drawn.abs() > clear && (b - a) * drawn.signum() <= 0.0 {
+                        let text = format!(
+                            "line {id}, {}: its planes passed each other",
+                            object.drawing.line_text(*id)
+                        );
+                        self.out.push(Reply::warning(text));
+                    }
+                }
+            }
+        }
+        if let Some(solid) = crate::solid(&object, planes, &layout) {
+            for (id, face) in &object.faces {
+                let at: Vec<_> =
+                    face.loops().flatten().filter_map(|p| layout.point(planes, *p)).collect();
+                let off = crate::faces::flatness(&at);
+                let size = at.iter().map(|p| p.distance(at[0])).fold(0.0, f64::max);
+                if off > 1e-6 * size {
+                    let mut reply = Reply::warning(format!(
+                        "face {id} is no longer plane (off by {}); it is measured and written as triangles",
+                        plain(rounded(off))
+                    ));
+                    reply.code = Some(703);
+                    self.out.push(reply);
+                }
+            }
+            for trouble in &solid.trouble {
+                self.out.push(super::curves::trouble_reply(trouble));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn why(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let object = self.active()?.clone();
+        let (view, layout) = self.laid_out(&object);
+        let planes = &view.planes;
+        if let Some(axis) = args
+            .peek()
+            .filter(|t| t.kind == Kind::Word && args.number_at(1))
+            .and_then(|t| Axis::of(&t.text))
+        {
+            args.skip();
+            let (p, q) = (args.point()?, args.point()?);
+            args.end()?;
+            require_point(&object, p)?;
+            require_point(&object, q)?;
+            let text = match crate::why(&object.drawing, axis, p, q) {
+                Some(path) => {
+                    let path: Vec<String> = path.iter().map(|r| r.text(&object.drawing)).collect();
+                    format!("points {p} and {q} share an {axis} plane by {}", path.join(", "))
+                }
+                None => match chain(&object, planes, axis, p, q) {
+                    Some((way, names)) => format!(
+                        "{axis} from {p} to {q} follows from {} via {}",
+                        names.join(", "),
+                        chain_text(&way)
+                    ),
+                    None => format!("{axis} from {p} to {q} is not determined"),
+                },
+            };
+            self.out.push(Reply::note(text));
+            return Ok(());
+        }
+        if args.at_number() {
+            let p = args.point()?;
+            args.end()?;
+            require_point(&object, p)?;
+            let reference = object.reference().map_or(p, |r| r.point);
+            for axis in Axis::ALL {
+                let text = match (
+                    layout.coordinate(planes, axis, p),
+                    chain(&object, planes, axis, reference, p),
+                ) {
+                    (Some(x), Some((way, _))) => {
+                        format!("{axis} = {} via {}", plain(x), chain_text(&way))
+                    }
+                    (Some(x), None) => format!("{axis} = {}", plain(x)),
+                    (None, _) => format!("{axis} is free"),
+                };
+                self.out.push(Reply::note(text));
+            }
+            return Ok(());
+        }
+        let name = args.name("a dimension, a point, or an axis with two points")?;
+        args.end()?;
+        let Some(d) = object.dimensions.get(&name.to_ascii_lowercase()) else {
+            return Err(Fault::text(
+                format!("there is no dimension {name}"),
+                "LIST DIMENSIONS shows what there is",
+            ));
+        };
+        let text = match (d.role, &d.measure) {
+            (Role::Reference, Measure::Along { axis, p, q }) => {
+                match chain(&object, planes, *axis, *p, *q) {
+                    Some((way, names)) => format!(
+                        "{name} only measures: {} determine it via {}",
+                        names.join(", "),
+                        chain_text(&way)
+                    ),
+                    None => format!("{name} only measures, and nothing determines it now"),
+                }
+            }
+            (Role::Reference, _) => format!("{name} only measures"),
+            (Role::Driving, Measure::Along { axis, q, .. }) => {
+                let mut without = object.clone();
+                without.dimensions.shift_remove(&name.to_ascii_lowercase());
+                let layout = self.laid_out(&without).1;
+                let moved: Vec<String> = (layout.loose.iter())
+                    .filter(|l| l.axis == *axis)
+                    .flat_map(|l| l.points.iter().map(ToString::to_string))
+                    .collect();
+                if moved.is_empty() {
+                    format!("{name} places point {q}")
+                } else {
+                    format!("{name} places points {}", moved.join(","))
+                }
+            }
+            _ => format!("{name} drives the shape"),
+        };
+        self.out.push(Reply::note(text));
+        Ok(())
+    }
+
+    pub(super) fn estimate(&mut self, args: &mut Args) -> Result<(), Fault> {
+        args.end()?;
+        let object = self.active()?.clone();
+        let (view, layout) = self.laid_out(&object);
+        let Some(e) = view.estimate() else {
+            return Err(Fault::new(
+                101,
+                "there is nothing to estimate, or far too much",
+                "draw points and lines",
+            ));
+        };
+        let n = e.depths.len();
+        self.out.push(Reply::note(format!(
+            "the picture leaves {n} depth{} open",
+            if n == 1 { "" } else { "s" }
+        )));
+        for depth in &e.depths {
+            let points: Vec<String> = depth.points.iter().map(ToString::to_string).collect();
+            self.out.push(Reply::note(format!(
+                "points {} can slide along the line of sight",
+                points.join(",")
+            )));
+        }
+        for text in self.loose_lines(&object, &view, &layout) {
+            self.out.push(Reply::note(text));
+        }
+        Ok(())
+    }
+
+    pub(super) fn extensions(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let only = args.axis();
+        args.end()?;
+        let object = self.active()?.clone();
+        let (view, layout) = self.laid_out(&object);
+        for axis in Axis::ALL.into_iter().filter(|a| only.is_none_or(|o| o == *a)) {
+            let mut rows: Vec<(Option<f64>, String)> = (0..view.planes.counts()[axis.index()])
+                .map(|k| {
+                    let points: Vec<String> =
+                        view.planes.members(axis, k).iter().map(ToString::to_string).collect();
+                    let at = layout.coordinates[axis.index()][k];
+                    let value = at.map_or("free".to_owned(), plain);
+                    (at, format!("{axis} plane of {}: {value}", points.join(",")))
+                })
+                .collect();
+            rows.sort_by(|a, b| {
+                a.0.unwrap_or(f64::INFINITY).total_cmp(&b.0.unwrap_or(f64::INFINITY))
+            });
+            self.out.extend(rows.into_iter().map(|r| Reply::note(r.1)));
+        }
+        Ok(())
+    }
+
+    pub(super) fn list(&mut self, args: &mut Args) -> Result<(), Fault> {
+        const WHAT: [&str; 8] =
+            ["POINTS", "LINES", "FACES", "CURVES", "DIMENSIONS", "PLANES", "OBJECTS", "VARIABLES"];
+        let what = WHAT.into_iter().find(|w| args.at(w));
+        if what.is_some() {
+            args.skip();
+        }
+        if what == Some("OBJECTS") || (what.is_none() && args.len() == 0) {
+            args.end()?;
+            let rows: Vec<Reply> = (self.state.objects.iter())
+                .map(|(key, o)| {
+                    let mark =
+                        if self.state.active.as_ref() == Some(key) { " (active)" } else { "" };
+                    let (p, l, f) = (o.drawing.points.len(), o.drawing.lines.len(), o.faces.len());
+                    Reply::note(format!("{}{mark}: {p} points, {l} lines, {f} faces", o.name))
+                })
+                .collect();
+            self.out.extend(rows);
+            return Ok(());
+        }
+        if let Some(token) = args.peek() {
+            self.known(&token.text)?;
+        }
+        self.take_object(args)?;
+        args.end()?;
+        let object = self.active()?.clone();
+        let (view, layout) = self.laid_out(&object);
+        let all = what.is_none();
+        let on = |w: &str| all || what == Some(w);
+        let mut rows = Vec::new();
+        if on("POINTS") {
+            for p in object.drawing.points.keys() {
+                let at = Axis::ALL
+                    .map(|a| layout.coordinate(&view.planes, a, *p).map_or("?".to_owned(), plain));
+                rows.push(format!("point {p}: {}", at.join(" ")));
+            }
+        }
+        if on("LINES") {
+            rows.extend(
+                object
+                    .drawing
+                    .lines
+                    .keys()
+                    .map(|l| format!("line {l}: {}", object.drawing.line_text(*l))),
+            );
+        }
+        if on("FACES") {
+            for (id, f) in &object.faces {
+                let cycles: Vec<String> = f
+                    .loops()
+                    .map(|c| c.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "))
+                    .collect();
+                rows.push(format!("face {id}: {}", cycles.join(" HOLE ")));
+            }
+        }
+        if on("CURVES") {
+            for c in object.curves.values() {
+                let points: Vec<String> = c.points.iter().map(ToString::to_string).collect();
+                rows.push(format!("{} {}: points {}", c.kind.word(), c.name, points.join(" ")));
+            }
+        }
+        if on("DIMENSIONS") {
+            for (key, d) in &object.dimensions {
+                let value = d.value.as_ref().map_or("unset".to_owned(), |v| v.text().to_owned());
+                let number = match d.role {
+                    Role::Driving => layout.values.get(key).copied(),
+                    Role::Reference => layout.measured(&object, &view.planes, &d.measure),
+                };
+                let number = number.map_or(String::new(), |x| format!(" = {}", plain(x)));
+                let text = super::files::measure_text(&d.measure);
+                rows.push(match d.role {
+                    Role::Driving => format!("{} {text}: {value}{number}", d.name),
+                    Role::Reference => format!("({} {text}{number})", d.name),
+                });
+            }
+        }
+        if on("VARIABLES") {
+            for (key, v) in &object.variables {
+                let number = layout.values.get(key).map_or("?".to_owned(), |x| plain(*x));
+                rows.push(format!("{}: {} = {number}", v.name, v.value));
+            }
+        }
+        self.out.extend(rows.into_iter().map(Reply::note));
+        if what == Some("PLANES") {
+            return self.extensions(&mut Args::new(&[], ""));
+        }
+        Ok(())
+    }
+
+    pub(super) fn measure(&mut self, args: &mut Args) -> Result<(), Fault> {
+        const WHAT: [&str; 4] = ["VOLUME", "AREA", "CENTROID", "INERTIA"];
+        let word = |a: &Args| WHAT.into_iter().find(|w| a.at(w));
+        if word(args).is_none() {
+            if let Some(token) = args.peek() {
+                self.known(&token.text)?;
+            }
+            self.take_object(args)?;
+        }
+        let what = word(args);
+        if what.is_some() {
+            args.skip();
+        }
+        args.end()?;
+        let object = self.active()?.clone();
+        let Some(solid) = self.solid_of(&object) else {
+            return Err(Fault::new(
+                404,
+                format!("{} has no faces or is not fully dimensioned", object.name),
+                "CONVERT says what is missing; then GENERATE FACES",
+            ));
+        };
+        let mass = solid.mass();
+        let c = mass.centroid.to_array().map(plain).join(" ");
+        let rows = [
+            ("VOLUME", format!("volume {}", plain(mass.volume))),
+            ("AREA", format!("area {}", plain(mass.area))),
+            ("CENTROID", format!("centroid {c}")),
+            (
+                "INERTIA",
+                format!(
+                    "inertia about the centroid, xx yy zz yz zx xy: {}",
+                    mass.inertia.map(plain).join(" ")
+                ),
+            ),
+        ];
+        let rows = rows.into_iter().filter(|r| what.is_none_or(|w| w == r.0));
+        self.out.extend(rows.map(|r| Reply::note(r.1)));
+        Ok(())
+    }
+
+    pub(super) fn display(&mut self, args: &mut Args, shown: bool) -> Result<(), Fault> {
+        let name =
+            if args.len() == 0 || args.at("ALL") { None } else { Some(args.name("a name")?) };
+        args.take("ALL");
+        args.end()?;
+        if let Some(name) = &name {
+            self.known(name)?;
+        }
+        for (key, object) in &mut self.state.objects {
+            if name.as_ref().is_none_or(|n| n.to_lowercase() == *key) && object.display != shown {
+                std::sync::Arc::make_mut(object).display = shown;
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn show(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if args.at("FACE") && args.number_at(1) {
+            args.skip();
+            let id = crate::FaceId(args.count("a face")?);
+            args.end()?;
+            let object = self.active()?;
+            let Some(face) = object.faces.get(&id) else {
+                return Err(Fault::text(
+                    format!("there is no face {id}"),
+                    "LIST FACES shows what there is",
+                ));
+            };
+            let text: Vec<String> = face.outer.iter().map(ToString::to_string).collect();
+            let text = format!("face {id} runs {}", text.join(" "));
+            self.out.push(Reply::note(text));
+            return Ok(());
+        }
+        let what = ["LABELS", "PLANES", "TYPES"].into_iter().find(|w| args.at(w));
+        let Some(what) = what else { return Err(args.wants("LABELS, PLANES, TYPES or FACE")) };
+        args.skip();
+        let off = args.take_short("OFF");
+        args.take_short("ON");
+        args.end()?;
+        let picture = &mut self.state.picture;
+        match what {
+            "LABELS" => picture.labels = !off,
+            "PLANES" => picture.planes = !off,
+            _ => picture.types = !off,
+        }
+        Ok(())
+    }
+
+    /// The window on the page, as wide as all points when none was set.
+    pub(super) fn window(&self) -> [f64; 4] {
+        if let Some(w) = self.state.picture.window {
+            return w;
+        }
+        let mut w = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        for p in self.state.objects.values().flat_map(|o| o.drawing.points.values()) {
+            w = [w[0].min(p.u), w[1].min(p.v), w[2].max(p.u), w[3].max(p.v)];
+        }
+        if w[0] > w[2] {
+            return [0.0, 0.0, 1.0, 1.0];
+        }
+        // A flat page is given some height or width.
+        let size = (w[2] - w[0]).max(w[3] - w[1]);
+        let size = if size > 0.0 { size } else { 1.0 };
+        let pad = |low: f64, high: f64| if high > low { 0.0 } else { 0.5 * size };
+        let (du, dv) = (pad(w[0], w[2]), pad(w[1], w[3]));
+        [w[0] - du, w[1] - dv, w[2] + du, w[3] + dv]
+    }
+
+    pub(super) fn zoom(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let [l, b, r, t] = self.window();
+        let window = if args.len() == 0 || args.take("FIT") {
+            None
+        } else if args.take("WINDOW") {
+            let mut w = [0.0; 4];
+            for x in &mut w {
+                *x = args.number("a screen coordinate")?;
+            }
+            Some([w[0].min(w[2]), w[1].min(w[3]), w[0].max(w[2]), w[1].max(w[3])])
+        } else {
+            let factor = args.number("a factor")?;
+            if !(factor > 0.0 && factor < 1e6) {
+                return Err(Fault::text(
+                    "the factor must be positive",
+                    "ZOOM 2 shows half the page",
+                ));
+            }
+            let (cu, cv) = ((l + r) / 2.0, (b + t) / 2.0);
+            let (hu, hv) = ((r - l) / 2.0 / factor, (t - b) / 2.0 / factor);
+            Some([cu - hu, cv - hv, cu + hu, cv + hv])
+        };
+        args.end()?;
+        if window.is_some_and(|w| !(w[2] - w[0] > 0.0 && w[3] - w[1] > 0.0)) {
+            return Err(Fault::text("the window is empty", "give two opposite corners"));
+        }
+        self.state.picture.window = window;
+        Ok(())
+    }
+
+    pub(super) fn pan(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let (du, dv) = (args.number("a shift to the right")?, args.number("a shift up")?);
+        args.end()?;
+        let [l, b, r, t] = self.window();
+        self.state.picture.window = Some([l + du, b + dv, r + du, t + dv]);
+        Ok(())
+    }
+
+    pub(super) fn view_from(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let name = args.name("a projection, TOP, FRONT, SIDE or SKETCH")?.to_ascii_uppercase();
+        args.end()?;
+        if !["TOP", "FRONT", "SIDE", "SKETCH"].contains(&name.as_str())
+            && Projection::preset(&name).is_none()
+        {
+            return Err(Fault::text(
+                format!("there is no view {name}"),
+                format!("views are TOP, FRONT, SIDE, SKETCH, {}", Projection::PRESETS.join(", ")),
+            ));
+        }
+        self.state.picture.view = name;
+        Ok(())
+    }
+}

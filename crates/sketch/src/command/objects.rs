@@ -1,0 +1,80 @@
+//! Commands about whole objects.
+
+use super::Fault;
+use super::args::Args;
+use super::session::{Reply, Session};
+use std::sync::Arc;
+
+impl Session {
+    pub(super) fn using(&mut self, args: &mut Args, required: bool) -> Result<(), Fault> {
+        if args.len() == 0 && !required {
+            return self.active().map(|_| ());
+        }
+        let name = args.name("the name of an object")?;
+        args.end()?;
+        self.known(&name)?;
+        self.state.active = Some(name.to_lowercase());
+        Ok(())
+    }
+
+    /// The name of an object to be made: free, and neither too short nor too long.
+    fn free_name(&self, name: &str) -> Result<String, Fault> {
+        if name.is_empty() || name.chars().count() > 32 {
+            return Err(Fault::text(
+                "an object's name has 1 to 32 characters",
+                "choose another name",
+            ));
+        }
+        if let Some(other) = self.object(name) {
+            return Err(Fault::text(
+                format!("object {} exists already", other.name),
+                "choose another name, or DELETE it",
+            ));
+        }
+        Ok(name.to_lowercase())
+    }
+
+    pub(super) fn rename(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let old = args.name("the old name")?;
+        args.take_short("TO");
+        let new = args.name("the new name")?;
+        args.end()?;
+        let mut object = self.known(&old)?.clone();
+        let (from, to) = (old.to_lowercase(), new.to_lowercase());
+        if from != to {
+            self.free_name(&new)?;
+        }
+        object.name = new;
+        // It keeps its place in the list.
+        let place = self.state.objects.get_index_of(&from).unwrap_or(0);
+        self.state.objects.shift_remove(&from);
+        self.state.objects.shift_insert(place, to.clone(), Arc::new(object));
+        if self.state.active.as_ref() == Some(&from) {
+            self.state.active = Some(to);
+        }
+        Ok(())
+    }
+
+    pub(super) fn copy(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let old = args.name("the name of an object")?;
+        args.take_short("TO");
+        let new = args.name("the name of the copy")?;
+        args.end()?;
+        let mut object = self.known(&old)?.clone();
+        self.free_name(&new)?;
+        object.name = new;
+        self.insert(object);
+        Ok(())
+    }
+
+    pub(super) fn dump(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if let Some(token) = args.peek() {
+            self.known(&token.text)?;
+        }
+        self.take_object(args)?;
+        args.end()?;
+        let text = crate::twin::to_json(self.active()?).to_string();
+        self.out.push(Reply::note(text));
+        Ok(())
+    }
+}

@@ -1,0 +1,551 @@
+//! A session: objects, undo, journal, and the dispatch of commands.
+
+use super::args::Args;
+use super::solids::Question;
+use super::words::{self, Command};
+use super::{Fault, verbs};
+use crate::solid::{Solid, solid};
+use crate::{Estimate, Layout, Object, Planes, PointId, solve};
+use indexmap::IndexMap;
+use moldloft_diag::Severity;
+use moldloft_num::Real;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a session reads of the world.
+pub trait Files: Send + Sync {
+    /// The text of a file.
+    ///
+    /// # Errors
+    /// The reason in words.
+    fn read(&self, name: &str) -> Result<String, String>;
+}
+
+/// A world without files.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFiles;
+
+impl Files for NoFiles {
+    fn read(&self, _: &str) -> Result<String, String> {
+        Err("no files can be read here".to_owned())
+    }
+}
+
+/// Bytes that a command asks the host to write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutFile {
+    /// The name that was asked for.
+    pub name: String,
+    /// What to write.
+    pub bytes: Vec<u8>,
+}
+
+/// An answer to a command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reply {
+    /// Error, warning or note.
+    pub severity: Severity,
+    /// The code of 1983, for errors that have one.
+    pub code: Option<u16>,
+    /// What is said; may have several lines.
+    pub text: String,
+    /// The next step, for errors and questions.
+    pub next: Option<String>,
+    /// A file to write.
+    pub file: Option<OutFile>,
+}
+
+impl Reply {
+    /// A plain answer.
+    pub fn note(text: impl Into<String>) -> Reply {
+        Reply { severity: Severity::Note, code: None, text: text.into(), next: None, file: None }
+    }
+
+    /// A warning.
+    pub fn warning(text: impl Into<String>) -> Reply {
+        Reply { severity: Severity::Warning, ..Reply::note(text) }
+    }
+
+    /// A file to write, with a line about it.
+    pub fn output(name: &str, bytes: Vec<u8>) -> Reply {
+        let text = format!("{name}: {} bytes", bytes.len());
+        Reply { file: Some(OutFile { name: name.to_owned(), bytes }), ..Reply::note(text) }
+    }
+
+    /// Whether the command was refused.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}
+
+impl From<Fault> for Reply {
+    fn from(f: Fault) -> Reply {
+        let code = (f.code > 0).then_some(f.code);
+        let severity = Severity::Error;
+        Reply { severity, code, text: f.text, next: Some(f.next), file: None }
+    }
+}
+
+/// What the picture shows.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Picture {
+    pub labels: bool,
+    pub planes: bool,
+    pub types: bool,
+    /// `SKETCH`, `TOP`, `FRONT`, `SIDE` or the name of a projection.
+    pub view: String,
+    /// The window on the page: left, bottom, right, top.
+    pub window: Option<[f64; 4]>,
+}
+
+/// Everything that commands change.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct State {
+    /// Objects by folded name.
+    pub objects: IndexMap<String, Arc<Object>>,
+    pub active: Option<String>,
+    pub picture: Picture,
+    /// Words are cut at 32 characters, as in 1983.
+    pub sketch83: bool,
+}
+
+/// What follows from a drawing, kept while it is the same.
+pub(crate) struct View {
+    drawing: Arc<crate::Drawing>,
+    reference: Option<PointId>,
+    pub planes: Arc<Planes>,
+    estimate: std::sync::OnceLock<Option<Estimate>>,
+}
+
+impl View {
+    pub fn estimate(&self) -> Option<&Estimate> {
+        let compute = || Estimate::of(&self.drawing, &self.planes, self.reference?);
+        self.estimate.get_or_init(compute).as_ref()
+    }
+}
+
+/// Runs commands on objects.
+///
+/// ```
+/// use moldloft_sketch::Session;
+/// let mut s = Session::new();
+/// for line in ["SKETCH PLATE 2D XY", "POINT 1 0 0; POINT 2 4 0; POINT 3 4 3; POINT 4 0 3",
+///              "POLYLINE 1 2 3 4 CLOSE", "DIM W X 1 2 = 40; DIM H Y 2 3 = 30", "GENERATE FACES"] {
+///     assert!(s.run_line(line).iter().all(|r| !r.is_error()));
+/// }
+/// assert_eq!(s.objects()[0].area, Some(1200.0));
+/// ```
+pub struct Session {
+    pub(crate) state: State,
+    undo: Vec<State>,
+    redo: Vec<State>,
+    history: Vec<String>,
+    journal: Vec<String>,
+    files: Box<dyn Files>,
+    pub(crate) question: Option<Question>,
+    begun: String,
+    views: Vec<Arc<View>>,
+    depth: usize,
+    over: bool,
+    /// Replies of the command that is running.
+    pub(crate) out: Vec<Reply>,
+}
+
+/// Undo goes back this far.
+const MAX_UNDO: usize = 500;
+/// Longer lines are refused.
+const MAX_LINE: usize = 1 << 16;
+/// Files that run files.
+const MAX_DEPTH: usize = 8;
+/// More points than this in one object are refused.
+pub(crate) const MAX_POINTS: usize = 20_000;
+
+impl Default for Session {
+    fn default() -> Self {
+        Session::new()
+    }
+}
+
+impl Session {
+    /// A session without files to read.
+    pub fn new() -> Session {
+        Session::with_files(Box::new(NoFiles))
+    }
+
+    /// A session that reads files through `files`.
+    pub fn with_files(files: Box<dyn Files>) -> Session {
+        let picture = Picture {
+            labels: true,
+            planes: false,
+            types: true,
+            view: "SKETCH".into(),
+            window: None,
+        };
+        Session {
+            state: State { objects: IndexMap::new(), active: None, picture, sketch83: false },
+            undo: Vec::new(),
+            redo: Vec::new(),
+            history: Vec::new(),
+            journal: Vec::new(),
+            files,
+            question: None,
+            begun: String::new(),
+            views: Vec::new(),
+            depth: 0,
+            over: false,
+            out: Vec::new(),
+        }
+    }
+
+    /// Runs a line: one or more commands, or a part of one that ends in `&`. A refused command
+    /// changes nothing; those after it in the line are run.
+    pub fn run_line(&mut self, line: &str) -> Vec<Reply> {
+        if self.begun.len() + line.len() > MAX_LINE {
+            self.begun.clear();
+            let text = format!("the line is longer than {MAX_LINE} bytes");
+            return vec![Fault::text(text, "divide it").into()];
+        }
+        if let Some(part) = words::continued(line) {
+            self.begun.push_str(part);
+            self.begun.push(' ');
+            return vec![];
+        }
+        let line = std::mem::take(&mut self.begun) + line;
+        let parsed = words::parse(&line, self.state.sketch83.then_some(32));
+        let mut replies = Vec::new();
+        for command in parsed.commands {
+            match command {
+                Ok(command) => replies.extend(self.run_command(&command)),
+                Err(fault) => replies.push(fault.into()),
+            }
+        }
+        replies
+    }
+
+    /// Runs a text line by line.
+    pub fn run_text(&mut self, text: &str) -> Vec<Reply> {
+        text.lines().flat_map(|line| self.run_line(line)).collect()
+    }
+
+    fn run_command(&mut self, command: &Command) -> Vec<Reply> {
+        let before = self.state.clone();
+        let outer = std::mem::take(&mut self.out);
+        let result = self.dispatch(command);
+        let mut replies = std::mem::replace(&mut self.out, outer);
+        match result {
+            Ok(()) => {
+                self.history.push(command.text.clone());
+                let head = command.tokens[0].text.to_ascii_uppercase();
+                let steps =
+                    head.len() >= 2 && ("UNDO".starts_with(&head) || "REDO".starts_with(&head));
+                let nested = matches!(verbs::find(&head), Ok(("RUN" | "INPUT", _)));
+                if steps {
+                    self.journal.push(command.text.clone());
+                } else if !nested && !same(&before, &self.state) {
+                    self.journal.push(command.text.clone());
+                    self.undo.push(before);
+                    if self.undo.len() > MAX_UNDO {
+                        self.undo.remove(0);
+                    }
+                    self.redo.clear();
+                }
+            }
+            Err(fault) => {
+                self.state = before;
+                replies.push(fault.into());
+            }
+        }
+        replies
+    }
+
+    fn dispatch(&mut self, command: &Command) -> Result<(), Fault> {
+        let (verb, note) = verbs::find(&command.tokens[0].text)?;
+        self.out.extend(note.map(Reply::note));
+        let usage = verbs::VERBS.iter().find(|v| v.0 == verb).map_or("", |v| v.1);
+        let args = &mut Args::new(&command.tokens[1..], usage);
+        let answer = matches!(verb, "ACCEPT" | "REJECT" | "REPEAT" | "YES" | "NO")
+            || (verb == "REVERSE" && args.len() == 0);
+        if answer {
+            args.end()?;
+            return self.answer(verb);
+        }
+        self.question =
+            self.question.take().filter(|_| matches!(verb, "HELP" | "LIST" | "CHOOSE" | "SHOW"));
+        match verb {
+            "SKETCH" => self.sketch(args),
+            "MODIFY" => self.using(args, false),
+            "POINT" => self.point(args),
+            "LINE" => self.line(args),
+            "POLYLINE" => self.polyline(args),
+            "SPLIT" => self.split(args),
+            "WELD" => self.weld(args),
+            "DELETE" => self.delete(args),
+            "AXES" => self.axes(args),
+            "TYPE" => self.types(args),
+            "ALIGN" | "UNALIGN" => self.align(args, verb == "ALIGN"),
+            "DIMENSION" => self.dimension(args),
+            "SET" => self.set(args),
+            "UNSET" => self.unset(args),
+            "VARIABLE" => self.variable(args),
+            "REFERENCE" => self.reference(args),
+            "REVERSE" => self.reverse(args),
+            "EXTENSIONS" => self.extensions(args),
+            "CHECK" => self.check(args),
+            "WHY" => self.why(args),
+            "ESTIMATE" => self.estimate(args),
+            "CONVERT" => self.convert(args),
+            "GENERATE" | "CREATE" => self.generate(args),
+            "FACE" => self.face(args),
+            "CHOOSE" => self.choose(args),
+            "EXTRUDE" => self.extrude(args),
+            "REVOLVE" => self.revolve(args),
+            "CLEAN" => self.clean(args),
+            "MERGE" => self.merge(args),
+            "MEASURE" => self.measure(args),
+            "ARC" | "CIRCLE" | "ELLIPSE" => self.corner_curve(args, verb),
+            "QUADRATIC" | "PARABOLA" => self.chain_curve(args, 3),
+            "CUBIC" | "OVERHAUSER" => self.chain_curve(args, 4),
+            "USING" => self.using(args, true),
+            "RENAME" => self.rename(args),
+            "COPY" => self.copy(args),
+            "MOVE" | "ROTATE" | "MIRROR" | "SCALE" => self.transform(args, verb),
+            "DUMP" => self.dump(args),
+            "SAVE" => self.save(args),
+            "INPUT" | "RUN" => self.input(args, verb == "INPUT"),
+            "EXPORT" => self.export(args),
+            "GIVE" => self.give(args),
+            "DECLARE" => self.declare(args),
+            "DISPLAY" | "ERASE" => self.display(args, verb == "DISPLAY"),
+            "SHOW" => self.show(args),
+            "ZOOM" => self.zoom(args),
+            "PAN" => self.pan(args),
+            "VIEW" => self.view_from(args),
+            "LIST" => self.list(args),
+            "UNDO" | "REDO" => self.step(args, verb == "UNDO"),
+            "HISTORY" => {
+                args.end()?;
+                self.out.push(Reply::note(self.history.join("\n")));
+                Ok(())
+            }
+            "HELP" => self.help(args),
+            "QUIT" => {
+                args.end()?;
+                self.over = true;
+                Ok(())
+            }
+            _ => args.end(),
+        }
+    }
+
+    /// The commands that made the present state, for a journal. A host appends new ones to its file
+    /// after each line; running them again restores the session.
+    pub fn journal(&self) -> &[String] {
+        &self.journal
+    }
+
+    /// All commands so far.
+    pub fn history(&self) -> &[String] {
+        &self.history
+    }
+
+    /// Whether QUIT was given.
+    pub fn over(&self) -> bool {
+        self.over
+    }
+
+    /// Completions of the last word of a line: verbs, then names of objects and dimensions.
+    pub fn complete(&self, line: &str) -> Vec<String> {
+        let last = line.rsplit([' ', ',', '=', ';']).next().unwrap_or("").to_ascii_uppercase();
+        let first = line.rsplit(';').next().unwrap_or("").trim_start().len() <= last.len();
+        let starts = |name: &str| name.to_ascii_uppercase().starts_with(&last);
+        if first {
+            let verbs = verbs::VERBS.iter().map(|v| v.0.to_owned());
+            return verbs.filter(|v| starts(v)).collect();
+        }
+        let objects = self.state.objects.values().map(|o| o.name.clone());
+        let inner = self.active_object().into_iter().flat_map(|o| {
+            let dimensions = o.dimensions.values().map(|d| d.name.clone());
+            dimensions.chain(o.variables.values().map(|v| v.name.clone()))
+        });
+        objects.chain(inner).filter(|n| starts(n)).collect()
+    }
+
+    /// The object of a name.
+    pub fn object(&self, name: &str) -> Option<&Object> {
+        self.state.objects.get(&name.to_lowercase()).map(|o| &**o)
+    }
+
+    /// The active object.
+    pub fn active_object(&self) -> Option<&Object> {
+        self.object(self.state.active.as_deref()?)
+    }
+
+    /// Adds an object, or takes its namesake's place; it becomes active.
+    pub fn insert(&mut self, object: Object) {
+        let key = object.name.to_lowercase();
+        self.state.objects.insert(key.clone(), Arc::new(object));
+        self.state.active = Some(key);
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Result<String, Fault> {
+        self.files.read(name).map_err(|why| {
+            Fault::new(600, format!("cannot read \"{name}\": {why}"), "check the name")
+        })
+    }
+
+    /// The object of a name, or 110.
+    pub(crate) fn known(&self, name: &str) -> Result<&Object, Fault> {
+        self.object(name).ok_or_else(|| {
+            let names = self.state.objects.values().map(|o| o.name.as_str());
+            let next = match moldloft_diag::nearest(name, names) {
+                Some(near) => format!("did you mean {near}?"),
+                None => "LIST OBJECTS shows what there is".to_owned(),
+            };
+            Fault::new(110, format!("there is no object {name}"), next)
+        })
+    }
+
+    /// The active object, to change it.
+    pub(crate) fn active_mut(&mut self) -> Result<&mut Object, Fault> {
+        let none = || {
+            Fault::new(112, "no object is active", "start one with SKETCH, or name one with USING")
+        };
+        let key = self.state.active.clone().ok_or_else(none)?;
+        self.state.objects.get_mut(&key).map(Arc::make_mut).ok_or_else(none)
+    }
+
+    /// The active object.
+    pub(crate) fn active(&self) -> Result<&Object, Fault> {
+        self.active_object().ok_or_else(|| {
+            Fault::new(112, "no object is active", "start one with SKETCH, or name one with USING")
+        })
+    }
+
+    /// Takes an object's name if one is next, and makes it active.
+    pub(crate) fn take_object(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if let Some(token) = args.peek().filter(|t| !matches!(t.kind, words::Kind::Number(..))) {
+            let key = token.text.to_lowercase();
+            if self.state.objects.contains_key(&key) {
+                args.skip();
+                self.state.active = Some(key);
+            }
+        }
+        self.active().map(|_| ())
+    }
+
+    /// What follows from the drawing of an object.
+    pub(crate) fn view(&mut self, object: &Object) -> Arc<View> {
+        let reference = object.reference().map(|r| r.point);
+        let same =
+            |v: &&Arc<View>| Arc::ptr_eq(&v.drawing, &object.drawing) && v.reference == reference;
+        if let Some(view) = self.views.iter().find(same) {
+            return Arc::clone(view);
+        }
+        let view = Arc::new(View {
+            drawing: Arc::clone(&object.drawing),
+            reference,
+            planes: Arc::new(Planes::of(&object.drawing)),
+            estimate: std::sync::OnceLock::new(),
+        });
+        if self.views.len() >= 8 {
+            self.views.remove(0);
+        }
+        self.views.push(Arc::clone(&view));
+        view
+    }
+
+    /// Planes and layout of an object.
+    pub(crate) fn laid_out(&mut self, object: &Object) -> (Arc<View>, Layout<f64>) {
+        let view = self.view(object);
+        let layout = lay_out(object, &view, &BTreeMap::new());
+        (view, layout)
+    }
+
+    pub(crate) fn solid_of(&mut self, object: &Object) -> Option<Solid<f64>> {
+        let (view, layout) = self.laid_out(object);
+        solid(object, &view.planes, &layout)
+    }
+
+    fn step(&mut self, args: &mut Args, back: bool) -> Result<(), Fault> {
+        let n = if args.at_number() { args.count("how many steps")? } else { 1 };
+        args.end()?;
+        let mut done = 0;
+        while done < n {
+            let (from, to) = if back {
+                (&mut self.undo, &mut self.redo)
+            } else {
+                (&mut self.redo, &mut self.undo)
+            };
+            let Some(state) = from.pop() else { break };
+            to.push(std::mem::replace(&mut self.state, state));
+            done += 1;
+        }
+        if done == 0 {
+            let what = if back { "there is nothing to undo" } else { "there is nothing to redo" };
+            return Err(Fault::text(what, "HISTORY lists the commands"));
+        }
+        let word = if back { "undone" } else { "done again" };
+        self.out.push(Reply::note(format!("{word}: {done}")));
+        Ok(())
+    }
+
+    fn help(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let text = match args.peek() {
+            None => {
+                let lines = verbs::VERBS.iter().map(|(v, _, does)| format!("{v:<11}{does}"));
+                lines.collect::<Vec<_>>().join("\n")
+            }
+            Some(token) => {
+                args.skip();
+                args.end()?;
+                let (verb, _) = verbs::find(&token.text)?;
+                let row = verbs::VERBS.iter().find(|v| v.0 == verb);
+                row.map_or(String::new(), |(_, usage, does)| format!("{usage}\n{does}"))
+            }
+        };
+        self.out.push(Reply::note(text));
+        Ok(())
+    }
+
+    pub(crate) fn nested(&mut self, text: &str) -> Result<(), Fault> {
+        if self.depth >= MAX_DEPTH {
+            return Err(Fault::text("files run each other too deeply", "let no file run itself"));
+        }
+        self.depth += 1;
+        let begun = std::mem::take(&mut self.begun);
+        let mut replies = Vec::new();
+        for (number, line) in text.lines().enumerate() {
+            for mut reply in self.run_line(line) {
+                if reply.is_error() {
+                    reply.text = format!("line {}: {}", number + 1, reply.text);
+                }
+                replies.push(reply);
+            }
+        }
+        self.begun = begun;
+        self.depth -= 1;
+        self.out.extend(replies);
+        Ok(())
+    }
+}
+
+/// Computes the layout of an object with some values replaced.
+pub(crate) fn lay_out<T: Real>(
+    object: &Object,
+    view: &View,
+    overrides: &BTreeMap<String, T>,
+) -> Layout<T> {
+    solve(object, &view.planes, overrides, &|| view.estimate().cloned())
+}
+
+/// Whether nothing was changed: objects are shared until they are.
+fn same(a: &State, b: &State) -> bool {
+    a.active == b.active
+        && a.sketch83 == b.sketch83
+        && a.picture == b.picture
+        && a.objects.len() == b.objects.len()
+        && a.objects
+            .iter()
+            .zip(&b.objects)
+            .all(|(x, y)| x.0 == y.0 && (Arc::ptr_eq(x.1, y.1) || x.1 == y.1))
+}

@@ -1,0 +1,715 @@
+//! Commands that make faces and solids.
+
+use super::Fault;
+use super::args::Args;
+use super::draw::{require_line, require_point};
+use super::session::{MAX_POINTS, Reply, Session};
+use crate::faces::{Fit, Fitted, Polygon, fit, fit_plane};
+use crate::merge::{self, Placed};
+use crate::{Axis, Expr, Face, FaceId, Object, PointId};
+use moldloft_num::Vec3;
+use moldloft_syntax::number::plain;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A question that waits for ACCEPT, REJECT, REVERSE, REPEAT, YES or NO.
+#[derive(Clone, Debug)]
+pub(crate) enum Question {
+    /// Is the estimated value right?
+    Dimension { name: String, axis: Axis, p: PointId, q: PointId, value: f64 },
+    /// Is this candidate a face?
+    Face { object: String, left: Vec<Vec<Vec<PointId>>>, taken: Vec<Face> },
+    /// Which of several solids?
+    Solid { object: String, faces: Vec<Vec<Face>> },
+}
+
+impl Session {
+    /// Where the points of a fully dimensioned object are, or what is missing.
+    pub(super) fn placed(&mut self, object: &Object) -> Result<BTreeMap<PointId, Vec3>, Fault> {
+        let (view, layout) = self.laid_out(object);
+        if object.drawing.points.is_empty() {
+            return Err(Fault::new(
+                101,
+                format!("object {} has no points yet", object.name),
+                "draw some, or INPUT it",
+            ));
+        }
+        if object.drawing.lines.is_empty() {
+            return Err(Fault::new(
+                102,
+                format!("object {} has no lines", object.name),
+                "draw some",
+            ));
+        }
+        match layout.positions(&view.planes) {
+            Some(at) => Ok(view.planes.ids().iter().copied().zip(at).collect()),
+            None => {
+                let lines = self.loose_lines(object, &view, &layout);
+                let text =
+                    format!("{} is not fully dimensioned; {}", object.name, lines.join("; "));
+                Err(Fault::new(404, text, "CONVERT lists what is missing"))
+            }
+        }
+    }
+
+    fn wireframe(&mut self, object: &Object) -> Result<(Vec<PointId>, Fitted), Fault> {
+        let at = self.placed(object)?;
+        let ids: Vec<PointId> = at.keys().copied().collect();
+        let positions: Vec<Vec3> = at.values().copied().collect();
+        let index = |p: PointId| ids.binary_search(&p).unwrap_or(0);
+        let edges: Vec<[usize; 2]> =
+            object.drawing.lines.values().map(|l| [index(l.p), index(l.q)]).collect();
+        let fitted = match object.drawing.section {
+            Some(normal) => {
+                let mut n = Vec3::zero();
+                match normal {
+                    Axis::X => n.x = 1.0,
+                    // X to the right and Z up is seen against Y.
+                    Axis::Y => n.y = -1.0,
+                    Axis::Z => n.z = 1.0,
+                }
+                let polygons = fit_plane(&positions, &edges, n);
+                let fits = if polygons.is_empty() {
+                    vec![]
+                } else {
+                    vec![Fit {
+                        faces: polygons.clone(),
+                        internal: vec![],
+                        branching: vec![],
+                        scribed: vec![],
+                        volume: 0.0,
+                    }]
+                };
+                Fitted {
+                    candidates: polygons.len(),
+                    polygons,
+                    fits,
+                    complete: true,
+                    ..Fitted::default()
+                }
+            }
+            None => fit(&positions, &edges),
+        };
+        let pairs = |list: &[[usize; 2]]| {
+            let text: Vec<String> = (list.iter())
+                .filter(|e| e.iter().all(|v| *v < ids.len()))
+                .take(12)
+                .map(|[a, b]| format!("{}-{}", ids[*a], ids[*b]))
+                .collect();
+            text.join(", ")
+        };
+        if fitted.too_large {
+            return Err(Fault::new(
+                200,
+                "the wireframe has too many crossing faces",
+                "divide the object, or give faces with FACE",
+            ));
+        }
+        if let Some(p) = fitted.crossings.first() {
+            let at = p.to_array().map(plain).join(" ");
+            return Err(Fault::new(
+                701,
+                format!("two lines cross at {at} without a point"),
+                "SPLIT both and WELD the points, or mend the dimensions",
+            ));
+        }
+        if !fitted.open.is_empty() {
+            return Err(Fault::new(
+                701,
+                format!("faces do not close: lines {} have fewer than two", pairs(&fitted.open)),
+                "add the missing lines, or CHECK types and dimensions",
+            ));
+        }
+        if fitted.fits.is_empty() {
+            return Err(Fault::new(
+                701,
+                "no solid fits these lines",
+                "add missing lines; or give faces with FACE",
+            ));
+        }
+        if !fitted.dangling.is_empty() {
+            self.out.push(Reply::warning(format!(
+                "lines with a loose end are in no face: {}",
+                pairs(&fitted.dangling)
+            )));
+        }
+        Ok((ids, fitted))
+    }
+
+    pub(super) fn generate(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if !args.take("FACES") {
+            return Err(args.wants("FACES"));
+        }
+        if let Some(token) = args.peek().filter(|_| !args.at("ASK") && !args.at("AUTO")) {
+            self.known(&token.text)?;
+        }
+        self.take_object(args)?;
+        let ask = args.take("ASK");
+        args.take("AUTO");
+        args.end()?;
+        let object = self.active()?.clone();
+        let (ids, fitted) = self.wireframe(&object)?;
+        if ask {
+            let left: Vec<Vec<Vec<PointId>>> = (fitted.polygons.iter())
+                .map(|p| face_of(p, &ids).loops().map(<[PointId]>::to_vec).collect())
+                .collect();
+            self.active_mut()?.faces.clear();
+            self.question =
+                Some(Question::Face { object: object.name.clone(), left, taken: vec![] });
+            self.offer();
+            return Ok(());
+        }
+        self.take_fit(&ids, &fitted.fits[0])?;
+        if object.drawing.section.is_none() {
+            let fit = &fitted.fits[0];
+            let text = format!(
+                "{} candidates, {} cells, {} faces, volume {}",
+                fitted.candidates,
+                fitted.cells,
+                fit.faces.len(),
+                plain(fit.volume)
+            );
+            self.out.push(Reply::note(text));
+            let pairs = |list: &[[usize; 2]]| {
+                let all: Vec<String> = list
+                    .iter()
+                    .filter(|e| e.iter().all(|v| *v < ids.len()))
+                    .map(|[a, b]| format!("{}-{}", ids[*a], ids[*b]))
+                    .collect();
+                all.join(", ")
+            };
+            for inner in &fit.internal {
+                let text: Vec<String> =
+                    inner.iter().filter_map(|k| ids.get(*k)).map(ToString::to_string).collect();
+                self.out
+                    .push(Reply::note(format!("internal polygon {} is no face", text.join(" "))));
+            }
+            if !fit.branching.is_empty() {
+                self.out.push(Reply::warning(format!(
+                    "more than two faces meet at {}",
+                    pairs(&fit.branching)
+                )));
+            }
+            if !fit.scribed.is_empty() {
+                self.out.push(Reply::note(format!(
+                    "lines between faces of one plane: {}; CLEAN removes them",
+                    pairs(&fit.scribed)
+                )));
+            }
+        }
+        if fitted.fits.len() > 1 {
+            let volumes: Vec<String> = fitted.fits.iter().map(|f| plain(f.volume)).collect();
+            let more = if fitted.complete { "" } else { " and more" };
+            let mut reply = Reply::warning(format!(
+                "several solids fit: {}{more}, of volumes {}",
+                fitted.fits.len(),
+                volumes.join(", ")
+            ));
+            (reply.code, reply.next) = (Some(702), Some("CHOOSE n takes another".to_owned()));
+            self.out.push(reply);
+            let faces = fitted
+                .fits
+                .iter()
+                .map(|f| f.faces.iter().map(|p| face_of(p, &ids)).collect())
+                .collect();
+            self.question = Some(Question::Solid { object: object.name.clone(), faces });
+        }
+        self.tell_validity()
+    }
+
+    fn take_fit(&mut self, ids: &[PointId], fit: &Fit) -> Result<(), Fault> {
+        let object = self.active_mut()?;
+        let faces = fit.faces.iter().map(|p| face_of(p, ids));
+        object.faces = (1..).map(FaceId).zip(faces).collect();
+        Ok(())
+    }
+
+    pub(super) fn choose(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let n = args.count("the number of a solid")? as usize;
+        args.end()?;
+        let Some(Question::Solid { object, faces }) = &self.question else {
+            return Err(Fault::new(
+                702,
+                "there is nothing to choose",
+                "GENERATE FACES offers what fits",
+            ));
+        };
+        let (key, count) = (object.to_lowercase(), faces.len());
+        let Some(chosen) = faces.get(n - 1).cloned() else {
+            return Err(Fault::new(
+                702,
+                format!("there are {count} solids, not {n}"),
+                "choose one of them",
+            ));
+        };
+        let Some(object) = self.state.objects.get_mut(&key) else {
+            return Err(Fault::new(
+                110,
+                format!("there is no object {key}"),
+                "GENERATE FACES again",
+            ));
+        };
+        Arc::make_mut(object).faces = (1..).map(FaceId).zip(chosen).collect();
+        self.state.active = Some(key);
+        self.tell_validity()
+    }
+
+    /// Offers the next candidate of which no edge has two faces yet.
+    fn offer(&mut self) {
+        let Some(Question::Face { object, left, taken }) = &mut self.question else { return };
+        let uses = |p: PointId, q: PointId| {
+            let has = |c: &[PointId]| {
+                (0..c.len()).any(|k| {
+                    let pair = (c[k], c[(k + 1) % c.len()]);
+                    pair == (p, q) || pair == (q, p)
+                })
+            };
+            taken.iter().flat_map(Face::loops).filter(|c| has(c)).count()
+        };
+        let full = |c: &Vec<PointId>| (0..c.len()).any(|k| uses(c[k], c[(k + 1) % c.len()]) >= 2);
+        while left.first().is_some_and(|loops| loops.iter().any(full)) {
+            left.remove(0);
+        }
+        match left.first() {
+            Some(loops) => {
+                let text: Vec<String> = loops
+                    .iter()
+                    .map(|c| c.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "))
+                    .collect();
+                let mut reply = Reply::note(format!("is this a face: {}?", text.join(" HOLE ")));
+                reply.next = Some("ACCEPT, REJECT, REVERSE or REPEAT".to_owned());
+                self.out.push(reply);
+            }
+            None => {
+                let (key, faces) = (object.to_lowercase(), std::mem::take(taken));
+                self.out.push(Reply::note(format!("{} faces", faces.len())));
+                if let Some(object) = self.state.objects.get_mut(&key) {
+                    Arc::make_mut(object).faces = (1..).map(FaceId).zip(faces).collect();
+                }
+                self.question = None;
+            }
+        }
+    }
+
+    pub(super) fn answer(&mut self, verb: &str) -> Result<(), Fault> {
+        match (self.question.take(), verb) {
+            (Some(Question::Dimension { name, axis, p, q, value }), "YES" | "ACCEPT") => {
+                self.add_along(name, axis, p, q, Expr::number(value), None)
+            }
+            (Some(Question::Dimension { .. } | Question::Solid { .. }), "NO" | "REJECT") => Ok(()),
+            (Some(Question::Face { object, mut left, mut taken }), _) => {
+                let known = self.state.objects.get(&object.to_lowercase());
+                if known.is_none() || left.is_empty() {
+                    return Ok(());
+                }
+                let result = match verb {
+                    "ACCEPT" | "YES" => {
+                        let face = oriented(left.remove(0), &taken);
+                        taken.push(face);
+                        Ok(())
+                    }
+                    "REJECT" | "NO" => {
+                        left.remove(0);
+                        Ok(())
+                    }
+                    "REVERSE" if taken.iter().any(|f| touches(f, &left[0])) => Err(Fault::new(
+                        700,
+                        "this face cannot be reversed: it would disagree with its accepted neighbours",
+                        "ACCEPT or REJECT it",
+                    )),
+                    "REVERSE" => {
+                        left[0].iter_mut().for_each(|c| c.reverse());
+                        Ok(())
+                    }
+                    _ => Ok(()),
+                };
+                self.question = Some(Question::Face { object, left, taken });
+                if result.is_ok() {
+                    self.offer();
+                }
+                result
+            }
+            (question, _) => {
+                self.question = question;
+                Err(Fault::text(
+                    "no question is open",
+                    "GENERATE FACES ASK, or DIMENSION without a value, asks one",
+                ))
+            }
+        }
+    }
+
+    pub(super) fn face(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let labelled = args.number_at(0) && args.tokens_at(1, "RUNS");
+        let label = if labelled { Some(FaceId(args.count("the number of a face")?)) } else { None };
+        args.take_short("RUNS");
+        let mut cycles: Vec<Vec<PointId>> = vec![vec![]];
+        while args.len() > 0 {
+            if args.take("HOLE") {
+                cycles.push(vec![]);
+            } else {
+                let p = args.point()?;
+                cycles.last_mut().into_iter().for_each(|c| c.push(p));
+            }
+        }
+        let object = self.active()?.clone();
+        let closed = |c: &[PointId]| {
+            c.len() >= 3
+                && (0..c.len())
+                    .all(|k| object.drawing.line_between(c[k], c[(k + 1) % c.len()]).is_some())
+        };
+        let id = label.unwrap_or_else(|| object.next_face());
+        for c in &cycles {
+            for &p in c {
+                require_point(&object, p)?;
+            }
+            if c.len() < 3 {
+                return Err(args.wants("three points or more in each cycle"));
+            }
+            // A point on a line between two others is allowed, so only wholly foreign pairs are refused.
+            if !closed(c)
+                && !c.iter().any(|p| object.drawing.lines.values().any(|l| l.p == *p || l.q == *p))
+            {
+                return Err(Fault::new(
+                    401,
+                    "the points of the face are in no line",
+                    "draw its lines first",
+                ));
+            }
+        }
+        let mut cycles = cycles.into_iter();
+        let outer = cycles.next().unwrap_or_default();
+        self.active_mut()?.faces.insert(id, Face { outer, holes: cycles.collect() });
+        self.tell_validity()
+    }
+
+    pub(super) fn extrude(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let axis_next = args.peek().is_some_and(|t| Axis::of(&t.text).is_some());
+        if !axis_next && !args.at_number() && args.len() > 1 {
+            if let Some(token) = args.peek() {
+                self.known(&token.text)?;
+            }
+            self.take_object(args)?;
+        }
+        let axis = args.axis();
+        let object = self.active()?.clone();
+        let value = args.value(object.units.as_deref())?;
+        args.end()?;
+        let Some(normal) = object.drawing.section else {
+            return Err(Fault::new(
+                113,
+                format!("{} is no cross section", object.name),
+                "SKETCH name 2D starts one",
+            ));
+        };
+        if axis.is_some_and(|a| a != normal) {
+            return Err(Fault::new(
+                113,
+                format!("the section is perpendicular to {normal}"),
+                format!("EXTRUDE {normal} value"),
+            ));
+        }
+        if 2 * object.drawing.points.len() > MAX_POINTS {
+            return Err(Fault::new(
+                200,
+                format!("an object has at most {MAX_POINTS} points"),
+                "extrude a smaller section",
+            ));
+        }
+        let name = object.fresh_name("D");
+        let (_, layout) = self.laid_out(&object);
+        let number = value.eval(&|n| layout.values.get(n).copied());
+        if number.as_ref().is_ok_and(|x| *x == 0.0 || !x.is_finite()) {
+            return Err(Fault::new(300, "an extrusion by nothing has no volume", "give a length"));
+        }
+        let Some(solid) = merge::extrude(&object, &name, value) else {
+            return Err(Fault::new(
+                101,
+                format!("object {} has no points yet", object.name),
+                "draw some",
+            ));
+        };
+        *self.active_mut()? = solid;
+        self.faces_if_complete()
+    }
+
+    /// Finds faces when everything is determined; else says what is missing.
+    fn faces_if_complete(&mut self) -> Result<(), Fault> {
+        let object = self.active()?.clone();
+        let complete = self.laid_out(&object).1.complete();
+        if complete {
+            self.generate(&mut Args::new(&[faces_word()], ""))
+        } else {
+            self.tell_counts()
+        }
+    }
+
+    pub(super) fn revolve(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if !args.at_number() {
+            if let Some(token) = args.peek() {
+                self.known(&token.text)?;
+            }
+            self.take_object(args)?;
+        }
+        let line = args.line()?;
+        let angle = if args.at_number() { args.number("an angle in degrees")? } else { 360.0 };
+        args.end()?;
+        let mut object = self.active()?.clone();
+        let line = require_line(&object, line)?;
+        if object.drawing.section.is_none() {
+            return Err(Fault::new(
+                113,
+                format!("{} is no cross section", object.name),
+                "SKETCH name 2D starts one",
+            ));
+        }
+        if angle == 0.0 || object.drawing.points.len() > 200 {
+            return Err(Fault::new(
+                300,
+                "nothing to revolve, or more than 200 points",
+                "give an angle and a smaller section",
+            ));
+        }
+        let at = self.placed(&object)?;
+        if object.faces.is_empty() {
+            self.generate(&mut Args::new(&[faces_word()], ""))?;
+            object = self.active()?.clone();
+        }
+        let axis = [at[&line.p], at[&line.q]];
+        let direction = (axis[1] - axis[0]).normalized().unwrap_or_default();
+        let sides = at.values().map(|p| {
+            let off = (*p - axis[0]).cross(direction);
+            off.x + off.y + off.z
+        });
+        let (low, high) = sides.fold((0.0f64, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
+        let size = at.values().map(|p| p.distance(axis[0])).fold(0.0, f64::max);
+        if low < -1e-9 * size && high > 1e-9 * size {
+            return Err(Fault::new(
+                701,
+                "the section lies on both sides of the line",
+                "revolve about a line on its border",
+            ));
+        }
+        let Some(solid) = merge::revolved(&object, &at, axis, angle) else {
+            return Err(Fault::new(300, "the line has no length", "choose another"));
+        };
+        *self.active_mut()? = solid;
+        self.out.push(Reply::note(
+            "every coordinate is given outright now; edit the section to change it",
+        ));
+        self.tell_validity()
+    }
+
+    pub(super) fn clean(&mut self, args: &mut Args) -> Result<(), Fault> {
+        if let Some(token) = args.peek() {
+            self.known(&token.text)?;
+        }
+        self.take_object(args)?;
+        args.end()?;
+        let object = self.active()?.clone();
+        let at = self.placed(&object)?;
+        let (ids, fitted) = self.wireframe(&object)?;
+        let scribed: Vec<[PointId; 2]> =
+            fitted.fits[0].scribed.iter().map(|e| e.map(|k| ids[k])).collect();
+        let cleaned = merge::clean(&object, &scribed, &at);
+        let (p, l) = (
+            object.drawing.points.len() - cleaned.drawing.points.len(),
+            object.drawing.lines.len() - cleaned.drawing.lines.len(),
+        );
+        *self.active_mut()? = cleaned;
+        self.out.push(Reply::note(format!("{p} points and {l} lines removed")));
+        self.faces_if_complete()
+    }
+
+    pub(super) fn merge(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let wrong = || {
+            Fault::new(
+                191,
+                "MERGE wants: MERGE A [B] [INTO] C",
+                "name the objects to unite, then the one to make",
+            )
+        };
+        let mut tolerance = None;
+        let mut words: Vec<String> = Vec::new();
+        while args.len() > 0 {
+            if args.take_short("TOL") {
+                tolerance = Some(args.number("a tolerance")?);
+                break;
+            }
+            words.push(args.name("the name of an object").map_err(|_| wrong())?);
+        }
+        args.end().map_err(|_| wrong())?;
+        let into = |w: &String| w.eq_ignore_ascii_case("INTO");
+        // INTO may be left out, but must be spelled right.
+        let (names, target): (Vec<String>, String) = match &words[..] {
+            [a, c] if !into(a) && !into(c) => (vec![a.clone()], c.clone()),
+            [a, i, c] if into(i) => (vec![a.clone()], c.clone()),
+            [a, b, c] if ![a, b, c].into_iter().any(into) => {
+                (vec![a.clone(), b.clone()], c.clone())
+            }
+            [a, b, i, c] if into(i) => (vec![a.clone(), b.clone()], c.clone()),
+            [_, _, i, _] => {
+                return Err(Fault::new(
+                    192,
+                    format!("\"INTO\" is misspelt as \"{i}\""),
+                    "MERGE A B INTO C",
+                ));
+            }
+            _ => return Err(wrong()),
+        };
+        if target.is_empty() || target.chars().count() > 32 || into(&target) {
+            return Err(wrong());
+        }
+        let mut keys: Vec<String> = Vec::new();
+        let old = target.to_lowercase();
+        let keep_first = self.state.objects.contains_key(&old);
+        keys.extend(keep_first.then(|| old.clone()));
+        for name in &names {
+            let object = self.known(name)?;
+            let key = object.name.to_lowercase();
+            if !keys.contains(&key) {
+                keys.push(key);
+            }
+        }
+        let mut parts: Vec<(Arc<Object>, BTreeMap<PointId, Vec3>)> = Vec::new();
+        for key in &keys {
+            let object = Arc::clone(&self.state.objects[key]);
+            if object.drawing.section.is_some() {
+                return Err(Fault::new(
+                    114,
+                    format!("{} is a cross section; only solids are merged", object.name),
+                    "EXTRUDE it first",
+                ));
+            }
+            let at = self.placed(&object)?;
+            parts.push((object, at));
+        }
+        let points: usize = parts.iter().map(|p| p.1.len()).sum();
+        if points > MAX_POINTS {
+            return Err(Fault::new(
+                200,
+                format!("{points} points are too many"),
+                "merge smaller objects",
+            ));
+        }
+        if let [(one, _)] = &parts[..]
+            && one.name.eq_ignore_ascii_case(&target)
+        {
+            self.out
+                .push(Reply::note(format!("{} is the only one; nothing was changed", one.name)));
+            self.state.active = Some(old);
+            return Ok(());
+        }
+        let all = || parts.iter().flat_map(|p| p.1.values());
+        let size = all().map(|p| p.norm()).fold(0.0, f64::max);
+        let tolerance = tolerance.filter(|t| *t >= 0.0).unwrap_or(1e-6 * size);
+        let placed: Vec<Placed> =
+            parts.iter().map(|(o, at)| Placed { object: o, at: at.clone() }).collect();
+        let solve = |o: &Object| {
+            let planes = crate::Planes::of(&o.drawing);
+            crate::solve(o, &planes, &BTreeMap::new(), &|| {
+                crate::Estimate::of(&o.drawing, &planes, o.reference()?.point)
+            })
+        };
+        let (made, report) = merge::merge(&target, &placed, tolerance, keep_first, &solve);
+        let count = |f: &dyn Fn(&Object) -> usize| {
+            parts.iter().map(|p| f(&p.0).to_string()).collect::<Vec<_>>().join("+")
+        };
+        let text = format!(
+            "{} points, {} shared: {}; {} lines, {} shared: {}",
+            count(&|o| o.drawing.points.len()),
+            report.shared,
+            made.drawing.points.len(),
+            count(&|o| o.drawing.lines.len()),
+            report.lines,
+            made.drawing.lines.len()
+        );
+        self.out.push(Reply::note(text));
+        if !report.contradictory.is_empty() {
+            self.out.push(Reply::warning(format!(
+                "these dimensions contradict others and only measure now: {}",
+                report.contradictory.join(", ")
+            )));
+        }
+        self.insert(made);
+        self.faces_if_complete()
+    }
+
+    pub(super) fn transform(&mut self, args: &mut Args, verb: &str) -> Result<(), Fault> {
+        let name = args.name("the name of an object")?;
+        let object = self.known(&name)?.clone();
+        let key = name.to_lowercase();
+        let new = match verb {
+            "MOVE" => {
+                let by =
+                    [args.number("a shift")?, args.number("a shift")?, args.number("a shift")?];
+                merge::moved(&object, by.into())
+            }
+            "SCALE" => {
+                let factor = args.number("a factor")?;
+                if !(factor > 0.0 && factor < 1e9) {
+                    return Err(Fault::text(
+                        format!("the factor {factor} is not positive"),
+                        "MIRROR turns objects over",
+                    ));
+                }
+                merge::scaled(&object, factor)
+            }
+            _ => {
+                let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+                let turned = if verb == "MIRROR" {
+                    merge::mirrored(&object, axis)
+                } else {
+                    let angle = args.number("an angle in degrees")?;
+                    let quarters = angle / 90.0;
+                    if quarters.fract() != 0.0 || quarters.abs() > 1e6 {
+                        return Err(Fault::text(
+                            format!(
+                                "{angle} degrees are no quarter turns: lines would lose their types"
+                            ),
+                            "turn by 90, 180 or 270",
+                        ));
+                    }
+                    let n = (quarters as i64).rem_euclid(4);
+                    (0..n).fold(object.clone(), |o, _| merge::quarter_turned(&o, axis))
+                };
+                let at = self.placed(&turned)?;
+                merge::redrawn(&turned, &at)
+            }
+        };
+        args.end()?;
+        self.state.objects.insert(key, Arc::new(new));
+        Ok(())
+    }
+}
+
+fn faces_word() -> super::words::Token {
+    super::words::Token { kind: super::words::Kind::Word, text: "FACES".to_owned() }
+}
+
+fn face_of(polygon: &Polygon, ids: &[PointId]) -> Face {
+    // Vertices beyond the points were refused before.
+    let cycle = |c: &Vec<usize>| c.iter().filter_map(|k| ids.get(*k).copied()).collect();
+    Face { outer: cycle(&polygon.outer), holes: polygon.holes.iter().map(cycle).collect() }
+}
+
+fn runs(face: &Face, p: PointId, q: PointId) -> bool {
+    face.loops().any(|c| (0..c.len()).any(|k| (c[k], c[(k + 1) % c.len()]) == (p, q)))
+}
+
+fn pairs(loops: &[Vec<PointId>]) -> impl Iterator<Item = (PointId, PointId)> {
+    loops.iter().flat_map(|c| (0..c.len()).map(|k| (c[k], c[(k + 1) % c.len()])))
+}
+
+/// Whether a candidate shares an edge with a face.
+fn touches(face: &Face, loops: &[Vec<PointId>]) -> bool {
+    pairs(loops).any(|(p, q)| runs(face, p, q) || runs(face, q, p))
+}
+
+/// A candidate turned so that it agrees with accepted neighbours.
+fn oriented(loops: Vec<Vec<PointId>>, taken: &[Face]) -> Face {
+    let clash = pairs(&loops).any(|(p, q)| taken.iter().any(|f| runs(f, p, q)));
+    let mut cycles = loops.into_iter();
+    let face = Face { outer: cycles.next().unwrap_or_default(), holes: cycles.collect() };
+    if clash { face.reversed() } else { face }
+}

@@ -1,0 +1,277 @@
+//! The command preprocessor (routine LSUCMD): a line into commands of words, numbers and texts.
+
+use super::Fault;
+
+/// What a token is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// A word: a letter, then letters, digits, `_`, `.`.
+    Word,
+    /// A number with an optional unit in capitals.
+    Number(f64, Option<String>),
+    /// A text in quotes.
+    Text,
+}
+
+/// A word, number or text of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Token {
+    /// What it is.
+    pub kind: Kind,
+    /// As written, without quotes.
+    pub text: String,
+}
+
+/// The units that may follow a number, in tenths of a millimetre, so that their ratios are exact.
+pub const UNITS: [(&str, f64); 5] =
+    [("MM", 10.0), ("CM", 100.0), ("M", 10_000.0), ("IN", 254.0), ("FT", 3048.0)];
+
+/// One command with its text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Command {
+    /// Its tokens; never empty.
+    pub tokens: Vec<Token>,
+    /// As written.
+    pub text: String,
+}
+
+/// A line divided into commands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Parsed {
+    /// The commands, or why one is none.
+    pub commands: Vec<Result<Command, Fault>>,
+}
+
+/// Whether the command goes on in the next line: the last thing before any comment is `&`.
+/// Returns the text without it.
+pub fn continued(line: &str) -> Option<&str> {
+    let mut quote = None;
+    let mut end = line.len();
+    for (k, c) in line.char_indices() {
+        match (quote, c) {
+            (None, '!' | '#') => {
+                end = k;
+                break;
+            }
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(q), c) if q == c => quote = None,
+            _ => {}
+        }
+    }
+    line[..end].trim_end().strip_suffix('&').filter(|_| quote.is_none())
+}
+
+/// Divides a line. Delimiters are blank, comma and equals sign; `;` separates commands; `!` and `#`
+/// start a comment; quotation marks protect. `longest` cuts words (1983: 32 characters).
+pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
+    let mut parsed = Parsed::default();
+    let mut tokens = Vec::new();
+    let mut fault = None;
+    let mut start = 0;
+    let chars: Vec<(usize, char)> = line.char_indices().collect();
+    let mut k = 0;
+    let mut finish = |tokens: &mut Vec<Token>, fault: &mut Option<Fault>, text: &str| {
+        match fault.take() {
+            Some(f) => parsed.commands.push(Err(f)),
+            None if !tokens.is_empty() => {
+                let tokens = std::mem::take(tokens);
+                parsed.commands.push(Ok(Command { tokens, text: text.trim().to_owned() }));
+            }
+            None => {}
+        }
+        tokens.clear();
+    };
+    while k < chars.len() {
+        let (at, c) = chars[k];
+        match c {
+            '!' | '#' => {
+                finish(&mut tokens, &mut fault, &line[start..at]);
+                return parsed;
+            }
+            ';' => {
+                finish(&mut tokens, &mut fault, &line[start..at]);
+                start = at + 1;
+                k += 1;
+            }
+            '"' | '\'' => {
+                let close = (k + 1..chars.len()).find(|&j| chars[j].1 == c);
+                match close {
+                    Some(j) => {
+                        let text = line[at + 1..chars[j].0].to_owned();
+                        tokens.push(Token { kind: Kind::Text, text });
+                        k = j + 1;
+                    }
+                    None => {
+                        let text = format!("a quotation mark has no partner: {}", &line[at..]);
+                        fault = Some(Fault::text(text, "add the closing quotation mark"));
+                        k = chars.len();
+                    }
+                }
+            }
+            ',' | '=' => k += 1,
+            c if c.is_whitespace() || c.is_control() => k += 1,
+            _ => {
+                let ends = |c: char| ",=;!#\"'".contains(c) || c.is_whitespace() || c.is_control();
+                let stop = (k..chars.len()).find(|&j| ends(chars[j].1)).unwrap_or(chars.len());
+                let end = chars.get(stop).map_or(line.len(), |x| x.0);
+                match token(&line[at..end], longest) {
+                    Ok(token) => tokens.push(token),
+                    Err(f) => fault = fault.or(Some(f)),
+                }
+                k = stop;
+            }
+        }
+    }
+    finish(&mut tokens, &mut fault, &line[start..]);
+    parsed
+}
+
+fn token(text: &str, longest: Option<usize>) -> Result<Token, Fault> {
+    let first = text.chars().next().unwrap_or(' ');
+    if ["2D", "3D"].iter().any(|d| text.eq_ignore_ascii_case(d)) || text.eq_ignore_ascii_case("3MF")
+    {
+        return Ok(Token { kind: Kind::Word, text: text.to_owned() });
+    }
+    if first.is_ascii_digit() || "+-.".contains(first) {
+        let (value, unit) = number(text)?;
+        return Ok(Token { kind: Kind::Number(value, unit), text: text.to_owned() });
+    }
+    if !first.is_alphabetic() && first != '_' {
+        let next = "put names in letters, digits, `_` and `.`, anything else in quotation marks";
+        return Err(Fault::text(format!("`{text}` starts with `{first}`"), next));
+    }
+    let odd = text.chars().find(|c| !(c.is_alphanumeric() || *c == '_' || *c == '.'));
+    if let Some(c) = odd {
+        let what = if c == '-' { "a misplaced hyphen".to_owned() } else { format!("`{c}`") };
+        let next = "leave blanks between words, or put the text in quotation marks";
+        return Err(Fault::text(format!("{what} in {text}"), next));
+    }
+    let text = text.chars().take(longest.unwrap_or(usize::MAX)).collect();
+    Ok(Token { kind: Kind::Word, text })
+}
+
+/// A number with an optional unit; the errors are those that LSUCMD caught.
+fn number(text: &str) -> Result<(f64, Option<String>), Fault> {
+    let bytes = text.as_bytes();
+    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let mut end = sign;
+    let mut points = 0;
+    while bytes.get(end).is_some_and(|b| b.is_ascii_digit() || *b == b'.') {
+        points += usize::from(bytes[end] == b'.');
+        end += 1;
+    }
+    if points > 1 {
+        let many = if points == 2 { "two".to_owned() } else { points.to_string() };
+        return Err(Fault::text(format!("{many} decimal points in {text}"), "leave one"));
+    }
+    let mantissa = end;
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let mut at = end + 1;
+        at += usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
+        let digits = at;
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        if at > digits {
+            end = at;
+        }
+    }
+    let rest = &text[end..];
+    let value = text[..end].parse::<f64>();
+    if rest.is_empty()
+        && let Ok(value) = value
+        && value.is_finite()
+    {
+        return Ok((value, None));
+    }
+    let unit = rest.to_ascii_uppercase();
+    if let Ok(value) = value
+        && value.is_finite()
+        && (unit == "DEG" || UNITS.iter().any(|u| u.0 == unit))
+    {
+        return Ok((value, Some(unit)));
+    }
+    let next = "write numbers like 12, -3.5, 1e-3 or 6.5ft";
+    if rest.contains('-') || text[sign..].starts_with(['+', '-']) || mantissa == sign {
+        return Err(Fault::text(format!("a misplaced hyphen in {text}"), next));
+    }
+    match rest.chars().next() {
+        Some(c) if c.is_alphabetic() => {
+            Err(Fault::text(format!("the letter {c} inside the number {text}"), next))
+        }
+        Some(c) => Err(Fault::text(format!("`{c}` inside the number {text}"), next)),
+        None => Err(Fault::text(format!("the number {text} is too large"), next)),
+    }
+}
+
+/// Feet and inches as engineers write them: `3'-6`, `3'6.5"`, `3'`. In feet.
+pub fn feet_and_inches(text: &str) -> Option<f64> {
+    let (feet, inches) = text.trim().split_once('\'')?;
+    let feet: f64 = feet.trim().parse().ok()?;
+    let inches = inches.trim().trim_start_matches('-').trim_end_matches('"').trim();
+    let inches: f64 = if inches.is_empty() { 0.0 } else { inches.parse().ok()? };
+    let sign = if feet.is_sign_negative() { -1.0 } else { 1.0 };
+    (feet.is_finite() && (0.0..12.0).contains(&inches)).then_some(feet + sign * inches / 12.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(line: &str) -> Vec<String> {
+        let commands = parse(line, None).commands;
+        commands[0].as_ref().unwrap().tokens.iter().map(|t| t.text.clone()).collect()
+    }
+
+    #[test]
+    fn delimiters_and_quotes() {
+        assert_eq!(
+            words("DIM W1 X 1 3=16"),
+            words("dim w1,x,1,3,16")
+                .iter()
+                .zip(["DIM", "W1", "X", "1", "3", "16"])
+                .map(|(_, b)| b.to_owned())
+                .collect::<Vec<_>>()
+        );
+        assert_eq!(words("us,wall"), ["us", "wall"]);
+        assert_eq!(words("SAVE \"my file.skt\" ! x"), ["SAVE", "my file.skt"]);
+        let two = parse("POINT 1 0 0; POINT 2 'a;b' # c", None);
+        assert_eq!(two.commands.len(), 2);
+        assert_eq!(two.commands[1].as_ref().unwrap().tokens[2].text, "a;b");
+        assert_eq!(continued("LINE 1 & ! more"), Some("LINE 1 "));
+        assert_eq!(continued("LINE '1 &"), None);
+        let long = format!("{}zz", "a".repeat(32));
+        let cut = parse(&long, Some(32)).commands;
+        assert_eq!(cut[0].as_ref().unwrap().tokens[0].text.len(), 32);
+    }
+
+    #[test]
+    fn numbers_and_their_faults() {
+        for (text, value, unit) in [
+            ("12", 12.0, None),
+            ("-.5", -0.5, None),
+            ("1e-3", 1e-3, None),
+            ("6.5ft", 6.5, Some("FT")),
+            ("2M", 2.0, Some("M")),
+        ] {
+            assert_eq!(number(text).unwrap(), (value, unit.map(str::to_owned)), "{text}");
+        }
+        for (text, says) in [
+            ("1.2.3", "two decimal points in 1.2.3"),
+            ("12-3", "misplaced hyphen in 12-3"),
+            ("1A2", "letter A inside the number 1A2"),
+            ("--1", "misplaced hyphen"),
+            ("1e999", "too large"),
+            ("7%", "`%` inside"),
+        ] {
+            let fault = number(text).unwrap_err();
+            assert!(fault.text.contains(says), "{}", fault.text);
+        }
+        assert!(
+            parse("SAVE \"x", None).commands[0].as_ref().unwrap_err().text.contains("no partner")
+        );
+        assert_eq!(feet_and_inches("3'-6"), Some(3.5));
+        assert_eq!(feet_and_inches("3'6\""), Some(3.5));
+        assert_eq!(feet_and_inches("2*W1"), None);
+    }
+}
