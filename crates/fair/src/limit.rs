@@ -84,7 +84,11 @@ impl Limit {
             Motion::Box => {
                 let clamp = |o: f64, w: f64| {
                     let x = w.clamp(o - radius, o + radius);
-                    if (x - o).abs() > radius { x.next_down().max(o).min(x.next_up()) } else { x }
+                    match x - o {
+                        off if off > radius => x.next_down(),
+                        off if off < -radius => x.next_up(),
+                        _ => x,
+                    }
                 };
                 Vec3::of(
                     clamp(original.x, wanted.x),

@@ -357,3 +357,60 @@ fn no_tolerance_gives_the_polynomial_of_the_ends() {
     assert!(job.value(Measure::Jumps, &result.points).unwrap() < 1e-18);
     assert_eq!(shape::inflections(&shape::samples(&job.space, &result.points, None, 16)) / 2, 0);
 }
+
+/// A neighbour's last Bézier points, and the curvature vector at a common end.
+fn bend(first: Vec3<f64>, second: Vec3<f64>) -> Vec3<f64> {
+    first.cross(second) * first.norm().powi(-3)
+}
+
+#[test]
+fn a_seam_gets_continuous_curvature_at_either_end() {
+    let f = f2b();
+    let space = Space::clamped(3, f.points.len()).unwrap();
+    for at_end in [false, true] {
+        let mut job = Job::new(space.clone(), f.points.clone(), 2e-3).unwrap();
+        job.ends = [End::Free, End::Free];
+        let n = f.points.len();
+        let (p, inner) =
+            if at_end { (f.points[n - 1], f.points[n - 2]) } else { (f.points[0], f.points[1]) };
+        // The neighbour goes on at an angle and with another curvature.
+        let step = p - inner;
+        let a1 = p + step * 1.3 + Vec3::of(0.0, 2e-4, 0.0);
+        let a2 = a1 + step * 1.2 + Vec3::of(0.0, -3e-4, 1e-4);
+        let mut options = OptimumOptions::of(Measure::Second);
+        options.conditions = Condition::seam(&space, &f.points, [a2, a1, p], at_end).unwrap();
+        let result = optimum(&job, &options).unwrap();
+        let (start, end) = space.domain();
+        let t = if at_end { end } else { start };
+        let s = shape::sample_at(&space, &result.points, None, t);
+        assert!((s.point - p).norm() < 1e-12);
+        // The neighbour runs towards p; at the own end the own curve runs towards p too.
+        let toward = if at_end { -1.0 } else { 1.0 };
+        let (first, second) = ((p - a1) * (3.0 * toward), (p - a1 * 2.0 + a2) * 6.0);
+        let (own, other) = (bend(s.derivatives[0], s.derivatives[1]), bend(first, second));
+        assert!((own - other).norm() < 1e-6 * other.norm(), "{own:?} {other:?}");
+        let cosine = s.derivatives[0].dot(first) / (s.derivatives[0].norm() * first.norm());
+        assert!(cosine > 1.0 - 1e-12, "{cosine}");
+        let none = Condition::seam(&space, &f.points, [a2, p, p], at_end);
+        assert_eq!(none, Err(FairError::Singular));
+    }
+}
+
+/// A small change of the input is a small change of the result, however the limits interact.
+#[test]
+fn the_optimum_is_continuous() {
+    let f = f1b();
+    let base = best(&job(&f), Measure::Second).points;
+    let mut random = Random(9);
+    for _ in 0..20 {
+        let by = 1e-8;
+        let shaken: Vec<_> = f
+            .points
+            .iter()
+            .map(|p| *p + Vec3::of(by * random.unit(), by * random.unit(), 0.0))
+            .collect();
+        let job = Job::of_points(3, shaken, false, f.tolerance).unwrap();
+        let other = best(&job, Measure::Second).points;
+        assert!(rms(&base, &other) < 3e-3 * f.tolerance, "{}", rms(&base, &other));
+    }
+}
