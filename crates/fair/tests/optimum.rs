@@ -414,3 +414,30 @@ fn the_optimum_is_continuous() {
         assert!(rms(&base, &other) < 3e-3 * f.tolerance, "{}", rms(&base, &other));
     }
 }
+
+#[test]
+fn no_scale_is_special_and_no_tolerance_is_the_identity() {
+    let f = f2b();
+    for scale in [1e-12, 1e-6, 1e6, 1e12] {
+        let points: Vec<_> = f.points.iter().map(|p| *p * scale).collect();
+        let job = Job::of_points(3, points.clone(), false, f.tolerance * scale).unwrap();
+        let result = best(&job, Measure::Second);
+        near("scaled", result.certificate.value, 1.93909366e-6 * scale * scale, 1e-6);
+        assert!(result.certificate.relative() < 1e-8);
+        let steps = local(&job, &LocalOptions::faithful(610)).unwrap();
+        near(
+            "scaled",
+            job.value(Measure::Second, &steps.points).unwrap(),
+            1.967644e-6 * scale * scale,
+            1e-3,
+        );
+        let still = Job::of_points(3, points.clone(), false, 0.0).unwrap();
+        for measure in Measure::ALL {
+            assert_eq!(best(&still, measure).points, points);
+        }
+    }
+    // Far from the origin only the rounding of the coordinates is lost.
+    let far: Vec<_> = f.points.iter().map(|p| *p + Vec3::of(1e4, -1e4, 0.0)).collect();
+    let job = Job::of_points(3, far, false, f.tolerance).unwrap();
+    near("far", best(&job, Measure::Second).certificate.value, 1.93909366e-6, 1e-5);
+}
