@@ -31,6 +31,7 @@
 //!   then [`Job::new`] with [`Fit::space`]). `deviation_certified`, `deviation_sampled`,
 //!   `jumps_before`, `jumps_after` and `gap` are [`Deviation::certified`], [`Deviation::sampled`],
 //!   [`Numbers::jumps`] of [`Report::before`] and [`Report::after`], and [`Certificate::gap`].
+//!   [`Network::report`] does the same for nets.
 //! - [`rows`]: the kinds `FairCurve`, `FairSnake`, `FairSurf` and the functions `fair`, `jumps`,
 //!   `curvature` of the language, with derivatives ([`optimum_with`], [`replay_with`]).
 //!
@@ -110,7 +111,7 @@ pub use local::{
     sweeps,
 };
 pub use measure::{Measure, Norm, value};
-pub use network::{Network, Strand};
+pub use network::{Network, NetworkMode, NetworkReport, Strand};
 pub use optimum::{Bound, Condition, Optimum, OptimumOptions, optimum, optimum_with};
 pub use report::{Mode, Numbers, Report, numbers, report};
 pub use rows::Rows;

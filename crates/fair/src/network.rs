@@ -8,7 +8,8 @@ use crate::{
     Bound, Certificate, Condition, End, FairError, Job, Limit, LocalOptions, Measure, Rows, Space,
     local_from,
 };
-use moldloft_num::{Real, Vec3};
+use moldloft_num::{Real, Surface, Vec3};
+use moldloft_spline::BSplineSurface;
 
 /// One curve of a network.
 #[derive(Clone, Debug, PartialEq)]
@@ -349,5 +350,91 @@ impl Network {
         let norm = measure.norm();
         let certificate = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
         Ok((points, certificate))
+    }
+
+    /// The largest displacement of the surface of a net on a grid of about four samples to a span;
+    /// for other networks the largest move of a point.
+    pub fn sampled(&self, points: &[Vec3<f64>]) -> f64 {
+        let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+        let largest = |all: &[Vec3<f64>]| all.iter().map(|m| m.norm()).fold(0.0, f64::max);
+        let Some([u, v]) = &self.net else { return largest(&moved) };
+        let ((ku, pu), (kv, pv)) = (u.knot_vector(), v.knot_vector());
+        let at = |i: usize, j: usize| i * v.count() + j;
+        let places = || pu.iter().flat_map(|&i| pv.iter().map(move |&j| at(i, j)));
+        let weights = self.weights.as_ref().map(|w| places().map(|k| w[k]).collect());
+        let net = places().map(|k| moved[k]).collect();
+        let Ok(surface) = BSplineSurface::new(ku, kv, net, weights) else { return f64::NAN };
+        let steps =
+            |n: usize| -> Vec<f64> { (0..=4 * n).map(|k| k as f64 / (4 * n) as f64).collect() };
+        let (us, vs) = (steps(u.count()), steps(v.count()));
+        let mut grid = vec![Vec3::zero(); us.len() * vs.len()];
+        surface.grid(&us, &vs, &mut grid, None);
+        largest(&grid)
+    }
+}
+
+/// What a fairing did to a network, for reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NetworkReport {
+    /// The faired points.
+    pub points: Vec<Vec3<f64>>,
+    /// The measure over all curves, before and after.
+    pub measure: [f64; 2],
+    /// Sum of squared jumps over all curves, before and after.
+    pub jumps: [f64; 2],
+    /// No point of the surface (or control point of a network) moved farther.
+    pub certified: f64,
+    /// The largest distance found by sampling.
+    pub sampled: f64,
+    /// The measure and what is left to gain within the limits.
+    pub certificate: Certificate,
+}
+
+/// How a network is faired.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NetworkMode {
+    /// All curves at once.
+    Joint(Bound),
+    /// All curves at once by so many sweeps over single points.
+    Sweeps(usize),
+    /// Curve after curve: so many passes of so many steps per point.
+    Passes(usize, usize),
+}
+
+impl Network {
+    /// Fairs and reports.
+    ///
+    /// # Errors
+    /// As [`Network::optimum`], [`Network::sweeps`] and [`Network::passes`].
+    pub fn report(&self, measure: Measure, mode: NetworkMode) -> Result<NetworkReport, FairError> {
+        let (points, certificate) = match mode {
+            NetworkMode::Joint(bound) => {
+                let best = self.optimum(measure, bound, Vec::new(), 1e-9)?;
+                (best.points, best.certificate)
+            }
+            NetworkMode::Sweeps(count) => self.sweeps(measure, count)?,
+            NetworkMode::Passes(passes, steps) => {
+                let points = self.passes(passes, steps)?;
+                let rows = self.rows(measure)?;
+                let origin = self.points.first().map_or(Vec3::zero(), |p| *p - self.relative()[0]);
+                let relative: Vec<_> = points.iter().map(|&p| p - origin).collect();
+                let frozen = vec![false; points.len()];
+                let norm = measure.norm();
+                let left = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
+                (points, left)
+            }
+        };
+        let all = 0..self.strands.len();
+        let both = |m: Measure| -> Result<[f64; 2], FairError> {
+            Ok([self.value(m, all.clone(), &self.points)?, self.value(m, all.clone(), &points)?])
+        };
+        Ok(NetworkReport {
+            measure: both(measure)?,
+            jumps: both(Measure::Jumps)?,
+            certified: self.certified(&points),
+            sampled: self.sampled(&points),
+            certificate,
+            points,
+        })
     }
 }

@@ -181,3 +181,20 @@ fn a_network_moves_shared_points_once() {
     bad.strands[0].points[3] = points.len();
     assert_eq!(bad.check(), Err(FairError::Mark { index: points.len(), count: points.len() }));
 }
+
+#[test]
+fn reports_of_all_ways() {
+    let noisy = net(wigley(2e-4), 2e-4);
+    let report = |mode| noisy.report(Measure::Second, mode).unwrap();
+    let joint = report(NetworkMode::Joint(Bound::ControlPoints));
+    let wider = report(NetworkMode::Joint(Bound::Bezier));
+    let swept = report(NetworkMode::Sweeps(30));
+    let passed = report(NetworkMode::Passes(1, 3));
+    for r in [&joint, &wider, &swept, &passed] {
+        assert!(r.sampled <= r.certified && r.certified <= 2e-4 * (1.0 + 1e-9), "{r:?}");
+        assert!(r.measure[1] < r.measure[0] && r.jumps[1] < 0.1 * r.jumps[0]);
+        near("value", r.certificate.value, r.measure[1], 1e-9);
+        assert!(r.certificate.value - r.certificate.gap <= joint.measure[1]);
+    }
+    assert!(wider.measure[1] < joint.measure[1] && joint.measure[1] < swept.measure[1]);
+}

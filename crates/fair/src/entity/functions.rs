@@ -96,7 +96,8 @@ impl<T: Real> Build<T> for Jumps<T> {
             let entries = columns.iter().zip(factors);
             let sum: Vec3<T> = entries
                 .fold(Vec3::zero(), |s, (&c, &a)| s + self.points[c as usize].map(|x| x * a));
-            sum.norm()
+            // A jump that is exactly zero has no derivative of its length.
+            if sum.norm_sq().re() == 0.0 { T::zero() } else { sum.norm() }
         };
         let row = (0..jumps.rows.len()).map(length).collect();
         Ok(Value::Numbers(Arc::new(Array::row(row))))
