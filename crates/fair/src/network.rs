@@ -149,10 +149,12 @@ impl Network {
         strands: std::ops::Range<usize>,
         points: &[Vec3<f64>],
     ) -> Result<f64, FairError> {
+        let origin = self.origin();
         let mut sum = 0.0;
         for k in strands {
             let job = self.job(k, points);
-            sum += job.value(measure, &job.points)?;
+            let relative: Vec<_> = job.points.iter().map(|&p| p - origin).collect();
+            sum += crate::measure::value(&job.measure_rows(measure)?, measure.norm(), &relative);
         }
         Ok(sum)
     }
@@ -206,14 +208,20 @@ impl Network {
         frozen
     }
 
-    /// The point that rational measures refer to; see [`Job::check`].
-    fn relative(&self) -> Vec<Vec3<f64>> {
+    /// The point that measures refer to: the mean of the original points when there are weights,
+    /// so that results move with the network.
+    fn origin(&self) -> Vec3<f64> {
         if self.strands.iter().all(|s| s.weights.is_none()) {
-            return self.points.clone();
+            return Vec3::zero();
         }
         let sum = self.points.iter().fold(Vec3::zero(), |s, &p| s + p);
-        let origin = sum * (1.0 / self.points.len() as f64);
-        self.points.iter().map(|&p| p - origin).collect()
+        sum * (1.0 / self.points.len() as f64)
+    }
+
+    /// Points as measures see them.
+    fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
+        let origin = self.origin();
+        points.iter().map(|&p| p - origin).collect()
     }
 
     /// The Bézier points of the net's displacement and how far control points can move under them.
@@ -306,7 +314,7 @@ impl Network {
         self.check()?;
         Ok(Parts {
             points: &self.points,
-            relative: self.relative(),
+            relative: self.relative(&self.points),
             limit: &self.limit,
             measure: self.rows(measure)?,
             norm: measure.norm(),
@@ -333,8 +341,8 @@ impl Network {
         let rows = self.rows(measure)?;
         let gram = rows.gram(n);
         let frozen = self.frozen();
-        let mut relative = self.relative();
-        let origin = self.points.first().map_or(Vec3::zero(), |p| *p - relative[0]);
+        let origin = self.origin();
+        let mut relative = self.relative(&self.points);
         let mut points = self.points.clone();
         for _ in 0..count {
             for j in (0..n).filter(|&j| !frozen[j]) {
@@ -416,8 +424,7 @@ impl Network {
             NetworkMode::Passes(passes, steps) => {
                 let points = self.passes(passes, steps)?;
                 let rows = self.rows(measure)?;
-                let origin = self.points.first().map_or(Vec3::zero(), |p| *p - self.relative()[0]);
-                let relative: Vec<_> = points.iter().map(|&p| p - origin).collect();
+                let relative = self.relative(&points);
                 let frozen = vec![false; points.len()];
                 let norm = measure.norm();
                 let left = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);

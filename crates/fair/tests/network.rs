@@ -114,6 +114,8 @@ fn bezier_bounds_hold_on_random_nets() {
         let limit = Limit::ball(nu * nv, tolerance).unwrap();
         let net = Network::net(spaces.clone(), points.clone(), weights.clone(), limit).unwrap();
         let best = net.optimum(Measure::Second, Bound::Bezier, vec![], 1e-4).unwrap();
+        let all = net.value(Measure::Second, 0..nu + nv, &best.points).unwrap();
+        near("value", all, best.certificate.value, 1e-9);
         assert!(best.certificate.relative() < 1e-3, "{round} {:?}", best.certificate);
         let certified = net.certified(&best.points);
         assert!(certified <= tolerance * (1.0 + 1e-9));
