@@ -16,7 +16,7 @@ pub fn triangulate(points: &[Vec3], loops: &[Vec<usize>], normal: Vec3) -> Vec<[
     let mut order: Vec<&Vec<usize>> = holes.iter().filter(|h| !h.is_empty()).collect();
     order.sort_by(|a, b| right(b).total_cmp(&right(a)));
     for hole in order {
-        bridge(&flat, &mut ring, hole);
+        bridge(&flat, &mut ring, hole, holes);
     }
     ears(&flat, ring)
 }
@@ -27,16 +27,18 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 
 /// Joins a hole to the ring by a bridge to a corner that its rightmost point sees
 /// (D. Eberly, *Triangulation by Ear Clipping*, section 5).
-fn bridge(flat: &[[f64; 2]], ring: &mut Vec<usize>, hole: &[usize]) {
+fn bridge(flat: &[[f64; 2]], ring: &mut Vec<usize>, hole: &[usize], holes: &[Vec<usize>]) {
     let start = (0..hole.len()).max_by(|&a, &b| flat[hole[a]][0].total_cmp(&flat[hole[b]][0]));
     let start = start.unwrap_or(0);
     let m = flat[hole[start]];
-    // The corner nearest to the hole's point whose connection crosses no edge of the ring.
+    // The corner nearest to the hole's point whose connection crosses no edge of the ring or of a hole.
     let clear = |k: usize| {
         let p = flat[ring[k]];
-        (0..ring.len()).all(|i| {
-            let (a, b) = (flat[ring[i]], flat[ring[(i + 1) % ring.len()]]);
-            if a == p || b == p {
+        let cycles = std::iter::once(&*ring).chain(holes);
+        let mut sides =
+            cycles.flat_map(|c| (0..c.len()).map(|i| (flat[c[i]], flat[c[(i + 1) % c.len()]])));
+        sides.all(|(a, b)| {
+            if [a, b].iter().any(|x| *x == p || *x == m) {
                 return true;
             }
             let (s, t) = (turn(m, p, a), turn(m, p, b));
@@ -86,8 +88,9 @@ fn ears(flat: &[[f64; 2]], mut ring: Vec<usize>) -> Vec<[usize; 3]> {
                     p == a
                         || p == b
                         || p == c
-                        || turn(a, b, p) < 0.0
-                        || turn(b, c, p) < 0.0
+                        // On the cut itself it would be left outside; on the sides it cannot be.
+                        || turn(a, b, p) <= 0.0
+                        || turn(b, c, p) <= 0.0
                         || turn(c, a, p) < 0.0
                 })
         };
@@ -137,7 +140,8 @@ mod tests {
             let [a, b, c] = t.map(|k| points[k]);
             (b - a).cross(c - a).z / 2.0
         };
-        assert!(triangles.iter().all(|t| area(t) > 0.0));
+        let areas: Vec<f64> = triangles.iter().map(area).collect();
+        assert!(areas.iter().all(|a| *a > 0.0), "{triangles:?} {areas:?}");
         assert!((triangles.iter().map(area).sum::<f64>() - 82.0).abs() < 1e-12);
         assert_eq!(triangles.len(), 12 + 2 * 2 - 2);
     }
