@@ -1,4 +1,4 @@
-//! Times of the T-piece: bulk evaluation and facets. Run with `--release`.
+//! Times and volume of the T-piece: bulk evaluation, brackets and facets. Run with `--release`.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -27,6 +27,11 @@ fn main() {
     let mut out = vec![0.0; n];
     let bulk = best(7, || set.values(&points, &mut out));
     println!("bulk: {:.2} ns per point", bulk / n as f64 * 1e9);
+    for depth in [6, 7, 8] {
+        let Ok(m) = moldloft_field::mass(&set, &common::cube(4.0), depth) else { continue };
+        let v = m.bracket.volume();
+        println!("volume, depth {depth}: {:.6} in [{:.4}, {:.4}]", m.best.volume(), v.low, v.high);
+    }
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let Ok(pool) = pool else { continue };

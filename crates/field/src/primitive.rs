@@ -50,7 +50,8 @@ pub(crate) struct Node<T: Real> {
 ///
 /// Primitives are made from planes and reals by arithmetic, so every affine map of a primitive is the
 /// same expression of mapped planes. They are immutable and share their parts; those that were made as
-/// a sphere, cylinder, cone, torus or cyclide remember it ([`Primitive::form`]).
+/// a sphere, cylinder, cone, torus or cyclide remember it, and so do their complements
+/// ([`Primitive::form`]).
 ///
 /// # Example
 /// ```
@@ -109,6 +110,8 @@ impl<T: Real> Primitive<T> {
                 }
                 None => Form::General,
             },
+            // The complement of a ball has the ball's surface.
+            Op::Unary(Unary::Neg, a) => a.form().clone(),
             _ => Form::General,
         };
         let degree = match &op {

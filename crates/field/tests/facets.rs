@@ -87,6 +87,22 @@ fn the_t_piece_is_one_ball() {
 }
 
 #[test]
+fn the_bored_t_piece_has_three_openings() {
+    let pipe = |d: Vec3, r: f64| Set::new(&Primitive::cylinder(axis(Vec3::zero(), d), r).unwrap());
+    let s = v(1.0, 0.0, 1.0);
+    let beyond = Set::new(&Primitive::plane(-s, Vec3::zero()).unwrap());
+    let bore = pipe(v(1.0, 0.0, 0.0), 0.8) | (pipe(s, 0.4) & beyond);
+    // The walls are 0.2 thick: cells of 0.0625 tell their sides apart, those of 0.125 would not.
+    let f = facets(&(t_piece() - bore.named("bore")), &cube(4.0), 7);
+    let report = sound(&f);
+    // A closed skin round a duct with three ends has two handles.
+    assert_eq!((report.components, report.euler), (1, -2));
+    assert!(f.mesh.patches().iter().any(|p| p.info.name == "bore" && p.info.kind == "cylinder"));
+    assert!(f.undecided.is_empty());
+    assert!(f.worst_vertex() <= 1e-12 * 8.0 * 3f64.sqrt());
+}
+
+#[test]
 fn accuracy_is_kept() {
     let torus =
         Set::new(&Primitive::torus(axis(Vec3::zero(), v(0.0, 0.3, 1.0)), 1.0, 0.3).unwrap());

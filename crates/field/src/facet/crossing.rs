@@ -1,7 +1,7 @@
 //! Triangles that cut each other.
 
 use moldloft_mesh::Mesh;
-use moldloft_num::Vec3;
+use moldloft_num::{Box3, Vec3};
 use std::collections::HashMap;
 
 /// Pairs of faces of a triangle mesh that cut each other, in order, by the signs of volumes; pairs
@@ -43,13 +43,19 @@ pub fn crossing_faces(mesh: &Mesh, flagged: Option<&[bool]>) -> Vec<[usize; 2]> 
         })
     };
     let mut map: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut all = Box3::EMPTY;
     for f in (0..faces.len()).filter(|&f| chosen(f)) {
+        all = all.union(Box3::around(corners(f)));
         for bin in bins(f) {
             map.entry(bin).or_default().push(f);
         }
     }
     let mut pairs = Vec::new();
     for f in 0..faces.len() {
+        let own = Box3::around(corners(f));
+        if (0..3).any(|k| own.low[k] > all.high[k] || own.high[k] < all.low[k]) {
+            continue;
+        }
         let mut near: Vec<usize> = bins(f).filter_map(|b| map.get(&b)).flatten().copied().collect();
         near.sort_unstable();
         near.dedup();
