@@ -17,7 +17,8 @@ fn program() -> String {
         writeln!(text, "AbsPoint B{k}({x}, {y}, 0.5);").unwrap();
         writeln!(text, "AbsPoint C{k}({x}, 1.25, -0.75);").unwrap();
         writeln!(text, "RelPoint D{k}(C{k}, 0, -1, -0.25);").unwrap();
-        writeln!(text, "BCurve M{k}({{A{k}, B{k}, C{k}, D{k}}}, degree = 3, visible = 0);").unwrap();
+        writeln!(text, "BCurve M{k}({{A{k}, B{k}, C{k}, D{k}}}, degree = 3, visible = 0);")
+            .unwrap();
         writeln!(text, "AbsBead E{k}(M{k}, 0.5);").unwrap();
         writeln!(text, "MirrPoint F{k}(E{k}, \"y=0\");").unwrap();
         writeln!(text, "Line L{k}(E{k}, F{k});").unwrap();
