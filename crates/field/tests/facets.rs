@@ -103,6 +103,36 @@ fn the_bored_t_piece_has_three_openings() {
 }
 
 #[test]
+fn tiny_huge_and_distant_bodies_are_as_good() {
+    let shape = |at: Vec3, size: f64| {
+        let ball = Set::new(&Primitive::sphere(at, size).unwrap());
+        let bore = axis(at, v(0.3, 0.2, 1.0));
+        ball - Set::new(&Primitive::cylinder(bore, 0.5 * size).unwrap())
+    };
+    let relative = |at: Vec3, size: f64| {
+        let half = v(1.5, 1.5, 1.5) * size;
+        let f = facets(&shape(at, size), &Box3 { low: at - half, high: at + half }, 6);
+        assert_eq!(sound(&f).euler, 0, "{at:?} {size}");
+        let epsilon = 1e-12 * size + 16.0 * f64::EPSILON * at.norm();
+        assert!(f.worst_vertex() <= epsilon, "{at:?} {size}: {}", f.worst_vertex());
+        // Volumes by cones from the origin lose digits there: measure from the body.
+        let near: Vec<Vec3> = f.mesh.positions().iter().map(|p| *p - at).collect();
+        let near = moldloft_mesh::Mesh::new(f.mesh.topology().clone(), near).unwrap();
+        moldloft_mesh::measure(&near).volume / size.powi(3)
+    };
+    let plain = relative(Vec3::zero(), 1.0);
+    for (at, size) in [
+        (v(1.0, 0.0, 0.0), 1e-4),
+        (v(1e4, -1e4, 3e3), 1.0),
+        (v(0.0, 0.0, 0.0), 1e6),
+        (v(0.0, 0.0, 0.0), 1e-9),
+    ] {
+        let here = relative(at, size);
+        assert!((here - plain).abs() < 1e-3, "{at:?} {size}: {here} {plain}");
+    }
+}
+
+#[test]
 fn accuracy_is_kept() {
     let torus =
         Set::new(&Primitive::torus(axis(Vec3::zero(), v(0.0, 0.3, 1.0)), 1.0, 0.3).unwrap());

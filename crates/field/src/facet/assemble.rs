@@ -7,7 +7,7 @@
 //! its triangles lie inside; otherwise the polygon is a fan about the crossing.
 
 use super::block::{Block, Crossing, SIDE};
-use super::cell::{CASES, face_edges, start_corner};
+use super::cell::{face_edges, start_corner};
 use super::grid::Grid;
 use super::vertex::{Placed, Solver, Surfaces};
 use crate::set::Leaf;
@@ -199,7 +199,7 @@ impl Assembly<'_> {
         let (low, high) = if cell[normal] < next[normal] { (cell, next) } else { (next, cell) };
         let same_loop = |cell: [usize; 3], side: usize| {
             let (block, local) = self.block_of(cell)?;
-            let case = &CASES[self.blocks[block].1.case(local) as usize];
+            let case = self.blocks[block].1.case(local);
             let edges = face_edges(normal, side);
             let loops = edges.map(|e| case.loop_of[e]);
             (case.ambiguous[2 * normal + side] && loops.iter().all(|l| *l == loops[0]))
@@ -213,9 +213,8 @@ impl Assembly<'_> {
             ([0, 1, 2].map(|k| high[k] + (start >> k & 1)), e / 4)
         });
         let (block, local) = self.block_of(high)?;
-        let signs = self.blocks[block].1.case(local);
-        let partner =
-            |k: usize| if (signs & 1 == 1) == (k % 2 == 1) { (k + 1) % 4 } else { (k + 3) % 4 };
+        let apart = self.blocks[block].1.first_apart(local, normal);
+        let partner = |k: usize| if apart == (k % 2 == 1) { (k + 1) % 4 } else { (k + 3) % 4 };
         let mine = edges.iter().position(|&(p, a)| p == at && a == axis)?;
         let other = partner(mine);
         let (first, second) = (mine.min(other), mine.max(other));

@@ -1,6 +1,6 @@
 //! Eight by eight by eight cells: signs at the corners, crossings of the edges, vertices.
 
-use super::cell::{CASES, NONE, faces_of, start_corner};
+use super::cell::{Case, NONE, case, faces_of, start_corner};
 use super::grid::Grid;
 use super::vertex::{Placed, Solver, Surfaces};
 use crate::set::Leaf;
@@ -46,7 +46,9 @@ pub(super) struct Block {
     /// Position in blocks.
     pub(super) at: [u32; 3],
     /// Signs of every cell's corners.
-    cases: Box<[u8; SIDE * SIDE * SIDE]>,
+    signs: Box<[u8; SIDE * SIDE * SIDE]>,
+    /// Its ambiguous faces whose middle is solid.
+    joins: Box<[u8; SIDE * SIDE * SIDE]>,
     /// First vertex of every cell.
     first: Box<[u32; SIDE * SIDE * SIDE]>,
     pub(super) vertices: Vec<Vertex>,
@@ -75,15 +77,21 @@ pub(super) struct Scratch {
 }
 
 impl Block {
-    /// The signs of a cell's corners.
-    pub(super) fn case(&self, cell: [usize; 3]) -> u8 {
-        self.cases[cell_index(cell)]
+    /// True when the surface cuts off the first corner of the ambiguous face on a cell's low side.
+    pub(super) fn first_apart(&self, cell: [usize; 3], axis: usize) -> bool {
+        let k = cell_index(cell);
+        (self.signs[k] & 1 == 1) != (self.joins[k] >> (2 * axis) & 1 == 1)
+    }
+
+    /// The case of a cell.
+    pub(super) fn case(&self, cell: [usize; 3]) -> &'static Case {
+        case(self.signs[cell_index(cell)], self.joins[cell_index(cell)])
     }
 
     /// The vertex in `cell` of the piece that crosses `edge`.
     pub(super) fn vertex(&self, cell: [usize; 3], edge: usize) -> Option<usize> {
         let k = cell_index(cell);
-        let number = CASES[self.cases[k] as usize].loop_of[edge];
+        let number = self.case(cell).loop_of[edge];
         (number != NONE).then(|| self.first[k] as usize + number as usize)
     }
 
@@ -143,7 +151,8 @@ impl Block {
 
         let mut block = Self {
             at,
-            cases: Box::new([0; SIDE * SIDE * SIDE]),
+            signs: Box::new([0; SIDE * SIDE * SIDE]),
+            joins: Box::new([0; SIDE * SIDE * SIDE]),
             first: Box::new([0; SIDE * SIDE * SIDE]),
             vertices: Vec::new(),
             crossings: Vec::new(),
@@ -162,14 +171,23 @@ impl Block {
                         signs |= usize::from(values[at] <= 0.0) << c;
                     }
                     let index = cell_index(cell);
-                    block.cases[index] = signs as u8;
+                    block.signs[index] = signs as u8;
                     if signs == 0 || signs == 255 {
                         continue;
                     }
                     block.active += 1;
                     block.first[index] = block.vertices.len() as u32;
                     let sides = Box3 { low: corner(cell), high: corner([i + 1, j + 1, k + 1]) };
-                    let case = &CASES[signs];
+                    for face in (0..6).filter(|&f| case(signs as u8, 0).ambiguous[f]) {
+                        // The same middle, bit for bit, from both cells of the face.
+                        let (axis, mut at) = (face / 2, cell);
+                        at[axis] += face % 2;
+                        let half = |k: usize| if k == axis { 0.0 } else { 0.5 * grid.step };
+                        let middle = corner(at) + Vec3::new(half(0), half(1), half(2));
+                        let solid = tape.eval::<f64>(&middle, registers) <= 0.0;
+                        block.joins[index] |= u8::from(solid) << face;
+                    }
+                    let case = block.case(cell);
                     let several = case.loops > 1;
                     for number in 0..case.loops {
                         let edges = (0..12).filter(|&e| case.loop_of[e] == number).map(|e| {

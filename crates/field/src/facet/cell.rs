@@ -3,7 +3,7 @@
 //! Corner k of a cell lies at (k & 1, k >> 1 & 1, k >> 2). Edge 4 a + i + 2 j runs along axis a from
 //! the corner whose coordinates along the next two axes are i and j.
 
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 /// No loop: the edge is not crossed.
 pub(super) const NONE: u8 = u8::MAX;
@@ -44,7 +44,7 @@ pub(super) fn faces_of(edge: usize) -> u8 {
     1 << (2 * b + (edge & 1)) | 1 << (2 * c + (edge >> 1 & 1))
 }
 
-fn case(signs: usize) -> Case {
+fn make(signs: usize, joins: usize) -> Case {
     let inside = |corner: usize| signs >> corner & 1 == 1;
     let crossed = |e: usize| inside(start_corner(e)) != inside(start_corner(e) | 1 << (e / 4));
     let mut joined: [Vec<usize>; 12] = Default::default();
@@ -61,10 +61,11 @@ fn case(signs: usize) -> Case {
                 [k, l] => join(k, l),
                 [_, _, _, _] => {
                     ambiguous[2 * axis + side] = true;
-                    // Solid corners are kept apart, in both cells of the face alike. Corner k of the
-                    // face stands between edges k - 1 and k; corner 0 is the one at (0, 0).
+                    // Corner k of the face stands between edges k - 1 and k; corner 0 is the one at
+                    // (0, 0). The solid corners are apart, unless the face's middle is solid.
                     let corner = side << axis;
-                    if inside(corner) {
+                    let joined = joins >> (2 * axis + side) & 1 == 1;
+                    if inside(corner) != joined {
                         join(3, 0);
                         join(1, 2);
                     } else {
@@ -93,8 +94,13 @@ fn case(signs: usize) -> Case {
     out
 }
 
-/// The 256 cases, by the bits of the solid corners.
-pub(super) static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| (0..256).map(case).collect());
+/// The case of a cell with these solid corners, by bits, in which the solid corners of the ambiguous
+/// faces of `joins`, by bits, are joined: both cells of a face must say the same.
+pub(super) fn case(signs: u8, joins: u8) -> &'static Case {
+    static CASES: [OnceLock<Case>; 256 * 64] = [const { OnceLock::new() }; 256 * 64];
+    let (signs, joins) = (signs as usize, joins as usize & 63);
+    CASES[signs * 64 + joins].get_or_init(|| make(signs, joins))
+}
 
 #[cfg(test)]
 mod tests {
@@ -124,8 +130,9 @@ mod tests {
 
     #[test]
     fn every_crossed_edge_is_in_one_loop_of_at_least_three() {
-        for signs in 0..256 {
-            let case = &CASES[signs];
+        for k in 0..256 * 64 {
+            let signs = k / 64;
+            let case = case(signs as u8, (k % 64) as u8);
             for number in 0..case.loops {
                 let edges = case.loop_of.iter().filter(|&&l| l == number).count();
                 assert!((3..=12).contains(&edges), "{signs}");
@@ -137,8 +144,10 @@ mod tests {
             assert!(crossed.into_iter().all(|e| case.loop_of[e] != NONE));
         }
         // Two solid corners at the ends of a diagonal stay apart.
-        assert_eq!(CASES[0b1000_0001].loops, 2);
-        assert_eq!(CASES[0b0000_1001].loops, 2);
-        assert_eq!(CASES[0b1111_0110].loops, 1);
+        assert_eq!(case(0b1000_0001, 0).loops, 2);
+        assert_eq!(case(0b0000_1001, 0).loops, 2);
+        // Joined across the face between them they are one.
+        assert_eq!(case(0b0000_1001, 0b01_0000).loops, 1);
+        assert_eq!(case(0b1111_0110, 0).loops, 1);
     }
 }

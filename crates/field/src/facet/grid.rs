@@ -42,8 +42,11 @@ impl Grid {
             cells[k] = (count.ceil() as usize).div_ceil(SIDE) * SIDE;
         }
         let origin = over.low - Vec3::from(MARGIN) * step;
-        // Vertices are on their surfaces to 1e-13 of the box; 1e-12 is promised.
-        Ok(Self { origin, step, cells, goal: 1e-13 * over.diagonal() })
+        // Vertices are on their surfaces to 1e-13 of the box (1e-12 is promised), far from the origin to
+        // the rounding of their coordinates.
+        let far = over.low.norm().max(over.high.norm());
+        let goal = 1e-13 * over.diagonal() + 8.0 * f64::EPSILON * far;
+        Ok(Self { origin, step, cells, goal })
     }
 
     /// The position of a corner.
