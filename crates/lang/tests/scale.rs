@@ -234,10 +234,10 @@ fn arrays_that_are_too_large_are_refused() {
         &(0..2000).map(|k| format!("curve c{k}[1e6];\n")).collect::<String>(),
         "too-many-elements",
     );
-    refused("many rows", "farray a; for (i = 1:10000) a = uniform(0, i, 1e7);", "too-many-steps");
+    refused("many rows", "farray a; for (i = 1:10000) a = uniform(0, i, 1e6);", "too-many-steps");
     refused(
         "sums of rows",
-        "farray a = uniform(0, 1, 1e7); while (1) a = a + 1;",
+        "farray a = uniform(0, 1, 1e6); while (1) a = a + 1;",
         "too-many-steps",
     );
     refused("lists of lists", "subroutine f(any x) { f({x, x}); } f(1);", "too-many-steps");
