@@ -157,14 +157,15 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     /// # Errors
     /// When the run must stop; that was reported.
     pub fn charge(&mut self, value: &Value<T>, span: Span) -> Result<(), Diagnostic> {
-        let n = match value {
-            Value::Numbers(a) => a.items.len(),
-            Value::Vectors(a) => a.items.len(),
-            Value::List(items) => items.len(),
+        // Large arrays count for the memory they take, small ones for the time; lists are read
+        // item by item.
+        let of_array = |n: usize| n / if n > 100_000 { 4 } else { 16 };
+        self.steps += match value {
+            Value::Numbers(a) => of_array(a.items.len()),
+            Value::Vectors(a) => of_array(a.items.len()),
+            Value::List(items) => 4 * items.len(),
             _ => return Ok(()),
-        };
-        // Large ones count for the memory they take, small ones for the time.
-        self.steps += (n / if n > 100_000 { 4 } else { 16 }) as u64;
+        } as u64;
         if self.steps > MOST_STEPS && self.step(span) {
             return Err(silent());
         }
