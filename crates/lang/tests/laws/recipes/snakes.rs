@@ -1,0 +1,27 @@
+//! Snakes.
+
+use crate::program::Program;
+
+/// The arguments of a random object of this kind; `None` for a kind of another family.
+pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
+    let t = p.number(0.05, 0.3);
+    Some(match kind {
+        "LineSnake" => {
+            let surface = p.surface();
+            format!("{}, {}", p.magnet(&surface), p.magnet(&surface))
+        }
+        "BSnake" => {
+            let surface = p.surface();
+            let magnets: Vec<_> = (0..4).map(|_| p.magnet(&surface)).collect();
+            format!("{{{}}}, degree = 3", magnets.join(", "))
+        }
+        "EdgeSnake" => format!("{}, {}", 1 + p.random.below(4), p.surface()),
+        "UVSnake" => format!("{}, \"{}\", {t}", p.surface(), p.random.pick(&["u", "v"])),
+        "SubSnake" => {
+            let surface = p.surface();
+            let snake = p.snake(&surface);
+            format!("{}, {}", p.ring(&snake), p.ring(&snake))
+        }
+        _ => return None,
+    })
+}

@@ -1,0 +1,57 @@
+//! Surfaces and solids.
+
+use crate::program::Program;
+
+/// The arguments of a random object of this kind; `None` for a kind of another family.
+pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
+    let divisions = p.divisions();
+    let t = p.number(0.05, 0.3);
+    Some(match kind {
+        "RuledSurf" | "TranSurf" => format!("{}, {divisions}", p.curves::<2>().join(", ")),
+        "BLoftSurf" => {
+            let masters = p.curves::<3>().join(", ");
+            format!("{{{masters}}}, degree = 2, {divisions}")
+        }
+        "CLoftSurf" => {
+            // Masters of its own, apart from one another.
+            let masters: Vec<String> = (0..3)
+                .map(|k| {
+                    let points: Vec<String> = (0..3)
+                        .map(|j| {
+                            let (y, z) = (p.number(-0.5, 0.5), p.number(-0.5, 0.5));
+                            p.object("AbsPoint", &format!("{}*w, {j} + {y}, {z}", 2 * k))
+                        })
+                        .collect();
+                    p.object(
+                        "BCurve",
+                        &format!("{{{}}}, degree = 2, visible = 0", points.join(", ")),
+                    )
+                })
+                .collect();
+            format!("{{{}}}, {divisions}", masters.join(", "))
+        }
+        "BSurf" => {
+            let net = p.points::<6>().join(", ");
+            format!("{{{net}}}, nu = 3, nv = 2, degree_u = 2, degree_v = 1, {divisions}")
+        }
+        "RevSurf" => {
+            let [a, b] = p.points();
+            let line = p.object("Line", &format!("{a}, {b}"));
+            format!("{}, {line}, {t}, 2.25, {divisions}", p.curve())
+        }
+        "SubSurf" => {
+            let s = p.surface();
+            let m: [String; 4] = std::array::from_fn(|_| p.magnet(&s));
+            let mut side =
+                |a: usize, b: usize| p.object("LineSnake", &format!("{}, {}", m[a], m[b]));
+            let sides = [side(0, 1), side(1, 2), side(3, 2), side(0, 3)];
+            match p.random.below(3) {
+                0 => format!("{{{}, {}}}, {divisions}", sides[0], sides[2]),
+                1 => format!("{{{}, {}}}, {divisions}", sides[0], m[2]),
+                _ => format!("{{{}}}, {divisions}", sides.join(", ")),
+            }
+        }
+        "MirrSurf" => format!("{}, {}, {divisions}", p.surface(), p.mirror()),
+        _ => return None,
+    })
+}
