@@ -1,4 +1,4 @@
-use moldloft_mesh::{Mesh, MeshError};
+use moldloft_mesh::{Blocks, Mesh, MeshError};
 use std::fmt;
 
 /// Why a mesh cannot be written.
@@ -108,6 +108,21 @@ pub(crate) fn check_positions(mesh: &Mesh, limit: f64) -> Result<(), WriteError>
         let grid = patch.block.iter().flat_map(|b| &b.vertices);
         if let Some(&vertex) = faces.chain(grid).find(|&&v| !good(v)) {
             return Err(WriteError::NotFinite { patch: patch.info.name.clone(), vertex });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses volume meshes without blocks, and vertices whose coordinates exceed `limit`, NaN
+/// included.
+pub(crate) fn check_blocks(blocks: &Blocks, limit: f64) -> Result<(), WriteError> {
+    if blocks.blocks().is_empty() {
+        return Err(WriteError::NoGrid { patches: vec![] });
+    }
+    let good = |v: u32| blocks.positions()[v as usize].to_array().iter().all(|x| x.abs() <= limit);
+    for block in blocks.blocks() {
+        if let Some(&vertex) = block.vertices.iter().find(|&&v| !good(v)) {
+            return Err(WriteError::NotFinite { patch: block.name.clone(), vertex });
         }
     }
     Ok(())

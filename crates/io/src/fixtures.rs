@@ -1,6 +1,6 @@
 //! Meshes that the tests of this crate share.
 
-use moldloft_mesh::{Mesh, PatchInfo, Tag, TopologyBuilder};
+use moldloft_mesh::{BlockFace, Blocks, HexBlock, Mesh, PatchInfo, Tag, TopologyBuilder};
 use moldloft_num::Vec3;
 
 /// Two structured patches that share an edge, one with a pole, and a lid triangle.
@@ -22,6 +22,19 @@ pub fn two_patches() -> Mesh {
         [2.9, 0.5, 0.3],
     ];
     Mesh::new(b.build().into(), p.map(Vec3::from).to_vec()).unwrap()
+}
+
+/// Two blocks with a common face: a unit cube, and two more beyond it along u.
+pub fn two_bricks() -> Blocks {
+    let at = |i: usize, j: usize, k: usize| Vec3::of(i as f64, j as f64, k as f64);
+    let all = (0..16).map(|c| at(c / 4, c / 2 % 2, c % 2)).collect();
+    let block = |name: &str, nu: usize, first: u32| HexBlock {
+        name: name.into(),
+        size: [nu, 2, 2],
+        vertices: (first..first + 4 * nu as u32).collect(),
+        faces: std::array::from_fn(|f| BlockFace { name: format!("{name}.{f}") }),
+    };
+    Blocks::new(all, vec![block("fore", 2, 0), block("aft", 3, 4)]).unwrap()
 }
 
 /// Copies of a file with bytes changed, cut off and doubled, the same ones every time.

@@ -5,8 +5,9 @@
 //! | WAMIT low-order GDF | [`gdf::write`] | [`gdf::read`] |
 //! | STL | [`stl::write`] (binary) | [`stl::read`] (binary and text) |
 //! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
-//! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`] | – |
+//! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`] | – |
 //! | Plot3D surfaces | [`plot3d::write`] | – |
+//! | Plot3D volumes | [`plot3d::write_blocks`] | – |
 //! | SVG lines drawings | [`drawing::draw`] | – |
 //!
 //! `Mesh -> Vec<u8>` and `&[u8] -> Mesh`. The caller opens and closes the files, and writes each

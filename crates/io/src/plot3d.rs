@@ -1,12 +1,13 @@
-//! Plot3D grids: structured surfaces, several blocks, double precision.
+//! Plot3D grids: structured surfaces or volumes, several blocks, double precision.
 //!
-//! The number of blocks, then all sizes `ni nj nk` (nk = 1), then per block all x, all y and all z,
-//! i running fastest (Walatka et al. 1990, PLOT3D User's Manual, NASA TM 101067, chapter 8).
+//! The number of blocks, then all sizes `ni nj nk` (nk = 1 for surfaces), then per block all x, all
+//! y and all z, i running fastest (Walatka et al. 1990, PLOT3D User's Manual, NASA TM 101067, chapter 8).
 
 use crate::WriteError;
-use crate::error::check_positions;
+use crate::error::{check_blocks, check_positions};
 use crate::text::{put, real};
-use moldloft_mesh::{Block, Mesh};
+use moldloft_mesh::{Block, Blocks, Mesh};
+use moldloft_num::Vec3;
 
 /// How the numbers are laid down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,26 +40,56 @@ pub(crate) fn blocks(mesh: &Mesh) -> Result<Vec<(&str, &Block)>, WriteError> {
 /// large for the 32-bit integers of the format.
 pub fn write(mesh: &Mesh, layout: Layout) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
-    let blocks = blocks(mesh)?;
+    let grids = blocks(mesh)?.into_iter().map(|(_, b)| Grid {
+        size: [b.nu, b.nv, 1],
+        vertices: (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| b.at(i, j))).collect(),
+    });
+    written(mesh.positions(), &grids.collect::<Vec<_>>(), layout)
+}
+
+/// The grid file of volume blocks; i runs along u, j along v, k along w.
+///
+/// # Errors
+/// [`WriteError::NoGrid`] when there are no blocks; positions that are not finite; blocks too large
+/// for the 32-bit integers of the format.
+pub fn write_blocks(blocks: &Blocks, layout: Layout) -> Result<Vec<u8>, WriteError> {
+    check_blocks(blocks, f64::MAX)?;
+    let grids = blocks.blocks().iter().map(|b| {
+        let [nu, nv, nw] = b.size;
+        let across = (0..nw).flat_map(|k| (0..nv).map(move |j| (j, k)));
+        let along = across.flat_map(|(j, k)| (0..nu).map(move |i| [i, j, k]));
+        Grid { size: b.size, vertices: along.map(|place| b.at(place)).collect() }
+    });
+    written(blocks.positions(), &grids.collect::<Vec<_>>(), layout)
+}
+
+/// A block's vertices in the order of the file.
+struct Grid {
+    size: [usize; 3],
+    vertices: Vec<u32>,
+}
+
+fn written(positions: &[Vec3], grids: &[Grid], layout: Layout) -> Result<Vec<u8>, WriteError> {
     let mut out = Writer { layout, bytes: Vec::new() };
     let integer = |n: usize| {
         i32::try_from(n).map_err(|_| WriteError::TooLarge { what: "points of a block", count: n })
     };
-    let mut sizes = Vec::with_capacity(3 * blocks.len());
-    for (_, b) in &blocks {
+    let mut sizes = Vec::with_capacity(3 * grids.len());
+    for grid in grids {
         // A Fortran record holds 24 bytes per point and counts them in 31 bits.
         if layout == Layout::Unformatted {
-            integer(b.vertices.len().saturating_mul(24))?;
+            integer(grid.vertices.len().saturating_mul(24))?;
         }
-        sizes.extend([integer(b.nu)?, integer(b.nv)?, 1]);
+        for n in grid.size {
+            sizes.push(integer(n)?);
+        }
     }
-    out.integers(&[integer(blocks.len())?]);
+    out.integers(&[integer(grids.len())?]);
     out.integers(&sizes);
-    for (_, b) in &blocks {
-        let vertices = || (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| b.at(i, j)));
+    for grid in grids {
         let coordinates =
-            (0..3).flat_map(|axis| vertices().map(move |v| mesh.positions()[v as usize][axis]));
-        out.reals(3 * b.vertices.len(), coordinates);
+            (0..3).flat_map(|axis| grid.vertices.iter().map(move |&v| positions[v as usize][axis]));
+        out.reals(3 * grid.vertices.len(), coordinates);
     }
     Ok(out.bytes)
 }
@@ -129,6 +160,18 @@ mod tests {
         let expected = "2\n3 2 1\n2 2 1\n0 1 2 0\n1 2 0 0\n0 1 1 1\n0 0 0 0\n0 0\n\
             0 1 0 1\n0 0 1 1\n0 0 0 0\n";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn volume_blocks_run_i_fastest() {
+        let blocks = crate::fixtures::two_bricks();
+        let text = String::from_utf8(write_blocks(&blocks, Layout::Formatted).unwrap()).unwrap();
+        let expected = "2\n2 2 2\n3 2 2\n\
+            0 1 0 1\n0 1 0 1\n0 0 1 1\n0 0 1 1\n0 0 0 0\n1 1 1 1\n\
+            1 2 3 1\n2 3 1 2\n3 1 2 3\n0 0 0 1\n1 1 0 0\n0 1 1 1\n0 0 0 0\n0 0 1 1\n1 1 1 1\n";
+        assert_eq!(text, expected);
+        let none = Blocks::new(vec![], vec![]).unwrap();
+        assert!(matches!(write_blocks(&none, Layout::Stream), Err(WriteError::NoGrid { .. })));
     }
 
     #[test]

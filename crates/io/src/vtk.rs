@@ -1,12 +1,13 @@
-//! VTK's XML formats: `.vtp` for panels, `.vts` for a structured patch, `.vtm` for several.
+//! VTK's XML formats: `.vtp` for panels, `.vts` for a structured patch or block, `.vtm` for several,
+//! `.vtu` for all hexahedra of a volume mesh in one.
 //!
 //! Arrays stand behind the XML as raw little-endian bytes, each after its length in 64 bits
 //! ("VTK File Formats", vtk.org, section "XML File Formats").
 
 use crate::WriteError;
-use crate::error::check_positions;
+use crate::error::{check_blocks, check_positions};
 use crate::text::{put, word, xml};
-use moldloft_mesh::{Block, Mesh, is_triangle};
+use moldloft_mesh::{Blocks, HexBlock, Mesh, is_triangle};
 use moldloft_num::Vec3;
 
 /// A file to be written beside others.
@@ -116,18 +117,23 @@ pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     Ok(data.file("PolyData", &body))
 }
 
-/// The `.vts` file of one grid, u running fastest.
-fn structured(positions: &[Vec3], block: &Block, name: &str) -> Vec<u8> {
-    let points = (0..block.nv)
-        .flat_map(|j| (0..block.nu).map(move |i| block.at(i, j)))
-        .flat_map(|v| positions[v as usize].to_array());
+/// The `.vts` file of one grid, whose vertices come u fastest, then v.
+fn structured(
+    positions: &[Vec3],
+    size: [usize; 3],
+    vertices: impl Iterator<Item = u32>,
+    label: &str,
+    name: &str,
+) -> Vec<u8> {
+    let points = vertices.flat_map(|v| positions[v as usize].to_array());
     let mut data = Appended::default();
     let points = data.add_reals(points);
-    let extent = format!("0 {} 0 {} 0 0", block.nu - 1, block.nv - 1);
+    let [nu, nv, nw] = size.map(|n| n - 1);
+    let extent = format!("0 {nu} 0 {nv} 0 {nw}");
     let body = format!(
         "<StructuredGrid WholeExtent=\"{extent}\">\n<FieldData>\n{}</FieldData>\n\
          <Piece Extent=\"{extent}\">\n<Points>\n{}</Points>\n</Piece>\n</StructuredGrid>\n",
-        strings("patch_name", [name].into_iter()),
+        strings(label, [name].into_iter()),
         array("Float64", "Points", 3, points),
     );
     data.file("StructuredGrid", &body)
@@ -140,30 +146,103 @@ fn structured(positions: &[Vec3], block: &Block, name: &str) -> Vec<u8> {
 /// [`WriteError::NoGrid`] when some patch has no grid; positions that are not finite.
 pub fn structured_files(mesh: &Mesh, stem: &str) -> Result<Vec<NamedFile>, WriteError> {
     check_positions(mesh, f64::MAX)?;
-    let blocks = crate::plot3d::blocks(mesh)?;
+    let grids = crate::plot3d::blocks(mesh)?;
+    let one = |&(name, b): &(&str, &moldloft_mesh::Block)| {
+        let vertices = (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| b.at(i, j)));
+        let bytes = structured(mesh.positions(), [b.nu, b.nv, 1], vertices, "patch_name", name);
+        (name.to_string(), bytes)
+    };
+    Ok(indexed(grids.iter().map(one).collect(), stem))
+}
+
+/// The vertices of a block, u fastest, then v.
+fn vertices(block: &HexBlock) -> impl Iterator<Item = u32> + '_ {
+    let [nu, nv, nw] = block.size;
+    let across = (0..nw).flat_map(move |k| (0..nv).map(move |j| (j, k)));
+    across.flat_map(move |(j, k)| (0..nu).map(move |i| block.at([i, j, k])))
+}
+
+/// The blocks of a volume mesh as files, named as those of [`structured_files`].
+///
+/// # Errors
+/// [`WriteError::NoGrid`] when there are no blocks; positions that are not finite.
+pub fn block_files(blocks: &Blocks, stem: &str) -> Result<Vec<NamedFile>, WriteError> {
+    check_blocks(blocks, f64::MAX)?;
+    let one = |b: &HexBlock| {
+        let bytes = structured(blocks.positions(), b.size, vertices(b), "block_name", &b.name);
+        (b.name.clone(), bytes)
+    };
+    Ok(indexed(blocks.blocks().iter().map(one).collect(), stem))
+}
+
+/// One grid as `stem.vts`, or several with their index first.
+fn indexed(grids: Vec<(String, Vec<u8>)>, stem: &str) -> Vec<NamedFile> {
     let named = |name: String, bytes| NamedFile { name, bytes };
-    if let [(name, block)] = blocks.as_slice() {
-        return Ok(vec![named(format!("{stem}.vts"), structured(mesh.positions(), block, name))]);
+    if grids.len() == 1 {
+        return grids.into_iter().map(|(_, bytes)| named(format!("{stem}.vts"), bytes)).collect();
     }
     let mut index = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" \
          byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<vtkMultiBlockDataSet>\n",
     );
     let mut files = Vec::new();
-    for (k, (name, block)) in blocks.iter().enumerate() {
-        let safe: String = word(name)
+    for (k, (name, bytes)) in grids.into_iter().enumerate() {
+        let safe: String = word(&name)
             .chars()
             .map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' })
             .take(80)
             .collect();
         let file = format!("{stem}-{}-{safe}.vts", k + 1);
-        let (name, quoted) = (xml(name), xml(&file));
+        let (name, quoted) = (xml(&name), xml(&file));
         put!(index, "<DataSet index=\"{k}\" name=\"{name}\" file=\"{quoted}\"/>\n");
-        files.push(named(file, structured(mesh.positions(), block, &name)));
+        files.push(named(file, bytes));
     }
     index.push_str("</vtkMultiBlockDataSet>\n</VTKFile>\n");
     files.insert(0, named(format!("{stem}.vtm"), index.into_bytes()));
-    Ok(files)
+    files
+}
+
+/// VTK's number for a hexahedron.
+const VTK_HEXAHEDRON: u8 = 12;
+
+/// VTK's order of the corners of a hexahedron, by ours (u, v, w are bits 0, 1, 2 of a corner).
+const VTK_CORNERS: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// The `.vtu` file: all hexahedra over common points, with the cell array `block` (index of the
+/// block) and the field array `block_name`. Cells at poles repeat points.
+///
+/// # Errors
+/// [`WriteError::NoGrid`] when there are no blocks; positions that are not finite.
+pub fn unstructured(blocks: &Blocks) -> Result<Vec<u8>, WriteError> {
+    check_blocks(blocks, f64::MAX)?;
+    let cells = || blocks.blocks().iter().flat_map(|b| b.cells().map(move |place| b.cell(place)));
+    let count = blocks.cell_count();
+    let mut used = vec![false; blocks.positions().len()];
+    cells().flatten().for_each(|v| used[v as usize] = true);
+    let points = blocks.positions().iter().zip(&used);
+    let points = points.map(|(&p, &u)| if u { p } else { Vec3::zero() });
+    let mut data = Appended::default();
+    let points = data.add_reals(points.flat_map(Vec3::to_array));
+    let corners = cells().flat_map(|cell| VTK_CORNERS.map(|c| i64::from(cell[c])));
+    let connectivity = data.add_integers(corners);
+    let offsets = data.add_integers((1..=count as i64).map(|k| 8 * k));
+    let types = data.add(&vec![VTK_HEXAHEDRON; count]);
+    let owners = blocks.blocks().iter().enumerate();
+    let owner =
+        data.add_integers(owners.flat_map(|(k, b)| std::iter::repeat_n(k as i64, b.cell_count())));
+    let body = format!(
+        "<UnstructuredGrid>\n<FieldData>\n{}</FieldData>\n<Piece NumberOfPoints=\"{}\" \
+         NumberOfCells=\"{count}\">\n<CellData Scalars=\"block\">\n{}</CellData>\n<Points>\n{}\
+         </Points>\n<Cells>\n{}{}{}</Cells>\n</Piece>\n</UnstructuredGrid>\n",
+        strings("block_name", blocks.blocks().iter().map(|b| b.name.as_str())),
+        blocks.positions().len(),
+        array("Int64", "block", 1, owner),
+        array("Float64", "Points", 3, points),
+        array("Int64", "connectivity", 1, connectivity),
+        array("Int64", "offsets", 1, offsets),
+        array("UInt8", "types", 1, types),
+    );
+    Ok(data.file("UnstructuredGrid", &body))
 }
 
 #[cfg(test)]
@@ -208,5 +287,20 @@ mod tests {
         assert!(String::from_utf8(files[0].bytes.clone()).unwrap().contains("fore &amp; aft"));
         // u fastest: the second point is vertex 2.
         assert_eq!(reals(&files[1].bytes, 0)[3..6], [1.0, 0.0, 0.0]);
+    }
+    #[test]
+    fn blocks_become_files() {
+        let blocks = crate::fixtures::two_bricks();
+        let files = block_files(&blocks, "grid").unwrap();
+        let names: Vec<_> = files.iter().map(|f| f.name.as_str()).collect();
+        assert_eq!(names, ["grid.vtm", "grid-1-fore.vts", "grid-2-aft.vts"]);
+        // u fastest.
+        assert_eq!(reals(&files[2].bytes, 0)[..6], [1.0, 0.0, 0.0, 2.0, 0.0, 0.0]);
+        let whole = unstructured(&blocks).unwrap();
+        assert_eq!(reals(&whole, 0).len(), 3 * 16);
+        let text = String::from_utf8_lossy(&whole);
+        assert!(text.contains("NumberOfPoints=\"16\" NumberOfCells=\"3\""));
+        let none = Blocks::new(vec![], vec![]).unwrap();
+        assert!(unstructured(&none).is_err() && block_files(&none, "x").is_err());
     }
 }

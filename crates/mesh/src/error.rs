@@ -21,6 +21,16 @@ pub enum MeshError {
         /// Length of the vertex list.
         actual: usize,
     },
+    /// A volume block's vertex list does not have `nu * nv * nw` entries, or has fewer than two in a
+    /// direction.
+    HexShape {
+        /// The block.
+        block: String,
+        /// Vertices along u, v and w.
+        shape: [usize; 3],
+        /// Length of the vertex list.
+        actual: usize,
+    },
     /// The positions are not as many as the topology's vertices.
     PositionCount {
         /// Vertices of the topology.
@@ -46,6 +56,12 @@ impl fmt::Display for MeshError {
                 "block `{patch}` of {nu} x {nv} points needs at least 2 x 2 and exactly {} vertices, \
                  found {actual}",
                 nu.saturating_mul(*nv)
+            ),
+            Self::HexShape { block, shape: [nu, nv, nw], actual } => write!(
+                f,
+                "block `{block}` of {nu} x {nv} x {nw} points needs at least 2 x 2 x 2 and exactly \
+                 {} vertices, found {actual}",
+                nu.saturating_mul(*nv).saturating_mul(*nw)
             ),
             Self::PositionCount { expected, actual } => {
                 write!(f, "the mesh has {expected} vertices, but {actual} positions were given")

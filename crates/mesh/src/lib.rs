@@ -39,6 +39,7 @@ mod report;
 mod section;
 mod sum;
 mod topology;
+mod volume;
 
 pub use error::MeshError;
 pub use hydrostatics::{
@@ -51,3 +52,6 @@ pub use quality::{PatchQuality, Spread, WorstPanel, quality};
 pub use report::{OpenLoop, TopologyReport};
 pub use section::{Polyline, section};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};
+pub use volume::{
+    BadCell, BlockFace, BlockQuality, Blocks, BlocksReport, HexBlock, Hexahedron, Interface,
+};

@@ -1,0 +1,14 @@
+//! Volume meshes: structured blocks of hexahedra with common vertices.
+
+mod blocks;
+mod cell;
+mod interface;
+mod report;
+
+pub use blocks::{BlockFace, Blocks, HexBlock};
+pub use cell::Hexahedron;
+pub use interface::Interface;
+pub use report::{BadCell, BlockQuality, BlocksReport};
+
+#[cfg(test)]
+mod fixtures;
