@@ -46,6 +46,7 @@ check: setup ## formatting, lints, types and the Rust tests
 
 reference: $(VENV)/.installed ## docs/reference.md anew from the declarations
 	@$(BIN)/moldloft doc --markdown > docs/reference.md
+	@$(BIN)/moldloft doc --pictures docs/kinds
 
 soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full

@@ -16,6 +16,15 @@ pub struct Line {
     pub width: f32,
 }
 
+/// How a patch looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// sRGB colour.
+    pub colour: [u8; 3],
+    /// Draw it a little nearer than it is, so that it covers a surface that it lies in.
+    pub raised: bool,
+}
+
 /// How the picture is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -37,6 +46,8 @@ pub struct Options {
     pub axes: bool,
     /// Colours of the background, top and bottom.
     pub background: [[u8; 3]; 2],
+    /// How the patches look, in their order, instead of their own colours.
+    pub looks: Option<Vec<Look>>,
 }
 
 impl Default for Options {
@@ -52,6 +63,7 @@ impl Default for Options {
             mirror: false,
             axes: true,
             background: [[0xfc, 0xfd, 0xfe], [0xe2, 0xe8, 0xee]],
+            looks: None,
         }
     }
 }
@@ -130,11 +142,11 @@ pub fn render(mesh: &Mesh, lines: &[Line], options: &Options) -> Result<Vec<u8>,
     let [top, bottom] = options.background;
     let gamma = Gamma::new();
     let mut raster = Raster::new(2 * width, 2 * height, top, bottom, Gamma::new());
-    let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options };
+    let diagonal = Box3::around(all.iter().copied()).diagonal();
+    let painter = Painter { mesh, aimed: &aimed, gamma: &gamma, options, lift: 1e-3 * diagonal };
     for &side in sides {
         painter.panels(&mut raster, side);
     }
-    let diagonal = Box3::around(all.iter().copied()).diagonal();
     let rims = if options.borders { mesh.topology().borders() } else { Vec::new() };
     for &side in sides {
         let mut stroke = |p: Vec3, q: Vec3, half_width: f32, slack: f64, colour: [u8; 3]| {
@@ -169,6 +181,8 @@ struct Painter<'a> {
     aimed: &'a Aimed,
     gamma: &'a Gamma,
     options: &'a Options,
+    /// How much nearer raised patches are.
+    lift: f64,
 }
 
 impl Painter<'_> {
@@ -194,7 +208,10 @@ impl Painter<'_> {
                 let corners = if is_triangle(face) { 3 } else { 4 };
                 face[..corners].iter().for_each(|&v| normals[v as usize] += normal);
             }
-            let base = self.gamma.linear(patch_colour(patch, index));
+            let look = self.options.looks.as_ref().and_then(|all| all.get(index).copied());
+            let colour = look.map_or_else(|| patch_colour(patch, index), |look| look.colour);
+            let base = self.gamma.linear(colour);
+            let raised = look.is_some_and(|look| look.raised);
             for &face in faces {
                 let Some(normal) = turned(face).normalized() else { continue };
                 let corners = face.map(|v| {
@@ -202,11 +219,18 @@ impl Painter<'_> {
                     // cos 40 degrees: a sharper turn is a crease.
                     let shared = normals[v].normalized().filter(|n| n.dot(normal) > 0.766);
                     let n = shared.filter(|_| self.options.smooth).unwrap_or(normal);
-                    Corner { at: seen[v], light: self.light(base, n, normal, positions[v]) }
+                    let at = if raised { self.raised(positions[v]) } else { seen[v] };
+                    Corner { at, light: self.light(base, n, normal, positions[v]) }
                 });
                 self.panel(raster, corners, is_triangle(face));
             }
         }
+    }
+
+    /// Where a raised point is seen: in its place, but nearer.
+    fn raised(&self, p: Vec3) -> Seen {
+        let nearer = self.aimed.see(p + self.aimed.towards(p) * self.lift);
+        Seen { near: nearer.near, ..self.aimed.see(p) }
     }
 
     fn panel(&self, raster: &mut Raster, [a, b, c, d]: [Corner; 4], triangle: bool) {

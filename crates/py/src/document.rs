@@ -4,6 +4,7 @@ use crate::arrays;
 use crate::diagnostics::Diagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::mesh::PyMesh;
+use crate::portrait::portrait;
 use crate::value::to_python;
 use crate::work::interruptible;
 use crate::world::FileWorld;
@@ -423,6 +424,18 @@ impl PyDocument {
         height: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let picture = self.long_checked(py, move |d| write::picture(d, width, height))?;
+        Ok(PyBytes::new(py, &picture))
+    }
+
+    /// A picture in which the objects of one kind stand out.
+    fn portrait<'py>(
+        &self,
+        py: Python<'py>,
+        kind: String,
+        width: usize,
+        height: usize,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let picture = self.long_checked(py, move |d| portrait(d, &kind, width, height))?;
         Ok(PyBytes::new(py, &picture))
     }
 }

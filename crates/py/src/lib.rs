@@ -12,6 +12,7 @@ mod document;
 mod error;
 mod foreign;
 mod mesh;
+mod portrait;
 mod reference;
 mod value;
 mod work;

@@ -18,6 +18,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--list", action="store_true", help="all of them, with class and fields")
     parser.add_argument("--json", action="store_true", help="the same as data")
     parser.add_argument("--markdown", action="store_true", help="the reference page")
+    parser.add_argument(
+        "--pictures", metavar="DIR", help="a PNG of the example of each kind, or of NAME"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -27,6 +30,9 @@ def run(options: argparse.Namespace) -> int:
     rows = reference()
     if options.markdown:
         print(markdown(rows), end="")
+        return 0
+    if options.pictures and options.name is None:
+        _draw(rows, options.pictures)
         return 0
     if options.name is None:
         if options.json:
@@ -39,11 +45,40 @@ def run(options: argparse.Namespace) -> int:
         near = difflib.get_close_matches(options.name, [row["name"] for row in rows], n=1)
         hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
         raise UnknownNameError(f"error: there is no kind or function `{options.name}`{hint}")
-    if options.json:
+    if options.pictures:
+        _draw([row], options.pictures)
+    elif options.json:
         print_json(row)
     else:
         print(_page(row))
     return 0
+
+
+#: What shows in a picture. Laws, numbers and the model itself have no shape.
+_SHAPES = {
+    "bead", "contours", "curve", "frame", "magnet", "plane", "point", "ring", "snake", "solid",
+    "surface",
+}  # fmt: skip
+
+
+def _pictured(row: dict[str, Any]) -> bool:
+    return bool(row["is_kind"] and row["example"] and row["class"] in _SHAPES)
+
+
+def _draw(rows: list[dict[str, Any]], folder: str) -> None:
+    """Draws the examples of the kinds, each kind standing out in its own."""
+    from pathlib import Path
+
+    import moldloft
+    from moldloft.files import Output, commit
+
+    outputs = []
+    for row in filter(_pictured, rows):
+        model = moldloft.loads(row["example"], name=f"{row['name']}.sdl")
+        portrait = model._document.portrait(row["name"], 360, 240)
+        outputs.append(Output(f"{row['name']}.png", portrait))
+    commit(Path(folder), outputs)
+    print(f"{len(outputs)} pictures in {folder}")
 
 
 def _list(rows: list[dict[str, Any]]) -> str:
@@ -93,6 +128,8 @@ def markdown(rows: list[dict[str, Any]]) -> str:
         lines += ["", f"## {title}"]
         for row in chosen:
             lines += ["", f"### {row['name']}", "", f"`{_signature(row)}` → {row['class']}", ""]
+            if _pictured(row):
+                lines += [f"![{row['name']}](kinds/{row['name']}.png)", ""]
             lines += [str(row["doc"]).strip(), ""]
             lines += ["| argument | class | default | meaning |", "| --- | --- | --- | --- |"]
             for field in row["fields"]:

@@ -1,0 +1,98 @@
+//! Pictures for the reference: an object among those that it is made of.
+
+use moldloft_diag::Diagnostic;
+use moldloft_lang::Document;
+use moldloft_num::{Box3, Order, Plane, Vec3};
+use moldloft_picture::{Line, Look, Options, render};
+use moldloft_registry::Value;
+
+/// What the picture is about.
+const SUBJECT: [u8; 3] = [0xc2, 0x41, 0x2d];
+/// What it is made of.
+const OTHER: [u8; 3] = [0x5d, 0x6b, 0x7a];
+/// Surfaces of the subject, and others.
+const SURFACES: [[u8; 3]; 2] = [[0x78, 0xa5, 0xe0], [0xd5, 0xdb, 0xe2]];
+/// Steps in which curves are drawn.
+const STEPS: usize = 96;
+
+/// The picture of a model in which the objects of one kind stand out: shown curves as lines,
+/// points as dots, planes and frames as their outline.
+///
+/// # Errors
+/// An impossible size; a model without panels that can be made.
+pub fn portrait(
+    document: &mut Document,
+    kind: &str,
+    width: usize,
+    height: usize,
+) -> Result<Vec<u8>, Vec<Diagnostic>> {
+    let panelled = document.panelled().map_err(|d| vec![d])?;
+    let mut bounds = Box3::around(panelled.mesh.positions().iter().copied());
+    let graph = document.graph();
+    let objects: Vec<_> = graph.objects().filter(|o| o.head.shown()).collect();
+    for object in &objects {
+        match object.value() {
+            Some(Value::Point(p)) => bounds = bounds.including(p.xyz),
+            Some(Value::Curve(c)) => {
+                for k in 0..=8 {
+                    bounds = bounds.including(c.jet(f64::from(k) / 8.0, Order::Zero)[0]);
+                }
+            }
+            _ => {}
+        }
+    }
+    let size = if bounds.diagonal() > 0.0 { bounds.diagonal() } else { 1.0 };
+    let mut lines = Vec::new();
+    // The subject last, so that it lies on top.
+    for own in [false, true] {
+        let colour = if own { SUBJECT } else { OTHER };
+        for object in objects.iter().filter(|o| (o.row.name == kind) == own) {
+            let width = if own { 2.4 } else { 1.2 };
+            let mut line = |points: Vec<Vec3>, width: f32| {
+                lines.push(Line { points, colour, width });
+            };
+            match object.value() {
+                Some(Value::Point(p)) => line(vec![p.xyz; 2], if own { 6.0 } else { 4.0 }),
+                Some(Value::Curve(c)) => {
+                    let at = |k: usize| c.jet(k as f64 / STEPS as f64, Order::Zero)[0];
+                    line((0..=STEPS).map(at).collect(), width);
+                }
+                Some(Value::Plane(plane)) => line(outline(plane, &bounds, size), width),
+                Some(Value::Frame(frame)) => {
+                    for axis in frame.axes {
+                        line(vec![frame.origin, frame.origin + axis * (0.25 * size)], width);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    for section in document.sections() {
+        for points in section.lines.iter().flat_map(|(_, lines)| lines) {
+            let again = points.points.first().filter(|_| points.closed);
+            let points = points.points.iter().chain(again).copied().collect();
+            lines.push(Line { points, colour: SUBJECT, width: 2.0 });
+        }
+    }
+    let graph = document.graph();
+    let of_kind = |name: &str| {
+        let object = graph.find(name).and_then(|key| graph.get(key));
+        object.is_some_and(|o| o.row.name == kind)
+    };
+    let patches = panelled.mesh.patches();
+    let look = |own: bool| Look { colour: SURFACES[usize::from(!own)], raised: own };
+    let looks = patches.iter().map(|p| look(of_kind(&p.info.name))).collect();
+    let options = Options { width, height, looks: Some(looks), ..Options::default() };
+    render(&panelled.mesh, &lines, &options)
+        .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
+}
+
+/// A square of the plane about the foot of the model's middle.
+fn outline(plane: &Plane<f64>, bounds: &Box3, size: f64) -> Vec<Vec3> {
+    let middle = plane.foot(bounds.centre());
+    let n = plane.normal;
+    let aside = if n.z.abs() < 0.9 { Vec3::of(0.0, 0.0, 1.0) } else { Vec3::of(1.0, 0.0, 0.0) };
+    let a = n.cross(aside).normalized().unwrap_or_default() * (0.4 * size);
+    let b = n.cross(a);
+    vec![middle - a - b, middle + a - b, middle + a + b, middle - a + b, middle - a - b]
+}
