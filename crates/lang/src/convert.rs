@@ -467,13 +467,19 @@ impl<'a> ToModelFile<'a> {
         let mut line = format!("{} {}", row.name, plain_name(&object.name));
         line += &self.head(&object.head, row.class);
         let relabel = self.relabel.take();
-        let columns: Vec<&str> = columns.split_ascii_whitespace().collect();
-        if relabel.is_some() && columns.first() != Some(&"relabel") {
-            line = format!("{line} {}", relabel.as_deref().unwrap_or("*"));
+        let mut columns: Vec<&str> = columns.split_ascii_whitespace().collect();
+        let own = row.field("relabel").filter(|_| row.class.dimension() > Some(0));
+        let set = own.filter(|at| !matches!(object.args[*at], Value::Unset));
+        if columns.first() != Some(&"relabel") {
+            if set.is_some() {
+                columns.insert(0, "relabel");
+            } else if let Some(relabel) = &relabel {
+                line = format!("{line} {relabel}");
+            }
         }
         for column in &columns {
             line.push(' ');
-            let Some(at) = row.field(column) else {
+            let Some(at) = row.field(column).filter(|at| own != Some(*at) || set.is_some()) else {
                 line += relabel.as_deref().unwrap_or("*");
                 continue;
             };

@@ -600,6 +600,14 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
             Ok(row((0..n).map(|k| at(surface, pick(&us, u, k), pick(&vs, v, k))).collect()))
         }
         (Value::Surface(_), _) => Err(count("two parameters u and v, as in s(0.5, 0.25)")),
+        (Value::Relabel(law), [t]) => {
+            let at = |t: T| law.jet(t, Order::Zero)[0];
+            Ok(match parameters(t)? {
+                None => Value::Number(at(one(t))),
+                Some(ts) => Value::Numbers(Arc::new(Array::row(ts.into_iter().map(at).collect()))),
+            })
+        }
+        (Value::Relabel(_), _) => Err(count("one parameter t, as in r(0.5)")),
         (Value::Field(field), [p]) => {
             let value = |f: &FieldRef<T>, p: Vec3<T>| f.value(p);
             match p {
@@ -614,7 +622,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
         (other, _) => {
             let class = other.class().a();
             Err(Diagnostic::error("not-callable", format!("{class} cannot be called"))
-                .expected("a curve, surface, field or function")
+                .expected("a curve, surface, relabel, field or function")
                 .found(class))
         }
     }

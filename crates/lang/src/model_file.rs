@@ -224,21 +224,30 @@ impl ModelFileSource {
 
         let columns = row.columns.unwrap_or("");
         let mut columns: Vec<&str> = columns.split_ascii_whitespace().collect();
-        let own_relabel = columns.first() == Some(&"relabel") && row.field("relabel").is_none();
+        // A curve's or a surface's own, not what a relabel is made from.
+        let slot = row.field("relabel").filter(|_| row.class.dimension() > Some(0));
+        let own_column = columns.first() == Some(&"relabel") && row.class.dimension() > Some(0);
         let first = data.first();
         let star = first.is_some_and(|f| f.kind == FieldKind::Star && self.written(f) == "*");
-        let has_relabel = if own_relabel {
+        let word = matches!(first, Some(f) if f.kind == FieldKind::Word);
+        let has_relabel = if own_column {
             let count = columns.len();
             columns.remove(0);
-            star || (data.len() >= count && matches!(first, Some(f) if f.kind == FieldKind::Word))
+            star || (data.len() >= count && word)
         } else {
             // Versions differ in which kinds have the column.
-            star && data.len() > columns.len() && row.class.dimension() > Some(0)
+            let column = star || (word && slot.is_some());
+            column && data.len() > columns.len() && row.class.dimension() > Some(0)
         };
         let data = if has_relabel { &data[1..] } else { data };
-        sorted.relabel = first.copied().filter(|_| has_relabel && !star);
+        let relabel = first.copied().filter(|_| has_relabel && !star);
+        let known = |f: &Written| self.names.contains_key(self.written(f));
+        match (slot, relabel) {
+            (Some(at), Some(written)) if known(&written) => sorted.slots.push((at, written)),
+            _ => sorted.relabel = relabel,
+        }
         let fields = columns.iter().filter_map(|column| row.field(column));
-        sorted.slots = fields.zip(data.iter().copied()).collect();
+        sorted.slots.extend(fields.zip(data.iter().copied()));
         sorted.extra = data.get(columns.len()).copied();
         sorted
     }
@@ -599,8 +608,10 @@ impl<T: Scalar> Producer<'_, '_, T> {
         }
         // Columns have their places: one left out would give the next its meaning.
         let columns = row.columns.unwrap_or("").split_ascii_whitespace();
-        let mut fields = columns.filter_map(|column| row.field(column));
-        if let Some(missing) = fields.nth(sorted.slots.len())
+        let own = |at: &usize| row.fields[*at].name == "relabel" && row.class.dimension() > Some(0);
+        let mut fields = columns.filter_map(|column| row.field(column)).filter(|at| !own(at));
+        let given = sorted.slots.iter().filter(|(at, _)| !own(at)).count();
+        if let Some(missing) = fields.nth(given)
             && errors.is_empty()
         {
             let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
@@ -609,7 +620,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 Diagnostic::error("missing-field", message)
                     .at(end)
                     .expected(format!("data in the order {}", row.columns.unwrap_or("")))
-                    .found(format!("{} fields of data", sorted.slots.len())),
+                    .found(format!("{given} fields of data")),
             );
         }
         if let Some(extra) = &sorted.extra {

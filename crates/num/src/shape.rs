@@ -1,6 +1,8 @@
 use crate::jet::{Jet, lift_curve, lift_surface};
+use crate::law::Law;
 use crate::trace::{Edges, Key, Trace};
 use crate::{Real, Vec3};
+use std::sync::Arc;
 
 /// How many derivatives by the shape parameters are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,6 +66,12 @@ pub trait Curve<T: Real>: Send + Sync {
 
     /// The curve in the parameter plane of the surface it lies on: (u(t), v(t), 0), for snakes.
     fn on_surface(&self, _t: T, _order: Order) -> Option<CurveJet<T>> {
+        None
+    }
+
+    /// The law by which its natural parameter was redistributed; `None` when it was not. Images of
+    /// curves pass on their original's.
+    fn law(&self) -> Option<Arc<dyn Law<T>>> {
         None
     }
 }

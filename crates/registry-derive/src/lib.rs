@@ -14,7 +14,10 @@
 //!
 //! Struct: `class` (a `Class`), `columns` (model-file columns), `example` (language text that runs
 //! by itself), `function` (a function instead of a kind), `name` (when it differs from the
-//! struct's), `shape` (the struct is itself the curve or surface: no `Build` is written).
+//! struct's), `shape` (the struct is itself the curve or surface: no `Build` is written), `relabel`
+//! (a surface whose v-law can be redistributed). Kinds of curves and snakes, and surfaces with
+//! `relabel` or with columns that begin with it, take a last argument `relabel`, which acts on what
+//! they build; see `moldloft_registry::relabelled`.
 //! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`.
 
 use proc_macro::TokenStream;
@@ -41,6 +44,7 @@ struct KindOptions {
     name: Option<Expr>,
     function: bool,
     shape: bool,
+    relabel: bool,
 }
 
 #[derive(Default)]
@@ -71,7 +75,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
     let example = options
         .example
         .ok_or_else(|| syn::Error::new_spanned(ident, "a kind needs `example = ...`"))?;
-    let columns = match options.columns {
+    let columns = match &options.columns {
         Some(columns) => quote!(Some(#columns)),
         None => quote!(None),
     };
@@ -83,6 +87,9 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         }
     };
     let is_kind = !options.function;
+    let has_own = fields.named.iter().any(|f| f.ident.as_ref().is_some_and(|i| i == "relabel"));
+    let relabelled =
+        is_kind && !has_own && takes_relabel(&class, &options.columns, options.relabel);
 
     let mut infos = Vec::new();
     let mut reads = Vec::new();
@@ -133,6 +140,19 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         .map(|info| quote!({ type T = f64; type S = f64; let _ = ::core::marker::PhantomData::<(T, S)>; #info }))
         .collect();
 
+    let count = infos.len();
+    let (extra, finish) = if relabelled {
+        let extra = quote!(, ::moldloft_registry::export::RELABEL_FIELD);
+        let finish = quote!(
+            let value = ::moldloft_registry::Build::build(this, &context)?;
+            ::moldloft_registry::relabelled(value, &args[#count])
+                .map_err(|fault| fault.in_field(#count))
+        );
+        (extra, finish)
+    } else {
+        (quote!(), quote!(::moldloft_registry::Build::build(this, &context)))
+    };
+
     let wrap = if options.shape {
         let make = match quote!(#class).to_string().as_str() {
             "Curve" => quote!(::moldloft_registry::Value::Curve(
@@ -166,7 +186,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                 let this = Self { #(#reads),* };
                 let nesting = args.iter().map(::moldloft_registry::Value::depth).max().unwrap_or(0);
                 let context = ::moldloft_registry::Context { nesting, ..*context };
-                ::moldloft_registry::Build::build(this, &context)
+                #finish
             }
         }
 
@@ -176,7 +196,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                     name: #name.into(),
                     doc: #doc.into(),
                     class: ::moldloft_registry::Class::#class,
-                    fields: ::std::vec![#(#infos),*].into(),
+                    fields: ::std::vec![#(#infos),* #extra].into(),
                     kind: #is_kind,
                     columns: #columns,
                     example: #example.into(),
@@ -190,6 +210,22 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
 
         #wrap
     ))
+}
+
+/// True for kinds whose parameter, of surfaces the second, is theirs to redistribute.
+fn takes_relabel(class: &Expr, columns: &Option<Expr>, asked: bool) -> bool {
+    let first_column = |columns: &Expr| match columns {
+        Expr::Lit(lit) => match &lit.lit {
+            Lit::Str(text) => text.value().starts_with("relabel"),
+            _ => false,
+        },
+        _ => false,
+    };
+    match quote!(#class).to_string().as_str() {
+        "Curve" | "Snake" => true,
+        "Surface" => asked || columns.as_ref().is_some_and(first_column),
+        _ => false,
+    }
 }
 
 fn metas(attr: &Attribute) -> syn::Result<Punctuated<Meta, Token![,]>> {
@@ -215,6 +251,7 @@ fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
                 }
                 Meta::Path(path) if path.is_ident("function") => options.function = true,
                 Meta::Path(path) if path.is_ident("shape") => options.shape = true,
+                Meta::Path(path) if path.is_ident("relabel") => options.relabel = true,
                 other => return Err(syn::Error::new_spanned(other, "unknown option of a kind")),
             }
         }

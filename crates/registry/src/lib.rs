@@ -15,6 +15,7 @@ mod fault;
 mod head;
 mod read;
 mod refs;
+mod relabelled;
 mod row;
 mod value;
 
@@ -24,13 +25,15 @@ pub use fault::{Fault, Place};
 pub use head::{HEAD, Head};
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};
-pub use refs::{CurveRef, FieldRef, Point, SurfaceRef};
+pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SurfaceRef};
+pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
 pub use value::{Array, ArrayShape, Contours, Value};
 
 /// What the derive macro's output refers to.
 #[doc(hidden)]
 pub mod export {
+    pub use crate::relabelled::RELABEL_FIELD;
     pub use crate::row::StaticRow;
     pub use moldloft_num::{Dual4, Real};
 }

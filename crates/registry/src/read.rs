@@ -1,4 +1,4 @@
-use crate::{Class, CurveRef, Fault, FieldRef, Point, SurfaceRef, Value};
+use crate::{Class, CurveRef, Fault, FieldRef, Point, RelabelRef, SurfaceRef, Value};
 use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
 
@@ -147,6 +147,16 @@ impl<T: Real> FromValue<T> for FieldRef<T> {
         match value {
             Value::Field(f) => Ok(f.clone()),
             other => wrong(Class::Field, other),
+        }
+    }
+}
+
+impl<T: Real> FromValue<T> for RelabelRef<T> {
+    const CLASS: Class = Class::Relabel;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Relabel(r) => Ok(r.clone()),
+            other => wrong(Class::Relabel, other),
         }
     }
 }

@@ -1,6 +1,7 @@
 use moldloft_num::trace::{Key, Piece, Root, Trace};
 use moldloft_num::{
-    Curve, CurveJet, Field, Jet, Order, Real, Surface, Vec3, lift_curve, lift_surface,
+    Curve, CurveJet, Field, Jet, Law, LawJet, Order, Real, Surface, Vec3, lift_curve, lift_law,
+    lift_surface,
 };
 use smallvec::SmallVec;
 use std::ops::Deref;
@@ -92,6 +93,16 @@ pub struct FieldRef<T: Real> {
     shape: Arc<dyn Field<T>>,
 }
 
+/// A law that redistributes a parameter.
+#[derive(Clone)]
+pub struct RelabelRef<T: Real> {
+    shape: Arc<dyn Law<T>>,
+    /// The object, once it has a name.
+    pub key: Option<Key>,
+    /// How deep shapes are nested in it, itself included.
+    pub depth: u32,
+}
+
 macro_rules! shape_ref {
     ($name:ident, $shape:ident) => {
         impl<T: Real> Deref for $name<T> {
@@ -118,6 +129,7 @@ macro_rules! shape_ref {
 shape_ref!(CurveRef, Curve);
 shape_ref!(SurfaceRef, Surface);
 shape_ref!(FieldRef, Field);
+shape_ref!(RelabelRef, Law);
 
 impl<T: Real> CurveRef<T> {
     /// A curve that holds on to shapes nested `nesting` deep (0 when it holds on to none).
@@ -185,5 +197,34 @@ impl<T: Real> FieldRef<T> {
     /// An implicit function.
     pub fn new(shape: impl Field<T> + 'static) -> Self {
         Self { shape: Arc::new(shape) }
+    }
+}
+
+impl<T: Real> RelabelRef<T> {
+    /// A law that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    pub fn new(law: impl Law<T> + 'static, nesting: u32) -> Self {
+        Self { shape: Arc::new(law), key: None, depth: nesting + 1 }
+    }
+
+    /// The same for a law that others hold on to as well.
+    pub fn shared(law: Arc<dyn Law<T>>, nesting: u32) -> Self {
+        Self { shape: law, key: None, depth: nesting + 1 }
+    }
+
+    /// The law itself.
+    pub fn law(&self) -> &Arc<dyn Law<T>> {
+        &self.shape
+    }
+
+    /// R at a parameter that is a jet.
+    #[inline(always)]
+    pub fn at<J: Jet<T>>(&self, t: J) -> J {
+        lift_law(&self.shape.jet(t.value(), J::ORDER), t)
+    }
+
+    /// R and its derivatives at `t`.
+    #[inline(always)]
+    pub fn jet(&self, t: T, order: Order) -> LawJet<T> {
+        self.shape.jet(t, order)
     }
 }

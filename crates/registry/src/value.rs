@@ -1,4 +1,4 @@
-use crate::{Class, CurveRef, FieldRef, Point, SurfaceRef};
+use crate::{Class, CurveRef, FieldRef, Point, RelabelRef, SurfaceRef};
 use moldloft_num::trace::Key;
 use moldloft_num::{Frame, Plane, Real, Vec3};
 use std::sync::Arc;
@@ -84,6 +84,8 @@ pub enum Value<T: Real> {
     Frame(Arc<Frame<T>>),
     /// Plane sections.
     Contours(Arc<Contours<T>>),
+    /// A law that redistributes a parameter.
+    Relabel(RelabelRef<T>),
     /// An implicit function.
     Field(FieldRef<T>),
 }
@@ -121,6 +123,7 @@ impl<T: Real> Value<T> {
             Value::Plane(_) => Class::Plane,
             Value::Frame(_) => Class::Frame,
             Value::Contours(_) => Class::Contours,
+            Value::Relabel(_) => Class::Relabel,
             Value::Field(_) => Class::Field,
         }
     }
@@ -160,6 +163,7 @@ impl<T: Real> Value<T> {
                     && a.values.len() == b.values.len()
                     && a.values.iter().zip(&b.values).all(|(x, y)| x.bits_eq(*y))
             }
+            (Value::Relabel(a), Value::Relabel(b)) => a.same(b),
             (Value::Field(a), Value::Field(b)) => a.same(b),
             _ => false,
         }
@@ -180,6 +184,7 @@ impl<T: Real> Value<T> {
             Value::Point(p) => p.depth(),
             Value::Curve(c) => c.depth,
             Value::Surface(s) => s.depth,
+            Value::Relabel(r) => r.depth,
             Value::List(items) => items.iter().map(Value::depth).max().unwrap_or(0),
             _ => 0,
         }
@@ -191,6 +196,7 @@ impl<T: Real> Value<T> {
             Value::Point(p) => p.key = Some(key),
             Value::Curve(c) => c.key = Some(key),
             Value::Surface(s) => s.key = Some(key),
+            Value::Relabel(r) => r.key = Some(key),
             _ => {}
         }
         self

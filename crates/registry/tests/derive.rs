@@ -49,7 +49,9 @@ fn given<T: Real>(positional: Vec<Value<T>>, named: Vec<(&str, Value<T>)>) -> Gi
 fn a_struct_becomes_a_documented_row() {
     let row = Segment::<f64>::row();
     assert_eq!(row.summary(), "A straight line: C(t) = (1-t) P1 + t P2.");
-    assert_eq!(row.fields.len(), 3);
+    // A curve's relabel comes after its own arguments.
+    let names: Vec<_> = row.fields.iter().map(|f| f.name).collect();
+    assert_eq!(names, ["p1", "p2", "stretch", "relabel"]);
     assert_eq!((row.fields[0].name, row.fields[0].help), ("p1", "Start."));
     assert_eq!(row.fields[2].min, Some(0.5));
     assert!(row.kind && row.class == Class::Curve);

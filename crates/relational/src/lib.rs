@@ -20,6 +20,7 @@ mod field;
 mod intrinsics;
 mod plane;
 mod point;
+mod relabel;
 mod snake;
 mod surface;
 
@@ -41,7 +42,7 @@ macro_rules! rows {
 /// ```
 /// let rows = moldloft_relational::rows();
 /// let line = rows.iter().find(|row| row.name == "Line").unwrap();
-/// assert_eq!(line.fields.len(), 2);
+/// assert_eq!(line.fields.len(), 3);
 /// ```
 pub fn rows() -> Vec<Row> {
     rows![
@@ -74,6 +75,15 @@ pub fn rows() -> Vec<Row> {
         surface::TranSurf,
         surface::SubSurf,
         surface::MirrSurf,
+        relabel::Relabel,
+        relabel::CosRelabel,
+        relabel::GeoRelabel,
+        relabel::TanhRelabel,
+        relabel::TableRelabel,
+        relabel::ArcLenRelabel,
+        relabel::CopyRelabel,
+        relabel::InvRelabel,
+        relabel::ComposeRelabel,
         plane::XPlane,
         plane::YPlane,
         plane::ZPlane,

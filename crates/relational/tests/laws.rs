@@ -109,6 +109,16 @@ fn jets_equal_central_differences() {
                         close(name, jet.vv, |h| at(u, v + h).v, 1e-7);
                     }
                 }
+                Value::Relabel(r) => {
+                    let at = |t: f64| Vec3::from(r.jet(t, Order::Second));
+                    assert_eq!((at(0.0).x, at(1.0).x), (0.0, 1.0), "{name}");
+                    for t in INNER {
+                        let exact = Vec3::of(at(t).y, at(t).z, 0.0);
+                        let both = |h: f64| Vec3::of(at(t + h).x, at(t + h).y, 0.0);
+                        close(name, exact, both, 1e-7);
+                        assert!(exact.x > 0.0, "{name} stands still at {t}");
+                    }
+                }
                 Value::Field(f) => {
                     let p = Vec3::of(0.3, -1.2, 0.8);
                     let (value, gradient) = f.value_and_gradient(p);
@@ -148,6 +158,11 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
             points
         }
         Value::Plane(p) => vec![p.point, p.normal],
+        Value::Relabel(r) => {
+            let jet = |t: &f64| r.jet(T::from(*t), Order::Second);
+            let outside = [-0.2, 1.3];
+            TS.iter().chain(&outside).map(|t| Vec3::from(jet(t))).collect()
+        }
         Value::Vectors(a) => a.items.clone(),
         Value::Field(f) => {
             let (value, gradient) = f.value_and_gradient(Vec3::of(0.5, -1.0, 0.25));

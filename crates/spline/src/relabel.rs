@@ -1,6 +1,6 @@
 use crate::even::{cos_of_sq, sinc_of_sq};
 use crate::{KnotError, KnotVector};
-use moldloft_num::{Jet, Order, Real};
+use moldloft_num::{Jet, Law as Relabelling, LawJet, Order, Real};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -22,6 +22,23 @@ pub enum RelabelError {
         before: f64,
         /// The value.
         value: f64,
+    },
+    /// The law stands still inside (0, 1).
+    ZeroSlope {
+        /// Where.
+        at: f64,
+    },
+    /// Two parameters of a table are not in ascending order.
+    Unordered {
+        /// The index of the later one.
+        index: usize,
+    },
+    /// The numbers of parameters and values differ, or are fewer than two.
+    Lengths {
+        /// Parameters.
+        parameters: usize,
+        /// Values.
+        values: usize,
     },
     /// A number of the law lies outside its range.
     Range {
@@ -51,6 +68,15 @@ impl fmt::Display for RelabelError {
             ),
             Self::Range { name, value, min, max } => {
                 write!(f, "expected a {name} from {min} to {max}, found {value}")
+            }
+            Self::ZeroSlope { at } => {
+                write!(f, "a relabelling must not stand still inside, as it does at t = {at}")
+            }
+            Self::Unordered { index } => {
+                write!(f, "the parameters must ascend, which number {} does not", index + 1)
+            }
+            Self::Lengths { parameters, values } => {
+                write!(f, "{parameters} parameters do not go with {values} values")
             }
             Self::Knots(error) => error.fmt(f),
         }
@@ -105,6 +131,12 @@ enum Law<T> {
         dense: Dense,
         strength: T,
     },
+    /// Cubic pieces between nodes, with the slopes there.
+    Table {
+        nodes: Vec<T>,
+        values: Vec<T>,
+        slopes: Vec<T>,
+    },
 }
 
 impl<T: Real> Relabel<T> {
@@ -119,11 +151,13 @@ impl<T: Real> Relabel<T> {
     }
 
     /// The clamped uniform B-spline function with these coefficients, as B-sub-curves use it. They
-    /// must ascend, which is enough (and for degrees 1 and 2 necessary) for R to be monotone.
+    /// must ascend, which is enough (and for degrees 1 and 2 necessary) for R to be monotone. The
+    /// first and the last are fixed: their derivatives are dropped.
     ///
     /// # Errors
-    /// [`RelabelError`] when the values run back, do not run from 0 to 1, or are too few.
-    pub fn spline(degree: usize, values: Vec<T>) -> Result<Self, RelabelError> {
+    /// [`RelabelError`] when the values run back, do not run from 0 to 1, are too few, or so many
+    /// are equal that R stands still inside.
+    pub fn spline(degree: usize, mut values: Vec<T>) -> Result<Self, RelabelError> {
         let knots =
             KnotVector::clamped_uniform(degree, values.len()).map_err(RelabelError::Knots)?;
         let (first, last) = (values[0].re(), values[values.len() - 1].re());
@@ -138,7 +172,85 @@ impl<T: Real> Relabel<T> {
                 return Err(RelabelError::NotMonotone { index: k + 1, before, value });
             }
         }
-        Ok(Self { law: Law::Spline { knots, values } })
+        let last = values.len() - 1;
+        (values[0], values[last]) = (T::zero(), T::one());
+        let mut ends = knots.as_slice().to_vec();
+        ends.dedup();
+        let law = Self { law: Law::Spline { knots, values } };
+        // The slope is a spline whose coefficients are none negative: inside a span it vanishes
+        // everywhere or nowhere.
+        let middles = ends.windows(2).map(|w| 0.5 * (w[0] + w[1]));
+        for t in middles.chain(ends[1..ends.len() - 1].iter().copied()) {
+            // A degree of 1 has a corner there, with the slopes of both sides.
+            let at_knot = law.is_straight() && ends.contains(&t);
+            if !at_knot && law.jet(T::from(t), Order::First)[1].re() <= 0.0 {
+                return Err(RelabelError::ZeroSlope { at: t });
+            }
+        }
+        Ok(law)
+    }
+
+    /// The monotone piecewise cubic through (parameter, value) pairs (Fritsch and Carlson 1980):
+    /// slopes of the parabolas through three neighbours, drawn into the circle of radius 3 where
+    /// the cubic would overshoot. The first and the last pair are fixed at (0, 0) and (1, 1).
+    ///
+    /// # Errors
+    /// [`RelabelError`] when the lengths differ, the pairs do not run from (0, 0) to (1, 1), the
+    /// parameters do not ascend, or the values run back or stay.
+    pub fn table(mut nodes: Vec<T>, mut values: Vec<T>) -> Result<Self, RelabelError> {
+        let n = nodes.len();
+        if n != values.len() || n < 2 {
+            return Err(RelabelError::Lengths { parameters: n, values: values.len() });
+        }
+        for list in [&nodes, &values] {
+            let (first, last) = (list[0].re(), list[n - 1].re());
+            if (first, last) != (0.0, 1.0) {
+                return Err(RelabelError::Ends { first, last });
+            }
+        }
+        for k in 1..n {
+            // Written so that NaN is refused.
+            let ascends = nodes[k].re() > nodes[k - 1].re();
+            if !ascends {
+                return Err(RelabelError::Unordered { index: k });
+            }
+            let (before, value) = (values[k - 1].re(), values[k].re());
+            if value == before {
+                return Err(RelabelError::ZeroSlope { at: nodes[k].re() });
+            }
+            let ascends = value > before;
+            if !ascends {
+                return Err(RelabelError::NotMonotone { index: k, before, value });
+            }
+        }
+        for list in [&mut nodes, &mut values] {
+            (list[0], list[n - 1]) = (T::zero(), T::one());
+        }
+        let steps: Vec<T> = nodes.windows(2).map(|w| w[1] - w[0]).collect();
+        let rates: Vec<T> =
+            values.windows(2).zip(&steps).map(|(w, &h)| (w[1] - w[0]) / h).collect();
+        let mut slopes = vec![rates[0]; n];
+        if n > 2 {
+            let end = |h: T, next: T, rate: T, other: T| {
+                let slope = ((h * 2.0 + next) * rate - h * other) / (h + next);
+                if slope.re() > 0.0 { slope } else { T::zero() }
+            };
+            slopes[0] = end(steps[0], steps[1], rates[0], rates[1]);
+            slopes[n - 1] = end(steps[n - 2], steps[n - 3], rates[n - 2], rates[n - 3]);
+            for k in 1..n - 1 {
+                let (h, g) = (steps[k - 1], steps[k]);
+                slopes[k] = (g * rates[k - 1] + h * rates[k]) / (h + g);
+            }
+        }
+        for (k, &rate) in rates.iter().enumerate() {
+            let (a, b) = (slopes[k] / rate, slopes[k + 1] / rate);
+            let size = (a * a + b * b).sqrt();
+            if size.re() > 3.0 {
+                let shrink = rate * 3.0 / size;
+                (slopes[k], slopes[k + 1]) = (a * shrink, b * shrink);
+            }
+        }
+        Ok(Self { law: Law::Table { nodes, values, slopes } })
     }
 
     /// (1 - weight) t + weight R(t) with R = (1 - cos pi t) / 2, 1 - cos(pi t / 2) or
@@ -201,6 +313,17 @@ impl<T: Real> Relabel<T> {
                 let share = sinc_of_sq((t * t).scaled(square)) / J::fixed(sinc_of_sq(square));
                 growth * t * share
             }
+            Law::Table { nodes, values, slopes } => {
+                let at = nodes.partition_point(|x| x.re() <= t.re()).clamp(1, nodes.len() - 1) - 1;
+                let h = nodes[at + 1] - nodes[at];
+                let x = (t - J::fixed(nodes[at])).scaled(T::one() / h);
+                let y = -x + 1.0;
+                // Hermite's form, exact at both ends of a piece.
+                let ends = (x * x * (-x * 2.0 + 3.0)).scaled(values[at + 1])
+                    + (y * y * (x * 2.0 + 1.0)).scaled(values[at]);
+                let [a, b] = [slopes[at] * h, slopes[at + 1] * h];
+                ends + (x * y) * (y.scaled(a) - x.scaled(b))
+            }
             Law::Tanh { dense, strength } => match dense {
                 Dense::Both => {
                     let c = t - 0.5;
@@ -209,6 +332,28 @@ impl<T: Real> Relabel<T> {
                 Dense::Start => (t - 1.0) * tanh_share(t - 1.0, 1.0, *strength) + 1.0,
                 Dense::End => t * tanh_share(t, 1.0, *strength),
             },
+        }
+    }
+}
+
+impl<T: Real> Relabelling<T> for Relabel<T> {
+    fn jet(&self, t: T, order: Order) -> LawJet<T> {
+        moldloft_num::law_jet_of!(self, Relabel::at, t, order)
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        match &self.law {
+            Law::Spline { knots, .. } => knots.breaks(),
+            Law::Table { nodes, .. } => nodes[1..nodes.len() - 1].iter().map(|x| x.re()).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn is_straight(&self) -> bool {
+        match &self.law {
+            Law::Identity => true,
+            Law::Spline { knots, .. } => knots.degree() == 1,
+            _ => false,
         }
     }
 }

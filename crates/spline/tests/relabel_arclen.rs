@@ -10,6 +10,10 @@ fn all() -> Vec<Relabel<f64>> {
         Relabel::identity(),
         Relabel::spline(3, vec![0.0, 0.1, 0.2, 0.9, 1.0]).unwrap(),
         Relabel::spline(1, vec![0.0, 0.4, 1.0]).unwrap(),
+        // The ends may stand still, the inside may not.
+        Relabel::spline(3, vec![0.0, 0.0, 0.4, 1.0, 1.0]).unwrap(),
+        Relabel::table(vec![0.0, 1.0], vec![0.0, 1.0]).unwrap(),
+        Relabel::table(vec![0.0, 0.1, 0.5, 0.6, 1.0], vec![0.0, 0.5, 0.51, 0.9, 1.0]).unwrap(),
     ];
     for q in [1e-3, 0.5, 1.0, 1.0 + 1e-9, 20.0] {
         laws.push(Relabel::geometric(q).unwrap());
@@ -139,4 +143,44 @@ fn lengths_move_with_points_and_limits() {
     let circle = Arc::<f64>::circle(p[0], p[1], p[2]).unwrap();
     let t = inv_arclen(&circle, 0.0, std::f64::consts::FRAC_PI_2, 1e-13).unwrap();
     assert!((circle.jet(t, Order::Zero)[0] - p[2]).norm() < 1e-12);
+}
+
+#[test]
+fn tables_pass_through_their_pairs_and_keep_parabolas() {
+    let (t, r) = (vec![0.0, 0.2, 0.7, 1.0], vec![0.0, 0.6, 0.65, 1.0]);
+    let law = Relabel::table(t.clone(), r.clone()).unwrap();
+    for (t, r) in t.iter().zip(&r) {
+        assert!((law.at(*t) - r).abs() < 1e-15);
+    }
+    // R = (t + t^2) / 2 has slopes that nothing limits: three-point slopes are exact for parabolas.
+    let parabola = |t: f64| 0.5 * (t + t * t);
+    let nodes = vec![0.0, 0.3, 0.45, 0.8, 1.0];
+    let law = Relabel::table(nodes.clone(), nodes.into_iter().map(parabola).collect()).unwrap();
+    for k in 0..=50 {
+        let t = f64::from(k) / 50.0;
+        assert!((law.at(t) - parabola(t)).abs() < 1e-15, "{t}");
+    }
+}
+
+#[test]
+fn laws_that_stand_still_or_run_back_are_refused() {
+    use RelabelError::*;
+    let still = Relabel::spline(1, vec![0.0, 0.5, 0.5, 1.0]).unwrap_err();
+    assert_eq!(still, ZeroSlope { at: 0.5 });
+    // A parabola's slope is linear between the knots: one pair of equals makes it touch zero.
+    let still = Relabel::spline(2, vec![0.0, 0.4, 0.4, 0.8, 1.0]).unwrap_err();
+    assert!(matches!(still, ZeroSlope { at } if (at - 1.0 / 3.0).abs() < 1e-15), "{still}");
+    assert!(Relabel::spline(3, vec![0.0, 0.4, 0.4, 0.8, 1.0]).is_ok());
+    assert!(matches!(
+        Relabel::spline(3, vec![0.0, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0]).unwrap_err(),
+        ZeroSlope { .. }
+    ));
+    let table = |t: &[f64], r: &[f64]| Relabel::table(t.to_vec(), r.to_vec()).unwrap_err();
+    assert_eq!(table(&[0.0, 1.0], &[0.0, 0.9]), Ends { first: 0.0, last: 0.9 });
+    assert_eq!(table(&[0.1, 1.0], &[0.0, 1.0]), Ends { first: 0.1, last: 1.0 });
+    assert_eq!(table(&[0.0, 1.0], &[0.0, 0.5, 1.0]), Lengths { parameters: 2, values: 3 });
+    assert_eq!(table(&[0.0, 0.5, 0.5, 1.0], &[0.0, 0.2, 0.3, 1.0]), Unordered { index: 2 });
+    assert_eq!(table(&[0.0, 0.5, 1.0], &[0.0, 0.0, 1.0]), ZeroSlope { at: 0.5 });
+    assert!(matches!(table(&[0.0, 0.5, 0.6, 1.0], &[0.0, 0.6, 0.3, 1.0]), NotMonotone { .. }));
+    assert!(matches!(table(&[0.0, 0.5, 1.0], &[0.0, f64::NAN, 1.0]), NotMonotone { .. }));
 }

@@ -124,6 +124,13 @@ impl Program<'_> {
                 self.object("ProjPoint", &format!("{point}, {name}"));
                 self.planes.push(name);
             }
+            Class::Relabel => {
+                // A law shows itself in what it redistributes.
+                let [a, b] = self.points();
+                let l = self.object("Line", &format!("{a}, {b}, relabel = {name}"));
+                let (c, d) = (self.curve(), self.divisions());
+                self.object("RuledSurf", &format!("{l}, {c}, relabel = {name}, {d}"));
+            }
             _ => {}
         }
         true

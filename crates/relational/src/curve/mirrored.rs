@@ -1,5 +1,6 @@
-use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use moldloft_num::{Curve, CurveJet, Law, Order, Real, Vec3};
 use moldloft_registry::{CurveRef, Kind, Mirror};
+use std::sync::Arc;
 
 /// The mirror image of a curve in a plane, line or point, point by point: C(t) = 2 F(t) - P(t),
 /// with F the foot of the perpendicular from P.
@@ -34,5 +35,9 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
 
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
+    }
+
+    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+        self.curve.law()
     }
 }

@@ -15,6 +15,7 @@ use moldloft_spline::{Ends, InterpolatingSpline, InterpolationError, PiecewiseCu
 #[derive(Kind)]
 #[kind(
     class = Surface,
+    relabel,
     columns = "degree curves",
     example = "AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); \
                AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); Line a(A, B); \

@@ -12,6 +12,42 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "ThreePointPlane" => p.points::<3>().join(", "),
         "TwoPointPlane" => p.points::<2>().join(", "),
         "XContours" | "YContours" | "ZContours" => format!("0, 3, {x}, {y}"),
+        "Relabel" => {
+            format!("{{0, {}*w, {}, 1}}, degree = 2", p.number(0.05, 0.2), p.number(0.5, 0.9))
+        }
+        "CosRelabel" => {
+            let end = *p.random.pick(&["both", "start", "end"]);
+            format!("\"{end}\", {}", p.number(0.2, 0.9))
+        }
+        "GeoRelabel" => format!("{}*w", p.number(0.3, 4.0)),
+        "TanhRelabel" => {
+            let end = *p.random.pick(&["both", "start", "end"]);
+            format!("{}, \"{end}\"", p.number(0.5, 4.0))
+        }
+        "TableRelabel" => {
+            format!(
+                "{{0, 0.3, {}, 1}}, {{0, {}*w, 0.5, 1}}",
+                p.number(0.5, 0.9),
+                p.number(0.05, 0.2)
+            )
+        }
+        "ArcLenRelabel" => {
+            let points = p.points::<3>().join(", ");
+            p.object("BCurve", &format!("{{{points}}}, degree = 2"))
+        }
+        "CopyRelabel" => {
+            let ratio = p.number(0.3, 4.0);
+            let law = p.object("GeoRelabel", &format!("{ratio}*w"));
+            let points = p.points::<3>().join(", ");
+            p.object("BCurve", &format!("{{{points}}}, degree = 2, relabel = {law}"))
+        }
+        "InvRelabel" => p.object("CosRelabel", "\"both\", 0.6*h"),
+        "ComposeRelabel" => {
+            let ratio = p.number(0.3, 4.0);
+            let law = p.object("GeoRelabel", &format!("{ratio}*w"));
+            let end = p.object("TanhRelabel", "2, \"end\"");
+            format!("{{{law}, {end}}}")
+        }
         _ => return None,
     })
 }

@@ -1,0 +1,233 @@
+//! Curves and surfaces whose parameter is redistributed by a law: the `relabel` of their heads.
+
+use crate::{
+    Class, CurveRef, DefaultValue, Fault, Field, FromValue, RelabelRef, SurfaceRef, Unit, Value,
+};
+use moldloft_num::trace::{Edge, Edges, Mark, Piece, Trace};
+use moldloft_num::{
+    Composed, Curve, CurveJet, Law, Order, Real, SurfJet, Surface, Vec3, inv_law, inv_law_in,
+};
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// The last argument of every kind of curve, and of every surface with a law of its own across its
+/// masters.
+pub const RELABEL_FIELD: Field = Field {
+    name: "relabel",
+    help: "How the parameter (of a surface: v) is redistributed; by itself as it comes.",
+    class: Class::Relabel,
+    many: false,
+    default: Some(DefaultValue::Unset),
+    unit: Unit::None,
+    min: None,
+    max: None,
+    min_items: 0,
+};
+
+/// Breaks nearer to each other than this are one.
+const ONE_BREAK: f64 = 1e-12;
+
+/// The curve C(t) = c(R(t)), or the surface S(u, v) = s(u, R(v)); without a law the value as it is.
+///
+/// Beads, meshes, sub-curves and neighbours all see the new parameter. A curve that is a root for
+/// joins stays one, so neighbours along it share its vertices at equal t. A part of another curve
+/// stays such a part where the law is straight; elsewhere its divisions are not the other's, and it
+/// is a root of its own between the same points.
+///
+/// # Errors
+/// `wrong-class` when the law is none.
+pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, Fault> {
+    let Some(law) = Option::<RelabelRef<T>>::from_value(law)? else { return Ok(value) };
+    if law.is_straight() && law.breaks().is_empty() {
+        return Ok(value);
+    }
+    Ok(match value {
+        Value::Curve(curve) => {
+            let (nesting, surface) = (curve.depth.max(law.depth), curve.surface.clone());
+            let shape = RelabelledCurve { curve, law };
+            Value::Curve(match surface {
+                Some(surface) => CurveRef::snake(shape, *surface, nesting),
+                None => CurveRef::new(shape, nesting),
+            })
+        }
+        Value::Surface(surface) => {
+            let nesting = surface.depth.max(law.depth);
+            Value::Surface(SurfaceRef::new(RelabelledSurface { surface, law }, nesting))
+        }
+        other => other,
+    })
+}
+
+/// The breaks of the law, and where it reaches those of the shape.
+fn breaks<T: Real>(law: &RelabelRef<T>, of_shape: Vec<f64>) -> Vec<f64> {
+    let mut all = law.breaks();
+    all.extend(of_shape.into_iter().map(|b| inv_law(&**law, b)));
+    all.retain(|t| *t > 0.0 && *t < 1.0);
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|b, a| *b - *a < ONE_BREAK);
+    all
+}
+
+/// The values of the law at plain parameters; as plain numbers too, when they carry no derivatives.
+fn values<T: Real>(law: &RelabelRef<T>, ts: &[f64]) -> (Vec<T>, Option<Vec<f64>>) {
+    let values: Vec<T> = ts.iter().map(|&t| law.jet(T::from(t), Order::Zero)[0]).collect();
+    let plain = values.iter().all(|r| r.is_constant());
+    let plain = plain.then(|| values.iter().map(|r| r.re()).collect());
+    (values, plain)
+}
+
+/// The same pieces run by a straight law; `None` for a law that is not straight.
+fn straight_pieces<T: Real>(
+    law: &RelabelRef<T>,
+    pieces: &[Piece<T>],
+) -> Option<SmallVec<[Piece<T>; 1]>> {
+    if !law.is_straight() {
+        return None;
+    }
+    // Where the law turns, as values.
+    let turns: Vec<T> =
+        law.breaks().into_iter().map(|b| law.jet(T::from(b), Order::Zero)[0]).collect();
+    let mut out = SmallVec::new();
+    let mut begin = T::zero();
+    for (k, piece) in pieces.iter().enumerate() {
+        let end = piece.until;
+        let mut from = piece.from;
+        let inside = |r: &&T| r.re() > begin.re() + ONE_BREAK && r.re() < end.re() - ONE_BREAK;
+        for &turn in turns.iter().filter(inside) {
+            let share = (turn - begin) / (end - begin);
+            let t = piece.from.t + (piece.to.t - piece.from.t) * share;
+            let to = Mark { t, point: None };
+            out.push(Piece { root: piece.root, from, to, until: inv_law_in(&**law, turn) });
+            from = to;
+        }
+        let until = if k + 1 == pieces.len() { T::one() } else { inv_law_in(&**law, end) };
+        out.push(Piece { root: piece.root, from, to: piece.to, until });
+        begin = end;
+    }
+    Some(out)
+}
+
+struct RelabelledCurve<T: Real> {
+    curve: CurveRef<T>,
+    law: RelabelRef<T>,
+}
+
+impl<T: Real> RelabelledCurve<T> {
+    fn chained(&self, t: T, order: Order, jet: impl Fn(T) -> CurveJet<T>) -> CurveJet<T> {
+        let [r, r1, r2] = self.law.jet(t, order);
+        let [p, d, dd] = jet(r);
+        [p, d * r1, dd * (r1 * r1) + d * r2]
+    }
+}
+
+impl<T: Real> Curve<T> for RelabelledCurve<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        self.chained(t, order, |r| self.curve.jet(r, order))
+    }
+
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        let (values, plain) = values(&self.law, ts);
+        if let Some(plain) = plain {
+            return self.curve.grid(&plain, out);
+        }
+        for (p, r) in out.iter_mut().zip(values) {
+            *p = self.curve.jet(r, Order::Zero)[0];
+        }
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        breaks(&self.law, self.curve.breaks())
+    }
+
+    fn trace(&self) -> Trace<T> {
+        match self.curve.trace() {
+            Trace::Pieces(pieces) => match straight_pieces(&self.law, &pieces) {
+                Some(pieces) => Trace::Pieces(pieces),
+                None => Trace::Own(self.curve.end_points()),
+            },
+            other => other,
+        }
+    }
+
+    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
+        self.curve.on_surface(t, Order::Zero)?;
+        let place = |r: T| self.curve.on_surface(r, order).unwrap_or_default();
+        Some(self.chained(t, order, place))
+    }
+
+    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+        let first = self.law.law().clone();
+        Some(match self.curve.law() {
+            Some(second) => Arc::new(Composed { first, second }),
+            None => first,
+        })
+    }
+}
+
+struct RelabelledSurface<T: Real> {
+    surface: SurfaceRef<T>,
+    law: RelabelRef<T>,
+}
+
+impl<T: Real> Surface<T> for RelabelledSurface<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        let [r, r1, r2] = self.law.jet(v, order);
+        let s = self.surface.jet(u, r, order);
+        SurfJet { v: s.v * r1, uv: s.uv * r1, vv: s.vv * (r1 * r1) + s.v * r2, ..s }
+    }
+
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        mut normals: Option<&mut [Vec3<T>]>,
+    ) {
+        let (values, plain) = values(&self.law, vs);
+        if let Some(plain) = plain {
+            return self.surface.grid(us, &plain, points, normals);
+        }
+        let order = if normals.is_some() { Order::First } else { Order::Zero };
+        for (i, &u) in us.iter().enumerate() {
+            for (j, &r) in values.iter().enumerate() {
+                let k = i * vs.len() + j;
+                // The normal is that of the surface, also where the law has no slope.
+                let jet = self.surface.jet(T::from(u), r, order);
+                points[k] = jet.p;
+                if let Some(normals) = normals.as_deref_mut() {
+                    normals[k] = jet.normal();
+                }
+            }
+        }
+    }
+
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
+        let vs: Vec<f64> = uv.iter().map(|w| w[1]).collect();
+        let (values, plain) = values(&self.law, &vs);
+        if let Some(plain) = plain {
+            let uv: Vec<[f64; 2]> = uv.iter().zip(plain).map(|(w, r)| [w[0], r]).collect();
+            return self.surface.scattered(&uv, out);
+        }
+        for ((p, w), r) in out.iter_mut().zip(uv).zip(values) {
+            *p = self.surface.jet(T::from(w[0]), r, Order::Zero).p;
+        }
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        let [u, v] = self.surface.breaks();
+        [u, breaks(&self.law, v)]
+    }
+
+    fn edges(&self) -> Edges<T> {
+        let mut edges = self.surface.edges();
+        for k in [1, 3] {
+            if let Edge::Pieces(pieces) = &edges.edges[k] {
+                edges.edges[k] = match straight_pieces(&self.law, pieces) {
+                    Some(pieces) => Edge::Pieces(pieces),
+                    None => Edge::Own,
+                };
+            }
+        }
+        edges
+    }
+}

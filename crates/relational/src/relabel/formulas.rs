@@ -1,0 +1,190 @@
+use moldloft_num::Real;
+use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, RelabelRef, Value};
+use moldloft_spline as spline;
+use moldloft_spline::{Dense, RelabelError};
+use std::sync::Arc;
+
+/// Where a law is dense, by its name in the language.
+pub struct DenseAt(Dense);
+
+impl<T: Real> FromValue<T> for DenseAt {
+    const CLASS: Class = Class::Text;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let text = Arc::<str>::from_value(value)?;
+        Ok(DenseAt(match &*text {
+            "both" => Dense::Both,
+            "start" => Dense::Start,
+            "end" => Dense::End,
+            other => {
+                return Err(Fault::new("unknown-end", format!("there is no end \"{other}\""))
+                    .expected("\"both\", \"start\" or \"end\"")
+                    .found(format!("\"{other}\"")));
+            }
+        }))
+    }
+}
+
+fn law<T: Real>(
+    law: Result<spline::Relabel<T>, RelabelError>,
+    place: impl Fn(Fault, &RelabelError) -> Fault,
+) -> Result<Value<T>, Fault> {
+    match law {
+        Ok(law) => Ok(Value::Relabel(RelabelRef::new(law, 0))),
+        Err(error) => {
+            let message = error.to_string();
+            let fault = match &error {
+                RelabelError::Ends { first, last } => Fault::new("wrong-ends", message)
+                    .expected("0 at the start and 1 at the end")
+                    .found(format!("{first} and {last}")),
+                RelabelError::NotMonotone { value, before, .. } => {
+                    Fault::new("not-monotone", message)
+                        .expected(format!("a value greater than {before}"))
+                        .found(value.to_string())
+                }
+                RelabelError::ZeroSlope { at } => Fault::new("zero-slope", message)
+                    .expected("values that ascend everywhere inside")
+                    .found(format!("no slope at t = {at}"))
+                    .help("set neighbouring values apart"),
+                RelabelError::Range { value, min, max, .. } => Fault::new("out-of-range", message)
+                    .expected(format!("a number from {min} to {max}"))
+                    .found(value.to_string()),
+                RelabelError::Unordered { .. } => {
+                    Fault::new("not-monotone", message).expected("parameters in ascending order")
+                }
+                RelabelError::Lengths { parameters, values } => Fault::new("wrong-length", message)
+                    .expected("two or more parameters, and as many values")
+                    .found(format!("{parameters} and {values}")),
+                RelabelError::Knots(_) => Fault::new("no-spline", message),
+            };
+            Err(place(fault, &error))
+        }
+    }
+}
+
+/// A redistribution that is a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with
+/// clamped uniform knots (as a B-sub-curve has its beads' parameters).
+///
+/// The values run from 0 to 1 and ascend. With N values the degree is at most N - 1: a higher one
+/// is lowered to that. Degree 1 is straight between its breaks, so parts of other curves stay parts
+/// of them.
+#[derive(Kind)]
+#[kind(
+    class = Relabel,
+    columns = "degree values",
+    example = "Relabel r({0, 0.1, 0.6, 0.8, 1}, degree = 2); AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); \
+               Line l(A, B, relabel = r);"
+)]
+pub struct Relabel<T: Real> {
+    /// Values from 0 to 1, two or more.
+    #[field(min_items = 2)]
+    values: Vec<T>,
+    /// Polynomial degree.
+    #[field(default = 3, min = 1, max = 25)]
+    degree: usize,
+}
+
+impl<T: Real> Build<T> for Relabel<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let degree = self.degree.min(self.values.len().saturating_sub(1)).max(1);
+        law(spline::Relabel::spline(degree, self.values), |fault, error| match error {
+            RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(0),
+            _ => fault.in_field(0),
+        })
+    }
+}
+
+/// A cosine redistribution: R(t) = (1 - w) t + w f(t), with f = (1 - cos pi t) / 2 dense at both ends,
+/// 1 - cos(pi t / 2) at the start or sin(pi t / 2) at the end.
+#[derive(Kind)]
+#[kind(
+    class = Relabel,
+    columns = "dense weight",
+    example = "CosRelabel r(); CosRelabel s(\"start\", 0.8);"
+)]
+pub struct CosRelabel<T: Real> {
+    /// Where it is dense: "both", "start" or "end".
+    #[field(default = "both")]
+    dense: DenseAt,
+    /// Share w of the cosine, 0 to 1.
+    #[field(default = 1, min = 0, max = 1)]
+    weight: T,
+}
+
+impl<T: Real> Build<T> for CosRelabel<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        law(spline::Relabel::cosine(self.dense.0, self.weight), |fault, _| fault.in_field(1))
+    }
+}
+
+/// A geometric redistribution: R(t) = (q^t - 1) / (q - 1). Of many equal steps of t the last becomes q
+/// times the first; q = 1 changes nothing.
+#[derive(Kind)]
+#[kind(class = Relabel, columns = "ratio", example = "GeoRelabel r(4);")]
+pub struct GeoRelabel<T: Real> {
+    /// Ratio q of the last step to the first; below 1 the law is dense at the end.
+    #[field(min = 1e-9, max = 1e9)]
+    ratio: T,
+}
+
+impl<T: Real> Build<T> for GeoRelabel<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        law(spline::Relabel::geometric(self.ratio), |fault, _| fault.in_field(0))
+    }
+}
+
+/// A hyperbolic tangent redistribution (Vinokur, J. Comput. Phys. 50, 1983): dense at both ends
+/// R(t) = 1/2 + tanh(d (t - 1/2)) / (2 tanh(d/2)), at the start 1 + tanh(d (t - 1)) / tanh d, at the end
+/// the mirror image of that.
+#[derive(Kind)]
+#[kind(
+    class = Relabel,
+    columns = "strength dense",
+    example = "TanhRelabel r(3); TanhRelabel s(2.5, \"end\");"
+)]
+pub struct TanhRelabel<T: Real> {
+    /// Strength d, 0 to 100; 0 changes nothing.
+    #[field(min = 0, max = 100)]
+    strength: T,
+    /// Where it is dense: "both", "start" or "end".
+    #[field(default = "both")]
+    dense: DenseAt,
+}
+
+impl<T: Real> Build<T> for TanhRelabel<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        law(spline::Relabel::tanh(self.dense.0, self.strength), |fault, _| fault.in_field(0))
+    }
+}
+
+/// A redistribution by a table: the monotone piecewise cubic through (parameter, value) pairs
+/// (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
+///
+/// The pairs run from (0, 0) to (1, 1); both columns ascend.
+#[derive(Kind)]
+#[kind(
+    class = Relabel,
+    columns = "parameters values",
+    example = "TableRelabel r({0, 0.25, 0.5, 1}, {0, 0.1, 0.4, 1});"
+)]
+pub struct TableRelabel<T: Real> {
+    /// Parameters t from 0 to 1.
+    #[field(min_items = 2)]
+    parameters: Vec<T>,
+    /// Values R(t) from 0 to 1, as many.
+    #[field(min_items = 2)]
+    values: Vec<T>,
+}
+
+impl<T: Real> Build<T> for TableRelabel<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let ends = [0.0, 1.0].map(Some);
+        let run = [self.parameters.first(), self.parameters.last()].map(|x| x.map(|x| x.re()));
+        let table = spline::Relabel::table(self.parameters, self.values);
+        law(table, |fault, error| match error {
+            RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(1),
+            RelabelError::Unordered { index } => fault.in_item(*index).in_field(0),
+            RelabelError::Ends { .. } => fault.in_field(usize::from(run == ends)),
+            _ => fault.in_field(1),
+        })
+    }
+}
