@@ -201,7 +201,7 @@ pub fn fit(
             conditions: Vec::new(),
             reach: vec![f64::INFINITY; n],
         };
-        let step = solver::solve(&problem, 0.0, 0.0)?;
+        let step = solver::solve(&problem, 0.0, 0.0, 0.0)?;
         for (c, x) in control.iter_mut().zip(step.x) {
             *c += Vec3::from(x);
         }
@@ -275,7 +275,7 @@ pub fn fit_with<T: Real>(fit: &Fit, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, 
         })
         .collect();
     let problem = squares(rows, vec![[0.0; 3]; offsets.len()], frozen);
-    let still = solver::solve(&problem, 0.0, 0.0)?;
+    let still = solver::solve(&problem, 0.0, 0.0, 0.0)?;
     for (c, x) in control.iter_mut().zip(solver::respond(&problem, &still, &offsets, &[])?) {
         *c += Vec3::from(x);
     }

@@ -32,7 +32,7 @@
 //!   `jumps_before`, `jumps_after` and `gap` are [`Deviation::certified`], [`Deviation::sampled`],
 //!   [`Numbers::jumps`] of [`Report::before`] and [`Report::after`], and [`Certificate::gap`].
 //!   [`Network::report`] does the same for nets.
-//! - [`rows`]: the kinds `FairCurve`, `FairSnake`, `FairSurf` and the functions `fair`, `jumps`,
+//! - [`rows`]: the kinds `FairCurve`, `FairSnake`, `FairSurf`, `FairNet` and the functions `fair`, `jumps`,
 //!   `curvature` of the language, with derivatives ([`optimum_with`], [`replay_with`]).
 //!
 //! ```
@@ -87,9 +87,11 @@ mod local;
 mod measure;
 pub mod network;
 mod optimum;
+mod polish;
 mod report;
 mod rows;
 pub mod shape;
+mod sharp;
 mod solver;
 mod space;
 pub mod surface;
@@ -107,12 +109,13 @@ pub use jump::Jumps;
 pub use levels::levels;
 pub use limit::{Limit, Motion};
 pub use local::{
-    Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, local_from, replay, replay_with,
-    sweeps,
+    Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, local_from, replay,
+    replay_from_with, replay_with, sweeps,
 };
 pub use measure::{Measure, Norm, value};
 pub use network::{Network, NetworkMode, NetworkReport, Strand};
 pub use optimum::{Bound, Condition, Optimum, OptimumOptions, optimum, optimum_with};
 pub use report::{Mode, Numbers, Report, numbers, report};
 pub use rows::Rows;
+pub use sharp::{Sharp, interpolate_sharp};
 pub use space::Space;

@@ -392,9 +392,24 @@ pub fn replay_with<T: Real>(
     points: &[Vec3<T>],
     tolerances: &[T],
 ) -> Result<Vec<Vec3<T>>, FairError> {
+    replay_from_with(job, options, log, points, points, tolerances)
+}
+
+/// The same for steps that began elsewhere, at `from`: see [`local_from`].
+///
+/// # Errors
+/// As [`replay_with`].
+pub fn replay_from_with<T: Real>(
+    job: &Job,
+    options: &LocalOptions,
+    log: &[Move],
+    from: &[Vec3<T>],
+    points: &[Vec3<T>],
+    tolerances: &[T],
+) -> Result<Vec<Vec3<T>>, FairError> {
     let rows = job.measure_rows(options.measure)?;
     let steps = Steps::of(job, options.step, &rows);
-    let mut now = points.to_vec();
+    let mut now = from.to_vec();
     for step in log {
         let j = step.index as usize;
         let (columns, factors) = steps.rows.row(j);

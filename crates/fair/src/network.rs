@@ -6,7 +6,7 @@ use crate::error::check_finite;
 use crate::optimum::{Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, End, FairError, Job, Limit, LocalOptions, Measure, Rows, Space,
-    local_from,
+    local_from, replay_from_with,
 };
 use moldloft_num::{Real, Surface, Vec3};
 use moldloft_spline::BSplineSurface;
@@ -35,7 +35,7 @@ pub struct Network {
     pub limit: Limit,
     /// The curves, in the order of passes.
     pub strands: Vec<Strand>,
-    /// Points that do not move in the joint optimum.
+    /// Points that do not move.
     pub kept: Vec<usize>,
     /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
     net: Option<[Space; 2]>,
@@ -97,6 +97,35 @@ impl Network {
         Ok(network)
     }
 
+    /// The net with intended breaks: knuckle lines along whole rows of points, at these places along
+    /// u (each a curve of constant u) and along v. Their points stay, and nothing is smoothed across
+    /// them.
+    ///
+    /// # Errors
+    /// [`FairError::Mark`] when there is no such row, or the network is no net.
+    pub fn with_breaks(mut self, along_u: &[usize], along_v: &[usize]) -> Result<Self, FairError> {
+        let [nu, nv] = self.net.as_ref().map_or([0, 0], |[u, v]| [u.count(), v.count()]);
+        for (breaks, count) in [(along_u, nu), (along_v, nv)] {
+            if let Some(&index) = breaks.iter().find(|&&b| b >= count) {
+                return Err(FairError::Mark { index, count });
+            }
+        }
+        // Curves along u come first.
+        for (k, strand) in self.strands.iter_mut().enumerate() {
+            strand.marks.extend(if k < nv { along_u } else { along_v });
+        }
+        // Those along the knuckle stand still too, whole.
+        for (k, strand) in self.strands.iter().enumerate() {
+            let own = if k < nv { along_v.contains(&k) } else { along_u.contains(&(k - nv)) };
+            if own {
+                self.kept.extend(&strand.points);
+            }
+        }
+        self.kept.sort_unstable();
+        self.kept.dedup();
+        Ok(self)
+    }
+
     /// Refuses what cannot be faired.
     ///
     /// # Errors
@@ -139,6 +168,17 @@ impl Network {
         }
     }
 
+    /// Curve `k` at the original points, where what stands still for any curve does so for this one.
+    fn pass_job(&self, k: usize, frozen: &[bool]) -> Job {
+        let mut job = self.job(k, &self.points);
+        for (radius, &i) in job.limit.radii.iter_mut().zip(&self.strands[k].points) {
+            if frozen[i] {
+                *radius = 0.0;
+            }
+        }
+        job
+    }
+
     /// The value of a measure over some of the curves.
     ///
     /// # Errors
@@ -169,10 +209,11 @@ impl Network {
     /// As [`crate::local`].
     pub fn passes(&self, passes: usize, steps: usize) -> Result<Vec<Vec3<f64>>, FairError> {
         self.check()?;
+        let frozen = self.frozen();
         let mut points = self.points.clone();
         for _ in 0..passes {
             for k in 0..self.strands.len() {
-                let job = self.job(k, &self.points);
+                let job = self.pass_job(k, &frozen);
                 let from = self.strands[k].points.iter().map(|&i| points[i]).collect();
                 let options = LocalOptions::faithful(steps * job.points.len());
                 let faired = local_from(&job, from, &options)?.points;
@@ -182,6 +223,42 @@ impl Network {
             }
         }
         Ok(points)
+    }
+
+    /// The same for points that carry derivatives, whose real parts are those of the network: which
+    /// knots are chosen is as it is for the real parts. The limits must be balls.
+    ///
+    /// # Errors
+    /// As [`Network::passes`].
+    pub fn passes_with<T: Real>(
+        &self,
+        passes: usize,
+        steps: usize,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        self.check()?;
+        let frozen = self.frozen();
+        let mut now = points.to_vec();
+        for _ in 0..passes {
+            for (k, strand) in self.strands.iter().enumerate() {
+                let job = self.pass_job(k, &frozen);
+                let pick = |of: &[Vec3<T>]| -> Vec<Vec3<T>> {
+                    strand.points.iter().map(|&i| of[i]).collect()
+                };
+                let (from, original) = (pick(&now), pick(points));
+                let radii: Vec<T> = strand.points.iter().map(|&i| tolerances[i]).collect();
+                let plain = from.iter().map(|p| p.re()).collect();
+                let mut options = LocalOptions::faithful(steps * job.points.len());
+                options.log = true;
+                let made = local_from(&job, plain, &options)?;
+                let faired = replay_from_with(&job, &options, &made.log, &from, &original, &radii)?;
+                for (&i, p) in strand.points.iter().zip(faired) {
+                    now[i] = p;
+                }
+            }
+        }
+        Ok(now)
     }
 
     /// The rows of a measure over all curves.

@@ -394,7 +394,9 @@ impl<'a> Parts<'a> {
         let size = self.relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
         let noise = 4.0 * f64::EPSILON * size;
         let floor = noise * noise * problem.measure.len() as f64;
-        let solution = solver::solve(problem, self.accuracy, floor)?;
+        // Positions round by half a unit in the last place of the largest coordinate, moves too.
+        let margin = 4.0 * f64::EPSILON * self.points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let solution = solver::solve(problem, self.accuracy, floor, margin)?;
         let points = self.moved(frame, &solution.x);
         let count = self.conditions.len();
         let missed: Vec<usize> = (0..count).filter(|&k| solution.misses[k] > 1e-7).collect();

@@ -12,6 +12,7 @@
 
 use crate::band::Band;
 use crate::cone::{Cone, Pair, farthest};
+use crate::polish::Active;
 use crate::{FairError, Norm, Rows};
 use moldloft_num::Real;
 
@@ -77,22 +78,26 @@ pub(crate) struct Solution {
     pub misses: Vec<f64>,
     /// The cones at the solution, for [`respond`].
     cones: Vec<Cone>,
+    /// The limits that are reached, when the solution was polished.
+    active: Option<Active>,
 }
 
 const MOST_ITERATIONS: usize = 80;
 
 const IDENTITY: [V; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-struct State<'a> {
-    p: &'a Problem,
-    d: usize,
+pub(crate) struct State<'a> {
+    pub p: &'a Problem,
+    pub d: usize,
     /// Unknown number of each point, or NONE.
     place: Vec<u32>,
-    unknowns: usize,
-    x: Vec<V>,
+    pub unknowns: usize,
+    pub x: Vec<V>,
     /// Cones of the limits, then those of the lengths.
-    cones: Vec<Cone>,
-    nu: Vec<f64>,
+    pub cones: Vec<Cone>,
+    pub nu: Vec<f64>,
+    /// Set once the solution is polished.
+    pub active: Option<Active>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -192,7 +197,7 @@ struct Direction {
 
 impl State<'_> {
     #[inline(always)]
-    fn apply(rows: &Rows, k: usize, x: &[V]) -> V {
+    pub(crate) fn apply(rows: &Rows, k: usize, x: &[V]) -> V {
         let (columns, factors) = rows.row(k);
         let mut sum = [0.0; 3];
         for (&c, &a) in columns.iter().zip(factors) {
@@ -208,17 +213,17 @@ impl State<'_> {
     }
 
     /// Coordinate groups of a limit.
-    fn groups(&self) -> usize {
+    pub(crate) fn groups(&self) -> usize {
         if self.p.bounds.separate { self.d } else { 1 }
     }
 
     /// The number of cones of limits; cone c belongs to limit c / groups.
-    fn limits(&self) -> usize {
+    pub(crate) fn limits(&self) -> usize {
         self.p.bounds.rows.len() * self.groups()
     }
 
     /// The part of a limit's row that cone `c` is about.
-    fn part(&self, c: usize, s: V) -> V {
+    pub(crate) fn part(&self, c: usize, s: V) -> V {
         if !self.p.bounds.separate {
             return s;
         }
@@ -228,7 +233,7 @@ impl State<'_> {
     }
 
     /// The rows of cone `c`.
-    fn rows_of(&self, c: usize) -> (&Rows, usize) {
+    pub(crate) fn rows_of(&self, c: usize) -> (&Rows, usize) {
         match c.checked_sub(self.limits()) {
             None => (&self.p.bounds.rows, c / self.groups()),
             Some(k) => (&self.p.measure, k),
@@ -236,7 +241,7 @@ impl State<'_> {
     }
 
     /// Adds P^T y to `sum`, by points.
-    fn spread(rows: &Rows, k: usize, y: V, sum: &mut [V]) {
+    pub(crate) fn spread(rows: &Rows, k: usize, y: V, sum: &mut [V]) {
         let (columns, factors) = rows.row(k);
         for (&c, &a) in columns.iter().zip(factors) {
             axpy(&mut sum[c as usize], a, y);
@@ -244,7 +249,7 @@ impl State<'_> {
     }
 
     /// Adds P^T W P to the matrix.
-    fn add_block(&self, band: &mut Band, rows: &Rows, k: usize, w: &[V; 3]) {
+    pub(crate) fn add_block(&self, band: &mut Band, rows: &Rows, k: usize, w: &[V; 3]) {
         let (columns, factors) = rows.row(k);
         let d = self.d;
         for (i, (&ci, &ai)) in columns.iter().zip(factors).enumerate() {
@@ -268,12 +273,26 @@ impl State<'_> {
         }
     }
 
+    /// Calls `f` with each point that moves and where its first unknown is.
+    pub(crate) fn each_place(&self, mut f: impl FnMut(usize, usize)) {
+        for (i, &at) in self.place.iter().enumerate() {
+            if at != NONE {
+                f(i, at as usize * self.d);
+            }
+        }
+    }
+
+    /// Adds P'P of the measure.
+    pub(crate) fn add_measure(&self, band: &mut Band) {
+        for k in 0..self.p.measure.len() {
+            self.add_block(band, &self.p.measure, k, &IDENTITY);
+        }
+    }
+
     fn assemble(&self, band: &mut Band) {
         band.clear();
         if self.p.norm == Norm::Square {
-            for k in 0..self.p.measure.len() {
-                self.add_block(band, &self.p.measure, k, &IDENTITY);
-            }
+            self.add_measure(band);
         }
         let limits = self.limits();
         for (c, cone) in self.cones.iter().enumerate() {
@@ -292,7 +311,7 @@ impl State<'_> {
         }
     }
 
-    fn flat(&self, by_point: &[V]) -> Vec<f64> {
+    pub(crate) fn flat(&self, by_point: &[V]) -> Vec<f64> {
         let mut flat = vec![0.0; self.unknowns * self.d];
         for (v, &at) in by_point.iter().zip(&self.place) {
             if at != NONE {
@@ -303,7 +322,7 @@ impl State<'_> {
         flat
     }
 
-    fn unflat(&self, flat: &[f64]) -> Vec<V> {
+    pub(crate) fn unflat(&self, flat: &[f64]) -> Vec<V> {
         self.place
             .iter()
             .map(|&at| {
@@ -347,7 +366,7 @@ impl State<'_> {
         let mut flat = self.flat(&right);
         band.solve(&mut flat);
         // Conditions by their Schur complement: x = x0 - Y nu, A x = b - A x_now.
-        let nu = dense.solve(self, &mut flat);
+        let nu = dense.solve(p, &self.x, &mut flat);
         let x = self.unflat(&flat);
         let mut out = Direction {
             u: Vec::with_capacity(goals.len()),
@@ -469,7 +488,7 @@ impl State<'_> {
 }
 
 /// The dense system of the conditions' multipliers.
-struct Schur {
+pub(crate) struct Schur {
     /// Solutions of the band matrix for each condition.
     columns: Vec<Vec<f64>>,
     /// Conditions over the unknowns.
@@ -478,7 +497,7 @@ struct Schur {
 }
 
 impl Schur {
-    fn new(state: &State, band: &Band) -> Self {
+    pub(crate) fn new(state: &State, band: &Band) -> Self {
         let rows: Vec<Vec<f64>> = state
             .p
             .conditions
@@ -515,15 +534,15 @@ impl Schur {
 
     /// Turns the unconstrained direction into one that meets the conditions; returns their
     /// multipliers.
-    fn solve(&self, state: &State, x: &mut [f64]) -> Vec<f64> {
+    pub(crate) fn solve(&self, p: &Problem, now: &[V], x: &mut [f64]) -> Vec<f64> {
         let m = self.rows.len();
         if m == 0 {
             return Vec::new();
         }
         let mut nu: Vec<f64> = (0..m)
             .map(|k| {
-                let now: f64 = self.rows[k].iter().zip(&*x).map(|(a, b)| a * b).sum();
-                now - (state.p.conditions[k].value - met(&state.p.conditions[k], &state.x))
+                let here: f64 = self.rows[k].iter().zip(&*x).map(|(a, b)| a * b).sum();
+                here - (p.conditions[k].value - met(&p.conditions[k], now))
             })
             .collect();
         let mut matrix = self.matrix.clone();
@@ -544,8 +563,18 @@ fn met(condition: &Condition, x: &[V]) -> f64 {
     condition.entries.iter().map(|(i, factor)| dot(*factor, x[*i])).sum()
 }
 
+/// The share of the value at which the gap shows which limits are reached, and the next one when it
+/// did not: there the solution is polished.
+const SHOWS: f64 = 1e-4;
+
 /// Solves a problem until the certified gap is at most `accuracy` times the value, or `floor`.
-pub(crate) fn solve(p: &Problem, accuracy: f64, floor: f64) -> Result<Solution, FairError> {
+/// Limits are kept with a `margin` for the rounding of positions.
+pub(crate) fn solve(
+    p: &Problem,
+    accuracy: f64,
+    floor: f64,
+    margin: f64,
+) -> Result<Solution, FairError> {
     let n = p.frozen.len();
     let (place, unknowns, span) = order(p);
     let d = p.dimension;
@@ -557,6 +586,7 @@ pub(crate) fn solve(p: &Problem, accuracy: f64, floor: f64) -> Result<Solution, 
         x: vec![[0.0; 3]; n],
         cones: Vec::new(),
         nu: vec![0.0; p.conditions.len()],
+        active: None,
     };
     start(&mut state);
     let mut iterations = 0;
@@ -564,6 +594,7 @@ pub(crate) fn solve(p: &Problem, accuracy: f64, floor: f64) -> Result<Solution, 
         let mut band = Band::zero(unknowns * d, d * (span + 1) - 1)?;
         let mut best: Option<(f64, Vec<V>, Vec<Cone>, Vec<f64>)> = None;
         let mut idle = 0;
+        let mut shows = SHOWS;
         while iterations < MOST_ITERATIONS {
             iterations += 1;
             state.cones.iter_mut().for_each(Cone::scale);
@@ -596,6 +627,23 @@ pub(crate) fn solve(p: &Problem, accuracy: f64, floor: f64) -> Result<Solution, 
             if missed <= 1e-9 && gap <= (accuracy * value).max(floor) || idle > 12 {
                 break;
             }
+            if p.norm == Norm::Square && missed <= 1e-9 && gap <= shows * value {
+                let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
+                if state.polish(&mut band, margin) {
+                    let (value, after) = state.certificate();
+                    // The margin is part of the gap: forces times what is not used of the limits.
+                    let unused: f64 =
+                        state.active.iter().flat_map(|a| &a.forces).map(|f| f * margin).sum();
+                    let missed = misses(p, &state.x).into_iter().fold(0.0, f64::max);
+                    if missed <= 1e-9 && after <= (accuracy * value).max(floor) + 4.0 * unused {
+                        best = None;
+                        break;
+                    }
+                    state.active = None;
+                }
+                (state.x, state.cones, state.nu) = kept;
+                shows *= 1e-2;
+            }
         }
         if let Some((_, x, cones, nu)) = best {
             (state.x, state.cones, state.nu) = (x, cones, nu);
@@ -603,7 +651,8 @@ pub(crate) fn solve(p: &Problem, accuracy: f64, floor: f64) -> Result<Solution, 
     }
     let (value, gap) = state.certificate();
     let misses = misses(p, &state.x);
-    Ok(Solution { x: state.x, value, gap, iterations, misses, cones: state.cones })
+    let State { x, cones, active, .. } = state;
+    Ok(Solution { x, value, gap, iterations, misses, cones, active })
 }
 
 /// By how much each condition is missed, relative to what the limits let it vary.
@@ -671,10 +720,26 @@ pub(crate) fn respond<T: Real>(
         place,
         unknowns,
         x: solution.x.clone(),
-        cones: solution.cones.iter().map(Cone::centred).collect(),
+        cones: match &solution.active {
+            Some(_) => solution.cones.clone(),
+            None => solution.cones.iter().map(Cone::centred).collect(),
+        },
         nu: Vec::new(),
+        active: None,
     };
     let mut band = Band::zero(unknowns * d, d * (span + 1) - 1)?;
+    if let Some(active) = &solution.active {
+        let mut right = vec![zero; n];
+        for (k, change) in offsets.iter().enumerate() {
+            let (columns, factors) = p.measure.row(k);
+            for (&c, &a) in columns.iter().zip(factors) {
+                for r in 0..d {
+                    right[c as usize][r] -= change[r] * a;
+                }
+            }
+        }
+        return state.answer(&mut band, active, &right, radii);
+    }
     state.assemble(&mut band);
     band.factor();
     let limits = state.limits();

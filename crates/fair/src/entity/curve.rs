@@ -35,7 +35,8 @@ pub struct FairCurve<T: Real> {
     #[field(default = "fit")]
     r#as: Arc<str>,
     /// Numbers of points, from 1, that are intended breaks: they stay, and nothing is smoothed
-    /// across them.
+    /// across them. A curve through its points has corners there; a closed one begins at the
+    /// first of them.
     #[field(default)]
     breaks: Option<Vec<usize>>,
     /// What open ends keep: "free", "position", "tangent" or "curvature".

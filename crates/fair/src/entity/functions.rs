@@ -46,16 +46,8 @@ impl<T: Real> Build<T> for Fair<T> {
             end: crate::End::Points(2),
             breaks: Vec::new(),
         };
-        let n = self.points.len();
-        let make = || {
-            if !intent.closed && n < 5 {
-                return Err(FairError::TooFew { expected: 5, actual: n });
-            }
-            let space = if intent.closed { Space::closed(3, n)? } else { Space::floating(3, n)? };
-            intent.faired_points(&space, &self.points)
-        };
         let places = Places { points: 0, tolerance: 1, degree: 0, breaks: 0 };
-        let faired = make().map_err(|e| fault(e, &places))?;
+        let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
         Ok(Value::Vectors(Arc::new(Array::row(faired))))
     }
 }

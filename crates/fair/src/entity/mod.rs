@@ -2,13 +2,14 @@
 
 mod curve;
 mod functions;
+mod net;
 mod shapes;
 mod snake;
 mod surface;
 
 use crate::{
     Bound, End, FairError, Job, Limit, LocalOptions, Measure, Motion, OptimumOptions, Space,
-    Spacing, fit_with, interpolate, local, optimum_with, replay_with,
+    Spacing, interpolate_sharp, local, optimum_with, replay_with,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
@@ -26,6 +27,8 @@ pub fn rows() -> Vec<Row> {
         curve::FairCurve::<f64>::row(),
         snake::FairSnake::<f64>::row(),
         surface::FairSurf::<f64>::row(),
+        net::FairNet::<f64>::row(),
+        net::NetCurve::<f64>::row(),
         functions::Fair::<f64>::row(),
         functions::Jumps::<f64>::row(),
         functions::Curvature::<f64>::row(),
@@ -61,6 +64,7 @@ pub(crate) enum Role {
 }
 
 /// The places of the arguments that can be at fault.
+#[derive(Clone, Copy)]
 pub(crate) struct Places {
     pub points: usize,
     pub tolerance: usize,
@@ -139,64 +143,67 @@ pub(crate) fn fault(error: FairError, places: &Places) -> Fault {
     }
 }
 
-impl<T: Real> Intent<T> {
-    /// Marks from 0.
-    fn marks(&self, count: usize) -> Result<Vec<usize>, FairError> {
-        let from_zero = |&b: &usize| match b.checked_sub(1) {
-            Some(index) if index < count => Ok(index),
-            index => Err(FairError::Mark { index: index.unwrap_or(usize::MAX - 1), count }),
-        };
-        self.breaks.iter().map(from_zero).collect()
-    }
+/// Numbers of points, from 1, as indices.
+pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, FairError> {
+    let from_zero = |&b: &usize| match b.checked_sub(1) {
+        Some(index) if index < count => Ok(index),
+        index => Err(FairError::Mark { index: index.unwrap_or(usize::MAX - 1), count }),
+    };
+    numbers.iter().map(from_zero).collect()
+}
 
+impl<T: Real> Intent<T> {
     /// The faired spline of points.
     pub fn spline(&self, points: &[Vec3<T>]) -> Result<(Space, Vec<Vec3<T>>), FairError> {
-        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
         let n = points.len();
-        let space = || {
-            if self.closed {
-                let knots = (0..n).map(|k| k as f64 / n as f64).collect();
-                Space::periodic(self.degree, knots, 1.0)
-            } else if n < self.degree + 2 {
-                Err(FairError::TooFew { expected: self.degree + 2, actual: n })
-            } else {
-                Space::clamped(self.degree, n)
-            }
+        let marks = indices(&self.breaks, n)?;
+        let fitted = |points: &[Vec3<T>]| {
+            interpolate_sharp(self.degree, points, Spacing::Uniform, self.closed, &marks)
         };
         match self.role {
             Role::Control => {
-                let space = space()?;
-                let faired = self.faired(&space, points)?;
+                let space = if self.closed {
+                    let knots = (0..n).map(|k| k as f64 / n as f64).collect();
+                    Space::periodic(self.degree, knots, 1.0)?
+                } else if n < self.degree + 2 {
+                    return Err(FairError::TooFew { expected: self.degree + 2, actual: n });
+                } else {
+                    Space::clamped(self.degree, n)?
+                };
+                let faired = self.within(&space, points, Bound::Bezier, marks)?;
                 Ok((space, faired))
             }
             Role::Fit => {
-                let fit = interpolate(self.degree, &plain, Spacing::Uniform, self.closed)?;
-                let control = fit_with(&fit, points)?;
-                let faired = self.faired(&fit.space, &control)?;
-                Ok((fit.space, faired))
+                let sharp = fitted(points)?;
+                let space = sharp.fit.space;
+                let faired = self.within(&space, &sharp.points, Bound::Bezier, sharp.marks)?;
+                Ok((space, faired))
             }
             Role::Points => {
-                let moved = self.faired_points(&space()?, points)?;
-                let plain: Vec<_> = moved.iter().map(|p| p.re()).collect();
-                let fit = interpolate(self.degree, &plain, Spacing::Uniform, self.closed)?;
-                let control = fit_with(&fit, &moved)?;
-                Ok((fit.space, control))
+                let sharp = fitted(&self.faired_points(points)?)?;
+                Ok((sharp.fit.space, sharp.points))
             }
         }
     }
 
-    /// Control points, faired with a bound on the curve.
-    fn faired(&self, space: &Space, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
-        self.within(space, points, Bound::Bezier)
-    }
-
-    /// Points, faired with a bound on each of them.
-    pub fn faired_points(
-        &self,
-        space: &Space,
-        points: &[Vec3<T>],
-    ) -> Result<Vec<Vec3<T>>, FairError> {
-        self.within(space, points, Bound::ControlPoints)
+    /// Points, faired with a bound on each of them: as the control points of a uniform spline, for
+    /// which interpolation and the measures commute.
+    pub fn faired_points(&self, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+        let (n, degree) = (points.len(), self.degree);
+        let space = if self.closed {
+            Space::closed(degree, n)?
+        } else if n < degree + 2 {
+            return Err(FairError::TooFew { expected: degree + 2, actual: n });
+        } else {
+            Space::floating(degree, n)?
+        };
+        // What an end keeps is counted in points: with tangents, two of them.
+        let end = match self.end {
+            End::Points(k) => k,
+            end => end.kept(),
+        };
+        let held = Self { end: End::Points(end), breaks: self.breaks.clone(), ..*self };
+        held.within(&space, points, Bound::ControlPoints, indices(&self.breaks, n)?)
     }
 
     fn within(
@@ -204,6 +211,7 @@ impl<T: Real> Intent<T> {
         space: &Space,
         points: &[Vec3<T>],
         bound: Bound,
+        marks: Vec<usize>,
     ) -> Result<Vec<Vec3<T>>, FairError> {
         let n = points.len();
         let job = Job {
@@ -211,7 +219,7 @@ impl<T: Real> Intent<T> {
             points: points.iter().map(|p| p.re()).collect(),
             weights: None,
             limit: Limit::new(Motion::Ball, vec![self.tolerance.re(); n])?,
-            marks: self.marks(n)?,
+            marks,
             ends: [self.end; 2],
         };
         let tolerances = vec![self.tolerance; n];

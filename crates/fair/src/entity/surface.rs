@@ -1,5 +1,5 @@
-use super::{ACCURACY, Places, Role, fault, measure, role};
-use crate::{Bound, FairError, Limit, Network, Space, Spacing, fit_with, interpolate};
+use super::{ACCURACY, Places, Role, faithful, fault, indices, measure, role};
+use crate::{Bound, FairError, Limit, Network, Space, Spacing, interpolate_sharp};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Array, ArrayShape, Build, Class, Context, Fault, FromValue, Kind, SurfaceRef, Value,
@@ -24,7 +24,9 @@ impl<T: Real> FromValue<T> for Grid<T> {
 ///
 /// All rows and columns of the net are faired at once: the sum of the measure over both
 /// directions is the least within the tolerance. The four corners keep position, tangents and
-/// twist.
+/// twist. Mode "faithful" fairs curve after curve as the report of 1991 has it, first those of
+/// constant v, then those of constant u, `passes` times over, three steps per point: its result
+/// depends on that order and may jump where two knots tie.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -48,6 +50,52 @@ pub struct FairSurf<T: Real> {
     /// Polynomial degree in both directions.
     #[field(default = 3, min = 2, max = 9)]
     degree: usize,
+    /// Rows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
+    /// nothing is smoothed across them. A surface through its points has a sharp edge there.
+    #[field(default)]
+    breaks_u: Option<Vec<usize>>,
+    /// The same along v.
+    #[field(default)]
+    breaks_v: Option<Vec<usize>>,
+    /// "optimum" or "faithful".
+    #[field(default = "optimum")]
+    mode: Arc<str>,
+    /// Passes of the faithful mode.
+    #[field(default = 1, min = 1, max = 100)]
+    passes: usize,
+}
+
+/// A grid of points, as the control points of the spline of `degree` through each of its rows along
+/// the first index; the space, and which rows of control points are breaks.
+type Along<T> = (Space, Vec<Vec3<T>>, Vec<usize>);
+
+/// Fits all lines of a grid `[m, n]` along its first index.
+fn fitted<T: Real>(
+    degree: usize,
+    grid: &[Vec3<T>],
+    m: usize,
+    breaks: &[usize],
+) -> Result<Along<T>, FairError> {
+    let n = grid.len() / m;
+    let mut out = Vec::new();
+    let mut common = None;
+    for j in 0..n {
+        let line: Vec<Vec3<T>> = (0..m).map(|i| grid[i * n + j]).collect();
+        let sharp = interpolate_sharp(degree, &line, Spacing::Uniform, false, breaks)?;
+        out.resize(sharp.points.len() * n, Vec3::zero());
+        for (i, p) in sharp.points.into_iter().enumerate() {
+            out[i * n + j] = p;
+        }
+        common = Some((sharp.fit.space, sharp.marks));
+    }
+    let (space, marks) = common.ok_or(FairError::TooFew { expected: 1, actual: 0 })?;
+    Ok((space, out, marks))
+}
+
+/// The grid with its indices exchanged.
+fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
+    let n = grid.len() / m;
+    (0..n).flat_map(|j| (0..m).map(move |i| grid[i * n + j])).collect()
 }
 
 impl<T: Real> Build<T> for FairSurf<T> {
@@ -60,7 +108,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 .in_field(0));
         };
         let measure = measure(&self.measure, 2)?;
-        let fitted = match role(&self.r#as, 3)? {
+        let fitted_first = match role(&self.r#as, 3)? {
             Role::Fit => true,
             Role::Control => false,
             Role::Points => {
@@ -70,7 +118,16 @@ impl<T: Real> Build<T> for FairSurf<T> {
                     .in_field(3));
             }
         };
-        let places = Places { points: 0, tolerance: 1, degree: 4, breaks: 0 };
+        let places = Places { points: 0, tolerance: 1, degree: 4, breaks: 5 };
+        let along_v = Places { breaks: 6, ..places };
+        let passes = faithful(&self.mode, 7)?.then_some(self.passes);
+        let [marks_u, marks_v] = [(&self.breaks_u, m, &places), (&self.breaks_v, n, &along_v)].map(
+            |(breaks, count, places)| {
+                let numbers = breaks.as_deref().unwrap_or_default();
+                indices(numbers, count).map_err(|e| fault(e, places))
+            },
+        );
+        let (marks_u, marks_v) = (marks_u?, marks_v?);
         let make = || -> Result<_, FairError> {
             let degree = self.degree;
             for actual in [m, n] {
@@ -78,36 +135,27 @@ impl<T: Real> Build<T> for FairSurf<T> {
                     return Err(FairError::TooFew { expected: degree + 2, actual });
                 }
             }
-            let (mut spaces, mut net) =
-                ([Space::clamped(degree, m)?, Space::clamped(degree, n)?], grid.items.clone());
-            if fitted {
-                let lines =
-                    |net: &mut [Vec3<T>], start: &dyn Fn(usize) -> usize, count, step, length| {
-                        let mut space = None;
-                        for k in 0..count {
-                            let at = |i: usize| start(k) + i * step;
-                            let line: Vec<Vec3<T>> = (0..length).map(|i| net[at(i)]).collect();
-                            let plain: Vec<_> = line.iter().map(|p| p.re()).collect();
-                            let fit = interpolate(degree, &plain, Spacing::Uniform, false)?;
-                            for (i, p) in fit_with(&fit, &line)?.into_iter().enumerate() {
-                                net[at(i)] = p;
-                            }
-                            space = Some(fit.space);
-                        }
-                        Ok::<_, FairError>(space)
-                    };
-                let along_u = lines(&mut net, &|j| j, n, n, m)?;
-                let along_v = lines(&mut net, &|i| i * n, m, 1, n)?;
-                if let (Some(u), Some(v)) = (along_u, along_v) {
-                    spaces = [u, v];
-                }
-            }
-            let limit = Limit::ball(m * n, self.tolerance.re())?;
+            let (spaces, net, marks) = if fitted_first {
+                let (u, net, mu) = fitted(degree, &grid.items, m, &marks_u)?;
+                let (v, net, mv) = fitted(degree, &turned(&net, u.count()), n, &marks_v)?;
+                let net = turned(&net, v.count());
+                ([u, v], net, [mu, mv])
+            } else {
+                let spaces = [Space::clamped(degree, m)?, Space::clamped(degree, n)?];
+                (spaces, grid.items.clone(), [marks_u, marks_v])
+            };
+            let limit = Limit::ball(net.len(), self.tolerance.re())?;
             let plain = net.iter().map(|p| p.re()).collect();
-            let network = Network::net(spaces.clone(), plain, None, limit)?;
-            let tolerances = vec![self.tolerance; m * n];
-            let (points, _) =
-                network.optimum_with(measure, Bound::ControlPoints, ACCURACY, &net, &tolerances)?;
+            let network = Network::net(spaces.clone(), plain, None, limit)?
+                .with_breaks(&marks[0], &marks[1])?;
+            let tolerances = vec![self.tolerance; net.len()];
+            let points = match passes {
+                Some(passes) => network.passes_with(passes, 3, &net, &tolerances)?,
+                None => {
+                    let bound = Bound::ControlPoints;
+                    network.optimum_with(measure, bound, ACCURACY, &net, &tolerances)?.0
+                }
+            };
             Ok((spaces, points))
         };
         let (spaces, points) = make().map_err(|e| fault(e, &places))?;

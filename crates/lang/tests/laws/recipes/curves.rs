@@ -23,6 +23,58 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             format!("{}, {}", p.bead(&curve), p.bead(&curve))
         }
         "MirrCurve" => format!("{}, {}", p.curve(), p.mirror()),
+        "FairCurve" => {
+            let closed = p.random.below(3) == 0;
+            let points = if closed { ring(p) } else { row(p, 7, 0.0) };
+            let words = match p.random.below(4) {
+                0 => "measure = \"third\", ends = \"position\"",
+                1 => "as = \"points\"",
+                2 if !closed => "breaks = {4}, measure = \"bending\"",
+                _ => "as = \"control\", degree = 2",
+            };
+            let tolerance = p.number(0.02, 0.2);
+            format!("{{{points}}}, {tolerance}, {words}, closed = {}", u8::from(closed))
+        }
+        "FairNet" => net(p),
+        "NetCurve" => {
+            let args = net(p);
+            let net = p.object("FairNet", &args);
+            format!("{net}, {}", 1 + p.random.below(2))
+        }
         _ => return None,
     })
+}
+
+/// So many points in a wavy row, from x = 0 on.
+fn row(p: &mut Program, count: usize, z: f64) -> String {
+    let points: Vec<String> = (0..count)
+        .map(|k| {
+            let (dy, dz) = (p.number(-0.2, 0.2), p.number(-0.2, 0.2));
+            p.object("AbsPoint", &format!("{}*w, {dy} + 0.2*h, {z} + {dz}", 0.5 * k as f64))
+        })
+        .collect();
+    points.join(", ")
+}
+
+/// Points round a wavy ring.
+fn ring(p: &mut Program) -> String {
+    let points: Vec<String> = (0..9)
+        .map(|k| {
+            let (r, z) = (p.number(0.85, 1.15), p.number(-0.1, 0.1));
+            let angle = f64::from(k) * std::f64::consts::TAU / 9.0;
+            let (x, y) = (angle.cos(), angle.sin());
+            p.object("AbsPoint", &format!("{r}*w*{x:?}, {r}*{y:?}, {z}"))
+        })
+        .collect();
+    points.join(", ")
+}
+
+/// The arguments of a network of two curves that cross in their second points.
+fn net(p: &mut Program) -> String {
+    let along = row(p, 6, 0.0);
+    let shared = along.split(", ").nth(1).expect("a row of six").to_string();
+    let across = row(p, 5, 1.0);
+    let (first, rest) = across.split_once(", ").expect("a row of five");
+    let tolerance = p.number(0.02, 0.2);
+    format!("{{{{{along}}}, {{{first}, {shared}, {rest}}}}}, {tolerance}")
 }

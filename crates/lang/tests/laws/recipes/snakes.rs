@@ -22,6 +22,17 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let snake = p.snake(&surface);
             format!("{}, {}", p.ring(&snake), p.ring(&snake))
         }
+        "FairSnake" => {
+            let surface = p.surface();
+            let magnets: Vec<String> = (0..6)
+                .map(|k| {
+                    let (du, dv) = (p.number(-0.04, 0.04), p.number(-0.08, 0.08));
+                    let u = 0.1 + 0.15 * f64::from(k);
+                    p.object("AbsMagnet", &format!("{surface}, {u} + {du}, 0.5 + {dv}"))
+                })
+                .collect();
+            format!("{{{}}}, {}", magnets.join(", "), p.number(0.01, 0.05))
+        }
         _ => return None,
     })
 }

@@ -1,6 +1,7 @@
 //! Surfaces and solids.
 
 use crate::program::Program;
+use std::fmt::Write;
 
 /// The arguments of a random object of this kind; `None` for a kind of another family.
 pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
@@ -52,6 +53,20 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             }
         }
         "MirrSurf" => format!("{}, {}, {divisions}", p.surface(), p.mirror()),
+        "FairSurf" => {
+            let grid = p.name("g");
+            writeln!(p.text, "surface {grid}[5, 5];").unwrap();
+            for (i, j) in (1..=5).flat_map(|i| (1..=5).map(move |j| (i, j))) {
+                let z = p.number(-0.2, 0.2);
+                writeln!(p.text, "{grid}[{i},{j}] = {{{i}*w, {j}, {z}*h}};").unwrap();
+            }
+            let words = match p.random.below(3) {
+                0 => "as = \"control\"",
+                1 => "breaks_u = {3}",
+                _ => "measure = \"bending\"",
+            };
+            format!("{grid}, {}, {words}, {divisions}", p.number(0.05, 0.3))
+        }
         _ => return None,
     })
 }
