@@ -14,12 +14,18 @@ from moldloft.errors import Error, FileError
 if TYPE_CHECKING:
     from moldloft.models import Model
 
-__all__ = ["FORMATS", "Output", "commit", "format_named", "produce"]
+__all__ = ["FORMATS", "SOLVERS", "Output", "commit", "file_name", "format_named", "produce"]
 
 FORMATS = {
     "gdf": "WAMIT low-order panels",
+    "nemoh": "Nemoh panels (.mar)",
+    "hydrostar": "HydroStar panels (.hst)",
+    "hams": "HAMS panels (.pnl)",
+    "aqwa": "AQWA geometry decks (.dat)",
     "stl": "triangles, binary STL",
     "obj": "Wavefront OBJ",
+    "ply": "binary PLY",
+    "glb": "glTF with patch names and colours",
     "vtp": "VTK polygons",
     "vts": "VTK structured grids, one per patch",
     "p3d": "Plot3D surface grids",
@@ -30,7 +36,22 @@ FORMATS = {
 }
 """The formats by name, with a line about each."""
 
-_ALIASES = {"plot3d": "p3d", "xyz": "p3d", "vtk": "vtp"}
+_ALIASES = {
+    "plot3d": "p3d",
+    "xyz": "p3d",
+    "vtk": "vtp",
+    "wamit": "gdf",
+    "mar": "nemoh",
+    "hst": "hydrostar",
+    "pnl": "hams",
+    "gltf": "glb",
+}
+
+SOLVERS = ("gdf", "nemoh", "hydrostar", "hams", "aqwa")
+"""The formats of panel codes."""
+
+_SUFFIXES = {"nemoh": "mar", "hydrostar": "hst", "hams": "pnl", "aqwa": "dat"}
+"""Endings of file names where they are not the format's name."""
 
 
 @dataclass(frozen=True)
@@ -51,20 +72,40 @@ def format_named(name: str) -> str:
     """
     wanted = name.lower()
     wanted = _ALIASES.get(wanted, wanted)
+    if wanted == "dat":
+        raise Error(
+            "error: files of Nemoh and of AQWA end in `.dat`; say which format: `nemoh` or `aqwa`"
+        )
     if wanted not in FORMATS:
         raise Error(f"error: there is no format `{name}`; there are: {', '.join(FORMATS)}")
     return wanted
 
 
-def produce(model: Model, format: str, path: Path) -> list[Output]:
-    """The files of a model in one format; ``path`` gives their names."""
+def file_name(stem: str, format: str) -> str:
+    """The name of a model's file in a format.
+
+    >>> file_name("hull", "gdf"), file_name("hull", "nemoh")
+    ('hull.gdf', 'hull.mar')
+    """
+    return f"{stem}.{_SUFFIXES.get(format, format)}"
+
+
+def produce(
+    model: Model, format: str, path: Path, *, lids: bool = False, immersed: bool = False
+) -> list[Output]:
+    """The files of a model in one format; ``path`` gives their names.
+
+    ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`.
+    """
     wanted = format_named(format)
+    if (lids or immersed) and wanted not in SOLVERS:
+        named = "lids" if lids else "immersed"
+        raise Error(f"error: `{named}` is for the files of panel codes, {', '.join(SOLVERS)}")
     if wanted in ("sdl", "ms2"):
         return [Output(path.name, model.convert(wanted).encode())]
-    files = model._document.write(wanted, path.stem)
-    if len(files) == 1:
-        return [Output(path.name, files[0][1])]
-    return [Output(name, data) for name, data in files]
+    files = model._document.write(wanted, path.stem, lids, immersed)
+    main = file_name(path.stem, wanted)
+    return [Output(path.name if name == main else name, data) for name, data in files]
 
 
 def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:

@@ -347,7 +347,14 @@ class Model:
 
     # -- writing ---------------------------------------------------------------------------
 
-    def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> list[Path]:
+    def write(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        format: str | None = None,
+        lids: bool = False,
+        immersed: bool = False,
+    ) -> list[Path]:
         """Write the panels to a file, whole or not at all.
 
         Parameters
@@ -355,8 +362,13 @@ class Model:
         path
             The file.
         format
-            One of ``gdf``, ``stl``, ``obj``, ``vtp``, ``vts``, ``p3d``, ``svg``, ``png``,
-            ``sdl``, ``ms2``; by default what the file's name ends in.
+            One of :data:`moldloft.files.FORMATS`, such as ``gdf``, ``nemoh``, ``stl``, ``glb``,
+            ``vts``, ``svg`` or ``sdl``; by default what the file's name ends in.
+        lids
+            For panel codes: write lids too. HAMS has them in a file of their own.
+        immersed
+            For panel codes: write only what is below z = 0, its panels cut there. AQWA's file is
+            always cut.
 
         Returns
         -------
@@ -366,7 +378,8 @@ class Model:
         from moldloft.files import commit, produce
 
         path = Path(path)
-        return commit(path.parent, produce(self, format or path.suffix.lstrip("."), path))
+        wanted = format or path.suffix.lstrip(".")
+        return commit(path.parent, produce(self, wanted, path, lids=lids, immersed=immersed))
 
     def convert(self, to: str) -> str:
         """The model's text in another form: ``"sdl"`` or ``"ms2"``."""

@@ -131,6 +131,49 @@ def test_stl_by_trimesh_and_manifold(drum, tmp_path):
     assert solid.volume() == pytest.approx(BASE, rel=1e-6)
 
 
+def test_ply_by_meshio(box, tmp_path):
+    (path,) = box.write(tmp_path / "box.ply")
+    ours = box.mesh()
+    mesh = meshio.read(path)
+    np.testing.assert_array_equal(mesh.points, ours.vertices)
+    np.testing.assert_array_equal(mesh.cells_dict["quad"], ours.faces)
+    assert b"comment patch front wetted faces 24 32" in path.read_bytes()
+    assert trimesh.load_mesh(path).volume == pytest.approx(6)
+
+
+def test_ply_by_pyvista(drum, tmp_path):
+    (path,) = drum.write(tmp_path / "drum.ply")
+    mesh = pyvista.read(path)
+    assert mesh.n_cells == len(drum.mesh().faces), "triangles beside quads"
+    assert mesh.n_open_edges == 0
+    assert mesh.volume == pytest.approx(BASE, rel=1e-6)
+
+
+def test_glb_by_trimesh(tmp_path):
+    text = BOX
+    for colour, name in enumerate(["bottom", "top", "front", "back", "left", "right"]):
+        line = next(line for line in BOX.splitlines() if line.startswith(f"RuledSurf {name}("))
+        text = text.replace(line, line.replace(");", f", colour = {colour + 8});"))
+    box = moldloft.loads(text)
+    (path,) = box.write(tmp_path / "box.glb")
+    scene = trimesh.load_scene(path)
+    assert set(scene.geometry) == {"bottom", "top", "front", "back", "left", "right"}
+    whole = trimesh.util.concatenate(scene.dump())
+    whole.merge_vertices(merge_tex=True, merge_norm=True)
+    assert whole.is_watertight and whole.volume == pytest.approx(6, rel=1e-6)
+    # Up is y: our z runs along it, our y against z.
+    np.testing.assert_allclose(whole.bounds, [[0, 0, -3], [2, 1, 0]], atol=1e-6)
+    colours = {tuple(g.visual.material.baseColorFactor) for g in scene.geometry.values()}
+    assert len(colours) == 6, "each patch has a colour of its own"
+
+
+def test_glb_is_in_metres(hull, tmp_path):
+    (path,) = hull.write(tmp_path / "hull.glb")
+    scene = trimesh.load_scene(path)
+    length = np.ptp(hull.mesh().vertices[:, 0]) * 0.3048
+    assert np.ptp(scene.bounds[:, 0]) == pytest.approx(length, rel=1e-6)
+
+
 def test_a_closed_body_stays_closed(drum):
     for height in (0.5, 0.7, 1.9):
         drum["height"] = height

@@ -30,6 +30,43 @@ pub enum WriteError {
         /// A patch beyond the plane.
         patch: String,
     },
+    /// The model has something that the format has no place for.
+    CannotHold {
+        /// The format.
+        format: &'static str,
+        /// What it cannot say.
+        what: &'static str,
+    },
+    /// A panel reaches above the water where the format allows none to.
+    AboveWater {
+        /// The format.
+        format: &'static str,
+        /// A patch with such a panel.
+        patch: String,
+    },
+    /// A number does not fit its column.
+    TooWide {
+        /// The format.
+        format: &'static str,
+        /// The number.
+        value: Bits,
+    },
+}
+
+/// A number that is compared by its bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bits(u64);
+
+impl Bits {
+    /// The bits of a number.
+    pub fn of(x: f64) -> Self {
+        Self(x.to_bits())
+    }
+
+    /// The number.
+    pub fn value(self) -> f64 {
+        f64::from_bits(self.0)
+    }
 }
 
 impl fmt::Display for WriteError {
@@ -47,6 +84,14 @@ impl fmt::Display for WriteError {
             }
             Self::NoGrid { patches } => {
                 write!(f, "no structured grid in patch `{}`", patches.join("`, `"))
+            }
+            Self::CannotHold { format, what } => write!(f, "{format} cannot hold {what}"),
+            Self::AboveWater { format, patch } => write!(
+                f,
+                "{format} takes no panels above the water, z = 0, but patch `{patch}` reaches above it"
+            ),
+            Self::TooWide { format, value } => {
+                write!(f, "the coordinate {} does not fit a column of {format}", value.value())
             }
             Self::BothSides { axis, patch } => write!(
                 f,

@@ -5,10 +5,10 @@
 //! is this house's own orientation; a triangle repeats a corner. `ISX` = 1 means that x = 0 is a
 //! plane of symmetry, `ISY` = 1 that y = 0 is, and only one half, or quarter, is listed.
 
-use crate::error::check_positions;
+use crate::solver::{Panels, title};
 use crate::text::{Line, put, quoted, real, utf8};
-use crate::{Place, ReadError, WriteError};
-use moldloft_mesh::{Mesh, PatchInfo, Tag, TopologyBuilder};
+use crate::{Place, ReadError, Skin, WriteError};
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
 
 const FORMAT: &str = "GDF";
@@ -36,6 +36,15 @@ impl Default for Header {
     }
 }
 
+impl Header {
+    /// The first three lines, which the low and the high order share.
+    pub(crate) fn lines(&self) -> String {
+        let (length, gravity) = (real(self.length), real(self.gravity));
+        let (x, y) = (u8::from(self.mirror_x), u8::from(self.mirror_y));
+        format!("{}\n{length} {gravity}\n{x} {y}\n", title(&self.title))
+    }
+}
+
 /// The file of the mesh's skin: patches that are lids, water or symmetry planes are left out, but
 /// lids are kept with `lids`.
 ///
@@ -44,47 +53,15 @@ impl Default for Header {
 /// # Errors
 /// Positions that are not finite, and a half that crosses its symmetry plane.
 pub fn write(mesh: &Mesh, header: &Header, lids: bool) -> Result<Vec<u8>, WriteError> {
-    check_positions(mesh, f64::MAX)?;
-    let mirrors = [header.mirror_x, header.mirror_y];
-    let snap = 1e-9 * mesh.bounds().diagonal();
-    let corner = |v: u32| {
-        let mut p = mesh.positions()[v as usize].to_array();
-        for axis in 0..2 {
-            if mirrors[axis] && p[axis].abs() <= snap {
-                p[axis] = 0.0;
-            }
-        }
-        p
-    };
-    let patches = || {
-        (mesh.patches().iter()).filter(|p| p.info.tag.is_skin() || lids && p.info.tag == Tag::Lid)
-    };
-    for axis in (0..2).filter(|&axis| mirrors[axis]) {
-        let mut seen = 0.0;
-        for patch in patches() {
-            for &v in mesh.faces()[patch.faces.clone()].iter().flatten() {
-                let side = corner(v)[axis];
-                if seen * side < 0.0 {
-                    let (axis, patch) = (['x', 'y'][axis], patch.info.name.clone());
-                    return Err(WriteError::BothSides { axis, patch });
-                }
-                if side != 0.0 {
-                    seen = side.signum();
-                }
-            }
-        }
-    }
-    let count: usize = patches().map(|p| p.faces.len()).sum();
-    let title = header.title.replace(|c: char| c.is_control(), " ");
-    let mut out = String::with_capacity(200 + 240 * count);
-    put!(out, "{title}\n{} {}\n", real(header.length), real(header.gravity));
-    put!(out, "{} {}\n{count}\n", u8::from(header.mirror_x), u8::from(header.mirror_y));
-    for patch in patches() {
-        for &face in &mesh.faces()[patch.faces.clone()] {
-            for v in face {
-                let [x, y, z] = corner(v).map(real);
-                put!(out, "{x} {y} {z}\n");
-            }
+    let skin = Skin { mirror_x: header.mirror_x, mirror_y: header.mirror_y, lids };
+    let panels = Panels::of(mesh, skin)?;
+    let mut out = String::with_capacity(200 + 240 * panels.faces.len());
+    put!(out, "{}", header.lines());
+    put!(out, "{}\n", panels.faces.len());
+    for face in &panels.faces {
+        for v in face {
+            let [x, y, z] = panels.points[*v as usize].map(real);
+            put!(out, "{x} {y} {z}\n");
         }
     }
     Ok(out.into_bytes())

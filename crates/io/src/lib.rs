@@ -3,6 +3,12 @@
 //! | format | write | read |
 //! | --- | --- | --- |
 //! | WAMIT low-order GDF | [`gdf::write`] | [`gdf::read`] |
+//! | Nemoh | [`nemoh::write`] | – |
+//! | HydroStar | [`hydrostar::write`] | – |
+//! | HAMS | [`hams::write`], [`hams::write_lids`] | – |
+//! | AQWA geometry decks | [`aqwa::write`] | – |
+//! | PLY | [`ply::write`] (binary) | – |
+//! | glTF | [`gltf::write`] (`.glb`) | – |
 //! | STL | [`stl::write`] (binary) | [`stl::read`] (binary and text) |
 //! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`] | – |
@@ -20,16 +26,24 @@
 //! Invariant: this crate performs no input or output.
 
 mod error;
+mod solver;
 mod text;
 
+pub mod aqwa;
 pub mod drawing;
 pub mod gdf;
+pub mod gltf;
+pub mod hams;
+pub mod hydrostar;
+pub mod nemoh;
 pub mod obj;
 pub mod plot3d;
+pub mod ply;
 pub mod stl;
 pub mod vtk;
 
-pub use error::{Place, ReadError, WriteError};
+pub use error::{Bits, Place, ReadError, WriteError};
+pub use solver::Skin;
 
 #[cfg(test)]
 mod fixtures;

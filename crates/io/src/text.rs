@@ -33,6 +33,22 @@ pub(crate) fn xml(text: &str) -> String {
     out
 }
 
+/// Text as a JSON string, quotes included (RFC 8259, section 7).
+pub(crate) fn json(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push('"');
+    for c in text.chars() {
+        match c {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            c if c.is_control() => append(&mut out, format_args!("\\u{:04x}", c as u32)),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
 /// Appends formatted text; writing to a `String` cannot fail.
 macro_rules! put {
     ($out:expr, $($arg:tt)*) => { $crate::text::append(&mut $out, format_args!($($arg)*)) };

@@ -412,8 +412,11 @@ impl PyDocument {
         py: Python<'py>,
         format: String,
         stem: String,
+        lids: bool,
+        immersed: bool,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-        let files = self.long_checked(py, move |d| write::files(d, &format, &stem))?;
+        let wishes = write::Wishes { lids, immersed };
+        let files = self.long_checked(py, move |d| write::files(d, &format, &stem, wishes))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
     }
 

@@ -2,11 +2,16 @@
 
 use crate::arrays;
 use moldloft_lang::Panelled;
-use moldloft_mesh::{Mesh, PatchInfo, Spread, TopologyBuilder, measure, measure_patch, quality};
+use moldloft_mesh::{
+    Block, Mesh, PatchInfo, Spread, TopologyBuilder, measure, measure_patch, quality,
+};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
+
+/// Patch, name, tag, turned, vertices.
+type BlockFacts<'py> = (usize, String, String, bool, Bound<'py, PyArray2<u32>>);
 
 /// Panels at one state of a model.
 #[pyclass(frozen, name = "Mesh", module = "moldloft._core")]
@@ -60,6 +65,18 @@ impl PyMesh {
         }
         dict.set_item("open_loops", loops)?;
         Ok(dict)
+    }
+
+    /// The structured patches: index of the patch, name, tag, turned or not, and the grid of vertices.
+    fn blocks<'py>(&self, py: Python<'py>) -> PyResult<Vec<BlockFacts<'py>>> {
+        let patches = self.panelled.mesh.patches().iter().enumerate();
+        let blocks = patches.filter_map(|(k, patch)| Some((k, &patch.info, patch.block.as_ref()?)));
+        let row = |(k, info, b): (usize, &PatchInfo, &Block)| {
+            let array = PyArray2::<u32>::zeros(py, [b.nu, b.nv], false);
+            array.readwrite().as_slice_mut()?.copy_from_slice(&b.vertices);
+            Ok((k, info.name.clone(), info.tag.word().to_owned(), b.reversed, array))
+        };
+        blocks.map(row).collect()
     }
 
     /// The patches with their measures and quality.

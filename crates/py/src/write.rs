@@ -3,11 +3,14 @@
 use moldloft_diag::Diagnostic;
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
-use moldloft_io::{gdf, obj, plot3d, stl, vtk};
+use moldloft_io::{
+    Skin, WriteError, aqwa, gdf, gltf, hams, hydrostar, nemoh, obj, plot3d, ply, stl, vtk,
+};
 use moldloft_lang::{Document, Section};
+use moldloft_mesh::Mesh;
 use moldloft_model::{Polyline, Sectioned};
 use moldloft_num::Vec3;
-use moldloft_picture::{Line, Options, render};
+use moldloft_picture::{Line, Options, patch_colour, render};
 use moldloft_registry::Value;
 
 /// Contours on pictures: dark grey, so that they show on every patch.
@@ -18,11 +21,28 @@ const CONTOUR_WIDTH: f32 = 1.5;
 
 type Outcome<R> = Result<R, Vec<Diagnostic>>;
 
+/// Standard gravity in metres per second squared (ISO 80000-3).
+const GRAVITY: f64 = 9.80665;
+
+/// What a user may ask of the files of panel codes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wishes {
+    /// Lids among the panels, or in a file of their own where the code wants that.
+    pub lids: bool,
+    /// Only what is below z = 0, cut there.
+    pub immersed: bool,
+}
+
 /// The files of the model's panels in one format.
 ///
 /// # Errors
 /// What the format cannot hold.
-pub fn files(document: &mut Document, format: &str, stem: &str) -> Outcome<Vec<NamedFile>> {
+pub fn files(
+    document: &mut Document,
+    format: &str,
+    stem: &str,
+    wishes: Wishes,
+) -> Outcome<Vec<NamedFile>> {
     if format == "svg" {
         return lines(document, stem);
     }
@@ -32,21 +52,18 @@ pub fn files(document: &mut Document, format: &str, stem: &str) -> Outcome<Vec<N
         return Ok(vec![NamedFile { name: format!("{stem}.png"), bytes }]);
     }
     let symmetry = document.symmetry();
+    let metres = length_unit(document).1 / 1000.0;
     let panelled = document.panelled().map_err(|d| vec![d])?;
     let mesh = &panelled.mesh;
     let one = |bytes: Vec<u8>| vec![NamedFile { name: format!("{stem}.{format}"), bytes }];
     let files = match format {
-        "gdf" => {
-            let header = gdf::Header {
-                title: stem.into(),
-                mirror_x: symmetry.contains('x'),
-                mirror_y: symmetry.contains('y'),
-                ..gdf::Header::default()
-            };
-            gdf::write(mesh, &header, false).map(one)
+        "gdf" | "nemoh" | "hydrostar" | "hams" | "aqwa" => {
+            solver_files(mesh, format, stem, &symmetry, GRAVITY / metres, wishes)
         }
         "stl" => stl::write(mesh, stem).map(one),
         "obj" => obj::write(mesh).map(one),
+        "ply" => ply::write(mesh).map(one),
+        "glb" => gltf::write(mesh, stem, metres, patch_colour).map(one),
         "vtp" => vtk::polydata(mesh).map(one),
         "vts" => vtk::structured_files(mesh, stem),
         "p3d" => plot3d::write(mesh, plot3d::Layout::Stream).map(one),
@@ -55,9 +72,56 @@ pub fn files(document: &mut Document, format: &str, stem: &str) -> Outcome<Vec<N
             return Err(vec![Diagnostic::error("unknown-format", message)]);
         }
     };
-    files.map_err(|error| {
-        let message = format!("cannot write {format}: {error}");
-        vec![Diagnostic::error("cannot-write", message)]
+    files.map_err(|error| cannot_write(format, &error))
+}
+
+fn cannot_write(format: &str, error: &WriteError) -> Vec<Diagnostic> {
+    vec![Diagnostic::error("cannot-write", format!("cannot write {format}: {error}"))]
+}
+
+/// The files of a panel code. A symmetry that the code has no flag for is written out, the image
+/// with its original.
+fn solver_files(
+    mesh: &Mesh,
+    format: &str,
+    stem: &str,
+    symmetry: &str,
+    gravity: f64,
+    wishes: Wishes,
+) -> Result<Vec<NamedFile>, WriteError> {
+    let large = |_| WriteError::TooLarge { what: "vertices", count: mesh.positions().len() };
+    let (mirror_x, mirror_y) = (symmetry.contains('x'), symmetry.contains('y'));
+    let flag_x = match format {
+        "nemoh" => false,
+        "hydrostar" => mirror_y,
+        _ => true,
+    };
+    let wet = (wishes.immersed || format == "aqwa").then(|| mesh.immersed(0.0)).transpose();
+    let wet = wet.map_err(large)?;
+    let mesh = wet.as_ref().unwrap_or(mesh);
+    let whole = (mirror_x && !flag_x).then(|| mesh.with_mirror_image(0, ".mirror")).transpose();
+    let whole = whole.map_err(large)?;
+    let mesh = whole.as_ref().unwrap_or(mesh);
+    let skin = Skin { mirror_x: mirror_x && flag_x, mirror_y, lids: wishes.lids };
+    let file = |name: String, bytes| NamedFile { name, bytes };
+    Ok(match format {
+        "nemoh" => vec![file(format!("{stem}.mar"), nemoh::write(mesh, skin)?)],
+        "hydrostar" => vec![file(format!("{stem}.hst"), hydrostar::write(mesh, stem, skin)?)],
+        "aqwa" => vec![file(format!("{stem}.dat"), aqwa::write(mesh, stem, skin)?)],
+        "hams" => {
+            // HAMS reads lids from a file of their own.
+            let hull = Skin { lids: false, ..skin };
+            let mut files = vec![file(format!("{stem}.pnl"), hams::write(mesh, hull)?)];
+            if let Some(lids) = hams::write_lids(mesh, hull)?.filter(|_| wishes.lids) {
+                files.push(file(format!("{stem}.waterplane.pnl"), lids));
+            }
+            files
+        }
+        _ => {
+            let (mirror_x, title) = (skin.mirror_x, stem.into());
+            let header = gdf::Header { title, gravity, mirror_x, mirror_y, length: 1.0 };
+            vec![file(format!("{stem}.gdf"), gdf::write(mesh, &header, wishes.lids)?)]
+        }
     })
 }
 

@@ -55,6 +55,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         default="both",
         help="count a mirrored model with its image (the default), or one side alone",
     )
+    parser.add_argument("--lids", action="store_true", help="lids too in the files of panel codes")
+    parser.add_argument(
+        "--immersed",
+        action="store_true",
+        help="only what is below z = 0 in the files of panel codes, cut there",
+    )
     parser.add_argument("--json", action="store_true", help="one object instead of the table")
     parser.add_argument(
         "--watch", action="store_true", help="again at every save, with a picture; ends by Ctrl-C"
@@ -107,7 +113,7 @@ def _stamp(path: str) -> tuple[int, int]:
 
 
 def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int:
-    from moldloft.files import Output, commit, produce
+    from moldloft.files import SOLVERS, Output, commit, file_name, produce
 
     with Progress() as progress:
         progress.stage(f"running {options.model}")
@@ -131,7 +137,10 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
         stem = Path(options.model).stem
         for name in dict.fromkeys(options.to):
             progress.stage(f"writing {name}")
-            outputs += produce(model, name, folder / f"{stem}.{name}")
+            path = folder / file_name(stem, name)
+            solver = name in SOLVERS
+            lids, immersed = options.lids and solver, options.immersed and solver
+            outputs += produce(model, name, path, lids=lids, immersed=immersed)
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)
