@@ -19,6 +19,9 @@ pub enum Root {
     Curve(Key),
     /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) of a surface object.
     Edge(Key, u8),
+    /// The straight line between two point objects, from the smaller key (t = 0) to the greater:
+    /// whatever is drawn straight and evenly between the same two points lies on it.
+    Segment(Key, Key),
 }
 
 /// Where a piece begins or ends on its root.
@@ -43,6 +46,23 @@ pub struct Piece<T> {
     pub until: T,
 }
 
+impl<T: Real> Piece<T> {
+    /// The whole of the straight line from one point object to another, to the share `until` of
+    /// the alias; `None` when they are the same.
+    pub fn straight(from: Key, to: Key, until: T) -> Option<Self> {
+        let mark = |point: Key, other: Key| Mark {
+            t: if point < other { T::zero() } else { T::one() },
+            point: Some(point),
+        };
+        (from != to).then(|| Piece {
+            root: Root::Segment(from.min(to), from.max(to)),
+            from: mark(from, to),
+            to: mark(to, from),
+            until,
+        })
+    }
+}
+
 /// What a curve runs along.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trace<T> {
@@ -58,6 +78,18 @@ impl<T: Real> Trace<T> {
     /// A root of its own without known end points.
     pub fn own() -> Self {
         Trace::Own([None, None])
+    }
+
+    /// A straight line between two points, evenly divided: on the segment of its point objects,
+    /// or that point when both are one.
+    pub fn straight(ends: [Option<Key>; 2]) -> Self {
+        match ends {
+            [Some(from), Some(to)] => match Piece::straight(from, to, T::one()) {
+                Some(piece) => Trace::Pieces(smallvec![piece]),
+                None => Trace::Point(Some(from)),
+            },
+            _ => Trace::Own(ends),
+        }
     }
 
     /// The chain of pieces of a curve with this trace, whose object is `root`.

@@ -328,6 +328,13 @@ fn on_root(scene: &Scene<f64>, root: Root, t: f64) -> Vec3 {
             Value::Surface(s) => boundary(s, k as usize, t),
             other => panic!("the root is {other:?}"),
         },
+        Root::Segment(a, b) => {
+            let [a, b] = [a, b].map(|key| match value(key) {
+                Value::Point(p) => p.xyz,
+                other => panic!("the root ends at {other:?}"),
+            });
+            a * (1.0 - t) + b * t
+        }
     }
 }
 

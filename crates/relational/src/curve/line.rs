@@ -1,10 +1,12 @@
-use crate::curve::Ended;
+use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
 
 /// A straight line: C(t) = (1 - t) P1 + t P2.
 ///
-/// Coincident points are allowed, but then the line serves no purpose that needs a direction.
+/// Coincident points are allowed, but then the line serves no purpose that needs a direction. A line
+/// from a point to itself is that point: as a master it makes a pole. Lines between the same two
+/// points are one for meshes, and so are the straight edges of surfaces between them.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -20,9 +22,24 @@ pub struct Line<T: Real> {
 
 impl<T: Real> Build<T> for Line<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let curve = Segment { from: self.p1.xyz, to: self.p2.xyz };
-        let line = Ended { curve, ends: [self.p1.key, self.p2.key] };
+        let segment = Segment { from: self.p1.xyz, to: self.p2.xyz };
+        let line = Straight { segment, ends: [self.p1.key, self.p2.key] };
         Ok(Value::Curve(CurveRef::new(line, 0)))
+    }
+}
+
+struct Straight<T> {
+    segment: Segment<T>,
+    ends: [Option<Key>; 2],
+}
+
+impl<T: Real> CurveFormula for Straight<T> {
+    type Scalar = T;
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        self.segment.at(t)
+    }
+    fn trace(&self) -> Trace<T> {
+        Trace::straight(self.ends)
     }
 }
 

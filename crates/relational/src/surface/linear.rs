@@ -149,6 +149,6 @@ impl<T: Real> Surface<T> for Blend<T> {
     }
 
     fn edges(&self) -> Edges<T> {
-        self.masters.edges()
+        if self.knots.degree() == 1 { self.masters.straight_edges() } else { self.masters.edges() }
     }
 }

@@ -1,6 +1,6 @@
 //! What all lofts have in common: their master curves, and so their edges.
 
-use moldloft_num::trace::{Edge, Edges, Key, Trace};
+use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
 use moldloft_num::{Jet, Order, Real, Uni1, Vec3};
 use moldloft_registry::{CurveRef, Fault};
 use smallvec::SmallVec;
@@ -48,6 +48,29 @@ impl<T: Real> Masters<T> {
         all.sort_by(f64::total_cmp);
         all.dedup();
         all
+    }
+
+    /// The edges of a surface that is straight from each master to the next, at even steps of v:
+    /// as [`Masters::edges`], and the other two run along the segments between the masters' ends.
+    pub fn straight_edges(&self) -> Edges<T> {
+        let mut edges = self.edges();
+        let steps = self.0.len() - 1;
+        for (end, k) in [(1, 1), (0, 3)] {
+            if edges.edges[k] != Edge::Own {
+                continue;
+            }
+            let ends: Vec<Option<Key>> = self.0.iter().map(|c| c.end_points()[end]).collect();
+            let pieces: Option<_> = (ends.windows(2).enumerate())
+                .map(|(n, pair)| {
+                    let until = if n + 1 == steps { 1.0 } else { (n + 1) as f64 / steps as f64 };
+                    Piece::straight(pair[0]?, pair[1]?, T::from(until))
+                })
+                .collect();
+            if let Some(pieces) = pieces {
+                edges = edges.with(k, Edge::Pieces(pieces));
+            }
+        }
+        edges
     }
 
     /// The edges of a surface that begins with the first master at v = 0 and ends with the last at
