@@ -12,7 +12,7 @@ use crate::model_file::{
 };
 use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
-use moldloft_registry::{Class, Field, Head, Unit, Value};
+use moldloft_registry::{Class, Field, Head, Panels, Spacing, Unit, Value};
 use moldloft_syntax::model_file::{Field as Written, FieldKind, ItemKind, Object as Line};
 use moldloft_syntax::{number, sdl};
 use std::fmt::Write;
@@ -99,11 +99,38 @@ fn head_arguments(head: &Head, class: Class) -> Vec<String> {
     if head.subdivisions != usual.subdivisions {
         named.push(format!("subdivisions = {}", pair(head.subdivisions)));
     }
+    if let Some(panels) = &head.panels {
+        named.extend(panel_arguments(panels));
+    }
     if head.orientation != usual.orientation {
         named.push(format!("orientation = {}", head.orientation));
     }
     if let Some(attributes) = &head.attributes {
         named.push(format!("attributes = {}", quoted(attributes)));
+    }
+    named
+}
+
+/// What is said of panels besides their number.
+fn panel_arguments(panels: &Panels) -> Vec<String> {
+    let mut named = Vec::new();
+    let pair = |name: &str, [a, b]: [String; 2]| {
+        if a == b { format!("{name} = {a}") } else { format!("{name} = {{{a}, {b}}}") }
+    };
+    if panels.size.iter().any(Option::is_some) {
+        named.push(pair("size", panels.size.map(|s| s.unwrap_or(0.0).to_string())));
+    }
+    if panels.spacing.iter().any(Option::is_some) {
+        let spelled = |s: Option<Spacing>| s.map_or("\"auto\"".into(), |s| s.spelled());
+        named.push(pair("spacing", panels.spacing.map(spelled)));
+    }
+    match &panels.tags[..] {
+        [] => {}
+        [tag] => named.push(format!("tags = {}", quoted(tag))),
+        tags => {
+            let list = tags.iter().map(|tag| quoted(tag)).collect::<Vec<_>>().join(", ");
+            named.push(format!("tags = {{{list}}}"));
+        }
     }
     named
 }
@@ -509,7 +536,8 @@ impl<'a> ToModelFile<'a> {
 
     fn head(&self, head: &Head, class: Class) -> String {
         let mut out = format!(" {} {}", head.colour, head.visible);
-        let ([nu, nv], [mu, mv]) = (head.divisions, head.subdivisions);
+        // A model file has no word for counts that the neighbours determine.
+        let ([nu, nv], [mu, mv]) = (head.own_divisions(), head.subdivisions);
         let _ = match class.dimension() {
             Some(1) if self.legacy && mu == Head::of(class).subdivisions[0] => {
                 write!(out, " {nu}")

@@ -7,7 +7,7 @@ use crate::world::World;
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_mesh::Mesh;
-use moldloft_model::{Applied, Extent, Graph, Panelling};
+use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
 use moldloft_num::Dual4;
 use moldloft_registry::{Class, Context, Registry, Row, Scalar};
 use std::collections::HashSet;
@@ -29,6 +29,8 @@ pub struct Document {
     pub(crate) plain: Evaluation<f64>,
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
     panelled: Option<(u64, Arc<Panelled>)>,
+    /// The counts of divisions at the text's own values, and the version of the text.
+    nominal: Option<(u64, Nominal)>,
     applied: Applied,
     cancelled: Arc<AtomicBool>,
 }
@@ -102,6 +104,7 @@ impl Document {
             plain: Evaluation::default(),
             dual: None,
             panelled: None,
+            nominal: None,
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
             cancelled: Arc::default(),
         }
@@ -248,9 +251,60 @@ impl Document {
         }
     }
 
-    /// All that is wrong or remarkable, in the order of the text's faults, then the run's.
+    /// The counts of divisions at the values of parameters that the text states, when some
+    /// parameter has another: what follows from lengths stays what it is for the text.
+    fn nominal(&mut self) -> Option<Nominal> {
+        if !self.overrides.keys().any(|name| self.params().iter().any(|p| p.name == *name)) {
+            return None;
+        }
+        let version = self.text_version();
+        if let Some((at, nominal)) = &self.nominal
+            && *at == version
+        {
+            return Some(nominal.clone());
+        }
+        let overrides = std::mem::take(&mut self.overrides);
+        let mut evaluation = Evaluation::default();
+        self.evaluate(&mut evaluation, &|_, x| x, &HashSet::new(), false);
+        self.overrides = overrides;
+        let nominal = Panelling::new(&evaluation.graph).ok()?.nominal();
+        self.nominal = Some((version, nominal.clone()));
+        Some(nominal)
+    }
+
+    /// A word that changes with the text, edits of literals included.
+    fn text_version(&self) -> u64 {
+        use std::hash::{DefaultHasher, Hash, Hasher};
+        let mut hasher = DefaultHasher::new();
+        self.text().hash(&mut hasher);
+        hasher.finish()
+    }
+
+    /// All that is wrong or remarkable, in the order of the text's faults, then the run's, then
+    /// what was noticed at the joins when panels were made.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
-        self.text_diagnostics.iter().chain(&self.run_diagnostics).cloned().collect()
+        let mut all: Vec<_> =
+            self.text_diagnostics.iter().chain(&self.run_diagnostics).cloned().collect();
+        if let Some((clock, panelled)) = &self.panelled
+            && *clock == self.plain.graph.last_change()
+        {
+            all.extend(panelled.panelling.remarks().iter().map(|remark| self.told(remark)));
+        }
+        all
+    }
+
+    fn told(&self, remark: &moldloft_model::Remark) -> Diagnostic {
+        let mut diagnostic =
+            Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
+        let object =
+            remark.object().and_then(|name| self.plain.graph.get(self.plain.graph.find(name)?));
+        if let Some(object) = object {
+            diagnostic = diagnostic.object(&*object.name);
+            if let Some(span) = self.declared_at(&self.plain, object) {
+                diagnostic = diagnostic.at(span);
+            }
+        }
+        diagnostic
     }
 
     /// True when there is an error.
@@ -540,9 +594,14 @@ impl Document {
         {
             return Ok(panelled.clone());
         }
-        let panelling =
-            Panelling::new(&self.plain.graph).map_err(|f| crate::place::unplaced(&f))?;
-        let mesh = panelling.mesh(&self.plain.graph).ok_or_else(|| {
+        let unplaced = |f: moldloft_registry::Fault| crate::place::unplaced(&f);
+        let mut panelling = Panelling::new(&self.plain.graph).map_err(unplaced)?;
+        if panelling.is_measured()
+            && let Some(nominal) = self.nominal()
+        {
+            panelling = Panelling::like(&self.plain.graph, Some(&nominal)).map_err(unplaced)?;
+        }
+        let mesh = panelling.own_mesh().ok_or_else(|| {
             Diagnostic::error("no-mesh", "the model has no panels").help("show a surface")
         })?;
         let panelled = Arc::new(Panelled { panelling, mesh });

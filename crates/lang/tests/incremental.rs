@@ -24,9 +24,6 @@ fn seen(document: &mut Document) -> String {
     for param in document.params() {
         let _ = writeln!(out, "{} = {:x}", param.name, param.value.to_bits());
     }
-    for line in told(document).iter().chain(document.printed()) {
-        let _ = writeln!(out, "{line}");
-    }
     match document.panelled() {
         Ok(panelled) => {
             for p in panelled.mesh.positions() {
@@ -37,6 +34,9 @@ fn seen(document: &mut Document) -> String {
             }
         }
         Err(fault) => drop(writeln!(out, "{}", fault.message)),
+    }
+    for line in told(document).iter().chain(document.printed()) {
+        let _ = writeln!(out, "{line}");
     }
     out
 }

@@ -31,7 +31,7 @@ impl<'s> Sectioned<'s> {
     /// Tabulates `surface` at least four times as fine as its panels, 32 steps at least.
     pub fn new(surface: &'s SurfaceRef<f64>, head: &Head) -> Self {
         let steps = |k: usize| {
-            let n = head.divisions[k].saturating_mul(head.subdivisions[k]).saturating_mul(4);
+            let n = head.own_divisions()[k].saturating_mul(head.subdivisions[k]).saturating_mul(4);
             let n = n.clamp(32, 512);
             (0..=n).map(|i| f64::from(i) / f64::from(n)).collect::<Vec<f64>>()
         };

@@ -17,4 +17,4 @@ mod panel;
 pub use contour::{Polyline, Sectioned};
 pub use graph::{Applied, DEEPEST_NESTING, Declaration, Extent, Graph, Run};
 pub use object::{Failure, Object, State};
-pub use panel::{MOST_PANELS, Panelling, Remark, divisions, too_many_panels};
+pub use panel::{ChainStep, MOST_PANELS, Nominal, Panelling, Remark, divisions, too_many_panels};

@@ -2,6 +2,97 @@ use crate::{Class, DefaultValue, Fault, Field, Unit, Value};
 use moldloft_num::Real;
 use std::sync::Arc;
 
+/// How the panels along a parameter are spaced, from one end to the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Spacing {
+    /// Even in the parameter.
+    #[default]
+    Uniform,
+    /// Narrow towards both ends: (1 - cos(pi s)) / 2.
+    Cosine,
+    /// Narrow towards the begin: 1 - cos(pi s / 2).
+    Start,
+    /// Narrow towards the end: sin(pi s / 2).
+    End,
+    /// Each panel is this many times as long as the one before.
+    Growth(f64),
+}
+
+impl Spacing {
+    /// The words for all but growth.
+    pub const WORDS: [(&'static str, Spacing); 4] = [
+        ("uniform", Spacing::Uniform),
+        ("cosine", Spacing::Cosine),
+        ("start", Spacing::Start),
+        ("end", Spacing::End),
+    ];
+
+    /// True when all panels are alike.
+    pub fn is_even(&self) -> bool {
+        matches!(self, Spacing::Uniform) || *self == Spacing::Growth(1.0)
+    }
+
+    /// Where the share `s` of `n` panels ends, 0 at 0 and 1 at 1.
+    pub fn at(&self, s: f64, n: u32) -> f64 {
+        let right = std::f64::consts::FRAC_PI_2;
+        match *self {
+            _ if s <= 0.0 => 0.0,
+            _ if s >= 1.0 => 1.0,
+            Spacing::Uniform => s,
+            Spacing::Cosine => (1.0 - Real::cos(2.0 * right * s)) * 0.5,
+            Spacing::Start => 1.0 - Real::cos(right * s),
+            Spacing::End => Real::sin(right * s),
+            Spacing::Growth(q) => {
+                // (q^(n s) - 1) / (q^n - 1), without overflow for large n.
+                let log = Real::ln(q) * f64::from(n);
+                if log.abs() < 1e-12 {
+                    s
+                } else if log > 0.0 {
+                    (Real::exp(log * (s - 1.0)) - Real::exp(-log)) / (1.0 - Real::exp(-log))
+                } else {
+                    (1.0 - Real::exp(log * s)) / (1.0 - Real::exp(log))
+                }
+            }
+        }
+    }
+
+    /// The same seen from the other end.
+    pub fn reversed(self) -> Self {
+        match self {
+            Spacing::Start => Spacing::End,
+            Spacing::End => Spacing::Start,
+            Spacing::Growth(q) => Spacing::Growth(1.0 / q),
+            even => even,
+        }
+    }
+
+    /// As an argument: a word or a number.
+    pub fn spelled(&self) -> String {
+        match self {
+            Spacing::Growth(q) => q.to_string(),
+            word => Spacing::WORDS
+                .iter()
+                .find(|(_, s)| s == word)
+                .map_or(String::new(), |(w, _)| format!("\"{w}\"")),
+        }
+    }
+}
+
+/// What a surface says of its panels besides their number.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panels {
+    /// The aimed length of panels along u and v, in the model's unit.
+    pub size: [Option<f64>; 2],
+    /// Their spacing along u and v, where it is stated.
+    pub spacing: [Option<Spacing>; 2],
+    /// What its patch is to a flow solver or builder: "wetted", "lid", "waterline", "symmetry", and
+    /// names of the user's own.
+    pub tags: Vec<Arc<str>>,
+}
+
+// No part is ever NaN.
+impl Eq for Panels {}
+
 /// What every object carries besides its geometry: how it is drawn and divided. A change here
 /// never evaluates geometry again.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,7 +104,7 @@ pub struct Head {
     pub visible: i32,
     /// Layer 0..=255.
     pub layer: i32,
-    /// Divisions in each parameter: panels along it.
+    /// Divisions in each parameter: panels along it. 0 leaves it to the neighbours.
     pub divisions: [u32; 2],
     /// Subdivisions of each division: finer tabulation between panel edges.
     pub subdivisions: [u32; 2],
@@ -23,6 +114,8 @@ pub struct Head {
     pub attributes: Option<Arc<str>>,
     /// True when divisions were given: an image without any is divided like its original.
     pub divided: bool,
+    /// What is said of the panels besides their number.
+    pub panels: Option<Arc<Panels>>,
 }
 
 /// The most panels along one parameter.
@@ -43,12 +136,38 @@ const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> 
 }
 
 /// The named arguments that every kind accepts besides its own.
-pub const HEAD: [Field; 7] = [
+pub const HEAD: [Field; 10] = [
     head("colour", "Colour index, 0 to 255.", DefaultValue::Unset),
     head("visible", "Shown when positive, hidden when 0 or negative.", DefaultValue::Number(1.0)),
     head("layer", "Layer, 0 to 255.", DefaultValue::Number(0.0)),
-    head("divisions", "Panels along the curve, or {along u, along v}.", DefaultValue::Unset),
+    head(
+        "divisions",
+        "Panels along the curve, or {along u, along v}; 0 or \"auto\": as the neighbours have.",
+        DefaultValue::Unset,
+    ),
     head("subdivisions", "Steps in each division, or {in u, in v}.", DefaultValue::Unset),
+    Field {
+        class: Class::Number,
+        ..head("size", "Aimed length of panels, or {along u, along v}.", DefaultValue::Unset)
+    },
+    Field {
+        class: Class::Any,
+        ..head(
+            "spacing",
+            "\"uniform\", \"cosine\", \"start\" or \"end\" (narrow there), or the growth from panel to \
+             panel; or {along u, along v}.",
+            DefaultValue::Unset,
+        )
+    },
+    Field {
+        class: Class::Text,
+        many: true,
+        ..head(
+            "tags",
+            "What the patch is: \"wetted\", \"lid\", \"waterline\", \"symmetry\" or names of your own.",
+            DefaultValue::Unset,
+        )
+    },
     head("orientation", "1 turns the normal of a surface's panels round.", DefaultValue::Unset),
     Field {
         class: Class::Text,
@@ -74,6 +193,7 @@ impl Head {
             orientation: 0,
             attributes: None,
             divided: false,
+            panels: None,
         }
     }
 
@@ -99,8 +219,11 @@ impl Head {
                 .expected(format!("a whole number from {low} to {high}"))
                 .found(x.to_string()))
         };
-        let pair = |value: &Value<T>, old: [u32; 2]| -> Result<[u32; 2], Fault> {
-            let most = |v: &Value<T>| whole(1.0, MOST_DIVISIONS, v).map(|x| x as u32);
+        let pair = |value: &Value<T>, least: f64, old: [u32; 2]| -> Result<[u32; 2], Fault> {
+            let most = |v: &Value<T>| match v {
+                Value::Text(word) if least == 0.0 && &**word == "auto" => Ok(0),
+                v => whole(least, MOST_DIVISIONS, v).map(|x| x as u32),
+            };
             match value {
                 Value::List(items) if items.len() == 2 => Ok([most(&items[0])?, most(&items[1])?]),
                 Value::List(items) => Err(Fault::new(
@@ -115,10 +238,22 @@ impl Head {
             "visible" => self.visible = whole(-65536.0, 65535.0, value)? as i32,
             "layer" => self.layer = whole(0.0, 255.0, value)? as i32,
             "divisions" => {
-                self.divisions = pair(value, self.divisions)?;
+                self.divisions = pair(value, 0.0, self.divisions)?;
                 self.divided = true;
             }
-            "subdivisions" => self.subdivisions = pair(value, self.subdivisions)?,
+            "subdivisions" => self.subdivisions = pair(value, 1.0, self.subdivisions)?,
+            "size" => {
+                let size = both(name, value, length)?;
+                Arc::make_mut(self.panels.get_or_insert_default()).size = size;
+            }
+            "spacing" => {
+                let spacing = both(name, value, spacing)?;
+                Arc::make_mut(self.panels.get_or_insert_default()).spacing = spacing;
+            }
+            "tags" => {
+                let tags = tags(value)?;
+                Arc::make_mut(self.panels.get_or_insert_default()).tags = tags;
+            }
             "orientation" => self.orientation = whole(0.0, 1.0, value)? as i32,
             "attributes" => match value {
                 Value::Text(text) => self.attributes = Some(text.clone()),
@@ -128,4 +263,97 @@ impl Head {
         }
         Ok(true)
     }
+}
+
+impl Head {
+    /// Its divisions, where it leaves them to the neighbours those that its class has by itself.
+    pub fn own_divisions(&self) -> [u32; 2] {
+        self.divisions.map(|n| if n == 0 { 8 } else { n })
+    }
+
+    /// The divisions that are stated, along u and v.
+    pub fn stated_divisions(&self) -> [Option<u32>; 2] {
+        self.divisions.map(|n| (self.divided && n > 0).then_some(n))
+    }
+}
+
+/// A value for both parameters, or {for u, for v}.
+fn both<T: Real, R: Copy>(
+    name: &str,
+    value: &Value<T>,
+    one: impl Fn(&str, &Value<T>) -> Result<R, Fault>,
+) -> Result<[R; 2], Fault> {
+    match value {
+        Value::List(items) if items.len() == 2 => {
+            Ok([one(name, &items[0])?, one(name, &items[1])?])
+        }
+        Value::Vector(_) | Value::List(_) => Err(Fault::new(
+            "wrong-length",
+            format!("{name} takes one value, or two: one along u and one along v"),
+        )),
+        single => one(name, single).map(|x| [x; 2]),
+    }
+}
+
+/// A length of panels; 0 or "auto" for none.
+fn length<T: Real>(name: &str, value: &Value<T>) -> Result<Option<f64>, Fault> {
+    match value {
+        Value::Number(x) if x.re() == 0.0 => Ok(None),
+        Value::Number(x) if x.re() > 0.0 && x.re().is_finite() => Ok(Some(x.re())),
+        Value::Number(x) => {
+            Err(Fault::new("out-of-range", format!("{name} = {} is out of range", x.re()))
+                .expected("a positive length in the model's unit, or 0 for none")
+                .found(x.re().to_string()))
+        }
+        Value::Text(word) if &**word == "auto" => Ok(None),
+        other => Err(Fault::wrong_class(Class::Number, other.class())),
+    }
+}
+
+/// The steepest growth from panel to panel, and its inverse the least.
+const MOST_GROWTH: f64 = 10.0;
+
+fn spacing<T: Real>(name: &str, value: &Value<T>) -> Result<Option<Spacing>, Fault> {
+    let words = || Spacing::WORDS.map(|(word, _)| word).join(", ");
+    match value {
+        Value::Number(x) if (1.0 / MOST_GROWTH..=MOST_GROWTH).contains(&x.re()) => {
+            Ok(Some(Spacing::Growth(x.re())))
+        }
+        Value::Number(x) => {
+            Err(Fault::new("out-of-range", format!("{name} = {} is out of range", x.re()))
+                .expected(format!("a growth from {} to {MOST_GROWTH}", 1.0 / MOST_GROWTH))
+                .found(x.re().to_string()))
+        }
+        Value::Text(word) if &**word == "auto" => Ok(None),
+        Value::Text(word) => match Spacing::WORDS.iter().find(|(w, _)| *w == &**word) {
+            Some((_, spacing)) => Ok(Some(*spacing)),
+            None => Err(Fault::new("unknown-word", format!("there is no {name} \"{word}\""))
+                .expected(format!("{} or a number, the growth from panel to panel", words()))
+                .found(format!("\"{word}\""))),
+        },
+        other => Err(Fault::wrong_class(Class::Text, other.class())),
+    }
+}
+
+fn tags<T: Real>(value: &Value<T>) -> Result<Vec<Arc<str>>, Fault> {
+    let one = |value: &Value<T>| match value {
+        Value::Text(tag) if !tag.is_empty() && !tag.chars().any(char::is_whitespace) => {
+            Ok(tag.clone())
+        }
+        Value::Text(tag) => Err(Fault::new("out-of-range", format!("\"{tag}\" is no tag"))
+            .expected("a word without blanks, such as \"wetted\", \"lid\" or \"keel\"")
+            .found(format!("\"{tag}\""))),
+        other => Err(Fault::wrong_class(Class::Text, other.class())),
+    };
+    let mut tags = match value {
+        Value::List(items) => items.iter().map(one).collect::<Result<Vec<_>, _>>()?,
+        single => vec![one(single)?],
+    };
+    let mut seen = Vec::new();
+    tags.retain(|tag| {
+        let new = !seen.contains(tag);
+        seen.push(tag.clone());
+        new
+    });
+    Ok(tags)
 }

@@ -22,7 +22,7 @@ mod value;
 pub use args::{Given, arrange};
 pub use class::Class;
 pub use fault::{Fault, Place};
-pub use head::{HEAD, Head};
+pub use head::{HEAD, Head, Panels, Spacing};
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};
 pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SurfaceRef};

@@ -1,0 +1,344 @@
+//! Divisions along chains of patches, vertices shared by identity, and what is told of joins.
+
+mod common;
+
+use common::{Random, ids, open, rounds, sound, told};
+use moldloft_lang::{Document, Panelled};
+use moldloft_model::Remark;
+use moldloft_num::Vec3;
+use std::fmt::Write;
+use std::sync::Arc;
+
+fn panelled(document: &mut Document) -> Arc<Panelled> {
+    document.panelled().unwrap_or_else(|d| panic!("{}", d.message))
+}
+
+/// The divisions of a patch of the mesh.
+fn divisions(document: &mut Document, name: &str) -> [usize; 2] {
+    let panelled = panelled(document);
+    let patch = panelled.mesh.patches().iter().find(|p| p.info.name == name);
+    let block = patch.and_then(|p| p.block.as_ref()).expect("a patch of that name");
+    [block.nu - 1, block.nv - 1]
+}
+
+/// Four lines above each other, and the strips between them with the given arguments.
+fn strips(arguments: [&str; 3]) -> String {
+    let mut text = String::new();
+    for k in 0..4 {
+        let _ = writeln!(
+            text,
+            "AbsPoint A{k}(0, {k}, 0); AbsPoint B{k}(4, {k}, 1); Line l{k}(A{k}, B{k});"
+        );
+    }
+    for (k, arguments) in arguments.iter().enumerate() {
+        let _ = writeln!(text, "RuledSurf S{k}(l{k}, l{}{arguments});", k + 1);
+    }
+    text
+}
+
+#[test]
+fn counts_flow_from_patch_to_patch() {
+    let mut d = sound(&strips([", divisions = {10, 4}", ", divisions = {0, 3}", ""]));
+    assert_eq!(divisions(&mut d, "S0"), [10, 4]);
+    assert_eq!(divisions(&mut d, "S1"), [10, 3]);
+    assert_eq!(divisions(&mut d, "S2"), [10, 8]);
+    let report = panelled(&mut d).mesh.report();
+    assert_eq!((report.components, report.open_loops.len()), (1, 1));
+    // Both ways, and by a word.
+    let mut d = sound(&strips(["", ", divisions = \"auto\"", ", divisions = {7, \"auto\"}"]));
+    assert_eq!(divisions(&mut d, "S0"), [7, 8]);
+    assert!(d.diagnostics().is_empty());
+}
+
+#[test]
+fn contradictions_are_told_with_the_chain() {
+    let mut d = open(&strips([", divisions = {10, 4}", "", ", divisions = {12, 5}"]));
+    let p = panelled(&mut d);
+    let [Remark::Divisions { chain, divisions: [10, 12] }] = p.panelling.remarks() else {
+        panic!("{:?}", p.panelling.remarks())
+    };
+    let names: Vec<_> =
+        chain.iter().map(|s| (s.patch.as_str(), s.along, s.shares.as_str())).collect();
+    assert_eq!(names, [("S0", 'u', "`l1`"), ("S1", 'u', "`l2`"), ("S2", 'u', "")]);
+    assert_eq!(ids(&d), ["divisions-contradict"]);
+    assert_eq!(
+        d.diagnostics()[0].message,
+        "`S0` has 10 divisions along u and `S2` has 12 along u, but panels run on from one to the \
+         other: `S0` along u, joined by `l1` to `S1` along u, joined by `l2` to `S2` along u"
+    );
+    // The rest is joined.
+    assert_eq!(p.mesh.report().components, 2);
+}
+
+/// A strip between `l` and `m`, and below it two that share `l` between them, meeting at a bead.
+fn parts(whole: &str, first: &str, second: &str) -> String {
+    format!(
+        "param float t = 0.3 in [0.1, 0.9];
+         AbsPoint A(0, 0, 0); AbsPoint M(1, 0.7, 0.2); AbsPoint B(4, 0, 1); BCurve l({{A, M, B}});
+         AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 1); Line m(C, D);
+         AbsBead a(l, 0); AbsBead b(l, t); AbsBead c(l, 1);
+         SubCurve l1(a, b); SubCurve l2(c, b);
+         AbsPoint E(0, -1, 0); AbsPoint F(2, -1, 0); AbsPoint G(4, -1, 0); Line n1(E, F); Line n2(G, F);
+         RuledSurf S(l, m{whole}); RuledSurf S1(l1, n1{first}); RuledSurf S2(l2, n2{second});"
+    )
+}
+
+#[test]
+fn a_bead_in_the_middle_of_an_edge_is_a_vertex_of_it() {
+    let mut d = sound(&parts(", divisions = {10, 3}", ", divisions = {4, 2}", ""));
+    assert_eq!(divisions(&mut d, "S2"), [6, 8]);
+    let p = panelled(&mut d);
+    assert!(p.panelling.remarks().is_empty());
+    let report = p.mesh.report();
+    // The two lower strips share their corners and nothing between: a slit there, joined above.
+    assert_eq!((report.components, report.open_loops.len()), (1, 2));
+    let bead = common::vector(&mut d, "b");
+    let hits = p.mesh.positions().iter().filter(|q| **q == bead).count();
+    assert_eq!(hits, 1, "one vertex, exactly at the bead");
+    // The end points of the curve and the beads at its ends are one vertex each.
+    for corner in [Vec3::zero(), Vec3::of(4.0, 0.0, 1.0)] {
+        assert_eq!(p.mesh.positions().iter().filter(|q| **q == corner).count(), 1);
+    }
+    // From the parts to the whole, and shared out by length when nobody says anything.
+    let mut d = sound(&parts("", ", divisions = {4, 2}", ", divisions = {3, 2}"));
+    assert_eq!(divisions(&mut d, "S"), [7, 8]);
+    let mut d = sound(&parts(", divisions = {10, 3}", "", ""));
+    let (n, m) = (divisions(&mut d, "S1")[0], divisions(&mut d, "S2")[0]);
+    assert!(n + m == 10 && n < m && n >= 2, "{n} + {m}");
+    assert!(panelled(&mut d).panelling.remarks().is_empty());
+    // Pieces that do not add up.
+    let mut d =
+        open(&parts(", divisions = {10, 3}", ", divisions = {4, 2}", ", divisions = {5, 2}"));
+    let p = panelled(&mut d);
+    assert_eq!(
+        p.panelling.remarks()[0].to_string(),
+        "`S` has 10 divisions along u, but the pieces of its edge have 4 (`l`) + 5 (`l`)"
+    );
+    assert_eq!(p.panelling.remarks().len(), 1, "positions at the bead are not compared");
+}
+
+#[test]
+fn counts_stay_when_a_parameter_moves_the_bead() {
+    let text = parts(", divisions = {10, 3}", "", "");
+    let mut d = sound(&text);
+    let at_home = panelled(&mut d).panelling.topology().clone();
+    for t in [0.11, 0.5, 0.89, 0.3] {
+        d.set(&[("t".into(), t)]).unwrap();
+        let p = panelled(&mut d);
+        assert_eq!(*p.panelling.topology(), at_home, "at t = {t}");
+        assert!(p.panelling.remarks().is_empty());
+        let bead = common::vector(&mut d, "b");
+        assert!(p.mesh.positions().contains(&bead));
+        // The same as from the text, opened and set at once.
+        let mut fresh = sound(&text);
+        fresh.set(&[("t".into(), t)]).unwrap();
+        assert_eq!(panelled(&mut fresh).mesh, p.mesh);
+    }
+}
+
+#[test]
+fn vertices_follow_the_bead_with_their_derivatives() {
+    let mut d = sound(&parts(", divisions = {6, 3}", ", divisions = {2, 2}", ""));
+    let exact = d.jacobian(&["t".into()]).unwrap();
+    let h = 1e-5;
+    let mut at = |t: f64| {
+        d.set(&[("t".into(), t)]).unwrap();
+        panelled(&mut d).mesh.positions().to_vec()
+    };
+    let (low, high) = (at(0.3 - h), at(0.3 + h));
+    let mut moved = 0;
+    for (k, d) in exact[0].iter().enumerate() {
+        let difference = (high[k] - low[k]) / (2.0 * h);
+        assert!(d.distance(difference) < 1e-6, "vertex {k}: {d:?}, {difference:?}");
+        moved += usize::from(d.norm() > 0.1);
+    }
+    assert!(moved > 6);
+}
+
+#[test]
+fn sizes_and_spacings() {
+    let mut d = sound(&strips([", size = 0.5", "", ", size = {9, 0.25}"]));
+    // The longest of the lines along u is sqrt(17).
+    assert_eq!(divisions(&mut d, "S0"), [9, 2]);
+    assert_eq!(divisions(&mut d, "S2"), [9, 4]);
+    let cosine = ", divisions = {4, 2}, spacing = {\"cosine\", \"uniform\"}";
+    let mut d = sound(&strips(["", cosine, ""]));
+    let p = panelled(&mut d);
+    let wanted: Vec<f64> =
+        (0..=4).map(|i| 2.0 * (1.0 - (i as f64 / 4.0 * 3.14159265358979).cos())).collect();
+    for (name, rows) in [("S0", 9), ("S1", 3), ("S2", 9)] {
+        let patch = p.mesh.patches().iter().find(|p| p.info.name == name).unwrap();
+        let block = patch.block.as_ref().unwrap();
+        for i in 0..=4 {
+            for j in 0..rows {
+                let x = p.mesh.positions()[block.at(i, j) as usize].x;
+                assert!((x - wanted[i]).abs() < 1e-12, "the spacing runs through the chain");
+            }
+        }
+    }
+    assert!(p.panelling.remarks().is_empty());
+    // A neighbour with a law of its own keeps it away from the shared edge.
+    let mut d = sound(&strips([", divisions = {4, 2}, spacing = \"cosine\"", ", spacing = 2", ""]));
+    let p = panelled(&mut d);
+    assert!(p.panelling.remarks().is_empty(), "{:?}", p.panelling.remarks());
+    assert_eq!(p.mesh.report().components, 1);
+    let block = p.mesh.patches()[1].block.as_ref().unwrap();
+    let x = |i: usize, j: usize| p.mesh.positions()[block.at(i, j) as usize].x;
+    assert!((x(1, 0) - wanted[1]).abs() < 1e-12);
+    assert!((x(1, 8) - 4.0 / 15.0).abs() < 1e-12, "1, 2, 4 and 8 fifteenths");
+    for (wrong, id) in [
+        ("size = -1", "out-of-range"),
+        ("size = {1, 2, 3}", "wrong-length"),
+        ("spacing = \"cosinus\"", "unknown-word"),
+        ("spacing = 50", "out-of-range"),
+        ("divisions = \"any\"", "wrong-class"),
+        ("divisions = {-1, 2}", "out-of-range"),
+        ("tags = {\"wet hull\"}", "out-of-range"),
+        ("tags = 3", "wrong-class"),
+    ] {
+        let d = open(&strips([&format!(", {wrong}"), "", ""]));
+        assert_eq!(ids(&d), [id], "{wrong}: {:?}", told(&d));
+    }
+}
+
+#[test]
+fn a_full_turn_and_its_poles_are_joined() {
+    let text = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 1); AbsPoint C(0, 0, 2); BCurve c({A, B, C});
+        Line axis(A, C); RevSurf R(c, axis, divisions = {6, 12}, spacing = {\"cosine\", 1.1});";
+    let mut d = sound(text);
+    let p = panelled(&mut d);
+    let report = p.mesh.report();
+    assert!(report.closed && report.manifold && report.oriented && report.outward == Some(true));
+    assert_eq!(report.vertices, 5 * 12 + 2);
+}
+
+/// A surface cut into bands by snakes, each band into patches at places of its own, so that corners
+/// lie in the middle of neighbours' edges, marked by rings; some patches state counts.
+fn bands(random: &mut Random, bands: usize, stated: usize) -> String {
+    let mut text = String::from(
+        "AbsPoint P(0, 0, 0); AbsPoint Q(2, 1, 0); AbsPoint R(4, 0, 0); AbsPoint S(0, 0, 2); \
+         AbsPoint T(4, 1, 3); BCurve p({P, Q, R}); Line q(S, T); RuledSurf base(p, q, visible = 0);\n",
+    );
+    for j in 0..=bands {
+        let v = j as f64 / bands as f64;
+        let _ = writeln!(
+            text,
+            "AbsMagnet a{j}(base, 0, {v}); AbsMagnet b{j}(base, 1, {v}); LineSnake s{j}(a{j}, b{j}); \
+             AbsRing r{j}_0(s{j}, 0); AbsRing r{j}_1(s{j}, 1);"
+        );
+    }
+    for j in 0..bands {
+        let cuts = random.below(4);
+        // Rings on the lower and upper snake; the names of those at both ends are common.
+        let mut rings = vec![(format!("r{j}_0"), format!("r{}_0", j + 1))];
+        for k in 0..cuts {
+            let t = (k as f64 + 0.2 + 0.6 * random.between(0.0, 1.0)) / cuts as f64;
+            let _ =
+                writeln!(text, "AbsRing c{j}_{k}(s{j}, {t}); AbsRing d{j}_{k}(s{}, {t});", j + 1);
+            rings.push((format!("c{j}_{k}"), format!("d{j}_{k}")));
+        }
+        rings.push((format!("r{j}_1"), format!("r{}_1", j + 1)));
+        for (k, (low, high)) in rings.iter().enumerate() {
+            let _ = writeln!(text, "LineSnake w{j}_{k}({low}, {high});");
+        }
+        for (k, pair) in rings.windows(2).enumerate() {
+            let ((a, d), (b, c)) = (&pair[0], &pair[1]);
+            let _ = writeln!(text, "SubSnake e{j}_{k}({a}, {b}); SubSnake f{j}_{k}({d}, {c});");
+            let turned = random.chance(50);
+            let (low, high, west, east) = (
+                format!("e{j}_{k}"),
+                format!("f{j}_{k}"),
+                format!("w{j}_{k}"),
+                format!("w{j}_{}", k + 1),
+            );
+            let sides = if turned {
+                format!("{{{west}, {high}, {east}, {low}}}")
+            } else {
+                format!("{{{low}, {east}, {high}, {west}}}")
+            };
+            let orientation = u8::from(turned);
+            let divisions = if random.below(100) < stated {
+                let (n, m) = (random.below(6), random.below(6));
+                format!(", divisions = {{{n}, {m}}}")
+            } else {
+                String::new()
+            };
+            let _ = writeln!(
+                text,
+                "SubSurf x{j}_{k}({sides}, orientation = {orientation}{divisions});"
+            );
+        }
+    }
+    text
+}
+
+#[test]
+fn random_bands_join_or_say_why() {
+    let mut random = Random::new(0x10a5);
+    let mut explained = 0;
+    for round in 0..rounds(5000) {
+        let stated = [0, 0, 15, 60][round % 4];
+        let text = bands(&mut random, 1 + round % 6, stated);
+        let mut d = sound(&text);
+        let p = panelled(&mut d);
+        let report = p.mesh.report();
+        let remarks = p.panelling.remarks();
+        assert!(report.branching_edges == 0 && report.oriented, "{text}");
+        if stated == 0 {
+            assert!(remarks.is_empty(), "{remarks:?}\n{text}");
+        }
+        if remarks.is_empty() {
+            assert_eq!((report.components, report.open_loops.len()), (1, 1), "{text}");
+            assert!(report.manifold, "{text}");
+            // The rim alone is open: no T-junctions.
+            let rim = report.open_loops[0].edge_count();
+            assert_eq!(report.euler, 1, "a disc");
+            assert!(rim >= 4);
+        } else {
+            assert!(
+                report.components > 1 || report.euler != 1 || report.open_loops.len() > 1,
+                "{text}"
+            );
+            explained += 1;
+        }
+        // The mesh does not depend on how many threads made it, nor on the way to the model.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1 + round % 3).build().unwrap();
+        let again = pool.install(|| panelled(&mut sound(&text)));
+        assert_eq!(again.mesh, p.mesh);
+    }
+    assert!(explained > 0);
+}
+
+#[test]
+fn five_thousand_patches_take_linear_time() {
+    let strips = |n: usize| {
+        let mut text = String::new();
+        for k in 0..=n {
+            let _ = writeln!(
+                text,
+                "AbsPoint A{k}(0, {k}, 0); AbsPoint B{k}(4, {k}, 1); Line l{k}(A{k}, B{k});"
+            );
+        }
+        for k in 0..n {
+            let divisions = if k == 0 { ", divisions = {3, 1}" } else { ", divisions = {0, 1}" };
+            let _ = writeln!(text, "RuledSurf S{k}(l{k}, l{}{divisions});", k + 1);
+        }
+        text
+    };
+    // The shortest of several: other work on the machine only ever adds.
+    let mut seconds = Vec::new();
+    for n in [1, 500, 5000] {
+        let text = strips(n);
+        let mut shortest = f64::INFINITY;
+        for _ in 0..3 {
+            let mut d = sound(&text);
+            let start = std::time::Instant::now();
+            let p = panelled(&mut d);
+            shortest = shortest.min(start.elapsed().as_secs_f64());
+            assert_eq!(p.mesh.faces().len(), 3 * n);
+            assert_eq!(p.mesh.report().open_loops.len(), 1);
+        }
+        seconds.push(shortest);
+    }
+    assert!(seconds[2] < 60.0 * seconds[1].max(1e-3), "{seconds:?}");
+}
