@@ -76,6 +76,10 @@ fn side(patch: usize, direction: usize) -> Node {
     2 * patch + direction
 }
 
+/// How stretches of so many divisions are divided: as the first patch says, which runs along them
+/// backwards or not.
+type Settled = HashMap<(StretchId, u32), (bool, Shares)>;
+
 struct Maker<'a, 'g> {
     graph: &'g Graph<f64>,
     drafts: &'a [Draft<'g>],
@@ -335,6 +339,7 @@ impl Maker<'_, '_> {
         let name = |key: Key| self.graph.get(key).map_or("", |o| &*o.name);
         match self.roots.root_of(stretch) {
             Root::Curve(key) => format!("`{}`", name(key)),
+            Root::Segment(a, b) => format!("the line from `{}` to `{}`", name(a), name(b)),
             Root::Edge(key, k) => {
                 let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(k) % 4];
                 format!("edge {edge} of `{}`", name(key))
@@ -377,8 +382,7 @@ impl Maker<'_, '_> {
 
     fn finish(&self, counts: &[u32]) -> Skeleton {
         let spacings = self.spacings();
-        // How the stretches are divided, in their roots' direction: as the first patch says.
-        let mut settled: HashMap<(StretchId, u32), Shares> = HashMap::new();
+        let mut settled = Settled::new();
         let mut frames = Vec::with_capacity(self.drafts.len());
         for (patch, draft) in self.drafts.iter().enumerate() {
             let divisions = [0, 1].map(|d| counts[side(patch, d)]);
@@ -449,7 +453,7 @@ impl Maker<'_, '_> {
         n: u32,
         law: &Spacing,
         counts: &[u32],
-        settled: &mut HashMap<(StretchId, u32), Shares>,
+        settled: &mut Settled,
     ) -> (Rim, EdgePlan) {
         let along = spans.iter().filter(|s| s.stretch.is_some()).count();
         let count = |span: &Span| match span.stretch {
@@ -474,11 +478,10 @@ impl Maker<'_, '_> {
         for span in spans {
             let Some(stretch) = span.stretch else { continue };
             let count = count(span);
-            let turn = |shares: &Shares| {
-                if span.backwards { reversed(shares) } else { shares.clone() }
-            };
-            let own = || turn(&shares_of(law, begin, begin + count, n));
-            let shares = turn(settled.entry((stretch, count)).or_insert_with(own));
+            let own = || (span.backwards, shares_of(law, begin, begin + count, n));
+            let (backwards, shares) = settled.entry((stretch, count)).or_insert_with(own);
+            let same_way = *backwards == span.backwards;
+            let shares = if same_way { shares.clone() } else { reversed(shares) };
             segments.push(Segment { until: span.until, count, shares });
             begin += count;
         }
