@@ -25,6 +25,7 @@ mod curve;
 mod curve_edit;
 pub mod distribution;
 mod even;
+pub mod foil;
 mod interpolating;
 mod knot_vector;
 mod patches;

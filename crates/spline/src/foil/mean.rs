@@ -1,0 +1,233 @@
+use moldloft_num::{Jet, Real, find_root};
+
+/// A mean line, in units of its greatest height.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mean<T> {
+    /// No camber.
+    Flat,
+    /// The camber comes with the ordinates of the thickness.
+    InOrdinates,
+    /// Two parabolas that meet at the place of the greatest height (four-digit).
+    Parabolic {
+        /// That place.
+        at: T,
+    },
+    /// Two cubics that meet at `r` (five-digit); see [`Mean::cubic`].
+    Cubic {
+        /// Where they meet.
+        r: f64,
+        /// The ratio k2 / k1: 0 for a straight tail.
+        k: f64,
+        /// One over the greatest height.
+        scale: f64,
+    },
+    /// The line of a load that is uniform to x = a and falls to zero at the tail.
+    Load(Load<T>),
+    /// The line with a = 0.8 and a straight tail, for the 6A-series.
+    Straightened {
+        /// The line with a = 0.8.
+        load: Load<T>,
+        /// What is added to its slope, so that the tail ends at 0.
+        tilt: f64,
+        /// The slope of the tail.
+        slope: f64,
+        /// One over the greatest height.
+        scale: f64,
+    },
+}
+
+/// The numbers of a line with uniform load, of the heights that its formula gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load<T> {
+    a: T,
+    g: T,
+    h: T,
+    /// One over the greatest height.
+    scale: T,
+    /// The height at the tail, which rounding and regularisation leave.
+    rest: T,
+}
+
+/// Below this the logarithms are held: far below what a section shows, and far above the square
+/// root of rounding, so that second derivatives stay finite.
+const HELD: f64 = 1e-9;
+
+/// x ln x, and 0 at 0.
+fn x_ln<J: Real>(x: J) -> J {
+    x * (x + HELD).ln()
+}
+
+/// ln |z|, held at 0.
+fn ln_abs<J: Real>(z: J) -> J {
+    (z * z + HELD * HELD).ln() * 0.5
+}
+
+/// z^2 (ln |z| / 2 - 1/4).
+fn square_ln<J: Real>(z: J) -> J {
+    z * z * (ln_abs(z) * 0.5 - 0.25)
+}
+
+impl<T: Real> Load<T> {
+    /// Abbott and von Doenhoff 1959, eq. 4.26 and 4.27, without the factor c_l / (2 pi (a + 1)).
+    fn new(a: T) -> Self {
+        let (one, zero) = (T::one(), T::zero());
+        let (g, h) = if a.re() == 1.0 {
+            (zero, zero)
+        } else {
+            let b = -a + 1.0;
+            let low = if a.re() == 0.0 { zero } else { a * a * (a.ln() * 0.5 - 0.25) };
+            let g = -((low + 0.25) / b);
+            (g, square_ln(b) / b + g)
+        };
+        let mut line = Self { a, g, h, scale: one, rest: zero };
+        line.rest = line.at(one);
+        let slope = |x: f64| line.slope(T::from(x)).re();
+        let top = find_root(slope, 1e-4, 1.0 - 1e-4).unwrap_or(0.5);
+        // The height does not depend on its place to first order.
+        line.scale = one / line.at(T::from(top));
+        line
+    }
+
+    fn at<J: Jet<T>>(&self, x: J) -> J {
+        let y = if self.a.re() == 1.0 {
+            let z = -x + 1.0;
+            -(z * ln_abs(z)) - x_ln(x)
+        } else {
+            let (a, b) = (J::fixed(self.a), J::fixed(-self.a + 1.0));
+            (square_ln(a - x) - square_ln(-x + 1.0)) / b - x_ln(x) + J::fixed(self.g)
+                - x.scaled(self.h)
+        };
+        (y - x.scaled(self.rest)).scaled(self.scale)
+    }
+
+    fn slope<J: Jet<T>>(&self, x: J) -> J {
+        let z = -x + 1.0;
+        let y = if self.a.re() == 1.0 {
+            ln_abs(z) - x.ln()
+        } else {
+            let (a, b) = (J::fixed(self.a), J::fixed(-self.a + 1.0));
+            let w = a - x;
+            (z * ln_abs(z) - w * ln_abs(w)) / b - x.ln() - 1.0 - J::fixed(self.h)
+        };
+        (y - J::fixed(self.rest)).scaled(self.scale)
+    }
+}
+
+/// Where the straight tail of the 6A-series begins.
+const STRAIGHT: f64 = 0.874_37;
+
+/// In front of this, slopes are taken behind; see [`held`].
+const HOLD: f64 = 0.04 / 3.0;
+
+/// The place at which the slope at x is taken: x, and near the nose a place that tends to
+/// (3/8) HOLD = 0.005, twice differentiably.
+fn held<J: Real>(x: J) -> J {
+    if x.re() >= HOLD {
+        return x;
+    }
+    let r = x / HOLD;
+    let square = r * r;
+    (square * 6.0 - square * square + 3.0) * (HOLD / 8.0)
+}
+
+impl<T: Real> Mean<T> {
+    /// No camber.
+    pub fn flat() -> Self {
+        Mean::Flat
+    }
+
+    /// The four-digit line with its greatest height at x = `at` (NACA Report 460).
+    pub fn parabolic(at: T) -> Self {
+        Mean::Parabolic { at }
+    }
+
+    /// The five-digit line of a name: 210 to 250 with a straight tail, 221 to 251 reflexed (Jacobs
+    /// and Pinkerton, NACA Report 537, 1935).
+    pub fn cubic(name: &str) -> Option<Self> {
+        let (at, r, reflexed) = match name {
+            "210" => (0.05, 0.0580, false),
+            "220" => (0.10, 0.1260, false),
+            "230" => (0.15, 0.2025, false),
+            "240" => (0.20, 0.2900, false),
+            "250" => (0.25, 0.3910, false),
+            "221" => (0.10, 0.1300, true),
+            "231" => (0.15, 0.2170, true),
+            "241" => (0.20, 0.3180, true),
+            "251" => (0.25, 0.4410, true),
+            _ => return None,
+        };
+        let cube = |x: f64| x * x * x;
+        let k = if reflexed { (3.0 * (r - at) * (r - at) - cube(r)) / cube(1.0 - r) } else { 0.0 };
+        let top = r - (Self::fall(r, k).0 / 3.0).sqrt();
+        let height = Self::cubics(r, k, top, 1.0);
+        Some(Mean::Cubic { r, k, scale: 1.0 / height })
+    }
+
+    fn cubics<J: Real>(r: f64, k: f64, x: J, scale: f64) -> J {
+        let way = x - r;
+        let cube = way * way * way * if x.re() < r { 1.0 } else { k };
+        let (fall, start) = Self::fall(r, k);
+        (cube - x * fall + start) * scale
+    }
+
+    /// The slope of the tail, and the height that the cubic starts from.
+    fn fall(r: f64, k: f64) -> (f64, f64) {
+        let cube = |x: f64| x * x * x;
+        (k * cube(1.0 - r) + cube(r), cube(r))
+    }
+
+    /// The line of uniform load to x = `a` in [0, 1].
+    pub fn uniform_load(a: T) -> Self {
+        Mean::Load(Load::new(a))
+    }
+
+    /// The line of the 6A-series: that with a = 0.8, continued by its tangent from x = 0.87437 and
+    /// turned so that the tail is at 0 again (Loftin, NACA Report 903, 1948).
+    pub fn uniform_load_modified() -> Self {
+        let load = Load::new(T::from(0.8));
+        let slope = load.slope(T::from(STRAIGHT)).re();
+        let tilt = -(load.at(T::from(STRAIGHT)).re() + slope * (1.0 - STRAIGHT));
+        let top = find_root(|x| load.slope(T::from(x)).re() + tilt, 0.2, 0.8).unwrap_or(0.5);
+        let scale = 1.0 / (load.at(T::from(top)).re() + tilt * top);
+        Mean::Straightened { load, tilt, slope: slope + tilt, scale }
+    }
+
+    /// Height and slope at `x`.
+    pub fn at<J: Jet<T>>(&self, x: J) -> (J, J) {
+        match self {
+            Mean::Flat | Mean::InOrdinates => (J::zero(), J::zero()),
+            Mean::Parabolic { at } => {
+                // With w the distance from the top in units of the way to that end.
+                let end = if x.re() < at.re() { *at } else { -*at + 1.0 };
+                let w = (x - J::fixed(*at)) / J::fixed(end);
+                (-(w * w) + 1.0, -(w * 2.0) / J::fixed(end))
+            }
+            Mean::Cubic { r, k, scale } => {
+                let way = x - *r;
+                let bent = way * way * (if x.re() < *r { 3.0 } else { 3.0 * k });
+                let (fall, _) = Self::fall(*r, *k);
+                (Self::cubics(*r, *k, x, *scale), (bent - fall) * *scale)
+            }
+            Mean::Load(load) => (load.at(x), load.slope(held(x))),
+            Mean::Straightened { load, tilt, slope, scale } => {
+                if x.re() < STRAIGHT {
+                    let (y, rate) = (load.at(x) + x * *tilt, load.slope(held(x)) + *tilt);
+                    (y * *scale, rate * *scale)
+                } else {
+                    ((x - 1.0) * (*slope * *scale), J::from(*slope * *scale))
+                }
+            }
+        }
+    }
+
+    /// The places x at which a second derivative may jump.
+    pub fn breaks(&self) -> Vec<f64> {
+        match self {
+            Mean::Flat | Mean::InOrdinates => Vec::new(),
+            Mean::Parabolic { at } => vec![at.re()],
+            Mean::Cubic { r, .. } => vec![*r],
+            Mean::Load(load) => vec![load.a.re()],
+            Mean::Straightened { load, .. } => vec![load.a.re(), STRAIGHT],
+        }
+    }
+}

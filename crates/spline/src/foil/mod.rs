@@ -1,0 +1,328 @@
+//! Foil sections: thickness forms and mean lines of the NACA families, and how they are laid
+//! between points.
+//!
+//! A section is parameterised by s in [-1, 1], with x = s^2 the distance from the nose in chords:
+//! 1 to 0 is the upper side from tail to nose, 0 to -1 the lower side back to the tail. In s the
+//! nose is smooth, where in x the slope is infinite; and the speed vanishes nowhere.
+//!
+//! `family, mean line -> Section -> Station (x, thickness, camber) -> Layout -> position`
+
+mod layout;
+mod mean;
+mod six_series;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod thickness;
+
+pub use layout::{Layout, Metric, Offset};
+pub use mean::Mean;
+pub use thickness::Thickness;
+
+use moldloft_num::{CurveFormula, Jet, Real, Vec3};
+use std::fmt;
+use std::sync::Arc;
+
+/// Why there is no such foil.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FoilError {
+    /// There is no thickness form of this name.
+    Family {
+        /// The name asked for.
+        name: String,
+    },
+    /// There is no mean line of this name.
+    Mean {
+        /// The name asked for.
+        name: String,
+    },
+    /// A number of the section lies outside its range.
+    Range {
+        /// What the number is.
+        name: &'static str,
+        /// The number.
+        value: f64,
+        /// The smallest allowed.
+        min: f64,
+        /// The largest allowed.
+        max: f64,
+    },
+    /// The ordinates do not run over x from 0 to 1.
+    Ordinates {
+        /// The first that is out of place, from 0.
+        index: usize,
+        /// What is wrong with it.
+        what: &'static str,
+    },
+    /// A foil is laid between 3, 4 or 5 points.
+    Points {
+        /// The number given.
+        actual: usize,
+    },
+    /// Nose and tail are in one place.
+    NoChord,
+    /// The metric measures some lengths as nothing or less.
+    Metric,
+    /// The section has no slope of its mean line, which offsets along the normal need.
+    NoSlope,
+    /// A coordinate is NaN or infinite.
+    NotFinite {
+        /// Index of the point.
+        index: usize,
+    },
+}
+
+impl fmt::Display for FoilError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Family { name } => write!(f, "there is no foil family \"{name}\""),
+            Self::Mean { name } => write!(f, "there is no mean line \"{name}\""),
+            Self::Range { name, value, min, max } => {
+                write!(f, "expected {name} from {min} to {max}, found {value}")
+            }
+            Self::Ordinates { index, what } => write!(f, "ordinate {} {what}", index + 1),
+            Self::Points { actual } => {
+                write!(f, "a foil is laid between 3, 4 or 5 points, found {actual}")
+            }
+            Self::NoChord => write!(f, "the nose and the tail of the foil coincide"),
+            Self::Metric => write!(f, "the metric of the foil is not positive"),
+            Self::NoSlope => {
+                write!(f, "a section given by ordinates cannot be set off along the normal")
+            }
+            Self::NotFinite { index } => write!(f, "point {} of the foil is not finite", index + 1),
+        }
+    }
+}
+
+impl std::error::Error for FoilError {}
+
+/// A place of a section, in units of the chord, of half the greatest thickness and of the greatest
+/// camber.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Station<J> {
+    /// Distance from the nose along the chord.
+    pub x: J,
+    /// Half thickness; negative on the lower side.
+    pub thickness: J,
+    /// Height of the mean line.
+    pub camber: J,
+    /// Slope of the mean line, d camber / dx, held near the nose; see [`Section::at`].
+    pub slope: J,
+    /// True on the lower side.
+    pub lower: bool,
+}
+
+/// What a section is made of, by name; see [`Section::new`].
+#[derive(Clone, Debug)]
+pub struct SectionSpec<'a, T> {
+    /// Thickness form: one of [`Section::FAMILIES`].
+    pub family: &'a str,
+    /// Mean line: one of [`Section::MEANS`], or empty for that of the family.
+    pub mean: &'a str,
+    /// Place of the greatest camber of the parabolic mean line, in (0, 1).
+    pub camber_at: T,
+    /// Extent a of the uniform load of the mean line "a", in [0, 1]; none for that of the family.
+    pub load: Option<T>,
+    /// Nose index of the modified four-digit family: 6 is the plain nose, 0 a sharp one.
+    pub nose_index: T,
+    /// Place of the greatest thickness of the modified four-digit family, in [0.2, 0.6].
+    pub thickness_at: T,
+    /// Greatest thickness in chords, which the 6-series depend on.
+    pub ratio: T,
+    /// True when the tail is closed.
+    pub closed: bool,
+}
+
+impl<T: Real> Default for SectionSpec<'_, T> {
+    fn default() -> Self {
+        Self {
+            family: "4-digit",
+            mean: "",
+            camber_at: T::from(0.4),
+            load: None,
+            nose_index: T::from(6.0),
+            thickness_at: T::from(0.3),
+            ratio: T::from(0.12),
+            closed: true,
+        }
+    }
+}
+
+/// A thickness form with a mean line.
+///
+/// # Example
+/// ```
+/// use moldloft_spline::foil::{Section, SectionSpec};
+/// let section = Section::<f64>::new(&SectionSpec::default()).unwrap();
+/// // NACA 0012 at x = 0.3, where it is thickest.
+/// assert!((0.06 * section.at(0.3f64.sqrt()).thickness - 0.06002).abs() < 1e-5);
+/// ```
+#[derive(Clone)]
+pub struct Section<T: Real> {
+    thickness: Thickness<T>,
+    mean: Mean<T>,
+}
+
+impl<T: Real> Section<T> {
+    /// The names of the thickness forms.
+    pub const FAMILIES: [&'static str; 12] = [
+        "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A", "64A", "65A",
+        "66tmb",
+    ];
+
+    /// The names of the mean lines.
+    pub const MEANS: [&'static str; 12] = [
+        "flat",
+        "parabolic",
+        "210",
+        "220",
+        "230",
+        "240",
+        "250",
+        "221",
+        "231",
+        "241",
+        "a",
+        "a modified",
+    ];
+
+    /// The section of these names and numbers.
+    ///
+    /// A closed tail of the four-digit forms has the textbook's last coefficient 0.1036 in place of
+    /// 0.1015; those of the other forms are drawn to a point by a cubic behind the greatest
+    /// thickness, which leaves nose and greatest thickness as they are.
+    ///
+    /// # Errors
+    /// [`FoilError`] for an unknown name or a number out of range.
+    pub fn new(spec: &SectionSpec<T>) -> Result<Self, FoilError> {
+        let within = |name, x: T, min: f64, max: f64| {
+            let value = x.re();
+            if x.is_finite() && (min..=max).contains(&value) {
+                return Ok(x);
+            }
+            Err(FoilError::Range { name, value, min, max })
+        };
+        let modified = |index: T, at: T| {
+            let index = within("a nose index", index, 0.0, 9.0)?;
+            let at = within("the place of the greatest thickness", at, 0.2, 0.6)?;
+            Ok(Thickness::modified(index, at))
+        };
+        let half = T::from(0.5);
+        let thickness = match spec.family {
+            "4-digit" | "5-digit" => Thickness::four_digit(spec.closed),
+            "modified" => modified(spec.nose_index, spec.thickness_at)?,
+            // NACA 16-0xx is 00xx-45.
+            "16" => modified(T::from(4.0), half)?,
+            "66tmb" => Thickness::tmb(),
+            name => six_series::thickness(name, spec.ratio)
+                .ok_or_else(|| FoilError::Family { name: name.to_string() })?,
+        };
+        let thickness = if spec.closed { thickness.closed() } else { thickness };
+        let usual = match spec.family {
+            "4-digit" | "modified" => "parabolic",
+            "5-digit" => "230",
+            "63A" | "64A" | "65A" => "a modified",
+            _ => "a",
+        };
+        let load = spec.load.unwrap_or(T::from(if spec.family == "66tmb" { 0.8 } else { 1.0 }));
+        let mean = match if spec.mean.is_empty() { usual } else { spec.mean } {
+            "flat" => Mean::flat(),
+            "parabolic" => {
+                let at = within("the place of the greatest camber", spec.camber_at, 0.01, 0.99)?;
+                Mean::parabolic(at)
+            }
+            "a" => Mean::uniform_load(within("the extent of the load", load, 0.0, 1.0)?),
+            "a modified" => Mean::uniform_load_modified(),
+            name => Mean::cubic(name).ok_or_else(|| FoilError::Mean { name: name.to_string() })?,
+        };
+        Ok(Self { thickness, mean })
+    }
+
+    /// The section of ordinates (x, half thickness, camber) from the nose, x = 0, to the tail,
+    /// x = 1, in units of the chord, of half the greatest thickness and of the greatest camber.
+    ///
+    /// They are joined by a cubic spline in the square root of x.
+    ///
+    /// # Errors
+    /// [`FoilError::Ordinates`].
+    pub fn of_ordinates(ordinates: &[Vec3<T>]) -> Result<Self, FoilError> {
+        Ok(Self { thickness: Thickness::of_ordinates(ordinates)?, mean: Mean::InOrdinates })
+    }
+
+    /// The section that a curve of ordinates (x, half thickness, camber) gives, from nose to tail;
+    /// its own parameter is then that of the sides.
+    pub fn of_curve(curve: Arc<dyn moldloft_num::Curve<T>>) -> Self {
+        Self { thickness: Thickness::Curve(curve), mean: Mean::InOrdinates }
+    }
+
+    /// The station at `s` in [-1, 1]; outside, the natural continuation.
+    ///
+    /// The slope of the mean lines with uniform load is infinite at the nose: in front of
+    /// x = 1/75 the slope is that at a place which tends smoothly to 0.005, as is the custom
+    /// (Abbott and von Doenhoff 1959, section 6.5).
+    pub fn at<J: Jet<T>>(&self, s: J) -> Station<J> {
+        let lower = s.re() < 0.0;
+        let a = if lower { -s } else { s };
+        let (x, thickness, camber) = self.thickness.at(a);
+        let thickness = if lower { -thickness } else { thickness };
+        let (camber, slope) = match camber {
+            Some(camber) => (camber, J::zero()),
+            None => self.mean.at(x),
+        };
+        Station { x, thickness, camber, slope, lower }
+    }
+
+    /// True when the mean line has a slope of its own.
+    pub fn has_slope(&self) -> bool {
+        !matches!(self.mean, Mean::InOrdinates)
+    }
+
+    /// True when thickness and camber vanish at the tail, to rounding.
+    pub fn is_closed(&self) -> bool {
+        let tail = self.at(T::one());
+        tail.thickness.re().abs() <= 1e-12 && tail.camber.re().abs() <= 1e-12
+    }
+
+    /// The places s in (0, 1) at which a second derivative may jump, ascending.
+    pub fn breaks(&self) -> Vec<f64> {
+        let mut breaks = self.thickness.breaks();
+        breaks.extend(self.mean.breaks().into_iter().map(f64::sqrt));
+        breaks.retain(|s| *s > 0.0 && *s < 1.0);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    }
+}
+
+/// A foil in space or in a plane of parameters: a section, laid out.
+///
+/// On [0, 1]: from nose to tail for a half section (three points), else from the tail along the
+/// upper side to the nose, at 1/2, and back along the lower side.
+#[derive(Clone)]
+pub struct Profile<T: Real> {
+    /// The section.
+    pub section: Arc<Section<T>>,
+    /// Where it lies.
+    pub layout: Layout<T>,
+    /// How thickness is set off.
+    pub offset: Offset,
+}
+
+impl<T: Real> CurveFormula for Profile<T> {
+    type Scalar = T;
+
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        let s = if self.layout.is_half() { t } else { -(t * 2.0) + 1.0 };
+        self.layout.place(self.section.at(s), self.offset)
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        let breaks = self.section.breaks();
+        if self.layout.is_half() {
+            return breaks;
+        }
+        let upper = breaks.iter().rev().map(|s| 0.5 * (1.0 - s));
+        let lower = breaks.iter().map(|s| 0.5 * (1.0 + s));
+        upper.chain([0.5]).chain(lower).collect()
+    }
+}
