@@ -150,6 +150,8 @@ impl Class {
             Numbers => found == List,
             List => matches!(found, Numbers | Vectors),
             Plane => found == Text,
+            // A point stands for the axes of the world there.
+            Frame => matches!(found, Point | Bead | Magnet | Ring | Vector),
             Mirror => {
                 matches!(found, Plane | Point | Bead | Magnet | Ring | Vector | Curve | Text)
             }

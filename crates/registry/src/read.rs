@@ -177,7 +177,8 @@ impl<T: Real> FromValue<T> for Frame<T> {
     fn from_value(value: &Value<T>) -> Result<Self, Fault> {
         match value {
             Value::Frame(f) => Ok(**f),
-            other => wrong(Class::Frame, other),
+            // A point stands for the axes of the world there.
+            other => vector(other, Class::Frame).map(|origin| Frame { origin, ..Frame::world() }),
         }
     }
 }

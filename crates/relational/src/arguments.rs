@@ -236,3 +236,94 @@ pub fn common_curve<T: Real>([a, b]: [&Bead<T>; 2], field: usize) -> Result<Curv
         .related(b.curve.key, "is the curve of the other")
         .in_field(field))
 }
+
+/// One of a list of names, given by its name or by its number in the list (from 1), as old model
+/// files have it.
+#[derive(Clone, Debug)]
+pub enum Named {
+    /// By name.
+    Text(Arc<str>),
+    /// By number.
+    Number(usize),
+}
+
+impl Named {
+    /// The name among `names`.
+    ///
+    /// # Errors
+    /// `unknown-name`, in field `field`.
+    pub fn among<'n>(&self, names: &[&'n str], field: usize) -> Result<&'n str, Fault> {
+        let found = match self {
+            Named::Text(text) => names.iter().find(|name| **name == &**text),
+            Named::Number(k) => k.checked_sub(1).and_then(|k| names.get(k)),
+        };
+        found.copied().ok_or_else(|| {
+            let found = match self {
+                Named::Text(text) => format!("\"{text}\""),
+                Named::Number(k) => k.to_string(),
+            };
+            let list = names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>();
+            Fault::new("unknown-name", format!("there is no {found} to choose here"))
+                .expected(format!("{}, or a number from 1 to {}", list.join(", "), names.len()))
+                .found(found)
+                .in_field(field)
+        })
+    }
+}
+
+impl<T: Real> FromValue<T> for Named {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Text(text) => Ok(Named::Text(text.clone())),
+            Value::Number(_) => usize::from_value(value).map(Named::Number),
+            other => wrong(Class::Text, other),
+        }
+    }
+}
+
+/// An axis: "x", "y" or "z", or 1, 2 or 3.
+#[derive(Clone, Copy, Debug)]
+pub struct AxisName(pub usize);
+
+impl<T: Real> FromValue<T> for AxisName {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let at = match Named::from_value(value)? {
+            Named::Text(text) => ["x", "y", "z"].iter().position(|name| *name == &*text),
+            Named::Number(k) => k.checked_sub(1).filter(|k| *k < 3),
+        };
+        at.map(Self).ok_or_else(|| {
+            Fault::new("unknown-axis", "there is no such axis")
+                .expected("\"x\", \"y\" or \"z\", or 1, 2 or 3")
+        })
+    }
+}
+
+/// Where a length along a curve begins: at a bead, or at the start of a curve.
+#[derive(Clone, Debug)]
+pub struct Start<T: Real> {
+    /// The curve.
+    pub curve: CurveRef<T>,
+    /// The parameter there.
+    pub t: T,
+}
+
+impl<T: Real> FromValue<T> for Start<T> {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Curve(curve) => Ok(Self { curve: curve.clone(), t: T::zero() }),
+            Value::Point(point) if point.on_curve.is_some() => {
+                let Bead { curve, t, .. } = Bead::from_value(value)?;
+                Ok(Self { curve, t })
+            }
+            other => Err(Fault::new(
+                "wrong-class",
+                format!("expected a curve or a bead on one, found {}", other.class().a()),
+            )
+            .expected("a curve, or a bead on one")
+            .found(other.class().a())),
+        }
+    }
+}

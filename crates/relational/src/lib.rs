@@ -12,11 +12,14 @@
 //!
 //! Invariant: this crate knows no graph, no language and no file.
 
+mod affine;
 mod arguments;
 mod contours;
 mod curve;
 mod faults;
 mod field;
+mod foil;
+mod frame;
 mod intrinsics;
 mod plane;
 mod point;
@@ -50,6 +53,8 @@ pub fn rows() -> Vec<Row> {
         point::RelPoint,
         point::MirrPoint,
         point::ProjPoint,
+        point::FramePoint,
+        point::PolarPoint,
         point::AbsBead,
         point::RelBead,
         point::AbsMagnet,
@@ -60,12 +65,18 @@ pub fn rows() -> Vec<Row> {
         curve::Arc,
         curve::BCurve,
         curve::CCurve,
+        curve::Conic,
+        curve::FoilCurve,
+        curve::Helix,
+        curve::PolyCurve,
         curve::SubCurve,
         curve::MirrCurve,
         snake::LineSnake,
         snake::BSnake,
         snake::EdgeSnake,
         snake::UVSnake,
+        snake::FoilSnake,
+        curve::PolySnake,
         curve::SubSnake,
         surface::RuledSurf,
         surface::BLoftSurf,
@@ -90,6 +101,8 @@ pub fn rows() -> Vec<Row> {
         plane::OffsetPlane,
         plane::ThreePointPlane,
         plane::TwoPointPlane,
+        frame::ThreePointFrame,
+        frame::RPYFrame,
         contours::XContours,
         contours::YContours,
         contours::ZContours,

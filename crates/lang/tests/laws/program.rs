@@ -100,6 +100,12 @@ impl Program<'_> {
         }
     }
 
+    /// A frame at a point.
+    pub fn frame(&mut self) -> String {
+        let (point, [roll, pitch, yaw]) = (self.point(), self.coordinates());
+        self.object("RPYFrame", &format!("{point}, {roll}, {pitch}, {yaw}"))
+    }
+
     /// Divisions of a surface, as an argument.
     pub fn divisions(&mut self) -> String {
         format!("divisions = {{{}, {}}}", 2 + self.random.below(3), 2 + self.random.below(3))
@@ -130,6 +136,11 @@ impl Program<'_> {
                 let l = self.object("Line", &format!("{a}, {b}, relabel = {name}"));
                 let (c, d) = (self.curve(), self.divisions());
                 self.object("RuledSurf", &format!("{l}, {c}, relabel = {name}, {d}"));
+            }
+            Class::Frame => {
+                // So does a frame.
+                let point = self.point();
+                self.object("FramePoint", &format!("{point}, {name}, 0.3, -1.2, 0.7"));
             }
             _ => {}
         }

@@ -1,9 +1,11 @@
 //! Snakes: curves on surfaces, given in the surface's parameter plane.
 
+mod foil;
 mod isoparametric;
 mod on_surface;
 mod through;
 
+pub use foil::FoilSnake;
 pub use isoparametric::{EdgeSnake, UVSnake};
 pub use on_surface::OnSurface;
 pub use through::{BSnake, LineSnake};

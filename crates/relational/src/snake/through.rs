@@ -7,17 +7,20 @@ use moldloft_num::{Curve, Real, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineCurve;
 
-fn snake<T: Real>(
+/// The snake of a path on a surface between two point objects, which holds on to shapes nested
+/// `nesting` deep besides the surface.
+pub(super) fn snake<T: Real>(
     surface: SurfaceRef<T>,
     path: impl Curve<T> + 'static,
     ends: [Option<Key>; 2],
-    context: &Context,
+    nesting: u32,
 ) -> Result<Value<T>, Fault> {
     let shape = OnSurface { surface: surface.clone(), path, trace: Trace::Own(ends) };
-    Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)))
+    Ok(Value::Curve(CurveRef::snake(shape, surface, nesting)))
 }
 
-fn flat<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
+/// A place of the parameter plane.
+pub(super) fn flat<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
     Vec3::new(u, v, T::zero())
 }
 
@@ -39,12 +42,12 @@ pub struct LineSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for LineSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { m1, m2 } = self;
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
         let surface = common_surface(&items, Fault::in_field)?;
         let path = Segment { from: flat(m1.uv), to: flat(m2.uv) };
-        snake(surface, path, [m1.key, m2.key], context)
+        snake(surface, path, [m1.key, m2.key], 0)
     }
 }
 
@@ -71,7 +74,7 @@ pub struct BSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { magnets, degree } = self;
         let [first, .., last] = magnets.as_slice() else {
             return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
@@ -85,6 +88,6 @@ impl<T: Real> Build<T> for BSnake<T> {
         let path = magnets.iter().map(|m| flat(m.uv)).collect();
         let path = BSplineCurve::uniform(degree.min(magnets.len() - 1), path)
             .map_err(|error| faults::of_spline(error, 0, 1))?;
-        snake(surface, path, ends, context)
+        snake(surface, path, ends, 0)
     }
 }

@@ -18,6 +18,40 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             1 => format!("{{{}}}, degree = 1", p.points::<3>().join(", ")),
             _ => format!("{{{}}}", p.points::<5>().join(", ")),
         },
+        "Conic" => {
+            format!("{}, {x}, {z}*w, type = {}", p.points::<3>().join(", "), 1 + p.random.below(3))
+        }
+        "Helix" => {
+            let [a, b, c] = p.points();
+            let line = p.object("Line", &format!("{a}, {b}"));
+            format!("{c}, {line}, {x}*w, {z}")
+        }
+        "FoilCurve" => {
+            let [t, u, n, d] = p.points();
+            let family = p.random.pick(&["4-digit", "modified", "16", "63", "65A", "66tmb"]);
+            let offset = p.random.pick(&["affine", "normal"]);
+            let more = match family {
+                "4-digit" => "camber_at = 0.3*w",
+                "modified" => "nose_index = 4*w, thickness_at = 0.45",
+                "66tmb" => "load = 0.5*w",
+                _ => "tail = \"open\"",
+            };
+            let points = match p.random.below(3) {
+                0 => format!("{n}, {u}, {t}"),
+                1 => format!("{t}, {u}, {n}, {d}"),
+                _ => format!("{t}, {u}, {n}, {d}, {t}"),
+            };
+            format!("{{{points}}}, \"{family}\", offset = \"{offset}\", {more}")
+        }
+        "PolyCurve" => {
+            let [a, b, c, d] = p.points();
+            let first = p.object("BCurve", &format!("{{{a}, {b}, {c}}}, degree = 2"));
+            let last = p.object("Line", &format!("{c}, {d}"));
+            match p.random.below(2) {
+                0 => format!("{{{first}, {last}}}"),
+                _ => format!("{{{first}, {last}}}, {{0.4*w}}"),
+            }
+        }
         "SubCurve" => {
             let curve = p.curve();
             format!("{}, {}", p.bead(&curve), p.bead(&curve))

@@ -11,6 +11,8 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "OffsetPlane" => format!("{}, {x}", p.random.pick(&p.planes)),
         "ThreePointPlane" => p.points::<3>().join(", "),
         "TwoPointPlane" => p.points::<2>().join(", "),
+        "ThreePointFrame" => p.points::<3>().join(", "),
+        "RPYFrame" => format!("{}, {x}, {y}*w, 0.5", p.point()),
         "XContours" | "YContours" | "ZContours" => format!("0, 3, {x}, {y}"),
         "Relabel" => {
             format!("{{0, {}*w, {}, 1}}, degree = 2", p.number(0.05, 0.2), p.number(0.5, 0.9))

@@ -10,6 +10,11 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "AbsPoint" => format!("{x}, {y}*w, {z}"),
         "RelPoint" => format!("{}, {x}, {y}, {z}", p.point()),
         "MirrPoint" | "ProjPoint" => format!("{}, {}", p.point(), p.mirror()),
+        "FramePoint" => {
+            let frame = p.frame();
+            format!("{}, {frame}, {x}, {y}*w, {z}, type = {}", p.point(), p.random.below(3))
+        }
+        "PolarPoint" => format!("{}, {}, {x}, {y}*w, {z}", p.point(), p.frame()),
         "AbsBead" => format!("{}, {t}", p.curve()),
         "RelBead" => {
             let curve = p.curve();

@@ -15,6 +15,23 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let magnets: Vec<_> = (0..4).map(|_| p.magnet(&surface)).collect();
             format!("{{{}}}, degree = 3", magnets.join(", "))
         }
+        "FoilSnake" => {
+            let surface = p.surface();
+            let mut at = |u: f64, v: f64| {
+                let (u, v) = (p.number(u - 0.1, u + 0.1), p.number(v - 0.1, v + 0.1));
+                p.object("AbsMagnet", &format!("{surface}, {u}, {v}"))
+            };
+            let (t, u, n, d) = (at(0.8, 0.5), at(0.4, 0.7), at(0.2, 0.5), at(0.4, 0.4));
+            let metric = p.random.pick(&["", ", offset = \"normal\", metric = {2*w, 0.3, 1}"]);
+            format!("{{{t}, {u}, {n}, {d}, {t}}}, \"66tmb\"{metric}")
+        }
+        "PolySnake" => {
+            let surface = p.surface();
+            let [a, b, c] = std::array::from_fn(|_| p.magnet(&surface));
+            let first = p.object("LineSnake", &format!("{a}, {b}"));
+            let last = p.object("LineSnake", &format!("{b}, {c}"));
+            format!("{{{first}, {last}}}")
+        }
         "EdgeSnake" => format!("{}, {}", 1 + p.random.below(4), p.surface()),
         "UVSnake" => format!("{}, \"{}\", {t}", p.surface(), p.random.pick(&["u", "v"])),
         "SubSnake" => {

@@ -1,0 +1,68 @@
+use moldloft_num::{CurveFormula, Jet, Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+
+/// A conic section in the plane of three points: C = P1 + f(a) (P2 - P1) + g(a) (P3 - P1), where
+/// a = a1 + t (a2 - a1).
+///
+/// Type 1 is an ellipse, f = cos a and g = sin a, with its centre at p1 and p2, p3 the ends of
+/// conjugate half diameters (of the half axes where they are perpendicular). Type 2 is a branch of
+/// a hyperbola, f = cosh a and g = sinh a, and type 3 a parabola, f = a^2 and g = a (our numbers).
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel type p1 p2 p3 a1 a2",
+    example = "AbsPoint O(0, 0, 0); AbsPoint A(3, 0, 0); AbsPoint B(0.2, 2, 1); \
+               Conic e(O, A, B, a1 = 0.25, a2 = 4); Conic h(O, A, B, -1, 1, 2); \
+               Conic p(O, A, B, -0.5, 1, type = 3);"
+)]
+pub struct Conic<T: Real> {
+    /// Centre, or vertex of a parabola.
+    p1: Point<T>,
+    /// Where a = 0 is on an ellipse or hyperbola.
+    p2: Point<T>,
+    /// The end of the conjugate half diameter.
+    p3: Point<T>,
+    /// Where the curve begins.
+    #[field(angle, default = 0)]
+    a1: T,
+    /// Where it ends; a full turn when not given.
+    #[field(angle, default = std::f64::consts::TAU)]
+    a2: T,
+    /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.
+    #[field(default = 1, min = 1, max = 3)]
+    r#type: u32,
+}
+
+impl<T: Real> Build<T> for Conic<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { p1, p2, p3, a1, a2, r#type } = self;
+        let (first, second) = (p2.xyz - p1.xyz, p3.xyz - p1.xyz);
+        let shape = Oblique { centre: p1.xyz, first, second, a1, a2, kind: r#type };
+        Ok(Value::Curve(CurveRef::new(shape, 0)))
+    }
+}
+
+/// The path of a conic; also in the parameter plane of a surface.
+pub(crate) struct Oblique<T> {
+    pub(crate) centre: Vec3<T>,
+    pub(crate) first: Vec3<T>,
+    pub(crate) second: Vec3<T>,
+    pub(crate) a1: T,
+    pub(crate) a2: T,
+    pub(crate) kind: u32,
+}
+
+impl<T: Real> CurveFormula for Oblique<T> {
+    type Scalar = T;
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        let a = (-t + 1.0).scaled(self.a1) + t.scaled(self.a2);
+        let (f, g) = match self.kind {
+            1 => (a.cos(), a.sin()),
+            2 => (a.cosh(), a.sinh()),
+            _ => (a * a, a),
+        };
+        self.centre.map(J::fixed)
+            + self.first.map(|x| f.scaled(x))
+            + self.second.map(|x| g.scaled(x))
+    }
+}
