@@ -30,8 +30,10 @@ pub use frame::{Axis, Frame, Plane};
 pub use jet::{Bi1, Bi2, Jet, Uni1, Uni2, lift_curve, lift_surface};
 pub use law::{Composed, Law, LawJet, inv_law, inv_law_in, lift_law};
 pub use linear::{Banded, SingularMatrix, solve_dense};
-pub use quadrature::{gauss_legendre, integrate};
+pub use quadrature::{gauss_legendre, gauss_points, integrate};
 pub use real::Real;
 pub use roots::{NoRoot, find_root};
-pub use shape::{Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula};
+pub use shape::{
+    Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula, line_crossings,
+};
 pub use vec3::{Vec2, Vec3};

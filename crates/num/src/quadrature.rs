@@ -20,6 +20,16 @@ pub fn gauss_legendre<T: Real>(a: T, b: T, mut f: impl FnMut(T) -> T) -> T {
     sum * half
 }
 
+/// The places and weights of the 8-point Gauss-Legendre rule on [`a`, `b`], in pairs about the
+/// middle.
+pub fn gauss_points(a: f64, b: f64) -> [(f64, f64); 8] {
+    let (half, mid) = (0.5 * (b - a), 0.5 * (a + b));
+    std::array::from_fn(|k| {
+        let (x, w) = GAUSS_8[k / 2];
+        (if k % 2 == 0 { mid - half * x } else { mid + half * x }, w * half)
+    })
+}
+
 /// Intervals are halved this often at most: down to the rounding of a place between them.
 const DEEPEST: i32 = 44;
 

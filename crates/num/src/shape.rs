@@ -1,7 +1,7 @@
 use crate::jet::{Jet, lift_curve, lift_surface};
 use crate::law::Law;
 use crate::trace::{Edges, Key, Trace};
-use crate::{Real, Vec3};
+use crate::{Real, Vec3, find_root};
 use std::sync::Arc;
 
 /// How many derivatives by the shape parameters are wanted.
@@ -115,6 +115,15 @@ pub trait Surface<T: Real>: Send + Sync {
         [Vec::new(), Vec::new()]
     }
 
+    /// The parameters in (0, 1), in any order, at which a path (u, v) in the parameter plane meets a
+    /// line on which a derivative up to the second may jump. `spans` are the ascending ends of the
+    /// stretches, from 0 to 1, on which the path itself is smooth.
+    ///
+    /// A surface that is made from another one's parameter plane hands the path on.
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        line_crossings(&self.breaks(), path, spans)
+    }
+
     /// What the four edges run along, for joins: v = 0, u = 1, v = 1, u = 0, each in the
     /// direction of increasing parameter.
     fn edges(&self) -> Edges<T> {
@@ -127,6 +136,40 @@ pub trait Surface<T: Real>: Send + Sync {
     fn image_of(&self) -> Option<(Key, bool)> {
         None
     }
+}
+
+/// How many steps a smooth stretch of a path is searched in for crossings.
+const STEPS: usize = 8;
+
+/// The parameters in (0, 1) at which a path meets the lines u = const and v = const; see
+/// [`Surface::crossings`].
+pub fn line_crossings(
+    lines: &[Vec<f64>; 2],
+    path: &dyn Fn(f64) -> [f64; 2],
+    spans: &[f64],
+) -> Vec<f64> {
+    let mut found = Vec::new();
+    if lines.iter().all(Vec::is_empty) {
+        return found;
+    }
+    for span in spans.windows(2) {
+        let step = (span[1] - span[0]) / STEPS as f64;
+        for k in 0..STEPS {
+            let (a, b) = (span[0] + k as f64 * step, span[0] + (k + 1) as f64 * step);
+            for (axis, lines) in lines.iter().enumerate() {
+                for &line in lines {
+                    let across = |t: f64| path(t)[axis] - line;
+                    // A path that stays on the line crosses nowhere.
+                    if across(a) == 0.0 && across(b) == 0.0 {
+                        continue;
+                    }
+                    found.extend(find_root(across, a, b).ok());
+                }
+            }
+        }
+    }
+    found.retain(|t| *t > 0.0 && *t < 1.0);
+    found
 }
 
 /// An implicit function f(x, y, z): negative inside, zero on the surface, positive outside.
@@ -203,6 +246,11 @@ pub trait SurfaceFormula: Send + Sync {
         [Vec::new(), Vec::new()]
     }
 
+    /// See [`Surface::crossings`].
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        line_crossings(&SurfaceFormula::breaks(self), path, spans)
+    }
+
     /// See [`Surface::edges`].
     fn edges(&self) -> Edges<Self::Scalar> {
         Edges::own()
@@ -220,6 +268,9 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
     }
     fn breaks(&self) -> [Vec<f64>; 2] {
         SurfaceFormula::breaks(self)
+    }
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        SurfaceFormula::crossings(self, path, spans)
     }
     fn edges(&self) -> Edges<F::Scalar> {
         SurfaceFormula::edges(self)

@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub struct Point<T: Real> {
     /// Position.
     pub xyz: Vec3<T>,
-    /// The object, once it has a name.
+    /// The object, once it has a name; or another that it is the same point as by construction.
     pub key: Option<Key>,
     /// The curve and parameter t it lies at, for beads and rings.
     pub on_curve: Option<Arc<(CurveRef<T>, T)>>,
@@ -28,19 +28,36 @@ impl<T: Real> Point<T> {
     }
 
     /// The point of `curve` at `t`; on a snake it also knows its place on the surface.
+    ///
+    /// At t = 0 or 1 to the bit it is the point object that the curve ends at, if there is one: its
+    /// key is that object's, so that meshes join there.
     pub fn on_curve(curve: CurveRef<T>, t: T) -> Self {
+        let key = match t.re() {
+            0.0 => curve.end_points()[0],
+            1.0 => curve.end_points()[1],
+            _ => None,
+        };
         let xyz = curve.jet(t, Order::Zero)[0];
         let on_surface = curve.surface.as_ref().and_then(|surface| {
             let w = curve.on_surface(t, Order::Zero)?[0];
             Some(Arc::new((SurfaceRef::clone(surface), [w.x, w.y])))
         });
-        Self { xyz, key: None, on_curve: Some(Arc::new((curve, t))), on_surface }
+        Self { xyz, key, on_curve: Some(Arc::new((curve, t))), on_surface }
     }
 
-    /// The point of `surface` at (`u`, `v`).
+    /// The point of `surface` at (`u`, `v`); at a corner to the bit it is the point object there,
+    /// if there is one, as for [`Point::on_curve`].
     pub fn on_surface(surface: SurfaceRef<T>, u: T, v: T) -> Self {
+        let corner = match (u.re(), v.re()) {
+            (0.0, 0.0) => Some(0),
+            (1.0, 0.0) => Some(1),
+            (1.0, 1.0) => Some(2),
+            (0.0, 1.0) => Some(3),
+            _ => None,
+        };
+        let key = corner.and_then(|k| surface.edges().corners[k]);
         let xyz = surface.jet(u, v, Order::Zero).p;
-        Self { xyz, key: None, on_curve: None, on_surface: Some(Arc::new((surface, [u, v]))) }
+        Self { xyz, key, on_curve: None, on_surface: Some(Arc::new((surface, [u, v]))) }
     }
 
     /// How deep the shapes are nested that this point holds on to.
@@ -73,6 +90,9 @@ pub struct CurveRef<T: Real> {
     pub key: Option<Key>,
     /// The surface it lies on, for snakes.
     pub surface: Option<Box<SurfaceRef<T>>>,
+    /// For a part of another curve, run at an even rate: that curve, itself no such part, and the
+    /// parameters there of the part's ends.
+    pub part_of: Option<Arc<(CurveRef<T>, [T; 2])>>,
     /// How deep shapes are nested in it, itself included.
     pub depth: u32,
 }
@@ -134,13 +154,14 @@ shape_ref!(RelabelRef, Law);
 impl<T: Real> CurveRef<T> {
     /// A curve that holds on to shapes nested `nesting` deep (0 when it holds on to none).
     pub fn new(shape: impl Curve<T> + 'static, nesting: u32) -> Self {
-        Self { shape: Arc::new(shape), key: None, surface: None, depth: nesting + 1 }
+        Self { shape: Arc::new(shape), key: None, surface: None, part_of: None, depth: nesting + 1 }
     }
 
     /// A snake on `surface`.
     pub fn snake(shape: impl Curve<T> + 'static, surface: SurfaceRef<T>, nesting: u32) -> Self {
         let depth = nesting.max(surface.depth) + 1;
-        Self { shape: Arc::new(shape), key: None, surface: Some(Box::new(surface)), depth }
+        let surface = Some(Box::new(surface));
+        Self { shape: Arc::new(shape), key: None, surface, part_of: None, depth }
     }
 
     /// The position at a parameter that is a jet.

@@ -6,6 +6,7 @@ use crate::{
 use moldloft_num::trace::{Edge, Edges, Mark, Piece, Trace};
 use moldloft_num::{
     Composed, Curve, CurveJet, Law, Order, Real, SurfJet, Surface, Vec3, inv_law, inv_law_in,
+    line_crossings,
 };
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -216,6 +217,22 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
     fn breaks(&self) -> [Vec<f64>; 2] {
         let [u, v] = self.surface.breaks();
         [u, breaks(&self.law, v)]
+    }
+
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        let of_law = [Vec::new(), breaks(&self.law, Vec::new())];
+        let own = line_crossings(&of_law, path, spans);
+        let mut finer = spans.to_vec();
+        finer.extend(&own);
+        finer.sort_by(f64::total_cmp);
+        finer.dedup();
+        let inside = |t: f64| {
+            let [u, v] = path(t);
+            [u, self.law.jet(T::from(v), Order::Zero)[0].re()]
+        };
+        let mut all = self.surface.crossings(&inside, &finer);
+        all.extend(own);
+        all
     }
 
     fn edges(&self) -> Edges<T> {

@@ -193,7 +193,8 @@ impl<T: Real> Value<T> {
     /// The value under the name of an object: shapes and points remember whose they are.
     pub fn named(mut self, key: Key) -> Self {
         match &mut self {
-            Value::Point(p) => p.key = Some(key),
+            // One that is an end of a curve by construction stays that end.
+            Value::Point(p) => p.key = p.key.or(Some(key)),
             Value::Curve(c) => c.key = Some(key),
             Value::Surface(s) => s.key = Some(key),
             Value::Relabel(r) => r.key = Some(key),

@@ -1,6 +1,9 @@
 //! Planes: of constant coordinate, parallel to others, through points.
 
-use moldloft_num::{Plane, Real, Vec3};
+use crate::arguments::{Bead, Magnet};
+use crate::normal::normal;
+use crate::point::tangent;
+use moldloft_num::{Order, Plane, Real, Vec3};
 use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
 use std::sync::Arc;
 
@@ -122,5 +125,70 @@ impl<T: Real> Build<T> for TwoPointPlane<T> {
                 .found("no direction between them")
                 .in_field(1)),
         }
+    }
+}
+
+/// The plane through a point, parallel to another plane.
+#[derive(Kind)]
+#[kind(
+    class = Plane,
+    columns = "point plane",
+    example = "AbsPoint A(1, 2, 3); ZPlane water(0); PlaneThroughPoint deck(A, water);"
+)]
+pub struct PlaneThroughPoint<T: Real> {
+    /// A point of the plane.
+    point: Point<T>,
+    /// The plane it is parallel to.
+    plane: Plane<T>,
+}
+
+impl<T: Real> Build<T> for PlaneThroughPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        plane(Plane { point: self.point.xyz, normal: self.plane.normal })
+    }
+}
+
+/// The tangent plane of a surface at a magnet, with the surface's normal; at a pole the limit along
+/// the parameter line that leads there.
+#[derive(Kind)]
+#[kind(
+    class = Plane,
+    columns = "magnet",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5); \
+               TanPlane t(p);"
+)]
+pub struct TanPlane<T: Real> {
+    /// Where it touches the surface.
+    magnet: Magnet<T>,
+}
+
+impl<T: Real> Build<T> for TanPlane<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let normal = normal(&self.magnet).map_err(|fault| fault.in_field(0))?;
+        let [u, v] = self.magnet.uv;
+        plane(Plane { point: self.magnet.surface.jet(u, v, Order::Zero).p, normal })
+    }
+}
+
+/// The plane normal to a curve at a bead; its normal is the tangent, in the direction of increasing
+/// parameter.
+#[derive(Kind)]
+#[kind(
+    class = Plane,
+    columns = "bead",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
+               AbsBead b(c, 0.25); NormalPlane across(b);"
+)]
+pub struct NormalPlane<T: Real> {
+    /// Where it crosses the curve.
+    bead: Bead<T>,
+}
+
+impl<T: Real> Build<T> for NormalPlane<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let normal = tangent(&self.bead)?;
+        let point = self.bead.curve.jet(self.bead.t, Order::Zero)[0];
+        plane(Plane { point, normal })
     }
 }

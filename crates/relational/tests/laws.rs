@@ -158,15 +158,12 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
             points
         }
         Value::Plane(p) => vec![p.point, p.normal],
-<<<<<<< HEAD
         Value::Relabel(r) => {
             let jet = |t: &f64| r.jet(T::from(*t), Order::Second);
             let outside = [-0.2, 1.3];
             TS.iter().chain(&outside).map(|t| Vec3::from(jet(t))).collect()
         }
-=======
         Value::Frame(f) => vec![f.origin, f.axes[0], f.axes[1], f.axes[2]],
->>>>>>> e5691c5 (relational: foils, poly-curves, helices, conics, frames and points in them)
         Value::Vectors(a) => a.items.clone(),
         Value::Field(f) => {
             let (value, gradient) = f.value_and_gradient(Vec3::of(0.5, -1.0, 0.25));

@@ -72,13 +72,25 @@ fn way<T: Real>(curve: &dyn Curve<T>, t: f64, near: f64) -> T {
 /// assert!((arclen(&circle, 0.25, 0.75, 1e-12) - std::f64::consts::PI).abs() < 1e-12);
 /// ```
 pub fn arclen<T: Real>(curve: &dyn Curve<T>, a: T, b: T, accuracy: f64) -> T {
+    curve_integral(curve, a, b, accuracy, |t| speed(curve, t))
+}
+
+/// The integral of `f` over the parameters from `a` to `b` of a curve, piece by piece between its
+/// breaks, whose way counts; as [`arclen`].
+pub fn curve_integral<T: Real>(
+    curve: &dyn Curve<T>,
+    a: T,
+    b: T,
+    accuracy: f64,
+    f: impl Fn(T) -> T,
+) -> T {
     let ends = pieces(curve, a, b);
     let share = accuracy / (ends.len() - 1) as f64;
-    let mut length = T::zero();
+    let mut sum = T::zero();
     for w in ends.windows(2) {
-        length += integrate(w[0], w[1], share, |t| speed(curve, t));
+        sum += integrate(w[0], w[1], share, &f);
     }
-    length
+    sum
 }
 
 fn speed<T: Real>(curve: &dyn Curve<T>, t: T) -> T {

@@ -38,7 +38,7 @@ pub struct CCurve<T: Real> {
 impl<T: Real> Build<T> for CCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let names = bcurve::ends(&self.points)?;
-        let ends = self.conditions()?;
+        let ends = clamped_ends(self.ends, self.start, self.end)?;
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
         let curve = match self.degree {
             1 => InterpolatingSpline::polyline(&points),
@@ -50,24 +50,27 @@ impl<T: Real> Build<T> for CCurve<T> {
     }
 }
 
-impl<T: Real> CCurve<T> {
-    fn conditions(&self) -> Result<Ends<T>, Fault> {
-        match (self.ends.ends(), self.start, self.end) {
-            (Some(ends), None, None) => Ok(ends),
-            (None, Some(start), Some(end)) => {
-                Ok(Ends::Open(End::Clamped(start), End::Clamped(end)))
-            }
-            (None, start, _) => Err(Fault::new(
-                "missing-argument",
-                "clamped ends need the slopes `start` and `end`",
-            )
-            .expected("start = {x, y, z}, end = {x, y, z}")
-            .in_field(if start.is_none() { 3 } else { 4 })),
-            (Some(_), start, _) => {
-                Err(Fault::new("unused-argument", "slopes are for clamped ends only")
-                    .help("add ends = \"clamped\", or leave the slopes out")
-                    .in_field(if start.is_some() { 3 } else { 4 }))
-            }
+/// The conditions of a rule with these slopes, which are fields 3 and 4.
+///
+/// # Errors
+/// A fault when clamped ends have no slopes, or others have.
+pub fn clamped_ends<T: Real>(
+    rule: EndRule,
+    start: Option<Vec3<T>>,
+    end: Option<Vec3<T>>,
+) -> Result<Ends<T>, Fault> {
+    match (rule.ends(), start, end) {
+        (Some(ends), None, None) => Ok(ends),
+        (None, Some(start), Some(end)) => Ok(Ends::Open(End::Clamped(start), End::Clamped(end))),
+        (None, start, _) => {
+            Err(Fault::new("missing-argument", "clamped ends need the slopes `start` and `end`")
+                .expected("start = {x, y, z}, end = {x, y, z}")
+                .in_field(if start.is_none() { 3 } else { 4 }))
+        }
+        (Some(_), start, _) => {
+            Err(Fault::new("unused-argument", "slopes are for clamped ends only")
+                .help("add ends = \"clamped\", or leave the slopes out")
+                .in_field(if start.is_some() { 3 } else { 4 }))
         }
     }
 }

@@ -43,13 +43,19 @@ impl<T: Real> Build<T> for Conic<T> {
 }
 
 /// The path of a conic; also in the parameter plane of a surface.
-pub(crate) struct Oblique<T> {
-    pub(crate) centre: Vec3<T>,
-    pub(crate) first: Vec3<T>,
-    pub(crate) second: Vec3<T>,
-    pub(crate) a1: T,
-    pub(crate) a2: T,
-    pub(crate) kind: u32,
+pub struct Oblique<T> {
+    /// P1.
+    pub centre: Vec3<T>,
+    /// P2 - P1.
+    pub first: Vec3<T>,
+    /// P3 - P1.
+    pub second: Vec3<T>,
+    /// Where it begins.
+    pub a1: T,
+    /// Where it ends.
+    pub a2: T,
+    /// Its type, 1 to 3.
+    pub kind: u32,
 }
 
 impl<T: Real> CurveFormula for Oblique<T> {

@@ -1,7 +1,9 @@
 use crate::arguments::{Bead, Ring, common_curve};
 use moldloft_num::trace::{Mark, Root, Trace};
-use moldloft_num::{Curve, CurveJet, Order, Real};
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, find_root};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Value};
+use moldloft_spline::BSplineCurve;
+use std::sync::Arc;
 
 /// The part of a curve between two of its beads: C(t) = P((1 - t) t1 + t t2), where P is the
 /// curve and t1, t2 the parameters of the beads. It may run backwards.
@@ -20,8 +22,8 @@ pub struct SubCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for SubCurve<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        part(self.bead1, self.bead2, context)
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        part(self.bead1, self.bead2)
     }
 }
 
@@ -42,15 +44,93 @@ pub struct SubSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for SubSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        part(self.ring1.0, self.ring2.0, context)
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        part(self.ring1.0, self.ring2.0)
     }
 }
 
-fn part<T: Real>(from: Bead<T>, to: Bead<T>, context: &Context) -> Result<Value<T>, Fault> {
-    let curve = common_curve([&from, &to], 1)?;
+/// A curve run by a B-spline law: C(t) = P(b(t)), where P is the curve of the beads and b the
+/// clamped uniform B-spline with their parameters as coefficients.
+///
+/// It begins at the first bead and ends at the last; the others draw its divisions toward them.
+/// With N beads the degree is at most N - 1: a higher one is lowered to that.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel degree beads",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); \
+               BCurve c({A, B, C, D}); AbsBead b(c, 0.1); AbsBead d(c, 0.3); AbsBead e(c, 0.9); \
+               BSubCurve part({b, d, e}, degree = 2);"
+)]
+pub struct BSubCurve<T: Real> {
+    /// Beads of one curve, two or more.
+    #[field(min_items = 2)]
+    beads: Vec<Bead<T>>,
+    /// Polynomial degree of the law.
+    #[field(default = 3, min = 1, max = 25)]
+    degree: usize,
+}
+
+impl<T: Real> Build<T> for BSubCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        redistributed(self.beads, self.degree)
+    }
+}
+
+/// A snake run by a B-spline law, which is a snake again: as a B-sub-curve.
+#[derive(Kind)]
+#[kind(
+    class = Snake,
+    columns = "relabel degree rings",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, \"u\", 0.4); \
+               AbsRing r(s, 0.9); AbsRing q(s, 0.75); AbsRing p(s, 0.25); \
+               BSubSnake part({r, q, p}, degree = 2);"
+)]
+pub struct BSubSnake<T: Real> {
+    /// Rings of one snake, two or more.
+    #[field(min_items = 2)]
+    rings: Vec<Ring<T>>,
+    /// Polynomial degree of the law.
+    #[field(default = 3, min = 1, max = 25)]
+    degree: usize,
+}
+
+impl<T: Real> Build<T> for BSubSnake<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        redistributed(self.rings.into_iter().map(|ring| ring.0).collect(), self.degree)
+    }
+}
+
+/// The curve that a bead's curve is a part of, itself when it is none, and the bead's parameter
+/// there.
+fn whole<T: Real>(bead: &Bead<T>) -> (CurveRef<T>, T) {
+    match &bead.curve.part_of {
+        Some(part) => {
+            let [from, to] = part.1;
+            (part.0.clone(), between(from, to, bead.t))
+        }
+        None => (bead.curve.clone(), bead.t),
+    }
+}
+
+/// (1 - t) from + t to: exact at both ends.
+fn between<T: Real>(from: T, to: T, t: T) -> T {
+    from * (-t + 1.0) + to * t
+}
+
+/// The curve of a shape that runs along `curve`, on the same surface if that is a snake.
+fn like<T: Real>(curve: &CurveRef<T>, shape: impl Curve<T> + 'static) -> CurveRef<T> {
+    match &curve.surface {
+        Some(surface) => CurveRef::snake(shape, (**surface).clone(), curve.depth),
+        None => CurveRef::new(shape, curve.depth),
+    }
+}
+
+fn part<T: Real>(from: Bead<T>, to: Bead<T>) -> Result<Value<T>, Fault> {
+    let along = common_curve([&from, &to], 1)?;
     let marks = [&from, &to].map(|bead| Mark { t: bead.t, point: bead.key });
-    let trace = match (curve.trace(), curve.key) {
+    let trace = match (along.trace(), along.key) {
         (Trace::Point(point), _) => Trace::Point(point),
         // A nameless curve is no root that others could share.
         (Trace::Own(_), None) => Trace::Own([from.key, to.key]),
@@ -59,44 +139,105 @@ fn part<T: Real>(from: Bead<T>, to: Bead<T>, context: &Context) -> Result<Value<
             trace.part(root, marks[0], marks[1])
         }
     };
-    let surface = curve.surface.clone();
-    let shape = Part { curve, from: from.t, to: to.t, trace };
-    Ok(Value::Curve(match surface {
-        Some(surface) => CurveRef::snake(shape, *surface, context.nesting),
-        None => CurveRef::new(shape, context.nesting),
-    }))
+    // Parts of parts are parts of the whole, so that nesting does not grow.
+    let ((curve, a), (_, b)) = (whole(&from), whole(&to));
+    let law = Law::Straight([a, b]);
+    let mut found = like(&curve, Run { curve: curve.clone(), law, trace });
+    found.part_of = Some(Arc::new((curve, [a, b])));
+    Ok(Value::Curve(found))
 }
 
-struct Part<T: Real> {
+fn redistributed<T: Real>(beads: Vec<Bead<T>>, degree: usize) -> Result<Value<T>, Fault> {
+    let [first, rest @ ..] = beads.as_slice() else { return Err(too_few(0)) };
+    let Some(last) = rest.last() else { return Err(too_few(1)) };
+    for (k, bead) in rest.iter().enumerate() {
+        common_curve([first, bead], 0).map_err(|fault| fault.in_item(k + 1).in_field(0))?;
+    }
+    if beads.len() == 2 {
+        return part(first.clone(), last.clone());
+    }
+    let (curve, _) = whole(first);
+    let coefficients = beads.iter().map(|b| Vec3::new(whole(b).1, T::zero(), T::zero())).collect();
+    let law = BSplineCurve::uniform(degree.min(beads.len() - 1), coefficients)
+        .map_err(|error| crate::faults::of_spline(error, 0, 1))?;
+    let trace = Trace::Own([first.key, last.key]);
+    Ok(Value::Curve(like(&curve, Run { curve: curve.clone(), law: Law::Spline(law), trace })))
+}
+
+fn too_few(found: usize) -> Fault {
+    Fault::new("too-few-items", "a law needs at least 2 beads")
+        .expected("at least 2 beads")
+        .found(found.to_string())
+        .in_field(0)
+}
+
+/// The parameter of the curve at that of its run.
+enum Law<T> {
+    /// From the first to the second.
+    Straight([T; 2]),
+    /// The x of a spline.
+    Spline(BSplineCurve<T>),
+}
+
+impl<T: Real> Law<T> {
+    /// The parameter and its derivatives.
+    fn at(&self, t: T, order: Order) -> [T; 3] {
+        match self {
+            Law::Straight([from, to]) => [between(*from, *to, t), *to - *from, T::zero()],
+            Law::Spline(law) => law.jet(t, order).map(|p| p.x),
+        }
+    }
+}
+
+/// A curve run by a law.
+struct Run<T: Real> {
     curve: CurveRef<T>,
-    from: T,
-    to: T,
+    law: Law<T>,
     trace: Trace<T>,
 }
 
-impl<T: Real> Part<T> {
-    fn inner(&self, t: T) -> T {
-        // Exact at both ends.
-        self.from * (-t + 1.0) + self.to * t
-    }
-
-    fn chained(&self, jet: CurveJet<T>) -> CurveJet<T> {
-        let rate = self.to - self.from;
-        [jet[0], jet[1] * rate, jet[2] * (rate * rate)]
+impl<T: Real> Run<T> {
+    fn chained(&self, [_, rate, bend]: [T; 3], [p, d, dd]: CurveJet<T>) -> CurveJet<T> {
+        [p, d * rate, dd * (rate * rate) + d * bend]
     }
 }
 
-impl<T: Real> Curve<T> for Part<T> {
+/// Each span of a law is searched in so many steps for the breaks of the curve.
+const STEPS: usize = 8;
+
+impl<T: Real> Curve<T> for Run<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        self.chained(self.curve.jet(self.inner(t), order))
+        let law = self.law.at(t, order);
+        self.chained(law, self.curve.jet(law[0], order))
     }
 
     fn breaks(&self) -> Vec<f64> {
-        let (from, to) = (self.from.re(), self.to.re());
-        let at = |b: f64| (b - from) / (to - from);
-        let mut breaks: Vec<f64> =
-            self.curve.breaks().into_iter().map(at).filter(|t| *t > 0.0 && *t < 1.0).collect();
+        let of_curve = self.curve.breaks();
+        let mut breaks = match &self.law {
+            Law::Straight([from, to]) => {
+                let (from, to) = (from.re(), to.re());
+                of_curve.into_iter().map(|b| (b - from) / (to - from)).collect()
+            }
+            Law::Spline(law) => {
+                let mut breaks = law.breaks();
+                let mut ends = vec![0.0];
+                ends.extend(&breaks);
+                ends.push(1.0);
+                let at = |t: f64| self.law.at(T::from(t), Order::Zero)[0].re();
+                for span in ends.windows(2) {
+                    let step = (span[1] - span[0]) / STEPS as f64;
+                    for k in 0..STEPS {
+                        let low = span[0] + k as f64 * step;
+                        let reach = |b: &f64| find_root(|t| at(t) - b, low, low + step).ok();
+                        breaks.extend(of_curve.iter().filter_map(reach));
+                    }
+                }
+                breaks
+            }
+        };
+        breaks.retain(|t| *t > 0.0 && *t < 1.0);
         breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
         breaks
     }
 
@@ -105,6 +246,7 @@ impl<T: Real> Curve<T> for Part<T> {
     }
 
     fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
-        Some(self.chained(self.curve.on_surface(self.inner(t), order)?))
+        let law = self.law.at(t, order);
+        Some(self.chained(law, self.curve.on_surface(law[0], order)?))
     }
 }

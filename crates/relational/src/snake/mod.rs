@@ -2,10 +2,12 @@
 
 mod foil;
 mod isoparametric;
+mod more;
 mod on_surface;
 mod through;
 
 pub use foil::FoilSnake;
 pub use isoparametric::{EdgeSnake, UVSnake};
+pub use more::{ArcSnake, CSnake, ConicSnake, CopySnake, NURBSnake, RelSnake};
 pub use on_surface::OnSurface;
 pub use through::{BSnake, LineSnake};

@@ -1,9 +1,6 @@
 use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Order, Real, find_root};
+use moldloft_num::{Curve, CurveJet, Order, Real};
 use moldloft_registry::SurfaceRef;
-
-/// How many steps a span of the path is searched in for crossings of the surface's breaks.
-const STEPS: usize = 8;
 
 /// The curve X(t) = S(w(t)) of a path w(t) = (u, v, 0) in the parameter plane of a surface.
 pub struct OnSurface<T: Real, P> {
@@ -27,31 +24,14 @@ impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
     /// Those of the path, and where it crosses those of the surface.
     fn breaks(&self) -> Vec<f64> {
         let mut breaks = self.path.breaks();
-        let mut ends = vec![0.0];
-        ends.extend(&breaks);
-        ends.push(1.0);
-        let lines = self.surface.breaks();
-        if lines.iter().all(Vec::is_empty) {
-            return breaks;
-        }
-        let along = |axis: usize, t: f64| self.path.jet(T::from(t), Order::Zero)[0][axis].re();
-        for span in ends.windows(2) {
-            let step = (span[1] - span[0]) / STEPS as f64;
-            for k in 0..STEPS {
-                let (a, b) = (span[0] + k as f64 * step, span[0] + (k + 1) as f64 * step);
-                for (axis, lines) in lines.iter().enumerate() {
-                    for &line in lines {
-                        let across = |t: f64| along(axis, t) - line;
-                        // A path that stays on the line crosses nowhere.
-                        if across(a) == 0.0 && across(b) == 0.0 {
-                            continue;
-                        }
-                        breaks.extend(find_root(across, a, b).ok());
-                    }
-                }
-            }
-        }
-        breaks.retain(|t| *t > 0.0 && *t < 1.0);
+        let mut spans = vec![0.0];
+        spans.extend(&breaks);
+        spans.push(1.0);
+        let path = |t: f64| {
+            let [w, ..] = self.path.jet(T::from(t), Order::Zero);
+            [w.x.re(), w.y.re()]
+        };
+        breaks.extend(self.surface.crossings(&path, &spans));
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         breaks

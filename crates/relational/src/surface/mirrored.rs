@@ -59,6 +59,10 @@ impl<T: Real> Surface<T> for MirrSurf<T> {
         self.surface.breaks()
     }
 
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        self.surface.crossings(path, spans)
+    }
+
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, self.mirror.reverses()))
     }

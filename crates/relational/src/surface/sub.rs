@@ -1,7 +1,7 @@
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
 use moldloft_num::trace::{Edge, Edges, Key};
-use moldloft_num::{Jet, Real, SurfaceFormula, Vec3, lift_curve};
+use moldloft_num::{Jet, Real, SurfaceFormula, Vec3, lift_curve, line_crossings};
 use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
@@ -192,6 +192,23 @@ impl<T: Real> SurfaceFormula for Patch<T> {
             Layout::Between([a, b]) => [merged(Some(a), Some(b)), Vec::new()],
             Layout::Round(s) => [merged(Some(&s[0]), Some(&s[2])), merged(Some(&s[1]), s.get(3))],
         }
+    }
+
+    /// Those of the patch's own lines, and of the surface, which lie across them.
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        let own = line_crossings(&SurfaceFormula::breaks(self), path, spans);
+        let mut finer = spans.to_vec();
+        finer.extend(&own);
+        finer.sort_by(f64::total_cmp);
+        finer.dedup();
+        let inside = |t: f64| {
+            let [u, v] = path(t);
+            let w = self.inside(T::from(u), T::from(v));
+            [w.x.re(), w.y.re()]
+        };
+        let mut all = self.surface.crossings(&inside, &finer);
+        all.extend(own);
+        all
     }
 
     fn edges(&self) -> Edges<T> {

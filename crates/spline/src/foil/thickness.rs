@@ -228,7 +228,12 @@ impl<T: Real> Thickness<T> {
     /// The places s at which a second derivative may jump.
     pub fn breaks(&self) -> Vec<f64> {
         match self {
-            Thickness::Polynomial(_) | Thickness::Spline { .. } => Vec::new(),
+            Thickness::Polynomial(_) => Vec::new(),
+            // Third derivatives jump there, which quadrature wants to know.
+            Thickness::Spline { spline, .. } => {
+                let knots = spline.knots();
+                knots[1..knots.len() - 1].iter().map(|k| k.re()).collect()
+            }
             Thickness::Joined { at, .. } => vec![at.re().sqrt()],
             Thickness::Curve(curve) => curve.breaks(),
             Thickness::Closed { open, .. } => open.breaks(),

@@ -18,6 +18,45 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             1 => format!("{{{}}}, degree = 1", p.points::<3>().join(", ")),
             _ => format!("{{{}}}", p.points::<5>().join(", ")),
         },
+        "XCurve" => {
+            let points: Vec<String> = (0..4)
+                .map(|k| {
+                    let (y, z) = (p.number(-1.0, 1.0), p.number(-1.0, 1.0));
+                    p.object("AbsPoint", &format!("{k}*w, {y}, {z}"))
+                })
+                .collect();
+            format!("\"x\", {{{}}}", points.join(", "))
+        }
+        "NURBCurve" => {
+            let points = p.points::<4>().join(", ");
+            match p.random.below(2) {
+                0 => format!("{{{points}}}, 2, {{0, 0, 0, 0.45*w, 1, 1, 1}}"),
+                _ => format!("{{{points}}}, 3, weights = {{1, w, 0.7, 1.5}}"),
+            }
+        }
+        "BSubCurve" => {
+            let curve = p.curve();
+            let beads: Vec<_> = (0..3).map(|_| p.bead(&curve)).collect();
+            format!("{{{}}}, degree = 2", beads.join(", "))
+        }
+        "RelCurve" => format!("{}, {}", p.curve(), p.points::<2>().join(", ")),
+        "CopyCurve" => {
+            format!("{}, {}, {x}, w, {z}", p.curve(), p.points::<2>().join(", "))
+        }
+        "RotatCurve" => {
+            let [a, b] = p.points();
+            let line = p.object("Line", &format!("{a}, {b}"));
+            format!("{}, {line}, {x}*w", p.curve())
+        }
+        "OffsetCurve" => {
+            let points = p.points::<3>().join(", ");
+            let curve = p.object("Arc", &points);
+            let [a, b, c] = p.points();
+            let plane = p.object("ThreePointPlane", &format!("{a}, {b}, {c}"));
+            format!("{curve}, 0.01*w, {plane}")
+        }
+        "BFitCurve" => format!("{}, 2, 5", p.curve()),
+        "NUBFitCurve" => format!("{}, 3, {{0, 0.3*w, 1}}", p.curve()),
         "Conic" => {
             format!("{}, {x}, {z}*w, type = {}", p.points::<3>().join(", "), 1 + p.random.below(3))
         }
@@ -30,7 +69,7 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let [t, u, n, d] = p.points();
             let family = p.random.pick(&["4-digit", "modified", "16", "63", "65A", "66tmb"]);
             let offset = p.random.pick(&["affine", "normal"]);
-            let more = match family {
+            let more = match *family {
                 "4-digit" => "camber_at = 0.3*w",
                 "modified" => "nose_index = 4*w, thickness_at = 0.45",
                 "66tmb" => "load = 0.5*w",

@@ -11,6 +11,15 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "OffsetPlane" => format!("{}, {x}", p.random.pick(&p.planes)),
         "ThreePointPlane" => p.points::<3>().join(", "),
         "TwoPointPlane" => p.points::<2>().join(", "),
+        "PlaneThroughPoint" => format!("{}, {}", p.point(), p.random.pick(&p.planes)),
+        "TanPlane" => {
+            let surface = p.surface();
+            p.magnet(&surface)
+        }
+        "NormalPlane" => {
+            let curve = p.curve();
+            p.bead(&curve)
+        }
         "ThreePointFrame" => p.points::<3>().join(", "),
         "RPYFrame" => format!("{}, {x}, {y}*w, 0.5", p.point()),
         "XContours" | "YContours" | "ZContours" => format!("0, 3, {x}, {y}"),

@@ -15,6 +15,51 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             format!("{}, {frame}, {x}, {y}*w, {z}, type = {}", p.point(), p.random.below(3))
         }
         "PolarPoint" => format!("{}, {}, {x}, {y}*w, {z}", p.point(), p.frame()),
+        "OffsetPoint" => {
+            let surface = p.surface();
+            format!("{}, {x}*w", p.magnet(&surface))
+        }
+        "TanPoint" => {
+            let curve = p.curve();
+            format!("{}, {x}*w", p.bead(&curve))
+        }
+        "RotatPoint" => {
+            let [a, b] = p.points();
+            let line = p.object("Line", &format!("{a}, {b}"));
+            format!("{}, {line}, {x}*w", p.point())
+        }
+        "CopyPoint" => {
+            let [a, b] = p.points();
+            format!("{}, {a}, {b}, {x}, w, {z}", p.point())
+        }
+        "BlendPoint" => format!("{{{}}}, {{{x}, w, {z}}}", p.points::<3>().join(", ")),
+        "CentroidPoint" => match p.random.below(3) {
+            0 => format!("{{{}}}", p.points::<3>().join(", ")),
+            1 => format!("{{{}}}", p.curves::<2>().join(", ")),
+            _ => format!("{{{}}}", p.surface()),
+        },
+        "ArcLenBead" => {
+            let curve = p.curve();
+            format!("{}, 0.01*w", p.bead(&curve))
+        }
+        "CopyBead" => {
+            let curve = p.curve();
+            format!("{}, {}", p.bead(&curve), p.curve())
+        }
+        "CopyMagnet" => {
+            let surface = p.surface();
+            format!("{}, {}", p.magnet(&surface), p.surface())
+        }
+        "ArcLenRing" => {
+            let surface = p.surface();
+            let snake = p.snake(&surface);
+            format!("{}, -0.01*w", p.ring(&snake))
+        }
+        "CopyRing" => {
+            let (surface, other) = (p.surface(), p.surface());
+            let (snake, to) = (p.snake(&surface), p.snake(&other));
+            format!("{}, {to}", p.ring(&snake))
+        }
         "AbsBead" => format!("{}, {t}", p.curve()),
         "RelBead" => {
             let curve = p.curve();

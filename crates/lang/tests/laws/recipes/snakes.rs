@@ -15,6 +15,42 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let magnets: Vec<_> = (0..4).map(|_| p.magnet(&surface)).collect();
             format!("{{{}}}, degree = 3", magnets.join(", "))
         }
+        "ArcSnake" => {
+            let surface = p.surface();
+            let [a, b, c] = std::array::from_fn(|_| p.magnet(&surface));
+            format!("{a}, {b}, {c}, type = {}", p.random.pick(&[1, 2, 5]))
+        }
+        "CSnake" => {
+            let surface = p.surface();
+            let magnets: Vec<_> = (0..4).map(|_| p.magnet(&surface)).collect();
+            format!("{{{}}}, ends = \"natural\"", magnets.join(", "))
+        }
+        "NURBSnake" => {
+            let surface = p.surface();
+            let magnets: Vec<_> = (0..3).map(|_| p.magnet(&surface)).collect();
+            format!("{{{}}}, 2, weights = {{1, w, 0.7}}", magnets.join(", "))
+        }
+        "ConicSnake" => {
+            let surface = p.surface();
+            let at = |u: f64, v: f64| format!("{surface}, {u}, {v}");
+            let [a, b, c] = [at(0.5, 0.5), at(0.7, 0.45), at(0.55, 0.8)]
+                .map(|place| p.object("AbsMagnet", &place));
+            format!("{a}, {b}, {c}, {t}, 2*w")
+        }
+        "RelSnake" => {
+            let surface = p.surface();
+            format!("{}, {}, {}", p.snake(&surface), p.magnet(&surface), p.magnet(&surface))
+        }
+        "CopySnake" => {
+            let surface = p.surface();
+            format!("{}, {}", p.snake(&surface), p.surface())
+        }
+        "BSubSnake" => {
+            let surface = p.surface();
+            let snake = p.snake(&surface);
+            let rings: Vec<_> = (0..3).map(|_| p.ring(&snake)).collect();
+            format!("{{{}}}, degree = 2", rings.join(", "))
+        }
         "FoilSnake" => {
             let surface = p.surface();
             let mut at = |u: f64, v: f64| {

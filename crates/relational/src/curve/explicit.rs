@@ -1,0 +1,71 @@
+use super::{Ended, bcurve};
+use crate::arguments::{AxisName, EndRule};
+use crate::faults;
+use moldloft_num::Real;
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_spline::{InterpolatingSpline, InterpolationError};
+
+/// An explicit spline: one coordinate runs evenly with t, and the other two are cubic splines of
+/// it through the points.
+///
+/// That coordinate must ascend or descend from point to point.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel axis points",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); \
+               XCurve c(\"x\", {A, B, C, D}); XCurve d(1, {D, C, B, A}, ends = \"natural\");"
+)]
+pub struct XCurve<T: Real> {
+    /// The coordinate that runs evenly: "x", "y" or "z", or 1, 2 or 3.
+    axis: AxisName,
+    /// The points it passes through, two or more.
+    #[field(min_items = 2)]
+    points: Vec<Point<T>>,
+    /// End conditions: "notaknot", "natural", "bessel", "quadratic" or "periodic".
+    #[field(default = "notaknot")]
+    ends: EndRule,
+}
+
+impl<T: Real> Build<T> for XCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let names = bcurve::ends(&self.points).map_err(|fault| fault.in_field(1))?;
+        let AxisName(axis) = self.axis;
+        let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
+        let (first, last) = (points[0][axis], points[points.len() - 1][axis]);
+        let rising = last.re() > first.re();
+        // Written so that NaN is refused.
+        let runs_on = |k: &usize| {
+            let step = (points[*k][axis] - points[k - 1][axis]).re();
+            if rising { step > 0.0 } else { step < 0.0 }
+        };
+        if let Some(k) = (1..points.len()).find(|k| !runs_on(k)) {
+            let name = ["x", "y", "z"][axis];
+            let message = format!("{name} does not run on from point {k} to point {}", k + 1);
+            return Err(Fault::new("not-monotone", message)
+                .expected(format!("{name} ascending from point to point, or descending"))
+                .found(format!("{} after {}", points[k][axis].re(), points[k - 1][axis].re()))
+                .in_item(k)
+                .in_field(1));
+        }
+        let Some(ends) = self.ends.ends() else {
+            return Err(Fault::new("unknown-ends", "an explicit spline cannot be clamped")
+                .expected("\"notaknot\", \"natural\", \"bessel\", \"quadratic\" or \"periodic\"")
+                .found("\"clamped\"")
+                .in_field(2));
+        };
+        let mut knots: Vec<T> = points.iter().map(|p| (p[axis] - first) / (last - first)).collect();
+        knots[0] = T::zero();
+        knots[points.len() - 1] = T::one();
+        let curve = InterpolatingSpline::with_knots(&knots, &points, ends).map_err(|error| {
+            let fault = faults::of_interpolation(error, "point", [1, 0, 2]);
+            match error {
+                InterpolationError::NotClosed { .. } => {
+                    fault.help("an explicit spline never closes: its axis runs on")
+                }
+                _ => fault,
+            }
+        })?;
+        Ok(Value::Curve(CurveRef::new(Ended { curve, ends: names }, 0)))
+    }
+}

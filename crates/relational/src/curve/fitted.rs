@@ -1,0 +1,123 @@
+use super::Ended;
+use moldloft_num::{Curve, Order, Real};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Value};
+use moldloft_spline::{MovingSpline, SplineError};
+
+/// A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
+/// curve, and the least sum of squared distances at equal parameters.
+///
+/// The number of control points decides how near it comes; with `accuracy` it is refused when it
+/// comes no nearer than that.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel curve degree points",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); \
+               CCurve c({A, B, C, D}); BFitCurve fit(c, 3, 6, 0.05);"
+)]
+pub struct BFitCurve<T: Real> {
+    /// The curve to come near to.
+    curve: CurveRef<T>,
+    /// Polynomial degree.
+    #[field(default = 3, min = 1, max = 25)]
+    degree: usize,
+    /// Number of control points, more than the degree.
+    #[field(default = 8, min = 2, max = 10_000)]
+    points: usize,
+    /// The greatest distance allowed between the two at equal parameters.
+    #[field(min = 0)]
+    accuracy: Option<T>,
+}
+
+impl<T: Real> Build<T> for BFitCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { curve, degree, points, accuracy } = self;
+        fit(&curve, degree, None, points, accuracy)
+    }
+}
+
+/// A B-spline fitted to a curve as by BFitCurve, with knots of one's own.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel curve degree knots",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); \
+               CCurve c({A, B, C, D}); NUBFitCurve fit(c, 3, {0, 0.3, 0.55, 1});"
+)]
+pub struct NUBFitCurve<T: Real> {
+    /// The curve to come near to.
+    curve: CurveRef<T>,
+    /// Polynomial degree.
+    #[field(default = 3, min = 1, max = 25)]
+    degree: usize,
+    /// The parameters where pieces meet, from 0 to 1, each once.
+    #[field(min_items = 2)]
+    knots: Vec<T>,
+    /// The greatest distance allowed between the two at equal parameters.
+    #[field(min = 0)]
+    accuracy: Option<T>,
+}
+
+impl<T: Real> Build<T> for NUBFitCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { curve, degree, knots, accuracy } = self;
+        let (first, last) = (knots[0].re(), knots[knots.len() - 1].re());
+        if (first, last) != (0.0, 1.0) {
+            return Err(Fault::new("out-of-range", "the knots of a fit run from 0 to 1")
+                .expected("knots from 0 to 1")
+                .found(format!("knots from {first} to {last}"))
+                .in_field(2));
+        }
+        let points = knots.len() + degree - 1;
+        let mut all = vec![T::zero(); degree];
+        all.push(T::zero());
+        all.extend_from_slice(&knots[1..knots.len() - 1]);
+        all.extend(vec![T::one(); degree + 1]);
+        fit(&curve, degree, Some(all), points, accuracy)
+    }
+}
+
+/// So many places of the curve per control point are compared.
+const SAMPLES: usize = 8;
+
+fn fit<T: Real>(
+    curve: &CurveRef<T>,
+    degree: usize,
+    knots: Option<Vec<T>>,
+    points: usize,
+    accuracy: Option<T>,
+) -> Result<Value<T>, Fault> {
+    let count = (SAMPLES * points).max(64);
+    let samples: Vec<_> = (0..=count)
+        .map(|k| k as f64 / count as f64)
+        .map(|t| (t, curve.jet(T::from(t), Order::Zero)[0]))
+        .collect();
+    let spline = MovingSpline::fitted(degree, knots, points, &samples);
+    let spline = spline.map_err(|error| {
+        let fault = Fault::new("no-fit", error.to_string());
+        match error {
+            SplineError::Count { .. } => fault
+                .expected("knots with room between them")
+                .found("a control point that no place of the curve determines"),
+            _ => fault.expected("ascending knots, and more points than the degree"),
+        }
+        .in_field(2)
+    })?;
+    if let Some(accuracy) = accuracy {
+        let gap = |(t, p): &(f64, moldloft_num::Vec3<T>)| {
+            spline.jet(T::from(*t), Order::Zero)[0].re().distance(p.re())
+        };
+        let residual = samples.iter().map(gap).fold(0.0, f64::max);
+        // Written so that NaN is refused.
+        if !(residual <= accuracy.re()) {
+            return Err(Fault::new("no-fit", "the fit does not come near enough to the curve")
+                .expected(format!("a distance of at most {}", accuracy.re()))
+                .found(format!("{residual}"))
+                .help("give it more control points or knots")
+                .related(curve.key, "is the curve")
+                .in_field(3));
+        }
+    }
+    let ends = curve.end_points();
+    Ok(Value::Curve(CurveRef::new(Ended { curve: spline, ends }, 0)))
+}

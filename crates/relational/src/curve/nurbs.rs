@@ -1,0 +1,78 @@
+use super::{Ended, bcurve};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_spline::{KnotError, MovingSpline, SplineError};
+
+/// A rational B-spline curve: C(t) = sum w_i N_i(t) P_i / sum w_i N_i(t).
+///
+/// The knots are all listed, end knots included: as many as points, plus the degree, plus one. They
+/// may run over any range, which is brought to [0, 1]. Without knots they are clamped and uniform,
+/// without weights the weights are 1.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel degree knots points weights",
+    example = "AbsPoint A(1, 0, 0); AbsPoint B(1, 1, 0.2); AbsPoint C(0, 1, 0); \
+               NURBCurve quarter({A, B, C}, 2, weights = {1, 0.7, 1}); \
+               NURBCurve c({A, B, C}, 1, {0, 0, 0.45, 1, 1});"
+)]
+pub struct NURBCurve<T: Real> {
+    /// Control points, two or more.
+    #[field(min_items = 2)]
+    points: Vec<Point<T>>,
+    /// Polynomial degree.
+    #[field(default = 3, min = 1, max = 25)]
+    degree: usize,
+    /// Knots, end knots included, ascending.
+    knots: Option<Vec<T>>,
+    /// Weights of the points, positive.
+    weights: Option<Vec<T>>,
+}
+
+impl<T: Real> Build<T> for NURBCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let names = bcurve::ends(&self.points)?;
+        let points = self.points.iter().map(|p| p.xyz).collect();
+        let curve = spline(points, self.degree, self.knots, self.weights)?;
+        let clamped = curve.clamped_ends();
+        let ends = [0, 1].map(|k| if clamped[k] { names[k] } else { None });
+        Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
+    }
+}
+
+/// The rational spline of fields 0 (points), 1 (degree), 2 (knots) and 3 (weights).
+pub fn spline<T: Real>(
+    points: Vec<Vec3<T>>,
+    degree: usize,
+    knots: Option<Vec<T>>,
+    weights: Option<Vec<T>>,
+) -> Result<MovingSpline<T>, Fault> {
+    // A degree that is only the default yields to few points; with knots it is meant.
+    let degree = if knots.is_none() { degree.min(points.len() - 1) } else { degree };
+    let count = points.len();
+    MovingSpline::new(degree, knots, points, weights).map_err(|error| {
+        let fault = Fault::new("no-spline", error.to_string());
+        match error {
+            SplineError::Knots(KnotError::Degree { degree }) => {
+                fault.expected("a degree from 1 to 25").found(degree.to_string()).in_field(1)
+            }
+            SplineError::Knots(_) | SplineError::Domain { .. } => fault
+                .expected(format!("{} ascending knots", count + degree + 1))
+                .help(
+                    "list all knots: those of the ends as well, degree + 1 times for an end \
+                       at a point",
+                )
+                .in_field(2),
+            SplineError::Weight { index, weight } => fault
+                .expected("a positive weight")
+                .found(weight.to_string())
+                .in_item(index)
+                .in_field(3),
+            SplineError::Count { expected, actual } => {
+                fault.expected(format!("{expected} weights")).found(actual.to_string()).in_field(3)
+            }
+            SplineError::NotFinite { index } => fault.in_item(index).in_field(0),
+            SplineError::Outside { .. } => fault.in_field(2),
+        }
+    })
+}

@@ -1,0 +1,147 @@
+use crate::arguments::{Bead, Magnet, Ring, Snake, Start};
+use moldloft_num::{Order, Real};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_spline::inv_arclen;
+
+fn on<T: Real>(curve: CurveRef<T>, t: T) -> Result<Value<T>, Fault> {
+    Ok(Value::Point(Box::new(Point::on_curve(curve, t))))
+}
+
+/// The bead at a signed length along a curve.
+fn at_length<T: Real>(start: Start<T>, length: T) -> Result<Value<T>, Fault> {
+    let Start { curve, t } = start;
+    let speed = |k: i32| curve.jet(T::from(f64::from(k) / 16.0), Order::First)[1].re().norm();
+    let size = (0..=16).map(speed).fold(0.0, f64::max);
+    if size == 0.0 {
+        return Err(Fault::new("no-length", "the curve has no length")
+            .expected("a curve with length")
+            .related(curve.key, "stands still")
+            .in_field(0));
+    }
+    let found = inv_arclen(&*curve, t, length, 1e-12 * size);
+    let found = found.map_err(|error| {
+        Fault::new("beyond-end", error.to_string())
+            .expected(format!("a length up to {} on that side", error.available))
+            .found(error.asked.to_string())
+            .related(curve.key, "is too short")
+            .in_field(1)
+    })?;
+    on(curve, found)
+}
+
+/// The bead at a given length along a curve from another bead, or from its start; negative lengths
+/// run backwards.
+#[derive(Kind)]
+#[kind(
+    class = Bead,
+    columns = "start length",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
+               ArcLenBead b(c, 1.5); ArcLenBead d(b, -0.5);"
+)]
+pub struct ArcLenBead<T: Real> {
+    /// A bead, or a curve for its start.
+    start: Start<T>,
+    /// The length.
+    length: T,
+}
+
+impl<T: Real> Build<T> for ArcLenBead<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        at_length(self.start, self.length)
+    }
+}
+
+/// The ring at a given length along a snake from another ring, or from its start: as an
+/// arc-length bead.
+#[derive(Kind)]
+#[kind(
+    class = Ring,
+    columns = "start length",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, \"u\", 0.4); \
+               ArcLenRing r(s, 0.5); ArcLenRing q(r, 0.25);"
+)]
+pub struct ArcLenRing<T: Real> {
+    /// A ring, or a snake for its start.
+    start: Start<T>,
+    /// The length.
+    length: T,
+}
+
+impl<T: Real> Build<T> for ArcLenRing<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        if self.start.curve.surface.is_none() {
+            return Err(Fault::new("wrong-class", "expected a snake or a ring on one")
+                .expected("a snake, or a ring on one")
+                .found("a curve that lies on no surface")
+                .in_field(0));
+        }
+        at_length(self.start, self.length)
+    }
+}
+
+/// The bead of another curve at the parameter of a bead: X = C(t).
+#[derive(Kind)]
+#[kind(
+    class = Bead,
+    columns = "bead curve",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
+               Line l(A, C); AbsBead b(c, 0.25); CopyBead d(b, l);"
+)]
+pub struct CopyBead<T: Real> {
+    /// The bead whose parameter is taken.
+    bead: Bead<T>,
+    /// The curve it is taken to.
+    curve: CurveRef<T>,
+}
+
+impl<T: Real> Build<T> for CopyBead<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        on(self.curve, self.bead.t)
+    }
+}
+
+/// The magnet of another surface at the parameters of a magnet: X = S(u, v).
+#[derive(Kind)]
+#[kind(
+    class = Magnet,
+    columns = "magnet surface",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); RuledSurf T(m, l); \
+               AbsMagnet p(S, 0.25, 0.375); CopyMagnet q(p, T);"
+)]
+pub struct CopyMagnet<T: Real> {
+    /// The magnet whose parameters are taken.
+    magnet: Magnet<T>,
+    /// The surface they are taken to.
+    surface: SurfaceRef<T>,
+}
+
+impl<T: Real> Build<T> for CopyMagnet<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let [u, v] = self.magnet.uv;
+        Ok(Value::Point(Box::new(Point::on_surface(self.surface, u, v))))
+    }
+}
+
+/// The ring of another snake at the parameter of a ring: X = S(w(t)).
+#[derive(Kind)]
+#[kind(
+    class = Ring,
+    columns = "ring snake",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, \"u\", 0.4); \
+               UVSnake t(S, \"v\", 0.3); AbsRing r(s, 0.3); CopyRing q(r, t);"
+)]
+pub struct CopyRing<T: Real> {
+    /// The ring whose parameter is taken.
+    ring: Ring<T>,
+    /// The snake it is taken to.
+    snake: Snake<T>,
+}
+
+impl<T: Real> Build<T> for CopyRing<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        on(self.snake.curve, self.ring.0.t)
+    }
+}

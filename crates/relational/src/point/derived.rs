@@ -1,0 +1,275 @@
+use crate::affine::Affine;
+use crate::arguments::{Bead, Magnet};
+use crate::normal::normal;
+use moldloft_num::{Axis, Order, Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_spline::{arclen, curve_integral};
+
+fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
+    Ok(Value::Point(Box::new(Point::free(xyz))))
+}
+
+/// A point off a surface: X = S(u, v) + d n, with n the unit normal along S_u x S_v.
+///
+/// At a pole the normal is the limit along the parameter line that leads there.
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "magnet distance",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5); \
+               OffsetPoint q(p, 0.75);"
+)]
+pub struct OffsetPoint<T: Real> {
+    /// Where on the surface.
+    magnet: Magnet<T>,
+    /// The distance, on the side of the natural normal if positive.
+    distance: T,
+}
+
+impl<T: Real> Build<T> for OffsetPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let n = normal(&self.magnet).map_err(|fault| fault.in_field(0))?;
+        let [u, v] = self.magnet.uv;
+        free(self.magnet.surface.jet(u, v, Order::Zero).p + n * self.distance)
+    }
+}
+
+/// The unit tangent of a curve at a bead.
+///
+/// # Errors
+/// `no-tangent`, in field 0, where the curve stands still.
+pub fn tangent<T: Real>(bead: &Bead<T>) -> Result<Vec3<T>, Fault> {
+    bead.curve.jet(bead.t, Order::First)[1].normalized().ok_or_else(|| {
+        Fault::new("no-tangent", "the curve has no tangent there")
+            .expected("a place where the curve moves on")
+            .found(format!("no speed at t = {}", bead.t.re()))
+            .related(bead.key, "lies there")
+            .in_field(0)
+    })
+}
+
+/// A point on the tangent of a curve: X = C(t) + d C'(t) / |C'(t)|.
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "bead distance",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
+               AbsBead b(c, 0.25); TanPoint p(b, 1.5);"
+)]
+pub struct TanPoint<T: Real> {
+    /// Where on the curve.
+    bead: Bead<T>,
+    /// The distance, in the direction of increasing parameter if positive.
+    distance: T,
+}
+
+impl<T: Real> Build<T> for TanPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let along = tangent(&self.bead)?;
+        free(self.bead.curve.jet(self.bead.t, Order::Zero)[0] + along * self.distance)
+    }
+}
+
+/// A point turned about a line by an angle, right-handed (Rodrigues).
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "point line angle",
+    example = "AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); Line axis(B, C); \
+               RotatPoint p(A, axis, 0.75);"
+)]
+pub struct RotatPoint<T: Real> {
+    /// The point to turn.
+    point: Point<T>,
+    /// The axis, from the line's first end to its last.
+    line: Axis<T>,
+    /// The angle.
+    #[field(angle)]
+    angle: T,
+}
+
+impl<T: Real> Build<T> for RotatPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        free(self.line.rotated(self.point.xyz, self.angle))
+    }
+}
+
+/// A point copied from one place to another, scaled along the axes:
+/// X = to + (sx, sy, sz) (P - from), coordinate by coordinate.
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "point from to sx sy sz",
+    example = "AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); \
+               CopyPoint p(A, B, C, 2, 1, -1);"
+)]
+pub struct CopyPoint<T: Real> {
+    /// The point to copy.
+    point: Point<T>,
+    /// A point that goes to `to`.
+    from: Point<T>,
+    /// Where `from` goes.
+    to: Point<T>,
+    /// Scale along x.
+    #[field(default = 1)]
+    sx: T,
+    /// Scale along y.
+    #[field(default = 1)]
+    sy: T,
+    /// Scale along z.
+    #[field(default = 1)]
+    sz: T,
+}
+
+impl<T: Real> Build<T> for CopyPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { point, from, to, sx, sy, sz } = self;
+        free(Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]).point(point.xyz))
+    }
+}
+
+/// The weighted sum of points: X = sum w_i P_i.
+///
+/// Weights that add up to 1 make it a blend that moves with its points; the weights 1, -1, 1 give
+/// the fourth corner of a parallelogram. Equal weights when none are given.
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "points weights",
+    example = "AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); \
+               BlendPoint fourth({A, B, C}, {1, -1, 1}); BlendPoint middle({A, C});"
+)]
+pub struct BlendPoint<T: Real> {
+    /// The points.
+    #[field(min_items = 1)]
+    points: Vec<Point<T>>,
+    /// Their weights, which should add up to 1.
+    weights: Option<Vec<T>>,
+}
+
+impl<T: Real> Build<T> for BlendPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { points, weights } = self;
+        let count = points.len();
+        let weights = weights.unwrap_or_else(|| vec![T::from(1.0 / count as f64); count]);
+        if weights.len() != count {
+            return Err(Fault::new("wrong-length", "each point needs one weight")
+                .expected(format!("{count} weights"))
+                .found(weights.len().to_string())
+                .in_field(1));
+        }
+        let mut sum = Vec3::zero();
+        for (point, weight) in points.iter().zip(weights) {
+            sum += point.xyz * weight;
+        }
+        free(sum)
+    }
+}
+
+/// The centroid of points, of curves by their length, or of surfaces by their area.
+///
+/// A list is of one class: a point has neither length nor area to weigh against a curve.
+#[derive(Kind)]
+#[kind(
+    class = Point,
+    columns = "objects",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
+               BCurve l({A, B, D}); Line m(C, D); RuledSurf S(l, m); CentroidPoint p({A, B, C}); \
+               CentroidPoint q({l, m}); CentroidPoint r({S});"
+)]
+pub struct CentroidPoint<T: Real> {
+    /// Points, curves or surfaces.
+    #[field(min_items = 1)]
+    objects: Vec<Value<T>>,
+}
+
+impl<T: Real> Build<T> for CentroidPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        // (size, size times centroid) of all.
+        let (mut size, mut moment) = (T::zero(), Vec3::zero());
+        let mut first = None;
+        for (k, object) in self.objects.iter().enumerate() {
+            let (kind, (s, m)) = match object {
+                Value::Point(p) => ("points", (T::one(), p.xyz)),
+                Value::Vector(p) => ("points", (T::one(), *p)),
+                Value::Curve(curve) => ("curves", of_curve(curve)),
+                Value::Surface(surface) => ("surfaces", of_surface(surface)),
+                other => {
+                    return Err(Fault::new("wrong-class", "a centroid is of shapes")
+                        .expected("points, curves or surfaces")
+                        .found(other.class().a())
+                        .in_item(k)
+                        .in_field(0));
+                }
+            };
+            if *first.get_or_insert(kind) != kind {
+                return Err(Fault::new("mixed-classes", "a centroid is of shapes of one class")
+                    .expected(first.unwrap_or(kind))
+                    .found(format!("{kind} as well"))
+                    .help("take the centroids of each class, and blend them")
+                    .in_item(k)
+                    .in_field(0));
+            }
+            size += s;
+            moment += m;
+        }
+        if size.re() <= 0.0 {
+            return Err(Fault::new("no-size", "the shapes have no size to weigh them by")
+                .expected("curves with length, or surfaces with area")
+                .in_field(0));
+        }
+        free(moment / size)
+    }
+}
+
+/// Length of a curve, and the integral of C over it.
+fn of_curve<T: Real>(curve: &CurveRef<T>) -> (T, Vec3<T>) {
+    let curve = &**curve;
+    let rough =
+        (0..8).map(|k| curve.jet(T::from(f64::from(k) / 8.0 + 0.06), Order::First)[1].re().norm());
+    let rough = rough.fold(0.0, f64::max);
+    if rough == 0.0 {
+        return (T::zero(), Vec3::zero());
+    }
+    let (zero, one) = (T::zero(), T::one());
+    let far = curve.jet(zero, Order::Zero)[0].re().norm().max(rough);
+    let axis = |k: usize| {
+        curve_integral(curve, zero, one, 1e-11 * rough * far, |t| {
+            let [p, d, _] = curve.jet(t, Order::First);
+            p[k] * d.norm()
+        })
+    };
+    (arclen(curve, zero, one, 1e-12 * rough), Vec3::new(axis(0), axis(1), axis(2)))
+}
+
+/// Each span of a surface is integrated in so many parts each way.
+const PARTS: usize = 4;
+
+/// Area of a surface, and the integral of S over it, by Gauss's rule with eight points each way on
+/// parts of the spans.
+fn of_surface<T: Real>(surface: &SurfaceRef<T>) -> (T, Vec3<T>) {
+    let cells = |breaks: Vec<f64>| {
+        let mut ends = vec![0.0];
+        ends.extend(breaks);
+        ends.push(1.0);
+        let part = |span: &[f64], k: usize| span[0] + (span[1] - span[0]) * k as f64 / PARTS as f64;
+        let parts = |span: &[f64]| -> Vec<[f64; 2]> {
+            (0..PARTS).map(|k| [part(span, k), part(span, k + 1)]).collect()
+        };
+        ends.windows(2).flat_map(parts).collect::<Vec<_>>()
+    };
+    let [us, vs] = surface.breaks().map(cells);
+    let (mut area, mut moment) = (T::zero(), Vec3::zero());
+    for ([a, b], [c, d]) in us.iter().flat_map(|&u| vs.iter().map(move |&v| (u, v))) {
+        for (u, wu) in moldloft_num::gauss_points(a, b) {
+            for (v, wv) in moldloft_num::gauss_points(c, d) {
+                let jet = surface.jet(T::from(u), T::from(v), Order::First);
+                let share = jet.u.cross(jet.v).norm() * (wu * wv);
+                area += share;
+                moment += jet.p * share;
+            }
+        }
+    }
+    (area, moment)
+}
