@@ -107,8 +107,11 @@ impl<T: Real> Trace<T> {
     }
 
     /// The trace of the part between two marks given in the alias's own parameter, when it lies
-    /// in one piece; otherwise the part is a root of its own.
+    /// in one piece; otherwise the part is a root of its own. A part of a point is that point.
     pub fn part(&self, root: Root, from: Mark<T>, to: Mark<T>) -> Self {
+        if let Trace::Point(point) = self {
+            return Trace::Point(*point);
+        }
         let pieces = self.pieces(root);
         let [whole] = pieces.as_slice() else {
             return Trace::Own([from.point, to.point]);
