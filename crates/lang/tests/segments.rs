@@ -43,3 +43,21 @@ fn a_pyramid_has_a_pole() {
     let volume = closed_volume(&text);
     assert!((volume - 1.0 / 3.0).abs() < 1e-12, "{volume}");
 }
+
+/// Ruled surfaces under one law join along their rulings, under two they do not.
+#[test]
+fn rulings_under_the_same_law_are_one() {
+    let tent = |second: &str| {
+        format!(
+            "{CUBE} CosRelabel a(\"start\"); GeoRelabel b(3); Line ab(A, B); Line ef(E, F); Line bc(B, C);
+             Line fg(F, G); RuledSurf one(ab, ef, relabel = a); RuledSurf two(bc, fg, relabel = {second});"
+        )
+    };
+    let loops = |text: &str| {
+        let mut document = sound(text);
+        let panelled = document.panelled().unwrap();
+        panelled.mesh.report().open_loops.len()
+    };
+    assert_eq!(loops(&tent("a")), 1);
+    assert_eq!(loops(&tent("b")), 2);
+}

@@ -22,6 +22,8 @@ pub enum Root {
     /// The straight line between two point objects, from the smaller key (t = 0) to the greater:
     /// whatever is drawn straight and evenly between the same two points lies on it.
     Segment(Key, Key),
+    /// The same from the first to the second, run by a law (the third): t is the law's argument.
+    Governed(Key, Key, Key),
 }
 
 /// Where a piece begins or ends on its root.
@@ -47,6 +49,22 @@ pub struct Piece<T> {
 }
 
 impl<T: Real> Piece<T> {
+    /// The piece when a whole straight line between point objects is run by the law `law` instead
+    /// of evenly; `None` for any other piece.
+    pub fn governed(&self, law: Key) -> Option<Self> {
+        let (Root::Segment(..), Some(from), Some(to)) = (self.root, self.from.point, self.to.point)
+        else {
+            return None;
+        };
+        let ends = [self.from.t.re(), self.to.t.re()];
+        (ends == [0.0, 1.0] || ends == [1.0, 0.0]).then(|| Piece {
+            root: Root::Governed(from, to, law),
+            from: Mark { t: T::zero(), point: Some(from) },
+            to: Mark { t: T::one(), point: Some(to) },
+            until: T::one(),
+        })
+    }
+
     /// The whole of the straight line from one point object to another, to the share `until` of
     /// the alias; `None` when they are the same.
     pub fn straight(from: Key, to: Key, until: T) -> Option<Self> {

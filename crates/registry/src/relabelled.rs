@@ -33,7 +33,8 @@ const ONE_BREAK: f64 = 1e-12;
 /// Beads, meshes, sub-curves and neighbours all see the new parameter. A curve that is a root for
 /// joins stays one, so neighbours along it share its vertices at equal t. A part of another curve
 /// stays such a part where the law is straight; elsewhere its divisions are not the other's, and it
-/// is a root of its own between the same points.
+/// is a root of its own between the same points. Straight lines and edges between the same point
+/// objects under the same law are one.
 ///
 /// # Errors
 /// `wrong-class` when the law is none.
@@ -77,13 +78,14 @@ fn values<T: Real>(law: &RelabelRef<T>, ts: &[f64]) -> (Vec<T>, Option<Vec<f64>>
     (values, plain)
 }
 
-/// The same pieces run by a straight law; `None` for a law that is not straight.
-fn straight_pieces<T: Real>(
-    law: &RelabelRef<T>,
-    pieces: &[Piece<T>],
-) -> Option<SmallVec<[Piece<T>; 1]>> {
+/// The same pieces run by a law; `None` where their divisions are no one else's.
+fn pieces_by<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallVec<[Piece<T>; 1]>> {
     if !law.is_straight() {
-        return None;
+        // Straight lines between the same points, run by the same law, still are one.
+        return match pieces {
+            [piece] => Some(std::iter::once(piece.governed(law.key?)?).collect()),
+            _ => None,
+        };
     }
     // Where the law turns, as values.
     let turns: Vec<T> =
@@ -142,7 +144,7 @@ impl<T: Real> Curve<T> for RelabelledCurve<T> {
 
     fn trace(&self) -> Trace<T> {
         match self.curve.trace() {
-            Trace::Pieces(pieces) => match straight_pieces(&self.law, &pieces) {
+            Trace::Pieces(pieces) => match pieces_by(&self.law, &pieces) {
                 Some(pieces) => Trace::Pieces(pieces),
                 None => Trace::Own(self.curve.end_points()),
             },
@@ -239,7 +241,7 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
         let mut edges = self.surface.edges();
         for k in [1, 3] {
             if let Edge::Pieces(pieces) = &edges.edges[k] {
-                edges.edges[k] = match straight_pieces(&self.law, pieces) {
+                edges.edges[k] = match pieces_by(&self.law, pieces) {
                     Some(pieces) => Edge::Pieces(pieces),
                     None => Edge::Own,
                 };

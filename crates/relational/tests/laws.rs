@@ -336,6 +336,15 @@ fn on_root(scene: &Scene<f64>, root: Root, t: f64) -> Vec3 {
             });
             a * (1.0 - t) + b * t
         }
+        Root::Governed(a, b, law) => {
+            let [a, b] = [a, b].map(|key| match value(key) {
+                Value::Point(p) => p.xyz,
+                other => panic!("the root ends at {other:?}"),
+            });
+            let Value::Relabel(law) = value(law) else { panic!("no law") };
+            let t = law.jet(t, Order::Zero)[0];
+            a * (1.0 - t) + b * t
+        }
     }
 }
 

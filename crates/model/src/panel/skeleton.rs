@@ -339,7 +339,9 @@ impl Maker<'_, '_> {
         let name = |key: Key| self.graph.get(key).map_or("", |o| &*o.name);
         match self.roots.root_of(stretch) {
             Root::Curve(key) => format!("`{}`", name(key)),
-            Root::Segment(a, b) => format!("the line from `{}` to `{}`", name(a), name(b)),
+            Root::Segment(a, b) | Root::Governed(a, b, _) => {
+                format!("the line from `{}` to `{}`", name(a), name(b))
+            }
             Root::Edge(key, k) => {
                 let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(k) % 4];
                 format!("edge {edge} of `{}`", name(key))
