@@ -9,7 +9,7 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
 use moldloft_num::Dual4;
-use moldloft_registry::{Class, Context, Registry, Row, Scalar};
+use moldloft_registry::{Class, Context, Registry, Row, Scalar, Value};
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -188,6 +188,7 @@ impl Document {
         };
         if report {
             found.extend(self.failures(evaluation));
+            found.extend(self.remarks(evaluation));
             self.run_diagnostics = found;
         }
         applied
@@ -233,6 +234,30 @@ impl Document {
                 let more = if more > 0 { format!(" and {more} more") } else { String::new() };
                 diagnostic =
                     diagnostic.note(format!("blocked by `{}`: {shown}{more}", object.name));
+            }
+            diagnostics.push(diagnostic);
+        }
+        diagnostics
+    }
+
+    /// The warnings of objects that were found in a way the user should know of.
+    fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+        if evaluation.graph.remarked() == 0 {
+            return Vec::new();
+        }
+        let mut diagnostics = Vec::new();
+        for object in evaluation.graph.objects() {
+            let found = object.value().and_then(Value::found);
+            let Some((found, (id, message))) = found.and_then(|f| Some((f, f.warning()?))) else {
+                continue;
+            };
+            let message = format!("`{}`: {message}", object.name);
+            let mut diagnostic = Diagnostic::warning(id, message).object(&*object.name);
+            if !found.advice.is_empty() {
+                diagnostic = diagnostic.help(found.advice);
+            }
+            if let Some(span) = self.declared_at(evaluation, object) {
+                diagnostic = diagnostic.at(span);
             }
             diagnostics.push(diagnostic);
         }
@@ -563,6 +588,7 @@ impl Document {
     /// The direct edit: the same change as a run with the new literals would make.
     fn edit(&mut self, edits: &[LiteralEdit]) {
         let failed = self.plain.graph.failed();
+        let remarked = self.plain.graph.remarked();
         let ((), applied) = self.plain.graph.apply(Extent::Edit, |run| {
             for edit in edits {
                 let Some(object) = run.graph().get(edit.key) else { continue };
@@ -574,11 +600,13 @@ impl Document {
             }
         });
         self.applied = applied;
-        if failed > 0 || applied.failed > 0 {
+        if failed > 0 || applied.failed > 0 || remarked > 0 || self.plain.graph.remarked() > 0 {
             let evaluation = std::mem::take(&mut self.plain);
             self.run_diagnostics.retain(|d| d.object.is_none());
             let failures = self.failures(&evaluation);
             self.run_diagnostics.extend(failures);
+            let remarks = self.remarks(&evaluation);
+            self.run_diagnostics.extend(remarks);
             self.plain = evaluation;
         }
     }

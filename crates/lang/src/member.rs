@@ -12,6 +12,9 @@ pub(crate) fn of_value<T: Scalar>(
     value: &Value<T>,
     name: &str,
 ) -> Option<Result<Value<T>, Diagnostic>> {
+    if let Some(member) = of_found(value, name) {
+        return Some(Ok(member));
+    }
     let axis = ["x", "y", "z"].iter().position(|c| *c == name);
     let number = |x: T| Some(Ok(Value::Number(x)));
     match (value, axis) {
@@ -49,8 +52,38 @@ pub(crate) fn of_value<T: Scalar>(
     }
 }
 
+/// How the value was found: `.status`, `.residual`, `.iterations`, `.start`, `.alternatives`.
+fn of_found<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
+    let found = value.found()?;
+    let row = |all: &[f64]| {
+        Value::Numbers(Arc::new(Array::row(all.iter().map(|&x| T::from(x)).collect())))
+    };
+    Some(match name {
+        "status" => Value::text(found.status.word()),
+        "residual" => Value::Number(T::from(found.residual)),
+        "iterations" => Value::Number(T::from(f64::from(found.iterations))),
+        "start" => row(&found.start),
+        "alternatives" => {
+            let columns = found.alternatives.first().map_or(0, |(p, _)| p.len());
+            let all = found.alternatives.iter().flat_map(|(p, _)| p.iter().map(|&x| T::from(x)));
+            let items: Vec<T> = all.collect();
+            Value::Numbers(Arc::new(Array::grid(found.alternatives.len(), columns, items)))
+        }
+        _ => return None,
+    })
+}
+
+/// The members of what was found by a search.
+const FOUND: [&str; 5] = ["status", "residual", "iterations", "start", "alternatives"];
+
 /// The names of the members that a value has.
 pub(crate) fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
+    let mut names = own_names(value);
+    names.extend(value.found().iter().flat_map(|_| FOUND));
+    names
+}
+
+fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
     match value {
         Value::Vector(_) => vec!["x", "y", "z"],
         Value::Point(p) => {

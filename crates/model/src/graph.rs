@@ -44,6 +44,8 @@ pub struct Graph<T: Scalar> {
     declared: u32,
     evaluated: usize,
     failed: usize,
+    /// How many objects have something to say of how they were found.
+    remarked: usize,
     any_read: bool,
     memo: Memo<T>,
     context: Context,
@@ -163,6 +165,11 @@ impl<T: Scalar> Graph<T> {
         self.failed
     }
 
+    /// How many objects were found in a way that deserves a warning.
+    pub fn remarked(&self) -> usize {
+        self.remarked
+    }
+
     /// True when the program has read the value of some object while it ran.
     pub fn any_read(&self) -> bool {
         self.any_read
@@ -230,6 +237,7 @@ impl<T: Scalar> Graph<T> {
             let object = self.objects[key.0 as usize].take().expect("a living object");
             self.names.swap_remove(&object.name);
             self.failed -= usize::from(object.state.is_failure());
+            self.remarked -= usize::from(object.state.warns());
             self.loose.extend(object.parents.iter().map(|&parent| (parent, key)));
             self.gone.push(key);
         }
@@ -378,10 +386,12 @@ impl<T: Scalar> Graph<T> {
             return;
         }
         let (was, is) = (object.state.is_failure(), state.is_failure());
+        let (warned, warns) = (object.state.warns(), state.warns());
         object.state = state;
         object.changed_at = clock;
         self.last_change = clock;
         self.failed = self.failed + usize::from(is) - usize::from(was);
+        self.remarked = self.remarked + usize::from(warns) - usize::from(warned);
         for at in 0..self.object(key).children.len() {
             let child = self.object(key).children[at];
             if self.loose.is_empty() || !self.loose.contains(&(key, child)) {

@@ -40,6 +40,11 @@ impl<T: Scalar> State<T> {
         matches!(self, State::Failed(_))
     }
 
+    /// True when its value was found in a way that deserves a warning.
+    pub fn warns(&self) -> bool {
+        self.value().and_then(Value::found).is_some_and(|found| found.warns())
+    }
+
     /// True when what depends on it need not be evaluated again.
     pub fn same(&self, other: &Self) -> bool {
         match (self, other) {

@@ -38,6 +38,15 @@ pub enum Class {
     Mirror,
     /// What bounds a patch of a surface: a snake, or a magnet for a side without length.
     Side,
+    /// A curve, or a bead on it that says where to begin a search.
+    Along,
+    /// A snake, or a ring on it that says where to begin a search.
+    AlongSnake,
+    /// A surface, or a magnet on it that says where to begin a search.
+    Onto,
+    /// What things are intersected with or projected to: a plane, a surface (or a magnet on it), a
+    /// curve (or a bead on it), a point.
+    Target,
     /// A frame of three axes.
     Frame,
     /// A family of plane sections.
@@ -52,7 +61,7 @@ pub enum Class {
 
 impl Class {
     /// All classes, in the order of the reference.
-    pub const ALL: [Class; 22] = [
+    pub const ALL: [Class; 26] = [
         Class::Any,
         Class::Number,
         Class::Integer,
@@ -70,6 +79,10 @@ impl Class {
         Class::Plane,
         Class::Mirror,
         Class::Side,
+        Class::Along,
+        Class::AlongSnake,
+        Class::Onto,
+        Class::Target,
         Class::Frame,
         Class::Contours,
         Class::Relabel,
@@ -97,6 +110,10 @@ impl Class {
             Class::Plane => "plane",
             Class::Mirror => "mirror",
             Class::Side => "side",
+            Class::Along => "curve or bead",
+            Class::AlongSnake => "snake or ring",
+            Class::Onto => "surface or magnet",
+            Class::Target => "target",
             Class::Frame => "frame",
             Class::Contours => "contours",
             Class::Relabel => "relabel",
@@ -125,6 +142,10 @@ impl Class {
             Class::Plane => "a plane",
             Class::Mirror => "a plane, line or point to mirror in",
             Class::Side => "a snake or a magnet",
+            Class::Along => "a curve or a bead",
+            Class::AlongSnake => "a snake or a ring",
+            Class::Onto => "a surface or a magnet",
+            Class::Target => "a plane, surface, magnet, curve, bead or point",
             Class::Frame => "a frame",
             Class::Contours => "contours",
             Class::Relabel => "a relabel",
@@ -146,6 +167,13 @@ impl Class {
             Bead | Magnet => found == Ring,
             Curve => found == Snake,
             Side => matches!(found, Snake | Magnet | Ring),
+            Along => matches!(found, Curve | Snake | Bead | Ring),
+            AlongSnake => matches!(found, Snake | Ring),
+            Onto => matches!(found, Surface | Magnet | Ring),
+            Target => matches!(
+                found,
+                Plane | Text | Surface | Magnet | Ring | Curve | Snake | Bead | Point | Vector
+            ),
             Vectors => found == List,
             Numbers => found == List,
             List => matches!(found, Numbers | Vectors),

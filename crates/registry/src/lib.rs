@@ -12,6 +12,7 @@
 mod args;
 mod class;
 mod fault;
+mod found;
 mod head;
 mod read;
 mod refs;
@@ -22,6 +23,7 @@ mod value;
 pub use args::{Given, arrange};
 pub use class::Class;
 pub use fault::{Fault, Place};
+pub use found::{Found, FoundStatus};
 pub use head::{HEAD, Head, Panels, Spacing};
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};

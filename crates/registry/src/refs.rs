@@ -1,3 +1,4 @@
+use crate::Found;
 use moldloft_num::trace::{Key, Piece, Root, Trace};
 use moldloft_num::{
     Curve, CurveJet, Field, Jet, Law, LawJet, Order, Real, Surface, Vec3, lift_curve, lift_law,
@@ -19,12 +20,14 @@ pub struct Point<T: Real> {
     pub on_curve: Option<Arc<(CurveRef<T>, T)>>,
     /// The surface and parameters (u, v) it lies at, for magnets and rings.
     pub on_surface: Option<Arc<(SurfaceRef<T>, [T; 2])>>,
+    /// How it was found, when that took a search.
+    pub found: Option<Arc<Found>>,
 }
 
 impl<T: Real> Point<T> {
     /// A free point.
     pub fn free(xyz: Vec3<T>) -> Self {
-        Self { xyz, key: None, on_curve: None, on_surface: None }
+        Self { xyz, key: None, on_curve: None, on_surface: None, found: None }
     }
 
     /// The point of `curve` at `t`; on a snake it also knows its place on the surface.
@@ -42,7 +45,8 @@ impl<T: Real> Point<T> {
             let w = curve.on_surface(t, Order::Zero)?[0];
             Some(Arc::new((SurfaceRef::clone(surface), [w.x, w.y])))
         });
-        Self { xyz, key, on_curve: Some(Arc::new((curve, t))), on_surface }
+        let on_curve = Some(Arc::new((curve, t)));
+        Self { xyz, key, on_curve, on_surface, found: None }
     }
 
     /// The point of `surface` at (`u`, `v`); at a corner to the bit it is the point object there,
@@ -57,7 +61,14 @@ impl<T: Real> Point<T> {
         };
         let key = corner.and_then(|k| surface.edges().corners[k]);
         let xyz = surface.jet(u, v, Order::Zero).p;
-        Self { xyz, key, on_curve: None, on_surface: Some(Arc::new((surface, [u, v]))) }
+        let on_surface = Some(Arc::new((surface, [u, v])));
+        Self { xyz, key, on_curve: None, on_surface, found: None }
+    }
+
+    /// The same point with the report of how it was found.
+    pub fn with_found(mut self, found: Found) -> Self {
+        self.found = Some(Arc::new(found));
+        self
     }
 
     /// How deep the shapes are nested that this point holds on to.
@@ -78,7 +89,8 @@ impl<T: Real> Point<T> {
             }
             (a, b) => a.is_none() && b.is_none(),
         };
-        self.xyz.bits_eq(o.xyz) && self.key == o.key && curves && surfaces
+        let places = self.xyz.bits_eq(o.xyz) && curves && surfaces;
+        places && self.key == o.key && self.found == o.found
     }
 }
 
@@ -93,6 +105,8 @@ pub struct CurveRef<T: Real> {
     /// For a part of another curve, run at an even rate: that curve, itself no such part, and the
     /// parameters there of the part's ends.
     pub part_of: Option<Arc<(CurveRef<T>, [T; 2])>>,
+    /// How it was found, when that took a search.
+    pub found: Option<Arc<Found>>,
     /// How deep shapes are nested in it, itself included.
     pub depth: u32,
 }
@@ -154,14 +168,22 @@ shape_ref!(RelabelRef, Law);
 impl<T: Real> CurveRef<T> {
     /// A curve that holds on to shapes nested `nesting` deep (0 when it holds on to none).
     pub fn new(shape: impl Curve<T> + 'static, nesting: u32) -> Self {
-        Self { shape: Arc::new(shape), key: None, surface: None, part_of: None, depth: nesting + 1 }
+        let shape: Arc<dyn Curve<T>> = Arc::new(shape);
+        let depth = nesting + 1;
+        Self { shape, key: None, surface: None, part_of: None, found: None, depth }
     }
 
     /// A snake on `surface`.
     pub fn snake(shape: impl Curve<T> + 'static, surface: SurfaceRef<T>, nesting: u32) -> Self {
         let depth = nesting.max(surface.depth) + 1;
         let surface = Some(Box::new(surface));
-        Self { shape: Arc::new(shape), key: None, surface, part_of: None, depth }
+        Self { shape: Arc::new(shape), key: None, surface, part_of: None, found: None, depth }
+    }
+
+    /// The same curve with the report of how it was found.
+    pub fn with_found(mut self, found: Found) -> Self {
+        self.found = Some(Arc::new(found));
+        self
     }
 
     /// The position at a parameter that is a jet.

@@ -46,11 +46,14 @@ pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, 
     Ok(match value {
         Value::Curve(curve) => {
             let (nesting, surface) = (curve.depth.max(law.depth), curve.surface.clone());
+            let found = curve.found.clone();
             let shape = RelabelledCurve { curve, law };
-            Value::Curve(match surface {
+            let mut relabelled = match surface {
                 Some(surface) => CurveRef::snake(shape, *surface, nesting),
                 None => CurveRef::new(shape, nesting),
-            })
+            };
+            relabelled.found = found;
+            Value::Curve(relabelled)
         }
         Value::Surface(surface) => {
             let nesting = surface.depth.max(law.depth);

@@ -1,4 +1,4 @@
-use crate::{Class, CurveRef, FieldRef, Point, RelabelRef, SurfaceRef};
+use crate::{Class, CurveRef, FieldRef, Found, Point, RelabelRef, SurfaceRef};
 use moldloft_num::trace::Key;
 use moldloft_num::{Frame, Plane, Real, Vec3};
 use std::sync::Arc;
@@ -201,6 +201,15 @@ impl<T: Real> Value<T> {
             _ => {}
         }
         self
+    }
+
+    /// How it was found, when that took a search.
+    pub fn found(&self) -> Option<&Arc<Found>> {
+        match self {
+            Value::Point(p) => p.found.as_ref(),
+            Value::Curve(c) => c.found.as_ref(),
+            _ => None,
+        }
     }
 
     /// True when every number in it, derivatives included, is finite.

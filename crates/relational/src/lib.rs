@@ -25,6 +25,7 @@ mod normal;
 mod plane;
 mod point;
 mod relabel;
+mod search;
 mod snake;
 mod surface;
 
@@ -53,7 +54,6 @@ pub fn rows() -> Vec<Row> {
         point::AbsPoint,
         point::RelPoint,
         point::MirrPoint,
-        point::ProjPoint,
         point::FramePoint,
         point::PolarPoint,
         point::OffsetPoint,
@@ -62,6 +62,7 @@ pub fn rows() -> Vec<Row> {
         point::CopyPoint,
         point::BlendPoint,
         point::CentroidPoint,
+        search::ProjPoint,
         point::AbsBead,
         point::RelBead,
         point::ArcLenBead,
@@ -73,6 +74,19 @@ pub fn rows() -> Vec<Row> {
         point::RelRing,
         point::ArcLenRing,
         point::CopyRing,
+        search::IntBead,
+        search::XYZBead,
+        search::ProjBead,
+        search::ProxBead,
+        search::ProjMagnet,
+        search::ProxMagnet,
+        search::IntMagnet,
+        search::XYZMagnet,
+        search::TanMagnet,
+        search::IntRing,
+        search::XYZRing,
+        search::ProjRing,
+        search::ProxRing,
         curve::Line,
         curve::Arc,
         curve::BCurve,
@@ -92,6 +106,7 @@ pub fn rows() -> Vec<Row> {
         curve::BFitCurve,
         curve::NUBFitCurve,
         curve::MirrCurve,
+        search::ProjCurve,
         snake::LineSnake,
         snake::BSnake,
         snake::EdgeSnake,
@@ -104,6 +119,7 @@ pub fn rows() -> Vec<Row> {
         snake::RelSnake,
         snake::CopySnake,
         curve::PolySnake,
+        search::ProjSnake,
         curve::SubSnake,
         curve::BSubSnake,
         surface::RuledSurf,

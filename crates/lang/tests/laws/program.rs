@@ -59,6 +59,34 @@ impl Program<'_> {
         self.random.pick(&self.surfaces).clone()
     }
 
+    /// A gently bent surface over 0 <= x <= 4 w, 0 <= y <= 2, near z = 0, for searches.
+    pub fn sheet(&mut self) -> String {
+        let masters: Vec<String> = (0..3)
+            .map(|k| {
+                let points: Vec<String> = (0..3)
+                    .map(|j| {
+                        let z = self.number(-0.2, 0.2);
+                        self.object("AbsPoint", &format!("{}*w, {j}, {z}", 2 * k))
+                    })
+                    .collect();
+                let points = points.join(", ");
+                self.object("BCurve", &format!("{{{points}}}, degree = 2, visible = 0"))
+            })
+            .collect();
+        self.object("BLoftSurf", &format!("{{{}}}, degree = 2, visible = 0", masters.join(", ")))
+    }
+
+    /// A curve above the middle of a sheet.
+    pub fn strand(&mut self) -> String {
+        let points: Vec<String> = (0..3)
+            .map(|k| {
+                let (y, z) = (self.number(0.6, 1.4), self.number(0.6, 1.2));
+                self.object("AbsPoint", &format!("{}*w, {y}, {z}", k + 1))
+            })
+            .collect();
+        self.object("BCurve", &format!("{{{}}}, degree = 2", points.join(", ")))
+    }
+
     pub fn magnet(&mut self, surface: &str) -> String {
         let (u, v) = (self.number(0.1, 0.9), self.number(0.1, 0.9));
         self.object("AbsMagnet", &format!("{surface}, {u}, {v}"))

@@ -72,25 +72,3 @@ impl<T: Real> Build<T> for MirrPoint<T> {
         free(self.mirror.image(self.point.xyz))
     }
 }
-
-/// The foot of the perpendicular from a point to a plane or line; for a mirror that is a point,
-/// that point.
-#[derive(Kind)]
-#[kind(
-    class = Point,
-    columns = "point mirror",
-    example = "AbsPoint A(1, 2, 0.5); AbsPoint B(0, 0, 0); AbsPoint C(3, 1, 0); Line axis(B, C); \
-               ProjPoint foot(A, axis);"
-)]
-pub struct ProjPoint<T: Real> {
-    /// The point to project.
-    point: Point<T>,
-    /// What to project it to.
-    mirror: Mirror<T>,
-}
-
-impl<T: Real> Build<T> for ProjPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        free(self.mirror.foot(self.point.xyz))
-    }
-}

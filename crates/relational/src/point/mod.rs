@@ -14,6 +14,6 @@ pub use derived::{
     BlendPoint, CentroidPoint, CopyPoint, OffsetPoint, RotatPoint, TanPoint, tangent,
 };
 pub use framed::{FramePoint, PolarPoint};
-pub use free::{AbsPoint, MirrPoint, ProjPoint, RelPoint};
+pub use free::{AbsPoint, MirrPoint, RelPoint};
 pub use magnet::{AbsMagnet, RelMagnet};
 pub use ring::{AbsRing, RelRing};

@@ -95,6 +95,13 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let curve = p.curve();
             format!("{}, {}", p.bead(&curve), p.bead(&curve))
         }
+        "ProjCurve" => {
+            let (sheet, strand) = (p.sheet(), p.strand());
+            match p.random.below(2) {
+                0 => format!("{strand}, {sheet}"),
+                _ => format!("{strand}, \"y=0\""),
+            }
+        }
         "MirrCurve" => format!("{}, {}", p.curve(), p.mirror()),
         "FairCurve" => {
             let closed = p.random.below(3) == 0;

@@ -9,7 +9,6 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
     Some(match kind {
         "AbsPoint" => format!("{x}, {y}*w, {z}"),
         "RelPoint" => format!("{}, {x}, {y}, {z}", p.point()),
-        "MirrPoint" | "ProjPoint" => format!("{}, {}", p.point(), p.mirror()),
         "FramePoint" => {
             let frame = p.frame();
             format!("{}, {frame}, {x}, {y}*w, {z}, type = {}", p.point(), p.random.below(3))
@@ -59,6 +58,81 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let (surface, other) = (p.surface(), p.surface());
             let (snake, to) = (p.snake(&surface), p.snake(&other));
             format!("{}, {to}", p.ring(&snake))
+        }
+        "MirrPoint" => format!("{}, {}", p.point(), p.mirror()),
+        "ProjPoint" => match p.random.below(2) {
+            0 => {
+                let mirror = p.mirror();
+                // A magnet or a bead would stand for its surface or curve.
+                if mirror.starts_with('o') {
+                    format!("{}, {{{x}, {y}, w}}", p.point())
+                } else {
+                    format!("{}, {mirror}", p.point())
+                }
+            }
+            _ => {
+                let (sheet, strand) = (p.sheet(), p.strand());
+                format!("{strand}(0.3), {sheet}")
+            }
+        },
+        "IntBead" | "XYZBead" | "ProjBead" | "ProxBead" => {
+            let strand = p.strand();
+            let bead = p.object("AbsBead", &format!("{strand}, 0.4"));
+            let value = p.number(1.2, 1.8);
+            match (kind, p.random.below(3)) {
+                ("IntBead", 0) => {
+                    let sheet = p.sheet();
+                    let (a, b) = (
+                        p.object("AbsPoint", "1.1*w, 0.9, 3"),
+                        p.object("AbsPoint", "2*w, 1.2, -3"),
+                    );
+                    let line = p.object("Line", &format!("{a}, {b}"));
+                    format!("{line}, {sheet}")
+                }
+                ("IntBead", 1) => format!("{strand}, \"x=0\", {{{value}*w, 1, 1}}"),
+                ("IntBead", _) => {
+                    let plane = p.object("XPlane", &format!("{value}*w"));
+                    format!("{bead}, {plane}")
+                }
+                ("XYZBead", _) => format!("{bead}, \"x\", {value}*w"),
+                (_, 0) => format!("{strand}, {{{value}*w, 0.7, 4}}"),
+                _ => format!("{bead}, {{{value}*w, 0.7, 4}}"),
+            }
+        }
+        "IntRing" | "XYZRing" | "ProjRing" | "ProxRing" => {
+            let sheet = p.sheet();
+            let held = p.number(0.3, 0.7);
+            let snake = p.object("UVSnake", &format!("{sheet}, \"v\", {held}"));
+            let ring = p.object("AbsRing", &format!("{snake}, 0.4"));
+            let value = p.number(1.2, 1.8);
+            match kind {
+                "IntRing" => {
+                    let plane = p.object("XPlane", &format!("{value}*w"));
+                    format!("{ring}, {plane}")
+                }
+                "XYZRing" => format!("{snake}, \"x\", {value}*w"),
+                "ProjRing" => format!("{ring}, {{{value}*w, 0.7, 2}}"),
+                _ => format!("{snake}, {{{value}*w, 0.7, 2}}"),
+            }
+        }
+        "ProjMagnet" | "ProxMagnet" | "IntMagnet" | "XYZMagnet" | "TanMagnet" => {
+            let sheet = p.sheet();
+            let (u, v) = (p.number(1.0, 2.5), p.number(0.6, 1.4));
+            let above = p.object("AbsPoint", &format!("{u}*w, {v}, 1.5"));
+            let magnet = p.object("AbsMagnet", &format!("{sheet}, 0.4, 0.45"));
+            match (kind, p.random.below(3)) {
+                ("ProjMagnet", 0) => format!("{above}, {magnet}"),
+                ("ProjMagnet", 1) => format!("{above}, {sheet}, \"z=0\""),
+                ("ProjMagnet", _) => format!("{above}, {magnet}, {{2*w, 1, 5}}"),
+                ("ProxMagnet", _) => format!("{above}, {sheet}"),
+                ("IntMagnet", _) => {
+                    let below = p.object("AbsPoint", "2*w, 1, -3");
+                    let line = p.object("Line", &format!("{above}, {below}"));
+                    format!("{line}, {magnet}")
+                }
+                ("XYZMagnet", _) => format!("{sheet}, \"x\", {u}*w, \"y\", {v}"),
+                _ => format!("{magnet}, 0.2*w, -{t}"),
+            }
         }
         "AbsBead" => format!("{}, {t}", p.curve()),
         "RelBead" => {

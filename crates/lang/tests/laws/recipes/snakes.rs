@@ -68,6 +68,14 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let last = p.object("LineSnake", &format!("{b}, {c}"));
             format!("{{{first}, {last}}}")
         }
+        "ProjSnake" => {
+            let (sheet, strand) = (p.sheet(), p.strand());
+            match p.random.below(3) {
+                0 => format!("{strand}, {sheet}"),
+                1 => format!("{strand}, {sheet}, \"z=0\""),
+                _ => format!("{strand}, {sheet}, {{2*w, 1, 7}}"),
+            }
+        }
         "EdgeSnake" => format!("{}, {}", 1 + p.random.below(4), p.surface()),
         "UVSnake" => format!("{}, \"{}\", {t}", p.surface(), p.random.pick(&["u", "v"])),
         "SubSnake" => {

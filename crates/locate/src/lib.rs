@@ -1,0 +1,30 @@
+//! Nearest points and intersections of curves and surfaces.
+//!
+//! `shape -> pieces with bounds -> candidates -> Newton on the shape itself -> solution + report`
+//!
+//! From a given start the solution is the one that a damped Newton iteration leads to; when that
+//! fails, or without a start, subdivision looks for all solutions and takes the nearest. Each
+//! answer depends on the shapes and the start only, never on earlier answers, and comes with a
+//! [`Report`]. Searches run in plain numbers ([`PlainCurve`], [`PlainSurface`] show shapes of any
+//! scalar so); derivatives follow from the solution by the implicit function theorem
+//! ([`implicit`]).
+//!
+//! What is claimed of completeness is stated in [`pieces`] and [`roots`].
+//!
+//! Invariant: this crate knows no entity, no registry and no file.
+
+pub mod implicit;
+mod nearest;
+mod newton;
+pub mod pieces;
+mod plain;
+mod report;
+pub mod roots;
+mod tree;
+
+pub use nearest::{nearest_in_curve, nearest_in_surface, nearest_on_curve, nearest_on_surface};
+pub use newton::{ACCURACY, LONGEST_STEP, MOST_STEPS, OUTSIDE, Range, Walk, newton};
+pub use plain::{PlainCurve, PlainSurface};
+pub use report::{Alternative, Parameters, Report, Root, Roots, Solution, Status};
+pub use roots::Level;
+pub use tree::{Boxes, CurveTree, Node, SurfaceTree};

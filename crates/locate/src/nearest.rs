@@ -1,0 +1,392 @@
+//! Nearest points on curves and surfaces.
+
+use crate::newton::{ACCURACY, LONGEST_STEP, MOST_STEPS};
+use crate::pieces::{Feet, Patch, distance_sq, size_of};
+use crate::report::{Alternative, Report, Solution, Status};
+use crate::tree::{CurveTree, SurfaceTree};
+use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
+use smallvec::SmallVec;
+
+/// Feet whose distances differ by less than this share of the size are equally near.
+const TIE: f64 = 1e-9;
+
+/// Where a descent ended.
+#[derive(Clone, Copy, Debug)]
+struct Foot<const N: usize> {
+    at: [f64; N],
+    xyz: Vec3,
+    /// What is left of the slope of the distance, as a length.
+    residual: f64,
+    iterations: u32,
+    /// True when the unknown is held at an end of its range.
+    held: [bool; N],
+    /// True when the distance has no definite second derivative there.
+    flat: bool,
+    converged: bool,
+}
+
+/// The slope of the distance along the free unknowns, as a length.
+fn slope_of<const N: usize>(d: &[Vec3; N], r: Vec3, held: &[bool; N]) -> f64 {
+    let along = |k: usize| {
+        let length = d[k].norm();
+        if held[k] || length == 0.0 { 0.0 } else { d[k].dot(r).abs() / length }
+    };
+    (0..N).map(along).fold(0.0, f64::max)
+}
+
+/// Minimises |X(q) - p|^2 over the box `low`..`high` by Newton's method with Gauss-Newton as its
+/// guard: every step goes down. `f` gives the position, first derivatives, and second ones in
+/// the order uu, uv, vv.
+fn descend<const N: usize>(
+    p: Vec3,
+    start: [f64; N],
+    [low, high]: [[f64; N]; 2],
+    size: f64,
+    f: impl Fn([f64; N]) -> (Vec3, [Vec3; N], [[Vec3; N]; N]),
+) -> Foot<N> {
+    let clamp = |q: [f64; N]| -> [f64; N] { std::array::from_fn(|k| q[k].clamp(low[k], high[k])) };
+    let mut q = clamp(start);
+    let (mut x, mut d, mut dd) = f(q);
+    let mut foot = Foot {
+        at: q,
+        xyz: x,
+        residual: f64::INFINITY,
+        iterations: 0,
+        held: [false; N],
+        flat: false,
+        converged: false,
+    };
+    for _ in 0..MOST_STEPS {
+        let r = x - p;
+        let slope: [f64; N] = std::array::from_fn(|k| d[k].dot(r));
+        let held: [bool; N] = std::array::from_fn(|k| {
+            q[k] <= low[k] && slope[k] > 0.0 || q[k] >= high[k] && slope[k] < 0.0
+        });
+        let residual = slope_of(&d, r, &held);
+        (foot.at, foot.xyz, foot.residual, foot.held) = (q, x, residual, held);
+        // The slope's own rounding grows with the distance.
+        let goal = ACCURACY * size.max(r.norm());
+        let done = residual <= goal;
+        foot.converged |= done;
+        let mut metric = [[0.0; N]; N];
+        let mut hessian = [[0.0; N]; N];
+        for a in 0..N {
+            for b in 0..N {
+                metric[a][b] = d[a].dot(d[b]);
+                hessian[a][b] = metric[a][b] + dd[a][b].dot(r);
+            }
+        }
+        let scale = metric.iter().enumerate().map(|(k, row)| row[k]).fold(0.0, f64::max);
+        let definite = |m: &[[f64; N]; N], least: f64| {
+            let free: SmallVec<[usize; 2]> = (0..N).filter(|&k| !held[k]).collect();
+            match free.as_slice() {
+                [] => true,
+                [k] => m[*k][*k] > least * scale,
+                _ => {
+                    m[0][0] > least * scale
+                        && m[0][0] * m[1][1] - m[0][1] * m[1][0] > least * scale * m[1][1].abs()
+                }
+            }
+        };
+        foot.flat = !definite(&hessian, 1e-9);
+        if done && residual <= 1e-3 * goal || held.iter().all(|h| *h) {
+            foot.converged = true;
+            break;
+        }
+        let mut matrix = if definite(&hessian, 1e-6) { hessian } else { metric };
+        if !definite(&matrix, 1e-14) {
+            for (k, row) in matrix.iter_mut().enumerate() {
+                row[k] += 1e-9 * scale.max(f64::MIN_POSITIVE);
+            }
+        }
+        // A step that would leave the box from its side is taken along the side instead.
+        let mut fixed = held;
+        let step = loop {
+            let (mut m, mut rest) = (matrix, slope);
+            for k in (0..N).filter(|&k| fixed[k]) {
+                for a in 0..N {
+                    (m[k][a], m[a][k]) = (0.0, 0.0);
+                }
+                (m[k][k], rest[k]) = (1.0, 0.0);
+            }
+            let Some(step) = crate::implicit::solve(&m, rest) else { break None };
+            let leaves = |k: &usize| {
+                !fixed[*k]
+                    && (q[*k] <= low[*k] && step[*k] > 0.0 || q[*k] >= high[*k] && step[*k] < 0.0)
+            };
+            match (0..N).find(leaves) {
+                Some(k) => fixed[k] = true,
+                None => break Some(step),
+            }
+        };
+        let Some(step) = step else { break };
+        let longest = step.iter().fold(0.0_f64, |a, s| a.max(s.abs()));
+        if !longest.is_finite() || longest == 0.0 {
+            break;
+        }
+        let mut share = (LONGEST_STEP / longest).min(1.0);
+        let before = r.norm_sq();
+        let mut moved = false;
+        for _ in 0..30 {
+            let next = clamp(std::array::from_fn(|k| q[k] - share * step[k]));
+            if next == q {
+                break;
+            }
+            let (x2, d2, dd2) = f(next);
+            let after = (x2 - p).norm_sq();
+            // Near the foot the distance no longer tells, but its slope does.
+            let level = (after - before).abs() <= 1e-14 * (before + size * size);
+            if after < before && !level || level && slope_of(&d2, x2 - p, &held) < residual {
+                (q, x, d, dd) = (next, x2, d2, dd2);
+                moved = true;
+                break;
+            }
+            share *= 0.5;
+        }
+        if !moved {
+            // No step goes down: as near as rounding lets it come.
+            foot.converged |= residual <= 1e-7 * size.max(r.norm());
+            break;
+        }
+        foot.iterations += 1;
+        if done {
+            (foot.at, foot.xyz, foot.residual) = (q, x, slope_of(&d, x - p, &held));
+            break;
+        }
+    }
+    foot
+}
+
+fn curve_foot(curve: &dyn Curve<f64>, p: Vec3, start: f64, ends: [f64; 2], size: f64) -> Foot<1> {
+    descend(p, [start], [[ends[0]], [ends[1]]], size, |[t]| {
+        let [x, d, dd] = curve.jet(t, Order::Second);
+        (x, [d], [[dd]])
+    })
+}
+
+fn surface_foot(
+    surface: &dyn Surface<f64>,
+    p: Vec3,
+    start: [f64; 2],
+    [us, vs]: [[f64; 2]; 2],
+    size: f64,
+) -> Foot<2> {
+    descend(p, start, [[us[0], vs[0]], [us[1], vs[1]]], size, |[u, v]| {
+        let j = surface.jet(u, v, Order::Second);
+        (j.p, [j.u, j.v], [[j.uu, j.uv], [j.uv, j.vv]])
+    })
+}
+
+/// The status of a foot: the nearest point of a shape exists always.
+fn judged<const N: usize>(foot: &Foot<N>) -> Status {
+    if !foot.converged {
+        Status::Diverged
+    } else if foot.held.iter().any(|h| *h) {
+        Status::EdgeClamped
+    } else if foot.flat {
+        Status::Tangent
+    } else {
+        Status::Ok
+    }
+}
+
+fn solution<const N: usize>(start: &[f64], feet: Vec<Foot<N>>) -> Solution<N> {
+    let foot = &feet[0];
+    let mut status = judged(foot);
+    if feet.len() > 1 {
+        let next = feet[1..].iter().map(|f| f.xyz.distance(foot.xyz)).fold(f64::INFINITY, f64::min);
+        status = Status::Multiple { count: feet.len(), chosen: 0, next };
+    }
+    let alternatives = feet[1..]
+        .iter()
+        .map(|f| Alternative { parameters: f.at.iter().copied().collect(), xyz: f.xyz })
+        .collect();
+    let report = Report {
+        status,
+        residual: foot.residual,
+        iterations: foot.iterations,
+        start: start.iter().copied().collect(),
+        last: foot.at.iter().copied().collect(),
+        alternatives,
+    };
+    Solution { at: foot.at, report }
+}
+
+/// Keeps the nearest feet: those within `TIE` of the nearest, in the order of the parameters.
+fn nearest_of<const N: usize>(mut feet: Vec<Foot<N>>, p: Vec3, size: f64) -> Vec<Foot<N>> {
+    let away = |f: &Foot<N>| f.xyz.distance(p);
+    let best = feet.iter().map(away).fold(f64::INFINITY, f64::min);
+    feet.retain(|f| away(f) <= best + TIE * size);
+    feet.sort_by(|a, b| {
+        let pairs = a.at.iter().zip(&b.at);
+        pairs.fold(std::cmp::Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y)))
+    });
+    let mut kept: Vec<Foot<N>> = Vec::new();
+    for foot in feet {
+        // The same foot, reached from two sides of a seam or of a border between pieces.
+        if kept.iter().all(|k| k.xyz.distance(foot.xyz) > 1e-6 * size) {
+            kept.push(foot);
+        } else if let Some(same) = kept.iter_mut().find(|k| k.xyz.distance(foot.xyz) <= 1e-6 * size)
+        {
+            let better = foot.converged && !same.converged
+                || foot.converged == same.converged && foot.residual < same.residual;
+            // A foot inside is more than one that was held at the border of a piece.
+            if better && !foot.held.iter().any(|h| *h) {
+                *same = foot;
+            }
+        }
+    }
+    kept
+}
+
+/// The point of a curve nearest to `p`.
+///
+/// From a `start` it is the foot that descent from there leads to, a local minimum; when the
+/// descent fails, the nearest point of all, reported as [`Status::Fallback`]. Without a start it is
+/// the nearest point of all; equally near ones (to 1e-9 of the size) are reported as
+/// [`Status::Multiple`]. Ends count: [`Status::EdgeClamped`].
+pub fn nearest_on_curve(curve: &dyn Curve<f64>, p: Vec3, start: Option<f64>) -> Solution<1> {
+    if let Some(t) = start {
+        let ends = [curve.jet(0.0, Order::Zero)[0], curve.jet(0.5, Order::Zero)[0]];
+        let size = size_of(&Box3::around([ends[0], ends[1], curve.jet(1.0, Order::Zero)[0]]));
+        let foot = curve_foot(curve, p, t, [0.0, 1.0], size);
+        if foot.converged {
+            return solution(&[t], vec![foot]);
+        }
+    }
+    let tree = CurveTree::new(curve);
+    let mut found = nearest_in_curve(curve, &tree, p, start);
+    if start.is_some() && found.report.status.is_solution() {
+        found.report.status = Status::Fallback;
+    }
+    found
+}
+
+/// The same on a curve that was cut up before, without a start.
+pub fn nearest_in_curve(
+    curve: &dyn Curve<f64>,
+    tree: &CurveTree,
+    p: Vec3,
+    start: Option<f64>,
+) -> Solution<1> {
+    let mut order: Vec<(f64, usize)> = tree
+        .pieces
+        .iter()
+        .enumerate()
+        .map(|(k, piece)| (distance_sq(&piece.bounds(), p), k))
+        .collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut best = f64::INFINITY;
+    let mut feet = Vec::new();
+    for (low, k) in order {
+        if low.sqrt() > best + TIE * tree.size {
+            break;
+        }
+        let mut stack = vec![tree.pieces[k]];
+        while let Some(piece) = stack.pop() {
+            if distance_sq(&piece.bounds(), p).sqrt() > best + TIE * tree.size {
+                continue;
+            }
+            let [t0, t1] = piece.t;
+            let feet_there = piece.feet(p);
+            if feet_there == Feet::Elsewhere {
+                continue;
+            }
+            if t1 - t0 < 1e-5 || feet_there == Feet::One {
+                let foot = curve_foot(curve, p, 0.5 * (t0 + t1), [t0, t1], tree.size);
+                best = best.min(foot.xyz.distance(p));
+                feet.push(foot);
+            } else {
+                stack.extend(piece.halves());
+            }
+        }
+    }
+    // From the border of a piece on into the neighbours, and to full accuracy.
+    let whole = |foot: Foot<1>| curve_foot(curve, p, foot.at[0], [0.0, 1.0], tree.size);
+    let feet = nearest_of(feet, p, tree.size).into_iter().map(whole).collect();
+    let feet = nearest_of(feet, p, tree.size);
+    solution(&[start.unwrap_or(0.5)], feet)
+}
+
+/// The point of a surface nearest to `p`; see [`nearest_on_curve`].
+pub fn nearest_on_surface(
+    surface: &dyn Surface<f64>,
+    p: Vec3,
+    start: Option<[f64; 2]>,
+) -> Solution<2> {
+    if let Some(uv) = start {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
+        let corners = corners.map(|[u, v]| surface.jet(u, v, Order::Zero).p);
+        let size = size_of(&Box3::around(corners));
+        let foot = surface_foot(surface, p, uv, [[0.0, 1.0]; 2], size);
+        if foot.converged {
+            return solution(&uv, vec![foot]);
+        }
+    }
+    let tree = SurfaceTree::new(surface);
+    let mut found = nearest_in_surface(surface, &tree, p, start);
+    if start.is_some() && found.report.status.is_solution() {
+        found.report.status = Status::Fallback;
+    }
+    found
+}
+
+/// The same on a surface that was cut up before, without a start. For many points see
+/// [`crate::NearestSurface`].
+pub fn nearest_in_surface(
+    surface: &dyn Surface<f64>,
+    tree: &SurfaceTree,
+    p: Vec3,
+    start: Option<[f64; 2]>,
+) -> Solution<2> {
+    let slop = TIE * tree.size;
+    // A good bound before anything else: the foot near the nearest corner of a piece.
+    let from = tree.patches.iter().map(|patch| patch.net[0].distance(p));
+    let corner = from.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |c| c.0);
+    let [[u, _], [v, _]] = tree.patches[corner].uv;
+    let foot = surface_foot(surface, p, [u, v], [[0.0, 1.0]; 2], tree.size);
+    let mut best = tree.reach_sq(p).sqrt().min(foot.xyz.distance(p));
+    let mut order: Vec<(f64, usize)> = Vec::new();
+    tree.boxes.visit(
+        |b| distance_sq(b, p).sqrt() <= best + slop,
+        |k| order.push((distance_sq(&tree.patches[k as usize].bounds(), p), k as usize)),
+    );
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut feet: Vec<Foot<2>> = Vec::new();
+    for (low, k) in order {
+        if low.sqrt() > best + slop {
+            break;
+        }
+        let mut stack: Vec<Patch> = vec![tree.patches[k]];
+        while let Some(patch) = stack.pop() {
+            let low = distance_sq(&patch.bounds(), p).sqrt();
+            if low > best + slop {
+                continue;
+            }
+            let [a, b] = patch.lengths();
+            let feet_there = patch.feet(p);
+            if feet_there == Feet::Elsewhere {
+                continue;
+            }
+            if a.max(b) < 1e-5 * tree.size || feet_there == Feet::One {
+                let foot = surface_foot(surface, p, patch.middle(), patch.uv, tree.size);
+                best = best.min(foot.xyz.distance(p));
+                feet.push(foot);
+                continue;
+            }
+            // The nearer half last, so that it is looked at first.
+            let mut parts =
+                patch.halves(usize::from(b > a)).map(|q| (distance_sq(&q.bounds(), p), q));
+            if parts[0].0 < parts[1].0 {
+                parts.swap(0, 1);
+            }
+            stack.extend(parts.map(|(_, q)| q));
+        }
+    }
+    feet.push(foot);
+    // From the border of a piece on into the neighbours, and to full accuracy.
+    let whole = |foot: Foot<2>| surface_foot(surface, p, foot.at, [[0.0, 1.0]; 2], tree.size);
+    let feet = nearest_of(feet, p, tree.size).into_iter().map(whole).collect();
+    let feet = nearest_of(feet, p, tree.size);
+    solution(&start.unwrap_or([0.5, 0.5]), feet)
+}

@@ -1,0 +1,180 @@
+use moldloft_num::Vec3;
+use smallvec::SmallVec;
+use std::fmt;
+
+/// Parameters of one solution: (t), (u, v), (t, u, v), …
+pub type Parameters = SmallVec<[f64; 4]>;
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Status {
+    /// Found from the start that was given, or the only solution there is.
+    Ok,
+    /// The iteration from the start failed; the solution is the one nearest to the start, in
+    /// parameter space, of all that subdivision found.
+    Fallback,
+    /// The solution lies at an end or edge because the unbounded one lies beyond it.
+    EdgeClamped,
+    /// The shapes touch, or nearly so: the system of equations is singular at the solution.
+    Tangent,
+    /// There is no solution; the parameters are those of the least residual that was met.
+    NoSolution,
+    /// There are several solutions, and nothing that says which is meant.
+    Multiple {
+        /// How many.
+        count: usize,
+        /// Which was taken, from 0, in the order of the parameters.
+        chosen: usize,
+        /// Distance in space from the chosen one to the next nearest of the others.
+        next: f64,
+    },
+    /// The numbers grew beyond bounds or were not finite.
+    Diverged,
+}
+
+impl Status {
+    /// The word for it in the language and in Python.
+    pub fn word(self) -> &'static str {
+        match self {
+            Status::Ok => "ok",
+            Status::Fallback => "fallback",
+            Status::EdgeClamped => "edge-clamped",
+            Status::Tangent => "tangent",
+            Status::NoSolution => "no-solution",
+            Status::Multiple { .. } => "multiple",
+            Status::Diverged => "diverged",
+        }
+    }
+
+    /// True when there is a solution.
+    pub fn is_solution(self) -> bool {
+        !matches!(self, Status::NoSolution | Status::Diverged)
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Status::Multiple { count, chosen, .. } => {
+                write!(f, "multiple({count}, {} taken)", chosen + 1)
+            }
+            other => f.write_str(other.word()),
+        }
+    }
+}
+
+/// A solution that was not taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alternative {
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// Where it is.
+    pub xyz: Vec3,
+}
+
+/// How a solution was found, or why there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// How the search ended.
+    pub status: Status,
+    /// What is left of the equations, in the unit of length.
+    pub residual: f64,
+    /// Steps of the iteration that led to the solution.
+    pub iterations: u32,
+    /// The parameters it began with.
+    pub start: Parameters,
+    /// The parameters it ended with.
+    pub last: Parameters,
+    /// The solutions that were not taken, in the order of the parameters.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// Parameters of a solution with its report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution<const N: usize> {
+    /// The parameters.
+    pub at: [f64; N],
+    /// How they were found.
+    pub report: Report,
+}
+
+/// A root as a search without a start finds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Root<const N: usize> {
+    /// Its parameters.
+    pub at: [f64; N],
+    /// Where it is.
+    pub xyz: Vec3,
+    /// What is left of the equations, in the unit of length.
+    pub residual: f64,
+    /// Steps of the iteration.
+    pub iterations: u32,
+    /// True when the shapes touch there.
+    pub tangent: bool,
+}
+
+/// All roots, in the order of their parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Roots<const N: usize> {
+    /// The roots.
+    pub roots: Vec<Root<N>>,
+    /// False when the search ran into its limit, as it does where shapes coincide: there may be
+    /// more.
+    pub complete: bool,
+    /// The parameters of the least residual that was met, for messages.
+    pub closest: Option<([f64; N], f64)>,
+}
+
+impl<const N: usize> Roots<N> {
+    /// The root nearest to `start` in parameter space; among equally near ones the first.
+    pub fn nearest_to(&self, start: &[f64]) -> Option<usize> {
+        let away = |root: &Root<N>| -> f64 {
+            root.at.iter().zip(start).map(|(a, b)| (a - b) * (a - b)).sum()
+        };
+        let distances: Vec<f64> = self.roots.iter().map(away).collect();
+        (0..distances.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)))
+    }
+
+    /// The solution that takes root `chosen`; `given` tells that there was a start, from which the
+    /// iteration had failed.
+    pub fn choose(&self, chosen: usize, start: &[f64], given: bool) -> Solution<N> {
+        let root = &self.roots[chosen];
+        let others = self.roots.iter().enumerate().filter(|(k, _)| *k != chosen);
+        let next =
+            others.clone().map(|(_, r)| r.xyz.distance(root.xyz)).fold(f64::INFINITY, f64::min);
+        let status = match (self.roots.len(), given, root.tangent) {
+            (_, _, true) => Status::Tangent,
+            (_, true, _) => Status::Fallback,
+            (1, ..) => Status::Ok,
+            (count, ..) => Status::Multiple { count, chosen, next },
+        };
+        let alternatives = others
+            .map(|(_, r)| Alternative { parameters: r.at.iter().copied().collect(), xyz: r.xyz })
+            .collect();
+        let report = Report {
+            status,
+            residual: root.residual,
+            iterations: root.iterations,
+            start: start.iter().copied().collect(),
+            last: root.at.iter().copied().collect(),
+            alternatives,
+        };
+        Solution { at: root.at, report }
+    }
+
+    /// The report that there is no root.
+    pub fn none(&self, start: &[f64]) -> Report {
+        let (last, residual) = match self.closest {
+            Some((at, residual)) => (at.iter().copied().collect(), residual),
+            None => (start.iter().copied().collect(), f64::INFINITY),
+        };
+        Report {
+            status: Status::NoSolution,
+            residual,
+            iterations: 0,
+            start: start.iter().copied().collect(),
+            last,
+            alternatives: Vec::new(),
+        }
+    }
+}

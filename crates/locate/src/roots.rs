@@ -1,0 +1,618 @@
+//! Intersections of curves with planes, curves and surfaces: from a start, and all of them.
+//!
+//! Searches for all roots subdivide the pieces of both shapes while their boxes meet, until the
+//! pieces are so flat that Newton's method from the middle finds the one root there can be, or
+//! leaves; then the roots are brought to full accuracy on the shapes themselves. On shapes whose
+//! pieces are exact (see [`crate::pieces`]) every transversal root is found. Where the search
+//! meets its limit, as it does where shapes coincide, [`Roots::complete`] is false.
+
+use crate::newton::{OUTSIDE, Range, Walk, newton};
+use crate::pieces::{CurvePiece, Patch, meet, size_of};
+use crate::report::{Report, Root, Roots, Solution, Status};
+use crate::tree::{CurveTree, SurfaceTree};
+use moldloft_num::{Box3, Curve, CurveJet, Order, Surface, Vec3};
+
+/// Pairs of pieces that a search looks at before it gives up.
+const MOST_PAIRS: usize = 100_000;
+
+/// Pieces this flat, as a share of their length, hold one root at most.
+const FLAT: f64 = 0.05;
+
+/// A contact whose sine of the angle is below this is tangent.
+const TANGENT: f64 = 1e-6;
+
+/// Residuals of contacts that no transversal root explains, as a share of the size.
+const TOUCH: f64 = 1e-10;
+
+/// A function g of space of which a level is sought along a curve: zero on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// n . X - offset, with a unit normal n.
+    Plane {
+        /// The unit normal.
+        normal: Vec3,
+        /// n . X of the points of the plane.
+        offset: f64,
+    },
+    /// (|X - c|^2 - r^2) / 2 r.
+    Sphere {
+        /// The centre.
+        centre: Vec3,
+        /// The radius.
+        radius: f64,
+    },
+}
+
+impl Level {
+    /// g along the jet of a curve: value and two derivatives by t.
+    pub fn along(&self, [p, d, dd]: CurveJet<f64>) -> [f64; 3] {
+        match *self {
+            Level::Plane { normal, offset } => {
+                [normal.dot(p) - offset, normal.dot(d), normal.dot(dd)]
+            }
+            Level::Sphere { centre, radius } => {
+                let r = p - centre;
+                let half = 0.5 / radius;
+                [
+                    (r.norm_sq() - radius * radius) * half,
+                    2.0 * r.dot(d) * half,
+                    2.0 * (r.dot(dd) + d.norm_sq()) * half,
+                ]
+            }
+        }
+    }
+}
+
+/// The values of a level along a curve, as a curve on the x axis.
+struct Along<'a> {
+    curve: &'a dyn Curve<f64>,
+    level: &'a Level,
+}
+
+impl Curve<f64> for Along<'_> {
+    fn jet(&self, t: f64, order: Order) -> CurveJet<f64> {
+        self.level.along(self.curve.jet(t, order)).map(|g| Vec3::of(g, 0.0, 0.0))
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
+    }
+}
+
+fn size_of_curve(curve: &dyn Curve<f64>) -> f64 {
+    let ts = [0.0, 0.25, 0.5, 0.75, 1.0];
+    let mut x = [Vec3::zero(); 5];
+    curve.grid(&ts, &mut x);
+    size_of(&Box3::around(x))
+}
+
+fn size_of_surface(surface: &dyn Surface<f64>) -> f64 {
+    let ts = [0.0, 0.5, 1.0];
+    let mut x = [Vec3::zero(); 9];
+    surface.grid(&ts, &ts, &mut x, None);
+    size_of(&Box3::around(x))
+}
+
+/// A walk from a start that was given, as a solution; `None` when it found nothing.
+fn taken<const N: usize>(walk: &Walk<N>, start: &[f64], sine: f64) -> Option<Solution<N>> {
+    if !walk.found {
+        return None;
+    }
+    let status = if sine < TANGENT { Status::Tangent } else { Status::Ok };
+    let report = Report {
+        status,
+        residual: walk.residual,
+        iterations: walk.iterations,
+        start: start.iter().copied().collect(),
+        last: walk.at.iter().copied().collect(),
+        alternatives: Vec::new(),
+    };
+    Some(Solution { at: walk.at, report })
+}
+
+/// What to do when there is no start or it led nowhere: all roots, the one nearest to the start.
+fn from_all<const N: usize>(
+    all: Roots<N>,
+    start: Option<&[f64]>,
+    choose: impl Fn(&Roots<N>) -> Option<usize>,
+) -> Result<Solution<N>, Report> {
+    let from: Vec<f64> = start.map_or_else(|| vec![0.5; N], <[f64]>::to_vec);
+    match choose(&all) {
+        Some(k) => Ok(all.choose(k, &from, start.is_some())),
+        None => Err(all.none(&from)),
+    }
+}
+
+/// Where a curve crosses a level. From a `start` it is what Newton's method leads to; else, or when
+/// that fails, of all crossings the one nearest to the start (0.5 without one).
+///
+/// # Errors
+/// The report when there is none.
+pub fn curve_level(
+    curve: &dyn Curve<f64>,
+    level: &Level,
+    start: Option<f64>,
+) -> Result<Solution<1>, Report> {
+    if let Some(t) = start {
+        let size = size_of_curve(curve);
+        let walk = newton([t], &[Range::PARAMETER], size, |[t]| {
+            let [g, d, _] = level.along(curve.jet(t, Order::First));
+            ([g], [[d]])
+        });
+        let sine = sine_to_level(curve, level, walk.at[0]);
+        if let Some(found) = taken(&walk, &[t], sine) {
+            return Ok(found);
+        }
+    }
+    let all = all_on_level(curve, level);
+    let from = start.unwrap_or(0.5);
+    from_all(all, start.as_ref().map(std::slice::from_ref), |all| all.nearest_to(&[from]))
+}
+
+fn sine_to_level(curve: &dyn Curve<f64>, level: &Level, t: f64) -> f64 {
+    let jet = curve.jet(t, Order::First);
+    level.along(jet)[1].abs() / jet[1].norm().max(f64::MIN_POSITIVE)
+}
+
+/// All crossings of a curve and a level.
+pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level) -> Roots<1> {
+    let size = size_of_curve(curve);
+    let along = Along { curve, level };
+    let tree = CurveTree::new(&along);
+    let value = |t: f64| level.along(curve.jet(t, Order::Second));
+    let mut search = Search::<1>::new(size, &[1.0]);
+    for piece in &tree.pieces {
+        let mut stack = vec![*piece];
+        while let Some(piece) = stack.pop() {
+            let b = piece.bounds();
+            if b.low.x > 0.0 || b.high.x < 0.0 || search.exhausted() {
+                continue;
+            }
+            let slopes = [0, 1, 2].map(|k| piece.net[k + 1].x - piece.net[k].x);
+            let low = slopes.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = slopes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            // Nearly even slope: Newton's method from the middle cannot miss.
+            let steady = low > 0.0 && high < 3.0 * low || high < 0.0 && low > 3.0 * high;
+            let [t0, t1] = piece.t;
+            let middle = 0.5 * (t0 + t1);
+            if steady {
+                let walk = newton([middle], &[Range::PARAMETER], size, |[t]| {
+                    let [g, d, _] = value(t);
+                    ([g], [[d]])
+                });
+                search.offer(&walk, [[t0, t1]], |[t]| {
+                    (curve.jet(t, Order::Zero)[0], sine_to_level(curve, level, t) < TANGENT)
+                });
+            } else if t1 - t0 > 1e-7 {
+                stack.extend(piece.halves());
+            } else {
+                // The turning point nearby touches the level, or nothing does.
+                let mut t = middle;
+                for _ in 0..20 {
+                    let [_, d, dd] = value(t);
+                    let step = d / dd;
+                    if !step.is_finite() || step.abs() > 1e-3 {
+                        break;
+                    }
+                    t = (t - step).clamp(0.0, 1.0);
+                }
+                search.touch([t], value(t)[0].abs(), curve.jet(t, Order::Zero)[0]);
+            }
+        }
+    }
+    search.finish()
+}
+
+/// Collects roots: brings candidates together, drops those found twice.
+struct Search<const N: usize> {
+    size: f64,
+    pairs: usize,
+    roots: Vec<Root<N>>,
+    closest: Option<([f64; N], f64)>,
+    slack: [f64; N],
+}
+
+impl<const N: usize> Search<N> {
+    fn new(size: f64, slack: &[f64; N]) -> Self {
+        Self { size, pairs: 0, roots: Vec::new(), closest: None, slack: *slack }
+    }
+
+    /// Counts a pair; true when there were too many.
+    fn exhausted(&mut self) -> bool {
+        self.pairs += 1;
+        self.pairs > MOST_PAIRS || self.roots.len() > 2_000
+    }
+
+    fn note(&mut self, at: [f64; N], residual: f64) {
+        if residual.is_finite() && self.closest.is_none_or(|(_, best)| residual < best) {
+            self.closest = Some((at, residual));
+        }
+    }
+
+    /// Takes the result of an iteration that began in the cell, if it ended in or near it.
+    fn offer(
+        &mut self,
+        walk: &Walk<N>,
+        cell: [[f64; 2]; N],
+        facts: impl Fn([f64; N]) -> (Vec3, bool),
+    ) {
+        self.note(walk.at, walk.residual);
+        let near = (0..N).all(|k| {
+            let [a, b] = cell[k];
+            let reach = self.slack[k] * (b - a) + OUTSIDE;
+            walk.at[k] >= a - reach && walk.at[k] <= b + reach
+        });
+        if walk.found && near {
+            let (xyz, tangent) = facts(walk.at);
+            self.insert(Root {
+                at: walk.at,
+                xyz,
+                residual: walk.residual,
+                iterations: walk.iterations,
+                tangent,
+            });
+        }
+    }
+
+    fn touch(&mut self, at: [f64; N], residual: f64, xyz: Vec3) {
+        self.note(at, residual);
+        if residual <= TOUCH * self.size {
+            self.insert(Root { at, xyz, residual, iterations: 0, tangent: true });
+        }
+    }
+
+    fn insert(&mut self, root: Root<N>) {
+        let near =
+            |a: &Root<N>, reach: f64| a.at.iter().zip(root.at).all(|(x, y)| (x - y).abs() <= reach);
+        // Touching points are found only to the root of the accuracy.
+        let reach = |a: &Root<N>| if a.tangent || root.tangent { 1e-4 } else { 1e-9 };
+        match self.roots.iter_mut().find(|a| near(a, reach(a))) {
+            Some(same) if root.residual < same.residual && same.tangent => *same = root,
+            Some(_) => {}
+            None => self.roots.push(root),
+        }
+    }
+
+    fn finish(mut self) -> Roots<N> {
+        let complete = self.pairs <= MOST_PAIRS && self.roots.len() <= 2_000;
+        self.roots.sort_by(|a, b| {
+            let pairs = a.at.iter().zip(&b.at);
+            pairs.fold(std::cmp::Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y)))
+        });
+        Roots { roots: self.roots, complete, closest: self.closest }
+    }
+}
+
+/// Residual and matrix of C(t) - S(u, v).
+fn curve_on_surface(
+    curve: &dyn Curve<f64>,
+    surface: &dyn Surface<f64>,
+    [t, u, v]: [f64; 3],
+) -> ([f64; 3], [[f64; 3]; 3]) {
+    let c = curve.jet(t, Order::First);
+    let s = surface.jet(u, v, Order::First);
+    let r = (c[0] - s.p).to_array();
+    let columns = [c[1].to_array(), (-s.u).to_array(), (-s.v).to_array()];
+    (r, std::array::from_fn(|a| std::array::from_fn(|b| columns[b][a])))
+}
+
+/// Sine of the angle between curve and surface.
+fn sine_to_surface(curve: &dyn Curve<f64>, surface: &dyn Surface<f64>, [t, u, v]: [f64; 3]) -> f64 {
+    let d = curve.jet(t, Order::First)[1];
+    let n = surface.jet(u, v, Order::First).normal();
+    n.dot(d).abs() / d.norm().max(f64::MIN_POSITIVE)
+}
+
+/// Where a curve meets a surface, as (t, u, v); see [`curve_level`].
+///
+/// # Errors
+/// The report when they do not meet.
+pub fn curve_surface(
+    curve: &dyn Curve<f64>,
+    surface: &dyn Surface<f64>,
+    start: Option<[f64; 3]>,
+) -> Result<Solution<3>, Report> {
+    if let Some(q) = start {
+        let size = size_of_curve(curve).max(size_of_surface(surface));
+        let f = |q| curve_on_surface(curve, surface, q);
+        let walk = newton(q, &[Range::PARAMETER; 3], size, f);
+        if let Some(found) = taken(&walk, &q, sine_to_surface(curve, surface, walk.at)) {
+            return Ok(found);
+        }
+    }
+    let all = all_curve_surface(curve, surface);
+    let from = start.unwrap_or([0.5; 3]);
+    from_all(all, start.as_ref().map(<[f64; 3]>::as_slice), |all| all.nearest_to(&from))
+}
+
+/// All meetings of a curve and a surface, as (t, u, v).
+pub fn all_curve_surface(curve: &dyn Curve<f64>, surface: &dyn Surface<f64>) -> Roots<3> {
+    let (a, b) = (CurveTree::new(curve), SurfaceTree::new(surface));
+    meetings(curve, &a, surface, &b)
+}
+
+/// The same for shapes that were cut up before.
+pub fn meetings(
+    curve: &dyn Curve<f64>,
+    curve_tree: &CurveTree,
+    surface: &dyn Surface<f64>,
+    surface_tree: &SurfaceTree,
+) -> Roots<3> {
+    let size = curve_tree.size.min(surface_tree.size);
+    let mut search = Search::<3>::new(size, &[0.5; 3]);
+    let mut stack: Vec<(CurvePiece, Patch)> = Vec::new();
+    for piece in &curve_tree.pieces {
+        for k in surface_tree.meeting(&piece.bounds()) {
+            stack.push((*piece, surface_tree.patches[k as usize]));
+            while let Some((piece, patch)) = stack.pop() {
+                if search.exhausted() {
+                    return search.finish();
+                }
+                if !meet(&piece.bounds(), &patch.bounds()) {
+                    continue;
+                }
+                let chord = piece.net[0].distance(piece.net[3]);
+                let [lu, lv] = patch.lengths();
+                let bent = piece.bend().max(patch.bend());
+                let flat = bent <= FLAT * chord.min(lu).min(lv).max(1e-300)
+                    || piece.bend() <= FLAT * chord && patch.bend() <= FLAT * lu.min(lv);
+                let tiny = chord.max(lu).max(lv) < 1e-6 * size;
+                let cell = [piece.t, patch.uv[0], patch.uv[1]];
+                if flat || tiny {
+                    let middle = cell.map(|[a, b]| 0.5 * (a + b));
+                    let f = |q| curve_on_surface(curve, surface, q);
+                    let walk = newton(middle, &[Range::PARAMETER; 3], size, f);
+                    let facts = |q: [f64; 3]| {
+                        let sine = sine_to_surface(curve, surface, q);
+                        (curve.jet(q[0], Order::Zero)[0], sine < TANGENT)
+                    };
+                    let left = (0..3).any(|k| {
+                        let [a, b] = cell[k];
+                        walk.at[k] < a - 2.0 * (b - a) || walk.at[k] > b + 2.0 * (b - a)
+                    });
+                    search.offer(&walk, cell, facts);
+                    if tiny {
+                        if !walk.found {
+                            search.touch(walk.at, walk.residual, facts(walk.at).0);
+                        }
+                        continue;
+                    }
+                    // One root, found or far away: nothing else can be here.
+                    let steep = sine_to_surface(curve, surface, middle) > 0.2;
+                    if steep && (walk.found || left) {
+                        continue;
+                    }
+                }
+                let longest = chord.max(lu).max(lv);
+                if chord == longest {
+                    stack.extend(piece.halves().map(|half| (half, patch)));
+                } else {
+                    let halves = patch.halves(usize::from(lv > lu));
+                    stack.extend(halves.map(|half| (piece, half)));
+                }
+            }
+        }
+    }
+    search.finish()
+}
+
+/// Half the gradient of |C1(t) - C2(s)|^2, over the speeds, and its derivatives.
+fn between_curves(
+    a: &dyn Curve<f64>,
+    b: &dyn Curve<f64>,
+    [t, s]: [f64; 2],
+) -> ([f64; 2], [[f64; 2]; 2]) {
+    let (x, y) = (a.jet(t, Order::Second), b.jet(s, Order::Second));
+    let r = x[0] - y[0];
+    let (p, q) = (x[1].norm().max(1e-300), y[1].norm().max(1e-300));
+    let f = [x[1].dot(r) / p, -y[1].dot(r) / q];
+    let cross = -x[1].dot(y[1]);
+    let j = [
+        [(x[1].norm_sq() + x[2].dot(r)) / p, cross / p],
+        [cross / q, (y[1].norm_sq() - y[2].dot(r)) / q],
+    ];
+    (f, j)
+}
+
+fn sine_between(a: &dyn Curve<f64>, b: &dyn Curve<f64>, [t, s]: [f64; 2]) -> f64 {
+    let (x, y) = (a.jet(t, Order::First)[1], b.jet(s, Order::First)[1]);
+    x.cross(y).norm() / (x.norm() * y.norm()).max(f64::MIN_POSITIVE)
+}
+
+/// Where two curves come nearest to each other, as (t, s): where they meet if they do. From a
+/// start it is the place where Newton's method leads to; without one the nearest of all.
+///
+/// The residual of the report is the distance between the two curves there.
+///
+/// # Errors
+/// The report when there is no such place inside both curves.
+pub fn curve_curve(
+    a: &dyn Curve<f64>,
+    b: &dyn Curve<f64>,
+    start: Option<[f64; 2]>,
+) -> Result<Solution<2>, Report> {
+    let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
+    if let Some(q) = start {
+        let size = size_of_curve(a).max(size_of_curve(b));
+        let mut walk = newton(q, &[Range::PARAMETER; 2], size, |q| between_curves(a, b, q));
+        let sine = sine_between(a, b, walk.at);
+        walk.residual = gap(walk.at);
+        if let Some(found) = taken(&walk, &q, sine) {
+            return Ok(found);
+        }
+    }
+    let all = all_curve_curve(a, b);
+    let from = start.unwrap_or([0.5; 2]);
+    from_all(all, start.as_ref().map(<[f64; 2]>::as_slice), |all| all.nearest_to(&from))
+}
+
+/// All meetings of two curves, as (t, s); when they do not meet, the place where they come
+/// nearest, with the distance as its residual.
+pub fn all_curve_curve(a: &dyn Curve<f64>, b: &dyn Curve<f64>) -> Roots<2> {
+    let (ta, tb) = (CurveTree::new(a), CurveTree::new(b));
+    let size = ta.size.min(tb.size);
+    // What counts as a meeting: curves in space that are made to meet do so to rounding only.
+    let joined = 1e-9 * size;
+    let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
+    let mut search = Search::<2>::new(size, &[0.5; 2]);
+    let mut best: Option<Root<2>> = None;
+    let mut bound = f64::INFINITY;
+    let mut stack: Vec<(CurvePiece, CurvePiece)> = Vec::new();
+    let apart = |p: &Box3, q: &Box3| {
+        let out = |l: f64, h: f64, m: f64, n: f64| (l - n).max(m - h).max(0.0);
+        let d = Vec3::of(
+            out(p.low.x, p.high.x, q.low.x, q.high.x),
+            out(p.low.y, p.high.y, q.low.y, q.high.y),
+            out(p.low.z, p.high.z, q.low.z, q.high.z),
+        );
+        d.norm()
+    };
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, p) in ta.pieces.iter().enumerate() {
+        for (j, q) in tb.pieces.iter().enumerate() {
+            bound = bound.min(p.net[0].distance(q.net[0]) + p.slack + q.slack);
+            pairs.push((apart(&p.bounds(), &q.bounds()), i, j));
+        }
+    }
+    pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    for (low, i, j) in pairs {
+        if low > bound.max(joined) {
+            break;
+        }
+        stack.push((ta.pieces[i], tb.pieces[j]));
+        while let Some((p, q)) = stack.pop() {
+            if search.exhausted() {
+                break;
+            }
+            if apart(&p.bounds(), &q.bounds()) > bound.max(joined) {
+                continue;
+            }
+            let (la, lb) = (p.net[0].distance(p.net[3]), q.net[0].distance(q.net[3]));
+            let cell = [p.t, q.t];
+            let flat = p.bend() <= FLAT * la && q.bend() <= FLAT * lb;
+            let tiny = la.max(lb) < 1e-6 * size;
+            if flat || tiny {
+                let middle = cell.map(|[a, b]| 0.5 * (a + b));
+                bound = bound.min(gap(middle));
+                let mut walk =
+                    newton(middle, &[Range::PARAMETER; 2], size, |x| between_curves(a, b, x));
+                walk.residual = gap(walk.at);
+                let inside = (0..2).all(|k| {
+                    let [a, b] = cell[k];
+                    walk.at[k] >= a - 0.5 * (b - a) && walk.at[k] <= b + 0.5 * (b - a)
+                });
+                if walk.found && inside {
+                    bound = bound.min(walk.residual);
+                    let root = Root {
+                        at: walk.at,
+                        xyz: a.jet(walk.at[0], Order::Zero)[0],
+                        residual: walk.residual,
+                        iterations: walk.iterations,
+                        tangent: sine_between(a, b, walk.at) < TANGENT,
+                    };
+                    if walk.residual <= joined {
+                        search.insert(root);
+                    } else if best.is_none_or(|b| root.residual < b.residual) {
+                        best = Some(root);
+                    }
+                }
+                // Where the curves cross steeply, the distance has one minimum near the cell.
+                if walk.found && sine_between(a, b, middle) > 0.2 {
+                    continue;
+                }
+                if tiny {
+                    search.note(middle, gap(middle));
+                    continue;
+                }
+            }
+            if la >= lb {
+                stack.extend(p.halves().map(|half| (half, q)));
+            } else {
+                stack.extend(q.halves().map(|half| (p, half)));
+            }
+        }
+    }
+    if search.roots.is_empty() {
+        search.roots.extend(best);
+    }
+    search.finish()
+}
+
+/// Where the line through `p` along `d` meets a surface, as (u, v, distance in lengths of `d`).
+/// From a start (u, v) it is what Newton's method leads to; without one, or when that fails, of all
+/// meetings the one nearest to `p`.
+///
+/// # Errors
+/// The report when the line misses the surface.
+pub fn line_surface(
+    surface: &dyn Surface<f64>,
+    p: Vec3,
+    d: Vec3,
+    start: Option<[f64; 2]>,
+) -> Result<Solution<3>, Report> {
+    let speed = d.norm();
+    let residual = |[u, v, s]: [f64; 3]| {
+        let j = surface.jet(u, v, Order::First);
+        let columns = [j.u.to_array(), j.v.to_array(), (-d).to_array()];
+        let r = (j.p - p - d * s).to_array();
+        (r, std::array::from_fn(|a| std::array::from_fn(|b| columns[b][a])))
+    };
+    let sine = |[u, v, _]: [f64; 3]| {
+        surface.jet(u, v, Order::First).normal().dot(d).abs() / speed.max(f64::MIN_POSITIVE)
+    };
+    let ranges = [Range::PARAMETER, Range::PARAMETER, Range::FREE];
+    if let Some([u, v]) = start {
+        let s = (surface.jet(u, v, Order::Zero).p - p).dot(d) / (speed * speed);
+        let size = size_of_surface(surface);
+        let walk = newton([u, v, s], &ranges, size, residual);
+        if let Some(found) = taken(&walk, &[u, v, s], sine(walk.at)) {
+            return Ok(found);
+        }
+    }
+    let tree = SurfaceTree::new(surface);
+    // The part of the line that passes the surface's box, and a little more.
+    let centre = tree.bounds.centre();
+    let s = (centre - p).dot(d) / (speed * speed);
+    let reach = tree.bounds.diagonal() / speed;
+    let line = Segment { from: p + d * (s - reach), to: p + d * (s + reach) };
+    let found = meetings(&line, &CurveTree::new(&line), surface, &tree);
+    let roots = found.roots.iter().map(|root| {
+        let [t, u, v] = root.at;
+        Root { at: [u, v, s - reach + 2.0 * reach * t], ..*root }
+    });
+    let closest = found.closest.map(|([t, u, v], r)| ([u, v, s - reach + 2.0 * reach * t], r));
+    let mut all = Roots { roots: roots.collect(), complete: found.complete, closest };
+    for root in &mut all.roots {
+        // To full accuracy in the measure of the line itself.
+        let walk = newton(root.at, &ranges, tree.size, residual);
+        if walk.found {
+            root.at = walk.at;
+            root.residual = walk.residual;
+        }
+    }
+    let from: Option<[f64; 2]> = start;
+    let given: Vec<f64> = from.map_or_else(|| vec![0.5, 0.5], |q| q.to_vec());
+    let chosen = match from {
+        Some(uv) => all.nearest_to(&uv),
+        None => {
+            let away = |k: &usize| all.roots[*k].at[2].abs();
+            (0..all.roots.len()).min_by(|a, b| away(a).total_cmp(&away(b)).then(a.cmp(b)))
+        }
+    };
+    match chosen {
+        Some(k) => Ok(all.choose(k, &given, from.is_some())),
+        None => Err(all.none(&given)),
+    }
+}
+
+/// A straight line run evenly.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Segment {
+    pub from: Vec3,
+    pub to: Vec3,
+}
+
+impl Curve<f64> for Segment {
+    fn jet(&self, t: f64, _: Order) -> CurveJet<f64> {
+        [self.from * (1.0 - t) + self.to * t, self.to - self.from, Vec3::zero()]
+    }
+}

@@ -1,0 +1,112 @@
+use moldloft_num::Vec3;
+use std::fmt;
+
+/// How an iterative construction (a projection, an intersection, a nearest point) came to its
+/// result. Carried by the point or curve; every word of it depends on the model only.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// How the search ended.
+    pub status: FoundStatus,
+    /// What is left of the equations, in the unit of length.
+    pub residual: f64,
+    /// Steps of the iteration.
+    pub iterations: u32,
+    /// The parameters that the search began with.
+    pub start: Vec<f64>,
+    /// The parameters it ended with.
+    pub last: Vec<f64>,
+    /// Solutions that were not taken: their parameters and places.
+    pub alternatives: Vec<(Vec<f64>, Vec3)>,
+    /// How to choose another solution, or to get rid of the remark.
+    pub advice: &'static str,
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FoundStatus {
+    /// From the start that was given, or the only solution.
+    Ok,
+    /// The iteration from the start failed; the nearest of all solutions was taken.
+    Fallback,
+    /// At an end or an edge, because the unbounded solution lies beyond it.
+    EdgeClamped,
+    /// The shapes touch: the solution is not well determined.
+    Tangent,
+    /// One of several, without a start that would say which.
+    Multiple {
+        /// How many there are.
+        count: usize,
+        /// Which was taken, from 0.
+        chosen: usize,
+        /// Distance in space to the next of the others.
+        next: f64,
+    },
+}
+
+impl FoundStatus {
+    /// Its word in the language and in Python.
+    pub fn word(self) -> &'static str {
+        match self {
+            FoundStatus::Ok => "ok",
+            FoundStatus::Fallback => "fallback",
+            FoundStatus::EdgeClamped => "edge-clamped",
+            FoundStatus::Tangent => "tangent",
+            FoundStatus::Multiple { .. } => "multiple",
+        }
+    }
+}
+
+impl fmt::Display for FoundStatus {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+fn list(parameters: &[f64]) -> String {
+    let all: Vec<String> = parameters.iter().map(|x| format!("{x:.6}")).collect();
+    match all.as_slice() {
+        [one] => one.clone(),
+        many => format!("({})", many.join(", ")),
+    }
+}
+
+impl Found {
+    /// Id and message of the warning about it; `None` when there is nothing to say.
+    pub fn warning(&self) -> Option<(&'static str, String)> {
+        let at = list(&self.last);
+        Some(match self.status {
+            FoundStatus::Ok => return None,
+            FoundStatus::Fallback => (
+                "start-failed",
+                format!(
+                    "the start {} leads nowhere; the nearest solution, at {at}, was taken",
+                    list(&self.start)
+                ),
+            ),
+            FoundStatus::EdgeClamped => {
+                ("edge-clamped", format!("the solution lies beyond the edge; it was held at {at}"))
+            }
+            FoundStatus::Tangent => (
+                "tangent-contact",
+                format!("the shapes touch at {at}; a small change may part them"),
+            ),
+            FoundStatus::Multiple { count, chosen, next } => {
+                let others: Vec<String> =
+                    self.alternatives.iter().take(3).map(|(p, _)| list(p)).collect();
+                let more = if self.alternatives.len() > 3 { ", …" } else { "" };
+                let message = format!(
+                    "there are {count} solutions; number {} at {at} was taken, others are at {}{more} \
+                     (the next {next:.3e} away)",
+                    chosen + 1,
+                    others.join(", ")
+                );
+                ("several-solutions", message)
+            }
+        })
+    }
+
+    /// True when there is something to warn of.
+    pub fn warns(&self) -> bool {
+        self.status != FoundStatus::Ok
+    }
+}

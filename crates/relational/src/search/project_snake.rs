@@ -1,0 +1,363 @@
+//! Curves projected onto surfaces, point by point.
+
+use super::arguments::Onto;
+use super::equations::{FootOnSurface, Moving, OnRay, Rays};
+use super::magnets::{foot, on_ray, rays};
+use super::points::MirrorOrSurface;
+use crate::arguments::Magnet;
+use moldloft_locate::implicit::{Implicit, jets};
+use moldloft_locate::{OUTSIDE, PlainSurface, Range, newton};
+use moldloft_num::trace::{Key, Trace};
+use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
+use moldloft_registry::{
+    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Mirror, SurfaceRef, Value,
+};
+
+/// The first step along the curve, and the least.
+const STEP: f64 = 1.0 / 64.0;
+const LEAST_STEP: f64 = 1e-9;
+
+/// A foot may not move farther than this in u or v during a step: then it has jumped.
+const LONGEST_MOVE: f64 = 0.15;
+
+/// The projection of a curve onto a surface, point by point, which is a snake: along the surface's
+/// normals, along a direction, or away from a point.
+///
+/// The foot of the start of the curve is found first, near the magnet if one is given; from there
+/// the projection follows the curve without a jump. Each point of it is solved for by itself, so it
+/// lies on the surface exactly. Where the projection leaves the surface or grazes it, there is no
+/// snake.
+#[derive(Kind)]
+#[kind(
+    class = Snake,
+    columns = "relabel curve surface mirror",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 1, 3); AbsPoint Q(3, 2, 4); \
+               AbsPoint R(2, 2.5, 3); BCurve c({P, R, Q}); ProjSnake s(c, S); ProjSnake t(c, S, \"z=0\"); \
+               AbsPoint eye(2, 1.5, 8); ProjSnake u(c, S, eye);"
+)]
+pub struct ProjSnake<T: Real> {
+    /// The curve to project.
+    curve: CurveRef<T>,
+    /// The surface, or a magnet of it near the projection of the start of the curve.
+    surface: Onto<T>,
+    /// Along what: a plane's normal, a line's direction, or away from a point. Not given: along
+    /// the surface's own normals.
+    mirror: Option<Mirror<T>>,
+    /// Magnets at the two ends, which other snakes end in too, so that patches join there.
+    #[field(default)]
+    ends: Option<Vec<Magnet<T>>>,
+}
+
+impl<T: Real> Build<T> for ProjSnake<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { curve, surface, mirror, ends } = self;
+        let rays = mirror.as_ref().map(rays);
+        let (path, found) = projected(curve, surface, rays)?;
+        let keys = match ends {
+            None => [None, None],
+            Some(magnets) => end_keys(&path, &magnets, context.tolerance)?,
+        };
+        let surface = path.surface.clone();
+        let shape = Projected { trace: Trace::Own(keys), path };
+        Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting).with_found(found)))
+    }
+}
+
+/// The projection of a curve onto a plane, line, point or surface, point by point, as a curve in
+/// space.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel curve mirror",
+    example = "AbsPoint A(0, 1, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); \
+               BCurve c({A, B, C}); ProjCurve flat(c, \"z=0\");"
+)]
+pub struct ProjCurve<T: Real> {
+    /// The curve to project.
+    curve: CurveRef<T>,
+    /// What to project it to.
+    mirror: MirrorOrSurface<T>,
+}
+
+impl<T: Real> Build<T> for ProjCurve<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        match self.mirror {
+            MirrorOrSurface::Mirror(mirror) => {
+                let shape = OntoMirror { curve: self.curve, mirror };
+                Ok(Value::Curve(CurveRef::new(shape, context.nesting)))
+            }
+            MirrorOrSurface::Surface(onto) => {
+                let (path, found) = projected(self.curve, onto, None)?;
+                let shape = Projected { trace: Trace::own(), path };
+                Ok(Value::Curve(CurveRef::new(shape, context.nesting).with_found(found)))
+            }
+        }
+    }
+}
+
+struct OntoMirror<T: Real> {
+    curve: CurveRef<T>,
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Curve<T> for OntoMirror<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        let [p, d, dd] = self.curve.jet(t, order);
+        let turned = |v| self.mirror.direction(v, true);
+        [self.mirror.foot(p), turned(d), turned(dd)]
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
+    }
+}
+
+/// The keys of magnets that stand at the ends of a path.
+fn end_keys<T: Real>(
+    path: &Path<T>,
+    magnets: &[Magnet<T>],
+    tolerance: f64,
+) -> Result<[Option<Key>; 2], Fault> {
+    let [first, last] = magnets else {
+        return Err(Fault::new("wrong-length", "a snake has two ends")
+            .expected("two magnets")
+            .found(magnets.len().to_string())
+            .in_field(3));
+    };
+    for (k, magnet) in [first, last].into_iter().enumerate() {
+        let w = path.place(T::from(k as f64), Order::Zero)[0];
+        let x = path.surface.jet(w.x, w.y, Order::Zero).p.re();
+        let m = magnet.surface.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p.re();
+        let gap = x.distance(m);
+        if gap > tolerance {
+            let which = ["beginning", "end"][k];
+            return Err(Fault::new(
+                "open-end",
+                format!("the magnet is not at the {which} of the snake"),
+            )
+            .expected(format!("a magnet within {tolerance:e} of it"))
+            .found(format!("a distance of {gap:.6e}"))
+            .help("make it by ProjMagnet from the same end of the curve")
+            .related(magnet.key, "is the magnet")
+            .in_item(k)
+            .in_field(3));
+        }
+    }
+    Ok([first.key, last.key])
+}
+
+/// A solved place along the curve.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    t: f64,
+    q: [f64; 3],
+    rate: [f64; 3],
+}
+
+/// The way of the projection in the parameter plane of the surface.
+struct Path<T: Real> {
+    surface: SurfaceRef<T>,
+    point: Moving<T>,
+    rays: Option<Rays<T>>,
+    size: f64,
+    nodes: Vec<Node>,
+}
+
+/// Follows the projection of the curve from its start to its end.
+fn projected<T: Real>(
+    curve: CurveRef<T>,
+    onto: Onto<T>,
+    rays: Option<Rays<T>>,
+) -> Result<(Path<T>, Found), Fault> {
+    let begin = curve.end(0.0);
+    let (uv, mut found) = match rays {
+        None => foot(&onto, begin, false),
+        Some(rays) => on_ray(&onto, begin, rays),
+    }
+    .map_err(|fault| fault.in_field(1))?;
+    if found.status == FoundStatus::EdgeClamped {
+        return Err(leaves(0.0));
+    }
+    let corners = [0.0, 0.5, 1.0].map(|t| curve.end(t).re());
+    let size = moldloft_locate::pieces::size_of(&moldloft_num::Box3::around(corners));
+    let point = Moving::Curve(curve);
+    let mut path = Path { surface: onto.surface, point, rays, size, nodes: Vec::new() };
+    let uv = uv.map(|x| x.re());
+    let s = path.ray_length(uv);
+    let node = path.solved(0.0, [uv[0], uv[1], s]).ok_or_else(|| grazes(0.0))?;
+    path.nodes.push(node);
+    let mut step = STEP;
+    while let Some(&last) = path.nodes.last().filter(|node| node.t < 1.0) {
+        let t = if last.t + 1.5 * step >= 1.0 { 1.0 } else { last.t + step };
+        let dt = t - last.t;
+        let guess = std::array::from_fn(|k| last.q[k] + last.rate[k] * dt);
+        let inside = |q: [f64; 3]| q[..2].iter().all(|x| *x >= -OUTSIDE && *x <= 1.0 + OUTSIDE);
+        let next = path.solved(t, guess).filter(|node| {
+            inside(node.q)
+                && (0..2).all(|k| {
+                    (node.q[k] - guess[k]).abs() <= 0.25 * LONGEST_MOVE
+                        && (node.q[k] - last.q[k]).abs() <= LONGEST_MOVE
+                })
+        });
+        match next {
+            Some(node) => {
+                path.nodes.push(node);
+                step = (2.0 * step).min(STEP);
+            }
+            None if step > LEAST_STEP => step *= 0.5,
+            None => {
+                let at_edge = last.q[..2].iter().any(|x| *x < 1e-4 || *x > 1.0 - 1e-4);
+                return Err(if at_edge { leaves(last.t) } else { grazes(last.t) });
+            }
+        }
+    }
+    found.advice = "to choose another one, give a magnet near the start of the snake";
+    Ok((path, found))
+}
+
+fn leaves(t: f64) -> Fault {
+    Fault::new("leaves-surface", "the projection of the curve leaves the surface")
+        .expected("a curve whose projection lies on the surface from end to end")
+        .found(format!("the edge of the surface at t = {t:.6} of the curve"))
+        .help("use a part of the curve (SubCurve), or a larger surface")
+        .in_field(0)
+}
+
+fn grazes(t: f64) -> Fault {
+    Fault::new("grazing-projection", "the projection grazes the surface")
+        .expected("lines of projection that cross the surface at an angle")
+        .found(format!("a line tangent to it at t = {t:.6} of the curve"))
+        .help("project away from a point, along another direction, or from nearer to the surface")
+        .in_field(1)
+}
+
+impl<T: Real> Path<T> {
+    fn ray_length(&self, [u, v]: [f64; 2]) -> f64 {
+        let Some(rays) = self.rays else { return 0.0 };
+        let system = OnRay { surface: &self.surface, point: &self.point, rays };
+        let [p, d] = system.ray::<T>(T::zero()).map(Vec3::re);
+        let x = self.surface.jet(T::from(u), T::from(v), Order::Zero).p.re();
+        (x - p).dot(d) / d.norm_sq()
+    }
+
+    /// The place at plain `t` near `guess`, and its rate.
+    fn solved(&self, t: f64, guess: [f64; 3]) -> Option<Node> {
+        let q = self.root(t, guess)?;
+        let [_, rate, _] = self.derived(q, T::from(t), Order::First)?;
+        let node = Node { t, q, rate: rate.map(|x| x.re()) };
+        node.rate.iter().all(|x| x.is_finite()).then_some(node)
+    }
+
+    fn root(&self, t: f64, guess: [f64; 3]) -> Option<[f64; 3]> {
+        let plain = PlainSurface(&*self.surface);
+        let wide = Range { low: -0.5, high: 1.5, step: 0.2 };
+        match self.rays {
+            None => {
+                let p = self.point.at::<T>(T::from(t)).re();
+                let walk = newton([guess[0], guess[1]], &[wide; 2], self.size, |[u, v]| {
+                    let j = plain.jet(u, v, Order::Second);
+                    let r = j.p - p;
+                    // Slopes over lengths are lengths.
+                    let (a, b) = (j.u.norm().max(1e-300), j.v.norm().max(1e-300));
+                    let cross = j.u.dot(j.v) + j.uv.dot(r);
+                    (
+                        [j.u.dot(r) / a, j.v.dot(r) / b],
+                        [
+                            [(j.u.norm_sq() + j.uu.dot(r)) / a, cross / a],
+                            [cross / b, (j.v.norm_sq() + j.vv.dot(r)) / b],
+                        ],
+                    )
+                });
+                walk.found.then_some([walk.at[0], walk.at[1], 0.0])
+            }
+            Some(rays) => {
+                let system = OnRay { surface: &self.surface, point: &self.point, rays };
+                let [p, d] = system.ray::<T>(T::from(t)).map(Vec3::re);
+                let ranges = [wide, wide, Range::FREE];
+                let walk = newton(guess, &ranges, self.size, |[u, v, s]| {
+                    let j: SurfJet<f64> = plain.jet(u, v, Order::First);
+                    let all = [j.u.to_array(), j.v.to_array(), (-d).to_array()];
+                    let matrix = std::array::from_fn(|r| std::array::from_fn(|c| all[c][r]));
+                    ((j.p - p - d * s).to_array(), matrix)
+                });
+                let normal = plain.jet(walk.at[0], walk.at[1], Order::First).normal();
+                let steep = normal.dot(d).abs() > 1e-5 * d.norm();
+                (walk.found && steep).then_some(walk.at)
+            }
+        }
+    }
+
+    /// The unknowns as functions of t.
+    fn derived(&self, q: [f64; 3], t: T, order: Order) -> Option<[[T; 3]; 3]> {
+        match self.rays {
+            None => {
+                let system =
+                    FootOnSurface { surface: &self.surface, point: &self.point, held: [false; 2] };
+                let all = two(&system, [q[0], q[1]], t, order)?;
+                Some(all.map(|[u, v]| [u, v, T::zero()]))
+            }
+            Some(rays) => {
+                let system = OnRay { surface: &self.surface, point: &self.point, rays };
+                jets(&system, q, t, order)
+            }
+        }
+    }
+
+    /// (u, v, 0) at `t` with derivatives.
+    fn place(&self, t: T, order: Order) -> CurveJet<T> {
+        let plain = t.re();
+        let after = self.nodes.partition_point(|node| node.t < plain).min(self.nodes.len() - 1);
+        let node = &self.nodes[after];
+        let before = &self.nodes[after.saturating_sub(1)];
+        let near = if plain - before.t < node.t - plain { before } else { node };
+        let guess = std::array::from_fn(|k| near.q[k] + near.rate[k] * (plain - near.t));
+        let q = self.root(plain, guess).unwrap_or(guess);
+        let Some(all) = self.derived(q, t, order) else {
+            return [
+                Vec3::new(T::from(q[0]), T::from(q[1]), T::zero()),
+                Vec3::zero(),
+                Vec3::zero(),
+            ];
+        };
+        all.map(|[u, v, _]| Vec3::new(u, v, T::zero()))
+    }
+}
+
+fn two<T: Real, F: Implicit<T, 2>>(f: &F, q: [f64; 2], t: T, order: Order) -> Option<[[T; 2]; 3]> {
+    jets(f, q, t, order)
+}
+
+/// X(t) = S(w(t)).
+struct Projected<T: Real> {
+    trace: Trace<T>,
+    path: Path<T>,
+}
+
+impl<T: Real> Curve<T> for Projected<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        super::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
+    }
+
+    /// Those of the curve, and where the projection crosses those of the surface.
+    fn breaks(&self) -> Vec<f64> {
+        let own = match &self.path.point {
+            Moving::Curve(curve) => curve.breaks(),
+            Moving::Fixed(_) => Vec::new(),
+        };
+        let nodes: Vec<(f64, [f64; 2])> =
+            self.path.nodes.iter().map(|n| (n.t, [n.q[0], n.q[1]])).collect();
+        let at = |t: f64| {
+            let w = self.path.place(T::from(t), Order::Zero)[0].re();
+            [w.x, w.y]
+        };
+        super::crossings(&self.path.surface.breaks(), own, &nodes, at)
+    }
+
+    fn trace(&self) -> Trace<T> {
+        self.trace.clone()
+    }
+
+    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
+        Some(self.path.place(t, order))
+    }
+}

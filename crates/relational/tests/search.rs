@@ -1,0 +1,245 @@
+//! Projections and intersections: closed forms, reports, faults, derivatives.
+
+mod common;
+
+use common::{attempt, fault, run, scene};
+use moldloft_num::{Dual4, Order, Real, Vec3};
+use moldloft_registry::{FoundStatus, Point, Value};
+
+/// A quarter of a cylinder of radius 2 about the x axis, from x = 0 to 4: S(u, v).
+const TUBE: &str = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(0, 2, 0);
+    AbsPoint B(4, 2, 0); Line m(A, B); RevSurf S(m, axis, 0, 3.141592653589793);";
+
+fn point(text: &str, name: &str) -> Point<f64> {
+    let scene = scene(text);
+    let object = scene.0.iter().find(|o| o.name == name).unwrap();
+    match &object.value {
+        Value::Point(p) => (**p).clone(),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn status(p: &Point<f64>) -> FoundStatus {
+    p.found.as_ref().unwrap().status
+}
+
+fn near(p: Vec3, x: f64, y: f64, z: f64) {
+    assert!(p.distance(Vec3::of(x, y, z)) < 1e-11, "{p:?} is not ({x}, {y}, {z})");
+}
+
+#[test]
+fn projections_onto_a_cylinder() {
+    let p = point(&format!("{TUBE} AbsPoint P(1, 3, 4); ProjMagnet q(P, S);"), "q");
+    near(p.xyz, 1.0, 1.2, 1.6);
+    assert_eq!(status(&p), FoundStatus::Ok);
+    let p = point(&format!("{TUBE} AbsPoint P(1, 1, 4); ProjMagnet q(P, S, \"z=0\");"), "q");
+    near(p.xyz, 1.0, 1.0, 3f64.sqrt());
+    let p = point(
+        &format!("{TUBE} AbsPoint E(1, 0, 0); AbsPoint P(1, 3, 4); ProjMagnet q(P, S, E);"),
+        "q",
+    );
+    near(p.xyz, 1.0, 1.2, 1.6);
+    let p = point(&format!("{TUBE} AbsPoint P(1, 3, 4); ProjPoint q(P, S);"), "q");
+    near(p.xyz, 1.0, 1.2, 1.6);
+    // Beyond the edge x = 4.
+    let p = point(&format!("{TUBE} AbsPoint P(5, 3, 4); ProjMagnet q(P, S);"), "q");
+    near(p.xyz, 4.0, 1.2, 1.6);
+    assert_eq!(status(&p), FoundStatus::EdgeClamped);
+    let p = point(&format!("{TUBE} AbsPoint P(5, 3, 4); ProxMagnet q(P, S);"), "q");
+    assert_eq!(status(&p), FoundStatus::Ok);
+    // Along y the line goes through both sides: the nearer is taken, the other told.
+    let p = point(&format!("{TUBE} AbsPoint P(1, 9, 1); ProjMagnet q(P, S, \"y=0\");"), "q");
+    near(p.xyz, 1.0, 3f64.sqrt(), 1.0);
+    assert!(matches!(status(&p), FoundStatus::Multiple { count: 2, .. }), "{p:?}");
+    assert_eq!(p.found.as_ref().unwrap().alternatives.len(), 1);
+    let far = format!(
+        "{TUBE} AbsPoint P(1, 9, 1); AbsMagnet k(S, 0.2, 0.9); ProjMagnet q(P, k, \"y=0\");"
+    );
+    near(point(&far, "q").xyz, 1.0, -(3f64.sqrt()), 1.0);
+}
+
+#[test]
+fn beads_on_an_arc() {
+    let arc = "AbsPoint A(2, 0, 0); AbsPoint B(0, 2, 0); AbsPoint C(-2, 0, 0); Arc c(A, B, C);";
+    let p = point(&format!("{arc} YPlane y(1); IntBead b(c, y);"), "b");
+    assert!(matches!(status(&p), FoundStatus::Multiple { count: 2, .. }), "{p:?}");
+    let p = point(&format!("{arc} YPlane y(1); AbsBead a(c, 0.9); IntBead b(a, y);"), "b");
+    near(p.xyz, -(3f64.sqrt()), 1.0, 0.0);
+    assert_eq!(status(&p), FoundStatus::Ok);
+    let p = point(&format!("{arc} AbsBead a(c, 0.1); IntBead b(a, \"y=0\", {{0, 1, 7}});"), "b");
+    near(p.xyz, 3f64.sqrt(), 1.0, 0.0);
+    let p = point(&format!("{arc} XYZBead b(c, \"x\", 1);"), "b");
+    near(p.xyz, 1.0, 3f64.sqrt(), 0.0);
+    let p = point(&format!("{arc} AbsPoint P(3, 3, 8); ProjBead b(c, P);"), "b");
+    near(p.xyz, 2f64.sqrt(), 2f64.sqrt(), 0.0);
+    let p =
+        point(&format!("{arc} AbsPoint M(2, 0, 0); AbsPoint N(0, 0, 0); IntBead b(c, M, N);"), "b");
+    near(p.xyz, 1.0, 3f64.sqrt(), 0.0);
+    let p = point(
+        &format!("{arc} AbsPoint D(0, -1, 0); AbsPoint E(0, 5, 0); Line l(D, E); IntBead b(c, l);"),
+        "b",
+    );
+    near(p.xyz, 0.0, 2.0, 0.0);
+    // A plane that touches.
+    let p = point(&format!("{arc} YPlane y(2); IntBead b(c, y);"), "b");
+    assert_eq!(status(&p), FoundStatus::Tangent);
+}
+
+#[test]
+fn curves_through_surfaces() {
+    let text = format!(
+        "{TUBE} AbsPoint P(1, 1, 0); AbsPoint Q(1, 1, 5); Line l(P, Q); IntBead b(l, S); IntMagnet k(l, S);
+         XYZMagnet x(S, \"x\", 1, \"y\", 1);"
+    );
+    for name in ["b", "k", "x"] {
+        let p = point(&text, name);
+        near(p.xyz, 1.0, 1.0, 3f64.sqrt());
+        assert_eq!(status(&p), FoundStatus::Ok);
+    }
+    let p = point(&format!("{TUBE} AbsMagnet k(S, 0.25, 0.5); TanMagnet q(k, 0.5, 0);"), "q");
+    near(p.xyz, 1.5, 0.0, 2.0);
+    let ring = format!(
+        "{TUBE} UVSnake s(S, \"u\", 0.25); ZPlane z(1); AbsRing r(s, 0.1); IntRing i(r, z);"
+    );
+    let p = point(&ring, "i");
+    near(p.xyz, 1.0, 3f64.sqrt(), 1.0);
+    assert!(p.on_surface.is_some() && p.on_curve.is_some());
+}
+
+#[test]
+fn what_does_not_meet_is_told() {
+    let line = "AbsPoint P(1, 3, 1); AbsPoint Q(1, 3, 5); Line l(P, Q);";
+    for (text, id) in [
+        (format!("{TUBE} {line} IntMagnet k(l, S);"), "no-intersection"),
+        (format!("{TUBE} {line} XPlane x(9); IntBead k(l, x);"), "no-intersection"),
+        (format!("{TUBE} {line} IntBead k(l, m);"), "no-intersection"),
+        (format!("{TUBE} {line} IntBead k(l, P);"), "missing-argument"),
+        (format!("{TUBE} {line} IntBead k(l, P, P);"), "coincident-points"),
+        (format!("{TUBE} {line} XYZBead k(l, \"w\", 2);"), "unknown-axis"),
+        (format!("{TUBE} XYZMagnet k(S, \"x\", 1, \"x\", 2);"), "same-axis"),
+        (format!("{TUBE} AbsPoint P(1, 2.5, 4); ProjMagnet q(P, S, \"z=0\");"), "no-intersection"),
+        // From y = 1 the projection down runs to the silhouette at y = 2.
+        (
+            format!(
+                "{TUBE} AbsPoint P(1, 1, 4); AbsPoint Q(1, 2.5, 4); Line l(P, Q); ProjSnake s(l, S, \"z=0\");"
+            ),
+            "leaves-surface",
+        ),
+        (
+            format!(
+                "{TUBE} AbsPoint P(1, 1, 4); AbsPoint Q(6, 1, 4); Line l(P, Q); ProjSnake s(l, S);"
+            ),
+            "leaves-surface",
+        ),
+    ] {
+        assert_eq!(fault(&text).id, id, "{text}");
+    }
+    // A silhouette inside the surface: a full tube seen from above.
+    let full = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(0, 0, -2);
+        AbsPoint B(4, 0, -2); Line m(A, B); RevSurf S(m, axis, 0, 6.283185307179586);";
+    let text = format!(
+        "{full} AbsPoint P(1, 1, 4); AbsPoint Q(1, 2.5, 4); Line l(P, Q); AbsMagnet k(S, 0.25, 0.4); ProjSnake s(l, k, \"z=0\");"
+    );
+    assert_eq!(fault(&text).id, "grazing-projection");
+    let text = format!(
+        "{TUBE} AbsPoint P(1, 1, 4); AbsPoint Q(3, 1, 4); Line l(P, Q); AbsMagnet a(S, 0.1, 0.1); AbsMagnet b(S, 0.9, 0.1); ProjSnake s(l, S, ends = {{a, b}});"
+    );
+    assert_eq!(fault(&text).id, "open-end");
+}
+
+#[test]
+fn projected_snakes_lie_on_the_surface_and_have_their_jets() {
+    let text = format!(
+        "{TUBE} AbsPoint P(0.5, 1.5, 3); AbsPoint Q(2, -1, 4); AbsPoint R(3.5, 1, 2.5); BCurve c({{P, Q, R}});
+         ProjSnake s(c, S); ProjSnake d(c, S, \"z=0\"); AbsPoint E(2, 0, -1); ProjSnake e(c, S, E); ProjCurve f(c, S);"
+    );
+    let scene = scene(&text);
+    let get = |name: &str| match &scene.0.iter().find(|o| o.name == name).unwrap().value {
+        Value::Curve(c) => c.clone(),
+        other => panic!("{other:?}"),
+    };
+    let c = get("c");
+    for name in ["s", "d", "e", "f"] {
+        let snake = get(name);
+        for k in 0..=20 {
+            let t = f64::from(k) / 20.0;
+            let [x, d, dd] = snake.jet(t, Order::Second);
+            let p = c.jet(t, Order::Zero)[0];
+            assert!(((x.y * x.y + x.z * x.z).sqrt() - 2.0).abs() < 1e-13);
+            match name {
+                "s" | "f" => {
+                    let r = (p.y * p.y + p.z * p.z).sqrt();
+                    near(x, p.x, 2.0 * p.y / r, 2.0 * p.z / r);
+                }
+                "d" => near(x, p.x, p.y, (4.0 - p.y * p.y).sqrt()),
+                _ => {
+                    let e = Vec3::of(2.0, 0.0, -1.0);
+                    assert!((x - e).cross(p - e).norm() < 1e-11);
+                }
+            }
+            let h = 1e-5;
+            let at = |s: f64| snake.jet(s, Order::First);
+            let (a, b) = (at(t + h), at(t - h));
+            assert!(((a[0] - b[0]) / (2.0 * h) - d).norm() < 1e-7 * (1.0 + d.norm()), "{name} {t}");
+            assert!(
+                ((a[1] - b[1]) / (2.0 * h) - dd).norm() < 1e-6 * (1.0 + dd.norm()),
+                "{name} {t}"
+            );
+        }
+    }
+}
+
+/// Every literal of a text, one at a time: derivatives of all points against differences.
+fn check_derivatives(text: &str, names: &[&str]) {
+    let values = |literals: &mut dyn FnMut(usize, f64) -> Dual4| -> Vec<Vec3<Dual4>> {
+        let scene = run::<Dual4>(text, literals).unwrap();
+        names
+            .iter()
+            .flat_map(|name| match &scene.0.iter().find(|o| o.name == *name).unwrap().value {
+                Value::Point(p) => vec![p.xyz],
+                Value::Curve(c) => [0.0, 0.3, 0.7, 1.0]
+                    .into_iter()
+                    .flat_map(|t| c.jet(Dual4::from(t), Order::First).into_iter().take(2))
+                    .collect(),
+                other => panic!("{other:?}"),
+            })
+            .collect()
+    };
+    let mut count = 0;
+    values(&mut |k, x| {
+        count = count.max(k + 1);
+        Dual4::from(x)
+    });
+    for k in 0..count {
+        let exact = values(&mut |i, x| if i == k { Dual4::seeded(x, 0) } else { x.into() });
+        let h = 1e-5;
+        let mut moved = |d: f64| values(&mut |i, x| Dual4::from(if i == k { x + d } else { x }));
+        let (a, b) = (moved(h), moved(-h));
+        for ((e, a), b) in exact.iter().zip(&a).zip(&b) {
+            let d = (a.re() - b.re()) / (2.0 * h);
+            let e = e.map(|x| x.eps[0]);
+            assert!(
+                e.distance(d) < 1e-6 * (1.0 + d.norm()),
+                "literal {k}: {e:?} but {d:?}\n{text}"
+            );
+        }
+    }
+    assert!(count > 10);
+}
+
+#[test]
+fn derivatives_are_exact() {
+    let text = "AbsPoint A(0, 0, 0.1); AbsPoint B(2, 0.3, 1); AbsPoint C(4, 0, 0.3); AbsPoint D(0, 3, 0.2);
+        AbsPoint E(2, 3.2, 1.2); AbsPoint F(4, 3, 0.1); BCurve k({A, B, C}); BCurve l({D, E, F}); RuledSurf S(k, l);
+        AbsPoint P(1, 1, 3); AbsPoint Q(2.2, 1.7, 2.5); AbsPoint R(3, 2, 3.2); BCurve c({P, Q, R});
+        ProjMagnet m1(P, S); ProjMagnet m2(Q, S, \"z=0\"); AbsPoint eye(2, 1.5, 9); ProjMagnet m3(R, S, eye);
+        AbsPoint G(2.1, 1.4, -1); Line n(Q, G); IntMagnet i(n, S); IntBead j(n, S); AbsPoint H(7, 1, 0.5);
+        ProjMagnet m4(H, S); XYZMagnet x(S, \"x\", 1.25, \"y\", 1.5); AbsMagnet q(S, 0.4, 0.6); TanMagnet t(q, 0.3, 0.2);
+        XPlane p(2.3); IntBead b(c, p); ProjBead f(c, G); ProxBead g(c, eye); IntBead o(c, A, Q);
+        ProjSnake s(c, S); ProjSnake u(c, S, \"z=0\"); ProjSnake v(c, S, eye); ProjPoint w(R, S);";
+    check_derivatives(
+        text,
+        &["m1", "m2", "m3", "m4", "i", "j", "x", "t", "b", "f", "g", "o", "s", "u", "v", "w"],
+    );
+    attempt(text).unwrap();
+}
