@@ -32,8 +32,8 @@ const LONGEST_MOVE: f64 = 0.15;
     class = Snake,
     columns = "relabel curve surface mirror",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); \
-               Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 1, 3); AbsPoint Q(3, 2, 4); \
-               AbsPoint R(2, 2.5, 3); BCurve c({P, R, Q}); ProjSnake s(c, S); ProjSnake t(c, S, \"z=0\"); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsPoint P(1, 1, 2); AbsPoint Q(3, 1, 2); \
+               AbsPoint R(2, 1.2, 2.5); BCurve c({P, R, Q}); ProjSnake s(c, S); ProjSnake t(c, S, \"z=0\"); \
                AbsPoint eye(2, 1.5, 8); ProjSnake u(c, S, eye);"
 )]
 pub struct ProjSnake<T: Real> {
