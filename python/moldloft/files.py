@@ -91,11 +91,18 @@ def file_name(stem: str, format: str) -> str:
 
 
 def produce(
-    model: Model, format: str, path: Path, *, lids: bool = False, immersed: bool = False
+    model: Model,
+    format: str,
+    path: Path,
+    *,
+    lids: bool = False,
+    immersed: bool = False,
+    tags: Sequence[str] = (),
 ) -> list[Output]:
     """The files of a model in one format; ``path`` gives their names.
 
-    ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`.
+    ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
+    names the patches to write.
     """
     wanted = format_named(format)
     if (lids or immersed) and wanted not in SOLVERS:
@@ -103,7 +110,7 @@ def produce(
         raise Error(f"error: `{named}` is for the files of panel codes, {', '.join(SOLVERS)}")
     if wanted in ("sdl", "ms2"):
         return [Output(path.name, model.convert(wanted).encode())]
-    files = model._document.write(wanted, path.stem, lids, immersed)
+    files = model._document.write(wanted, path.stem, lids, immersed, list(tags))
     main = file_name(path.stem, wanted)
     return [Output(path.name if name == main else name, data) for name, data in files]
 

@@ -25,6 +25,8 @@ class Patch:
     """Its entity kind."""
     tag: str
     """Its role: ``"wetted"``, ``"lid"``, ``"waterline"``, ``"symmetry"`` or a name."""
+    tags: list[str]
+    """All that the model's ``tags`` argument says of it."""
     start: int
     """Its first face."""
     stop: int
@@ -41,7 +43,10 @@ class Patch:
     vertices: int
     """Vertices that its panels use."""
     quality: dict[str, Any]
-    """Aspect ratio, skewness and warp (min, max, mean) and the counts of quads and triangles."""
+    """Aspect ratio, skewness, warp, smallest angle (radians), and jump of area to the neighbours:
+    ``min``, ``max`` and ``mean`` of each, and its worst panel by index in the mesh (``worst``), in
+    the patch (``panel``), along u and v (``place``) and by its ``centre``; and the counts of quads,
+    triangles and panels without area."""
 
     @property
     def panels(self) -> int:
@@ -71,8 +76,9 @@ class Mesh:
     (False, 8)
     """
 
-    def __init__(self, core: _core.Mesh) -> None:
+    def __init__(self, core: _core.Mesh, symmetry: str = "") -> None:
         self._core = core
+        self._symmetry = symmetry
 
     @cached_property
     def vertices(self) -> NDArray[np.float64]:
@@ -98,6 +104,39 @@ class Mesh:
 
         known = ", ".join(patch.name for patch in self.patches)
         raise UnknownNameError(f"there is no patch `{name}`; there are: {known or 'none'}")
+
+    def quality(self) -> dict[str, dict[str, Any]]:
+        """How well shaped the panels are, by patch: see :attr:`Patch.quality`.
+
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(2, 1, 0);
+        ... Line a(A, B); Line b(C, D);
+        ... RuledSurf plate(a, b, divisions = {4, 4}, spacing = {2, 1});
+        ... ''')
+        >>> jump = m.mesh().quality()["plate"]["jump"]
+        >>> round(jump["max"], 9), jump["place"]
+        (2.0, (0, 0))
+        """
+        return {patch.name: patch.quality for patch in self.patches}
+
+    def closure(self, *, level: float | None = 0.0) -> dict[str, Any]:
+        """What is open, by patch and edge, and what closes it.
+
+        Parameters
+        ----------
+        level
+            Height of the water: open edges there are closed by a lid. None for no lids.
+
+        Returns
+        -------
+        dict
+            ``closed``: no edge is open. ``closed_with_lids_and_mirror``: none but those that the
+            model's mirror image and a lid at ``level`` close. ``edges``: the open ones with
+            ``patch``, ``edge`` (``"v = 0"`` and so on), ``closed_by`` (``"mirror y"``, ``"lid"`` or
+            None), ``panels``, ``length``, ``low`` and ``high``, the corners of the box around it.
+        """
+        return self._core.closure(self._symmetry, level)
 
     @cached_property
     def summary(self) -> dict[str, Any]:

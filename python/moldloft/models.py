@@ -269,11 +269,23 @@ class Model:
         """
         return self._document.eval(expression)
 
-    def mesh(self) -> Mesh:
-        """Panels of all shown surfaces, as the model stands now; remembered until it changes."""
+    def mesh(self, *, tags: str | Sequence[str] = ()) -> Mesh:
+        """Panels of all shown surfaces, as the model stands now; remembered until it changes.
+
+        Parameters
+        ----------
+        tags
+            Only the patches that carry one of these tags, such as ``"lid"`` or a name of your
+            own; by default all patches.
+        """
         from moldloft.mesh import Mesh
 
-        return Mesh(self._document.mesh())
+        wanted = [tags] if isinstance(tags, str) else list(tags)
+        return Mesh(self._document.mesh(wanted), symmetry=self.symmetry)
+
+    def junctions(self) -> list[_core.Diagnostic]:
+        """Corners of patches that lie on edges of other patches and are not joined to them."""
+        return self._document.junctions()
 
     def hydrostatics(
         self, *, level: float = 0.0, density: float = 1.0, sides: str = "both"
@@ -354,6 +366,7 @@ class Model:
         format: str | None = None,
         lids: bool = False,
         immersed: bool = False,
+        tags: str | Sequence[str] = (),
     ) -> list[Path]:
         """Write the panels to a file, whole or not at all.
 
@@ -369,6 +382,8 @@ class Model:
         immersed
             For panel codes: write only what is below z = 0, its panels cut there. AQWA's file is
             always cut.
+        tags
+            Only the patches that carry one of these tags; by default all.
 
         Returns
         -------
@@ -379,7 +394,9 @@ class Model:
 
         path = Path(path)
         wanted = format or path.suffix.lstrip(".")
-        return commit(path.parent, produce(self, wanted, path, lids=lids, immersed=immersed))
+        names = [tags] if isinstance(tags, str) else list(tags)
+        files = produce(self, wanted, path, lids=lids, immersed=immersed, tags=names)
+        return commit(path.parent, files)
 
     def convert(self, to: str) -> str:
         """The model's text in another form: ``"sdl"`` or ``"ms2"``."""

@@ -27,7 +27,12 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
         put!(out, "v {x} {y} {z}\n");
     }
     for patch in mesh.patches() {
-        put!(out, "g {}\n", word(&patch.info.name));
+        // A patch belongs to a group of its own name, and to one for each of its tags.
+        put!(out, "g {}", word(&patch.info.name));
+        for tag in &patch.info.tags {
+            put!(out, " {}", word(tag));
+        }
+        out.push('\n');
         for &face in &mesh.faces()[patch.faces.clone()] {
             let [a, b, c, d] = face.map(|v| number[v as usize]);
             if is_triangle(face) {

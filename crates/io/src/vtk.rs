@@ -76,8 +76,9 @@ fn strings<'a>(name: &str, values: impl ExactSizeIterator<Item = &'a str>) -> St
     out + "</Array>\n"
 }
 
-/// The `.vtp` file: panels with the cell array `patch` (index of the patch) and the field arrays
-/// `patch_name` and `patch_tag`, one string per patch.
+/// The `.vtp` file: panels with the cell array `patch` (index of the patch), a cell array `tag NAME`
+/// of ones and zeros for each tag that some patch was given, and the field arrays `patch_name` and
+/// `patch_tag`, one string per patch.
 ///
 /// # Errors
 /// Positions that are not finite.
@@ -100,10 +101,20 @@ pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     }));
     let owners = mesh.patches().iter().enumerate();
     let patch = data.add_integers(owners.flat_map(|(k, p)| p.faces.clone().map(move |_| k as i64)));
+    let mut names: Vec<&String> = mesh.patches().iter().flat_map(|p| &p.info.tags).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut tags = String::new();
+    for name in names {
+        let has = |info: &moldloft_mesh::PatchInfo| i64::from(info.tags.contains(name));
+        let cells = mesh.patches().iter().flat_map(|p| p.faces.clone().map(|_| has(&p.info)));
+        let offset = data.add_integers(cells);
+        tags += &array("Int64", &xml(&format!("tag {name}")), 1, offset);
+    }
     let body = format!(
         "<PolyData>\n<FieldData>\n{}{}</FieldData>\n<Piece NumberOfPoints=\"{}\" \
          NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n\
-         <CellData Scalars=\"patch\">\n{}</CellData>\n<Points>\n{}</Points>\n<Polys>\n{}{}</Polys>\n\
+         <CellData Scalars=\"patch\">\n{}{tags}</CellData>\n<Points>\n{}</Points>\n<Polys>\n{}{}</Polys>\n\
          </Piece>\n</PolyData>\n",
         strings("patch_name", mesh.patches().iter().map(|p| p.info.name.as_str())),
         strings("patch_tag", mesh.patches().iter().map(|p| p.info.tag.word())),

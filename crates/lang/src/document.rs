@@ -318,6 +318,16 @@ impl Document {
         all
     }
 
+    /// Corners of patches that lie on open edges of others without being joined to them, for checks.
+    ///
+    /// # Errors
+    /// When there would be too many panels.
+    pub fn junctions(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
+        let panelled = self.panelled()?;
+        let remarks = panelled.panelling.junctions(&self.plain.graph);
+        Ok(remarks.iter().map(|remark| self.told(remark)).collect())
+    }
+
     fn told(&self, remark: &moldloft_model::Remark) -> Diagnostic {
         let mut diagnostic =
             Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
@@ -623,11 +633,15 @@ impl Document {
             return Ok(panelled.clone());
         }
         let unplaced = |f: moldloft_registry::Fault| crate::place::unplaced(&f);
-        let mut panelling = Panelling::new(&self.plain.graph).map_err(unplaced)?;
+        let before = self.panelled.as_ref().map(|(_, p)| p.clone());
+        let before = before.as_ref().map(|p| &p.panelling);
+        let mut panelling =
+            Panelling::renewed(&self.plain.graph, None, before).map_err(unplaced)?;
         if panelling.is_measured()
             && let Some(nominal) = self.nominal()
         {
-            panelling = Panelling::like(&self.plain.graph, Some(&nominal)).map_err(unplaced)?;
+            let graph = &self.plain.graph;
+            panelling = Panelling::renewed(graph, Some(&nominal), before).map_err(unplaced)?;
         }
         let mesh = panelling.own_mesh().ok_or_else(|| {
             Diagnostic::error("no-mesh", "the model has no panels").help("show a surface")

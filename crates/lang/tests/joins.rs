@@ -59,12 +59,20 @@ fn contradictions_are_told_with_the_chain() {
     };
     let names: Vec<_> =
         chain.iter().map(|s| (s.patch.as_str(), s.along, s.shares.as_str())).collect();
-    assert_eq!(names, [("S0", 'u', "`l1`"), ("S1", 'u', "`l2`"), ("S2", 'u', "")]);
+    assert_eq!(
+        names,
+        [
+            ("S0", 'u', "the line from `A1` to `B1`"),
+            ("S1", 'u', "the line from `A2` to `B2`"),
+            ("S2", 'u', "")
+        ]
+    );
     assert_eq!(ids(&d), ["divisions-contradict"]);
     assert_eq!(
         d.diagnostics()[0].message,
         "`S0` has 10 divisions along u and `S2` has 12 along u, but panels run on from one to the \
-         other: `S0` along u, joined by `l1` to `S1` along u, joined by `l2` to `S2` along u"
+         other: `S0` along u, joined by the line from `A1` to `B1` to `S1` along u, joined by the \
+         line from `A2` to `B2` to `S2` along u"
     );
     // The rest is joined.
     assert_eq!(p.mesh.report().components, 2);
@@ -86,12 +94,12 @@ fn parts(whole: &str, first: &str, second: &str) -> String {
 #[test]
 fn a_bead_in_the_middle_of_an_edge_is_a_vertex_of_it() {
     let mut d = sound(&parts(", divisions = {10, 3}", ", divisions = {4, 2}", ""));
-    assert_eq!(divisions(&mut d, "S2"), [6, 8]);
+    // Along v the second has the first's two: they share the line from the bead down.
+    assert_eq!(divisions(&mut d, "S2"), [6, 2]);
     let p = panelled(&mut d);
     assert!(p.panelling.remarks().is_empty());
     let report = p.mesh.report();
-    // The two lower strips share their corners and nothing between: a slit there, joined above.
-    assert_eq!((report.components, report.open_loops.len()), (1, 2));
+    assert_eq!((report.components, report.open_loops.len(), report.euler), (1, 1, 1));
     let bead = common::vector(&mut d, "b");
     let hits = p.mesh.positions().iter().filter(|q| **q == bead).count();
     assert_eq!(hits, 1, "one vertex, exactly at the bead");
@@ -307,6 +315,110 @@ fn random_bands_join_or_say_why() {
         assert_eq!(again.mesh, p.mesh);
     }
     assert!(explained > 0);
+}
+
+#[test]
+fn corners_that_miss_their_neighbours_are_told() {
+    // Two strips below a third meet at points that lie on its edge but mark nothing there.
+    let text = |middle: &str| {
+        format!(
+            "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
+             AbsPoint M(1.4, 0, 0);
+             AbsPoint E(0, -1, 0); AbsPoint F(4, -1, 0); AbsPoint G(2, -1, 0);
+             Line ab(A, B); Line cd(C, D); Line ef(E, G); Line gf(G, F); {middle}
+             RuledSurf top(ab, cd, divisions = {{10, 2}});
+             RuledSurf left(am, ef, divisions = {{4, 2}}); RuledSurf right(mb, gf, divisions = {{6, 2}});"
+        )
+    };
+    let mut d = sound(&text("Line am(A, M); Line mb(M, B);"));
+    let told = d.junctions().unwrap();
+    let said: Vec<_> = told.iter().map(|t| t.message.as_str()).collect();
+    let (id, first) = (
+        &told[0].id,
+        "the corner (u, v) = (1, 0) of `left` lies in the middle of edge v = 0 of \
+         `top` at u = 0.350000 but is not joined to it, at (1.4, 0, 0)",
+    );
+    assert!(id == "corner-not-joined" && said.contains(&first), "{said:?}");
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(d.panelled().unwrap().mesh.report().open_loops.len() > 1);
+    let marked = "AbsBead m(ab, 0.35); AbsBead a(ab, 0); AbsBead b(ab, 1); SubCurve am(a, m); SubCurve mb(m, b);";
+    let mut d = sound(&text(marked));
+    assert_eq!(d.junctions().unwrap().len(), 0);
+    assert_eq!(d.panelled().unwrap().mesh.report().euler, 1, "a disc");
+    // The same place under two names.
+    let mut d = sound(
+        "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(4, 1, 0);
+         AbsPoint A2(0, 0, 0); AbsPoint B2(4, 0, 0); AbsPoint E(0, -1, 0); AbsPoint F(4, -1, 0);
+         Line ab(A, B); Line ab2(A2, B2); Line cd(C, D); Line ef(E, F);
+         RuledSurf top(ab, cd); RuledSurf low(ef, ab2);",
+    );
+    let said: Vec<_> = d.junctions().unwrap().into_iter().map(|t| t.message.clone()).collect();
+    assert!(said.len() == 4 && said.iter().all(|m| m.contains("meets edge")), "{said:?}");
+}
+
+#[test]
+fn what_lies_in_a_coordinate_plane_has_exact_zeros() {
+    // Half a turn: the sine of pi is not zero.
+    let text =
+        "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 1); AbsPoint C(2, 0, 0.5); BCurve c({A, B, C});
+        AbsPoint O(0, 0, -1); AbsPoint P(2, 0, -1); Line axis(O, P);
+        RevSurf R(c, axis, 0, 3.141592653589793, divisions = {5, 9}); MirrSurf M(R, \"y=0\");";
+    let mut d = sound(text);
+    let p = panelled(&mut d);
+    let block = p.mesh.patches()[0].block.as_ref().unwrap();
+    for i in 0..=5 {
+        for j in [0, 9] {
+            assert_eq!(p.mesh.positions()[block.at(i, j) as usize].y.to_bits(), 0);
+        }
+    }
+    let report = p.mesh.report();
+    // Both halves are joined along both seams: a tube, open at its ends.
+    assert_eq!((report.components, report.open_loops.len(), report.euler), (1, 2, 0));
+    // The derivatives go on as if nothing had been rounded.
+    let exact = d.jacobian(&["A.z".into()]).unwrap();
+    assert!(exact[0].iter().any(|v| v.norm() > 0.5));
+}
+
+#[test]
+fn tags_reach_the_patches() {
+    let mut d = sound(&strips([
+        ", tags = \"lid\"",
+        ", tags = {\"keel\", \"symmetry\"}",
+        ", tags = \"bow\"",
+    ]));
+    let p = panelled(&mut d);
+    let words: Vec<_> = p.mesh.patches().iter().map(|p| p.info.tag.word()).collect();
+    assert_eq!(words, ["lid", "symmetry", "bow"]);
+    assert!(p.mesh.patches()[1].info.is("keel") && !p.mesh.patches()[1].info.is("lid"));
+    assert_eq!(p.mesh.selected(|i| i.is("bow")).unwrap().patches().len(), 1);
+}
+
+#[test]
+fn panels_made_anew_are_those_made_step_by_step() {
+    let mut random = Random::new(0xbeef);
+    for round in 0..rounds(1000) {
+        let text = bands(&mut random, 1 + round % 4, 20);
+        let mut d = sound(&text);
+        panelled(&mut d);
+        for _ in 0..4 {
+            let before = panelled(&mut d);
+            let (name, value) = match random.below(3) {
+                0 => ("Q.y", random.between(0.2, 1.5)),
+                1 => ("T.z", random.between(2.5, 4.0)),
+                _ => ("r0_1.t", random.between(0.97, 1.0)),
+            };
+            d.set(&[(name.into(), value)]).unwrap();
+            let after = panelled(&mut d);
+            let mut fresh = sound(&d.text());
+            let fresh = panelled(&mut fresh);
+            assert_eq!(after.mesh, fresh.mesh, "{name} = {value}\n{text}");
+            assert_eq!(after.panelling.remarks(), fresh.panelling.remarks());
+            if name != "r0_1.t" {
+                let (a, b) = (before.panelling.topology(), after.panelling.topology());
+                assert!(Arc::ptr_eq(a, b), "nothing was joined anew");
+            }
+        }
+    }
 }
 
 #[test]

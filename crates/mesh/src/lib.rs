@@ -28,6 +28,7 @@
 //! no files. Sums run over fixed chunks in fixed order, so their bits do not depend on threads.
 
 mod clip;
+mod closure;
 mod error;
 mod half_edge;
 mod hydrostatics;
@@ -37,10 +38,12 @@ mod panel;
 mod quality;
 mod report;
 mod section;
+mod select;
 mod sum;
 mod topology;
 mod volume;
 
+pub use closure::{Closes, Closure, EdgeName, OpenEdge, closure};
 pub use error::MeshError;
 pub use hydrostatics::{
     FloatOptions, FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane, hydrostatics,
@@ -48,7 +51,7 @@ pub use hydrostatics::{
 pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;
-pub use quality::{PatchQuality, Spread, WorstPanel, quality};
+pub use quality::{PatchQuality, Spread, WorstPanel, qualities, quality};
 pub use report::{OpenLoop, TopologyReport};
 pub use section::{Polyline, section};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};

@@ -1,3 +1,4 @@
+use crate::half_edge::{edges, half_edges};
 use crate::panel::length;
 use crate::{Mesh, Panel};
 use moldloft_num::Vec3;
@@ -42,21 +43,57 @@ pub struct PatchQuality {
     /// Warp: the distance of the corners from the plane parallel to both diagonals half-way between
     /// them, over the panel size. 0 for plane panels.
     pub warp: Spread,
-    /// The panels of greatest aspect, skew and warp.
-    pub worst: [WorstPanel; 3],
+    /// Smallest angle between two sides of a panel, in radians.
+    pub angle: Spread,
+    /// How many times as large as a neighbour a panel is, or a neighbour as it, whichever is more: 1
+    /// or more. Neighbours across the edges of patches count; panels without area do not.
+    pub jump: Spread,
+    /// The panels of greatest aspect, skew, warp and jump; `None` for a patch of panels without area.
+    pub worst: Option<[WorstPanel; 4]>,
+    /// The panel of smallest angle.
+    pub sharpest: Option<WorstPanel>,
     /// Panels without area although their corners have different numbers; they count in `size` only.
     pub without_area: usize,
 }
 
-/// Quality of one patch by its index; `None` when it has no faces.
+/// Quality of one patch by its index; `None` when it has no faces. Takes time proportional to the
+/// whole mesh: for all patches use [`qualities`].
 ///
 /// # Panics
 /// When there is no such patch.
 pub fn quality(mesh: &Mesh, patch: usize) -> Option<PatchQuality> {
+    of_patch(mesh, patch, &jumps(mesh))
+}
+
+/// Quality of each patch; `None` for one that has no faces.
+pub fn qualities(mesh: &Mesh) -> Vec<Option<PatchQuality>> {
+    let jumps = jumps(mesh);
+    (0..mesh.patches().len()).map(|patch| of_patch(mesh, patch, &jumps)).collect()
+}
+
+/// The greatest ratio of areas between each face and its neighbours; 1 for a face alone.
+fn jumps(mesh: &Mesh) -> Vec<f64> {
+    let areas: Vec<f64> = (0..mesh.faces().len()).map(|f| mesh.panel(f).area()).collect();
+    let mut jumps = vec![1.0f64; areas.len()];
+    for edge in edges(&half_edges(mesh.topology())) {
+        for pair in edge.windows(2) {
+            let (a, b) = (pair[0].face(), pair[1].face());
+            let (small, large) = (areas[a].min(areas[b]), areas[a].max(areas[b]));
+            if small > 0.0 {
+                jumps[a] = jumps[a].max(large / small);
+                jumps[b] = jumps[b].max(large / small);
+            }
+        }
+    }
+    jumps
+}
+
+fn of_patch(mesh: &Mesh, patch: usize, jumps: &[f64]) -> Option<PatchQuality> {
     let faces = mesh.patches()[patch].faces.clone();
-    let first = WorstPanel { face: faces.start, centre: mesh.bounds().centre() };
-    let mut size = Tally::new(first);
-    let mut shape = [Tally::new(first); 3];
+    let mut size = Tally::new();
+    let mut shape = [Tally::new(); 4];
+    // Of the angle the smallest is the worst.
+    let mut blunt = Tally::new();
     let (mut quads, mut triangles, mut without_area) = (0, 0, 0);
     for face in faces.clone() {
         let panel = mesh.panel(face);
@@ -71,10 +108,14 @@ pub fn quality(mesh: &Mesh, patch: usize) -> Option<PatchQuality> {
             without_area += 1;
             continue;
         }
-        for (tally, value) in shape.iter_mut().zip([aspect(&panel), skew(&panel), warp(&panel)]) {
+        let values = [aspect(&panel), skew(&panel), warp(&panel), jumps[face]];
+        for (tally, value) in shape.iter_mut().zip(values) {
             tally.take(value, here);
         }
+        blunt.take(-angles(&panel).fold(f64::INFINITY, f64::min), here);
     }
+    let angle = blunt.spread();
+    let worst: Vec<WorstPanel> = shape.iter().filter_map(|tally| tally.worst).collect();
     (!faces.is_empty()).then(|| PatchQuality {
         quads,
         triangles,
@@ -82,7 +123,10 @@ pub fn quality(mesh: &Mesh, patch: usize) -> Option<PatchQuality> {
         aspect: shape[0].spread(),
         skew: shape[1].spread(),
         warp: shape[2].spread(),
-        worst: shape.map(|tally| tally.worst),
+        angle: Spread { min: 0.0 - angle.max, max: 0.0 - angle.min, mean: 0.0 - angle.mean },
+        jump: shape[3].spread(),
+        worst: worst.try_into().ok(),
+        sharpest: blunt.worst,
         without_area,
     })
 }
@@ -93,19 +137,19 @@ struct Tally {
     max: f64,
     sum: f64,
     count: usize,
-    worst: WorstPanel,
+    worst: Option<WorstPanel>,
 }
 
 impl Tally {
-    fn new(worst: WorstPanel) -> Self {
-        Self { min: f64::INFINITY, max: f64::NEG_INFINITY, sum: 0.0, count: 0, worst }
+    fn new() -> Self {
+        Self { min: f64::INFINITY, max: f64::NEG_INFINITY, sum: 0.0, count: 0, worst: None }
     }
 
     fn take(&mut self, value: f64, here: WorstPanel) {
         self.min = self.min.min(value);
         if value > self.max {
             self.max = value;
-            self.worst = here;
+            self.worst = Some(here);
         }
         self.sum += value;
         self.count += 1;
@@ -134,16 +178,21 @@ fn aspect(panel: &Panel<f64>) -> f64 {
     }
 }
 
-fn skew(panel: &Panel<f64>) -> f64 {
+/// The angles at the corners, between the two sides that meet there.
+fn angles(panel: &Panel<f64>) -> impl Iterator<Item = f64> + '_ {
     let corners = panel.corners();
     let n = corners.len();
-    let best = std::f64::consts::PI * (1.0 - 2.0 / n as f64);
-    let angles = (0..n).map(|k| {
+    (0..n).map(move |k| {
         let (to_next, to_last) =
             (corners[(k + 1) % n] - corners[k], corners[(k + n - 1) % n] - corners[k]);
         libm::atan2(length(to_next.cross(to_last)), to_next.dot(to_last))
-    });
-    angles.fold(0.0, |worst: f64, angle| {
+    })
+}
+
+fn skew(panel: &Panel<f64>) -> f64 {
+    let n = panel.corners().len();
+    let best = std::f64::consts::PI * (1.0 - 2.0 / n as f64);
+    angles(panel).fold(0.0, |worst: f64, angle| {
         worst.max((angle - best) / (std::f64::consts::PI - best)).max((best - angle) / best)
     })
 }
@@ -190,10 +239,16 @@ mod tests {
         let q = quality(&mesh, 0).unwrap();
         assert_eq!((q.quads, q.triangles, q.without_area), (8, 0, 0));
         assert!((q.aspect.max - 8.0).abs() < 1e-14);
-        assert_eq!((q.worst[0].face, q.worst[0].centre), (0, Vec3::of(0.03125, 0.25, 0.0)));
+        let worst = q.worst.unwrap();
+        assert_eq!((worst[0].face, worst[0].centre), (0, Vec3::of(0.03125, 0.25, 0.0)));
+        // Widths 1, 3, 5 and 7 sixteenths.
+        assert!((q.jump.max - 3.0).abs() < 1e-14 && worst[3].face == 0);
+        assert!((q.angle.min - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+        assert_eq!(mesh.topology().place_of(5), Some([2, 1]));
         assert!((q.size.min - (0.0625f64 * 0.5).sqrt()).abs() < 1e-15);
         let ball = quality(&sphere(6, 1.0, Vec3::zero()), 0).unwrap();
         assert_eq!((ball.quads, ball.triangles), (48, 24));
+        assert!(ball.angle.min > 0.1 && ball.sharpest.is_some());
     }
 
     #[test]
@@ -201,5 +256,6 @@ mod tests {
         let flat = grid(3, 3, |u, _| Vec3::of(u, 0.0, 0.0));
         let q = quality(&flat, 0).unwrap();
         assert_eq!((q.without_area, q.size.max, q.aspect.max), (4, 0.0, 0.0));
+        assert!(q.worst.is_none() && q.sharpest.is_none() && q.angle.min == 0.0);
     }
 }

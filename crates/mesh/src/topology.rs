@@ -30,6 +30,29 @@ impl Tag {
         }
     }
 
+    /// The role that a word names; a word that names none is one of the user's own.
+    pub fn named(word: &str) -> Self {
+        match word {
+            "wetted" => Self::Wetted,
+            "lid" => Self::Lid,
+            "waterline" => Self::Waterline,
+            "symmetry" => Self::Symmetry,
+            other => Self::Other(other.into()),
+        }
+    }
+
+    /// The role among several words: the first that names one, else the first; wetted for none.
+    pub fn among<'w>(words: impl IntoIterator<Item = &'w str>) -> Self {
+        let mut own = None;
+        for tag in words.into_iter().map(Self::named) {
+            match tag {
+                Self::Other(_) => own = own.or(Some(tag)),
+                role => return role,
+            }
+        }
+        own.unwrap_or_default()
+    }
+
     /// True for patches that bound the body itself: all but lids, water and symmetry planes.
     pub fn is_skin(&self) -> bool {
         matches!(self, Self::Wetted | Self::Other(_))
@@ -43,6 +66,8 @@ pub struct PatchInfo {
     pub name: String,
     /// Role of the patch.
     pub tag: Tag,
+    /// All that the user calls it besides, roles included; empty when nothing was said.
+    pub tags: Vec<String>,
     /// Colour index 0 to 15 of the sixteen-colour palette of model files, if one was given.
     pub colour: Option<u8>,
     /// The entity kind it came from, such as `CLoftSurf`; empty when unknown.
@@ -58,6 +83,11 @@ impl PatchInfo {
     /// The same with another role.
     pub fn tagged(self, tag: Tag) -> Self {
         Self { tag, ..self }
+    }
+
+    /// True when it carries the tag, be it its role or a name of the user's.
+    pub fn is(&self, tag: &str) -> bool {
+        self.tag.word() == tag || self.tags.iter().any(|t| t == tag)
     }
 
     /// The same with a colour index.
@@ -135,6 +165,26 @@ impl Topology {
     /// The patches in the order they were added; their faces follow each other without gaps.
     pub fn patches(&self) -> &[Patch] {
         &self.patches
+    }
+
+    /// Where a face lies in its patch: (i, j) of its corner of lowest u and v, when the patch has a
+    /// block.
+    pub fn place_of(&self, face: usize) -> Option<[usize; 2]> {
+        let patch = self.patches.get(self.patch_of(face))?;
+        let block = patch.block.as_ref()?;
+        let at = face - patch.faces.start;
+        let (nu, nv) = (block.nu - 1, block.nv - 1);
+        if patch.faces.len() == nu * nv {
+            return Some([at / nv, at % nv]);
+        }
+        // Some panels of the grid have no area and are no faces.
+        let quads = (0..nu).flat_map(|i| (0..nv).map(move |j| [i, j]));
+        let faces = quads.filter(|&[i, j]| {
+            let corners =
+                [block.at(i, j), block.at(i + 1, j), block.at(i + 1, j + 1), block.at(i, j + 1)];
+            simplified(corners).is_some()
+        });
+        (patch.faces.len() < nu * nv).then(|| faces.into_iter().nth(at)).flatten()
     }
 
     /// Index of the patch that owns a face.

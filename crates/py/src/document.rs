@@ -346,9 +346,22 @@ impl PyDocument {
         Ok((points, normals))
     }
 
-    fn mesh(&self, py: Python<'_>) -> PyResult<PyMesh> {
-        let panelled = self.long_checked(py, |d| d.panelled().map_err(|e| vec![e]))?;
-        Ok(PyMesh::new(panelled))
+    /// The panels; of the patches with one of the tags when any are given.
+    fn mesh(&self, py: Python<'_>, tags: Vec<String>) -> PyResult<PyMesh> {
+        let (panelled, part) = self.long_checked(py, move |d| {
+            let panelled = d.panelled().map_err(|e| vec![e])?;
+            let part = write::tagged(&panelled.mesh, &tags)?;
+            Ok((panelled, part))
+        })?;
+        Ok(PyMesh::new(panelled, part))
+    }
+
+    /// Corners that lie on edges of other patches without being joined to them.
+    fn junctions(&self, py: Python<'_>) -> PyResult<Vec<Diagnostic>> {
+        let found = self.long_checked(py, |d| d.junctions().map_err(|e| vec![e]))?;
+        let document = self.lock(py);
+        let sources = document.sources();
+        Ok(found.iter().map(|d| d.to_data(sources).into()).collect())
     }
 
     fn jacobian<'py>(
@@ -414,8 +427,9 @@ impl PyDocument {
         stem: String,
         lids: bool,
         immersed: bool,
+        tags: Vec<String>,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-        let wishes = write::Wishes { lids, immersed };
+        let wishes = write::Wishes { lids, immersed, tags };
         let files = self.long_checked(py, move |d| write::files(d, &format, &stem, wishes))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
     }

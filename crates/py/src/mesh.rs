@@ -3,7 +3,8 @@
 use crate::arrays;
 use moldloft_lang::Panelled;
 use moldloft_mesh::{
-    Block, Mesh, PatchInfo, Spread, TopologyBuilder, measure, measure_patch, quality,
+    Block, Closes, Mesh, PatchInfo, PatchQuality, Spread, TopologyBuilder, WorstPanel, closure,
+    measure, measure_patch, qualities,
 };
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -17,23 +18,29 @@ type BlockFacts<'py> = (usize, String, String, bool, Bound<'py, PyArray2<u32>>);
 #[pyclass(frozen, name = "Mesh", module = "moldloft._core")]
 pub struct PyMesh {
     panelled: Arc<Panelled>,
+    /// Some of its patches, when not all were asked for.
+    part: Option<Mesh>,
 }
 
 impl PyMesh {
-    pub fn new(panelled: Arc<Panelled>) -> Self {
-        Self { panelled }
+    pub fn new(panelled: Arc<Panelled>, part: Option<Mesh>) -> Self {
+        Self { panelled, part }
+    }
+
+    fn mesh(&self) -> &Mesh {
+        self.part.as_ref().unwrap_or(&self.panelled.mesh)
     }
 }
 
 #[pymethods]
 impl PyMesh {
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        let positions = self.panelled.mesh.positions();
+        let positions = self.mesh().positions();
         arrays::filled(py, [positions.len(), 3], |out| out.copy_from_slice(positions)).0
     }
 
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let faces = self.panelled.mesh.faces();
+        let faces = self.mesh().faces();
         let array = PyArray2::<u32>::zeros(py, [faces.len(), 4], false);
         array.readwrite().as_slice_mut()?.copy_from_slice(faces.as_flattened());
         Ok(array)
@@ -41,7 +48,7 @@ impl PyMesh {
 
     /// Counts, measures, closure and orientation of the whole.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let mesh = &self.panelled.mesh;
+        let mesh = self.mesh();
         let (report, measures) = py.detach(|| (mesh.report(), measure(mesh)));
         let dict = PyDict::new(py);
         dict.set_item("panels", report.faces)?;
@@ -69,7 +76,7 @@ impl PyMesh {
 
     /// The structured patches: index of the patch, name, tag, turned or not, and the grid of vertices.
     fn blocks<'py>(&self, py: Python<'py>) -> PyResult<Vec<BlockFacts<'py>>> {
-        let patches = self.panelled.mesh.patches().iter().enumerate();
+        let patches = self.mesh().patches().iter().enumerate();
         let blocks = patches.filter_map(|(k, patch)| Some((k, &patch.info, patch.block.as_ref()?)));
         let row = |(k, info, b): (usize, &PatchInfo, &Block)| {
             let array = PyArray2::<u32>::zeros(py, [b.nu, b.nv], false);
@@ -81,15 +88,58 @@ impl PyMesh {
 
     /// The patches with their measures and quality.
     fn patches<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        (0..self.panelled.mesh.patches().len()).map(|k| self.patch(py, k)).collect()
+        let all = py.detach(|| qualities(self.mesh()));
+        all.iter().enumerate().map(|(k, q)| self.patch(py, k, q.as_ref())).collect()
+    }
+
+    /// What is open, by patch and edge; what closes each; and whether that is all.
+    fn closure<'py>(
+        &self,
+        py: Python<'py>,
+        mirrors: &str,
+        level: Option<f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let axes: Vec<u8> =
+            (0..3).filter(|&k| mirrors.contains(['x', 'y', 'z'][k as usize])).collect();
+        let mesh = self.mesh();
+        let found = py.detach(|| closure(mesh, &axes, level));
+        let dict = PyDict::new(py);
+        dict.set_item("closed", found.closed())?;
+        dict.set_item("closed_with_lids_and_mirror", found.closed_with_lids_and_mirror())?;
+        let edges = PyList::empty(py);
+        for open in &found.open {
+            let one = PyDict::new(py);
+            one.set_item("patch", &mesh.patches()[open.patch].info.name)?;
+            one.set_item("edge", open.edge.to_string())?;
+            let closes = match open.closes {
+                Closes::Mirror(axis) => {
+                    Some(["mirror x", "mirror y", "mirror z"][usize::from(axis)])
+                }
+                Closes::Lid => Some("lid"),
+                Closes::Nothing => None,
+            };
+            one.set_item("closed_by", closes)?;
+            one.set_item("panels", open.panels)?;
+            one.set_item("length", open.length)?;
+            one.set_item("low", open.bounds.low.to_array().to_vec())?;
+            one.set_item("high", open.bounds.high.to_array().to_vec())?;
+            edges.append(one)?;
+        }
+        dict.set_item("edges", edges)?;
+        Ok(dict)
     }
 }
 
 impl PyMesh {
-    fn patch<'py>(&self, py: Python<'py>, k: usize) -> PyResult<Bound<'py, PyDict>> {
-        let patch = &self.panelled.mesh.patches()[k];
-        let measures = measure_patch(&self.panelled.mesh, k);
-        let report = alone(&self.panelled.mesh, k).map(|mesh| mesh.report());
+    fn patch<'py>(
+        &self,
+        py: Python<'py>,
+        k: usize,
+        quality: Option<&PatchQuality>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let patch = &self.mesh().patches()[k];
+        let measures = measure_patch(self.mesh(), k);
+        let report = alone(self.mesh(), k).map(|mesh| mesh.report());
         let closed = report.as_ref().is_some_and(|r| r.closed);
         let dict = PyDict::new(py);
         dict.set_item("name", &patch.info.name)?;
@@ -103,35 +153,60 @@ impl PyMesh {
         dict.set_item("closed", closed)?;
         dict.set_item("volume", measures.volume)?;
         dict.set_item("vertices", report.map_or(0, |r| r.vertices))?;
-        dict.set_item("quality", self.quality(py, k)?)?;
+        dict.set_item("tags", &patch.info.tags)?;
+        dict.set_item("quality", self.quality(py, quality)?)?;
         Ok(dict)
     }
 
-    fn quality<'py>(&self, py: Python<'py>, k: usize) -> PyResult<Bound<'py, PyDict>> {
+    fn quality<'py>(
+        &self,
+        py: Python<'py>,
+        quality: Option<&PatchQuality>,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        let Some(q) = quality(&self.panelled.mesh, k) else { return Ok(dict) };
+        let Some(q) = quality else { return Ok(dict) };
         dict.set_item("quads", q.quads)?;
         dict.set_item("triangles", q.triangles)?;
         dict.set_item("without_area", q.without_area)?;
-        for (name, spread) in
-            [("size", q.size), ("aspect", q.aspect), ("skew", q.skew), ("warp", q.warp)]
-        {
+        let worst = q.worst.map(|w| w.map(Some)).unwrap_or_default();
+        let measures = [
+            ("size", q.size, None),
+            ("aspect", q.aspect, worst[0]),
+            ("skew", q.skew, worst[1]),
+            ("warp", q.warp, worst[2]),
+            ("angle", q.angle, q.sharpest),
+            ("jump", q.jump, worst[3]),
+        ];
+        for (name, spread, worst) in measures {
             let Spread { min, max, mean } = spread;
             let one = PyDict::new(py);
             one.set_item("min", min)?;
             one.set_item("max", max)?;
             one.set_item("mean", mean)?;
+            if let Some(WorstPanel { face, centre }) = worst {
+                let topology = self.mesh().topology();
+                let patch = &topology.patches()[topology.patch_of(face)];
+                one.set_item("worst", face)?;
+                one.set_item("panel", face - patch.faces.start)?;
+                one.set_item("place", topology.place_of(face).map(|[i, j]| (i, j)))?;
+                one.set_item("centre", centre.to_array().to_vec())?;
+            }
             dict.set_item(name, one)?;
         }
         Ok(dict)
     }
 }
 
-/// One patch as a mesh of its own.
+/// One patch as a mesh of its own, with the vertices that it uses.
 fn alone(mesh: &Mesh, k: usize) -> Option<Mesh> {
-    let faces = mesh.faces()[mesh.patches()[k].faces.clone()].iter().copied();
+    let faces = &mesh.faces()[mesh.patches()[k].faces.clone()];
+    let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    let number = |v: u32| used.partition_point(|&u| u < v) as u32;
     let mut builder = TopologyBuilder::new();
-    builder.add_vertices(mesh.positions().len()).ok()?;
-    builder.add_faces(PatchInfo::default(), faces).ok()?;
-    Mesh::new(builder.build().into(), mesh.positions().to_vec()).ok()
+    builder.add_vertices(used.len()).ok()?;
+    builder.add_faces(PatchInfo::default(), faces.iter().map(|f| f.map(number))).ok()?;
+    let positions = used.iter().map(|&v| mesh.positions()[v as usize]).collect();
+    Mesh::new(builder.build().into(), positions).ok()
 }

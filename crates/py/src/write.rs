@@ -25,12 +25,38 @@ type Outcome<R> = Result<R, Vec<Diagnostic>>;
 const GRAVITY: f64 = 9.80665;
 
 /// What a user may ask of the files of panel codes.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Wishes {
     /// Lids among the panels, or in a file of their own where the code wants that.
     pub lids: bool,
     /// Only what is below z = 0, cut there.
     pub immersed: bool,
+    /// Only patches with one of these tags; all when there are none.
+    pub tags: Vec<String>,
+}
+
+/// The patches with one of the tags; `None` for the whole mesh when no tags are given.
+///
+/// # Errors
+/// When no patch has any of them.
+pub fn tagged(mesh: &Mesh, tags: &[String]) -> Outcome<Option<Mesh>> {
+    if tags.is_empty() {
+        return Ok(None);
+    }
+    if let Some(tag) = tags.iter().find(|tag| !mesh.patches().iter().any(|p| p.info.is(tag))) {
+        let infos = mesh.patches().iter().map(|p| &p.info);
+        let mut known: Vec<&str> =
+            infos.flat_map(|i| i.tags.iter().map(String::as_str).chain([i.tag.word()])).collect();
+        known.sort_unstable();
+        known.dedup();
+        return Err(vec![
+            Diagnostic::error("unknown-tag", format!("no patch has the tag `{tag}`"))
+                .expected(known.join(", "))
+                .suggest(tag, known.iter().copied()),
+        ]);
+    }
+    let part = mesh.selected(|info| tags.iter().any(|tag| info.is(tag)));
+    part.map(Some).map_err(|e| vec![Diagnostic::error("too-large", e.to_string())])
 }
 
 /// The files of the model's panels in one format.
@@ -54,11 +80,12 @@ pub fn files(
     let symmetry = document.symmetry();
     let metres = length_unit(document).1 / 1000.0;
     let panelled = document.panelled().map_err(|d| vec![d])?;
-    let mesh = &panelled.mesh;
+    let part = tagged(&panelled.mesh, &wishes.tags)?;
+    let mesh = part.as_ref().unwrap_or(&panelled.mesh);
     let one = |bytes: Vec<u8>| vec![NamedFile { name: format!("{stem}.{format}"), bytes }];
     let files = match format {
         "gdf" | "nemoh" | "hydrostar" | "hams" | "aqwa" => {
-            solver_files(mesh, format, stem, &symmetry, GRAVITY / metres, wishes)
+            solver_files(mesh, format, stem, &symmetry, GRAVITY / metres, &wishes)
         }
         "stl" => stl::write(mesh, stem).map(one),
         "obj" => obj::write(mesh).map(one),
@@ -87,7 +114,7 @@ fn solver_files(
     stem: &str,
     symmetry: &str,
     gravity: f64,
-    wishes: Wishes,
+    wishes: &Wishes,
 ) -> Result<Vec<NamedFile>, WriteError> {
     let large = |_| WriteError::TooLarge { what: "vertices", count: mesh.positions().len() };
     let (mirror_x, mirror_y) = (symmetry.contains('x'), symmetry.contains('y'));

@@ -21,7 +21,7 @@ from moldloft.hydrostatics import Hydrostatics
 from moldloft.mesh import Mesh, Patch
 from moldloft.models import Model
 
-__all__ = ["add", "facts", "run", "summary"]
+__all__ = ["add", "facts", "run", "summary", "worst_panels"]
 
 _POLL_SECONDS = 0.2
 
@@ -60,6 +60,17 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--immersed",
         action="store_true",
         help="only what is below z = 0 in the files of panel codes, cut there",
+    )
+    parser.add_argument(
+        "--tag",
+        metavar="TAG",
+        nargs="+",
+        action="extend",
+        default=[],
+        help="only patches with one of these tags, in the table and in the files",
+    )
+    parser.add_argument(
+        "--quality", action="store_true", help="the worst panels of each patch, by their place"
     )
     parser.add_argument("--json", action="store_true", help="one object instead of the table")
     parser.add_argument(
@@ -124,7 +135,7 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             progress.stage("reporting")
             return _report_errors(model, options)
         progress.stage("making panels")
-        mesh = model.mesh()
+        mesh = model.mesh(tags=options.tag)
         progress.stage("measuring")
         patches = mesh.patches
         floating = None
@@ -140,15 +151,22 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             path = folder / file_name(stem, name)
             solver = name in SOLVERS
             lids, immersed = options.lids and solver, options.immersed and solver
-            outputs += produce(model, name, path, lids=lids, immersed=immersed)
+            outputs += produce(
+                model, name, path, lids=lids, immersed=immersed, tags=options.tag
+            )
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)
+    if mesh.patches and not mesh.closed:
+        report(model.junctions())
     data = facts(model, mesh, floating, written)
+    data["closure"] = mesh.closure(level=options.level)
     if options.json:
         print_json(data)
     else:
         print(summary(model, mesh, floating, data))
+        if options.quality:
+            print("\n" + worst_panels(mesh))
     return 0
 
 
@@ -200,6 +218,7 @@ def _patch_facts(patch: Patch) -> dict[str, Any]:
         "name": patch.name,
         "kind": patch.kind,
         "tag": patch.tag,
+        "tags": patch.tags,
         "divisions": patch.divisions,
         "panels": patch.panels,
         "vertices": patch.vertices,
@@ -223,7 +242,7 @@ def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[
         whole += [_number(volume), _yes(total["closed"])]
         rows.append(["whole", "", *whole, "", "", ""])
         lines += ["", table(header, rows, left=2)]
-        lines += [f"open edge: {_loop(loop)}" for loop in total["open_loops"]]
+        lines += _openings(mesh, data)
     if floating is not None:
         lines += ["", _floating(floating)]
     if data["files"]:
@@ -247,9 +266,37 @@ def _row(patch: Patch) -> list[str]:
     ]
 
 
-def _loop(loop: dict[str, Any]) -> str:
-    where = ", ".join(loop["patches"])
-    return f"{loop['edges']} panel edges of {where}, length {_number(loop['length'])}"
+def _openings(mesh: Mesh, data: dict[str, Any]) -> list[str]:
+    closure = data.get("closure") or mesh.closure()
+    lines = []
+    for edge in closure["edges"]:
+        closed_by = f", closed by {edge['closed_by']}" if edge["closed_by"] else ""
+        where = f"{edge['panels']} panel edges of {edge['patch']}, {edge['edge']}"
+        lines.append(f"open edge: {where}, length {_number(edge['length'])}{closed_by}")
+    if closure["edges"] and closure["closed_with_lids_and_mirror"]:
+        lines.append("closed with lids and mirror")
+    return lines
+
+
+_MEASURES = {"aspect": "max", "skew": "max", "warp": "max", "jump": "max", "angle": "min"}
+
+
+def worst_panels(mesh: Mesh) -> str:
+    """The worst panel of each patch in each measure, with its place."""
+    header = ["patch", *_MEASURES, "without area"]
+    rows = []
+    for patch in mesh.patches:
+        row = [patch.name]
+        for name, end in _MEASURES.items():
+            measure = patch.quality.get(name)
+            if measure is None or "panel" not in measure:
+                row.append("-")
+                continue
+            place = measure["place"]
+            where = f"({place[0]}, {place[1]})" if place else f"#{measure['panel']}"
+            row.append(f"{measure[end]:.3g} at {where}")
+        rows.append([*row, str(patch.quality.get("without_area", 0))])
+    return "worst panels, by (i, j) along u and v\n" + table(header, rows, left=1)
 
 
 def _floating(floating: Hydrostatics) -> str:

@@ -12,6 +12,11 @@ __all__ = ["add", "run"]
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
+    parser.add_argument(
+        "--quality",
+        action="store_true",
+        help="make panels too: joins, what is open, and the worst panels of each patch",
+    )
     parser.add_argument("--json", action="store_true", help="diagnostics as data")
 
 
@@ -20,12 +25,28 @@ def run(options: argparse.Namespace) -> int:
     with Progress() as progress:
         progress.stage(f"checking {options.model}")
         model = open_model(options)
-        diagnostics = model.diagnostics
+        mesh = None
+        if options.quality and not any(d.is_error for d in model.diagnostics):
+            progress.stage("making panels")
+            mesh = model.mesh()
+        diagnostics = list(model.diagnostics)
+        if mesh is not None:
+            diagnostics += model.junctions()
     errors = sum(d.is_error for d in diagnostics)
     if options.json:
-        print_json({"ok": errors == 0, "diagnostics": [d.to_dict() for d in diagnostics]})
+        data = {"ok": errors == 0, "diagnostics": [d.to_dict() for d in diagnostics]}
+        if mesh is not None:
+            data |= {"quality": mesh.quality(), "closure": mesh.closure()}
+        print_json(data)
     else:
         report(diagnostics)
         if errors == 0:
             print(f"{options.model}: {len(model.objects)} objects, no errors")
+        if mesh is not None and mesh.patches:
+            from moldloft.cli.build import worst_panels
+
+            print(worst_panels(mesh))
+            for edge in mesh.closure()["edges"]:
+                closed_by = f", closed by {edge['closed_by']}" if edge["closed_by"] else ""
+                print(f"open edge: {edge['patch']}, {edge['edge']}{closed_by}")
     return 1 if errors else 0

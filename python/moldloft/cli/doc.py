@@ -121,7 +121,7 @@ def markdown(rows: list[dict[str, Any]]) -> str:
         "",
         "Made by `make reference` from the declarations in `crates/`; not edited by hand. Every",
         "kind also takes the named arguments `colour`, `visible`, `layer`, `divisions`,",
-        "`subdivisions` and `orientation`. Angles are in radians.",
+        "`subdivisions`, `size`, `spacing`, `tags` and `orientation`. Angles are in radians.",
     ]
     for title, is_kind in (("Kinds", True), ("Functions", False)):
         chosen = [row for row in rows if row["is_kind"] is is_kind]

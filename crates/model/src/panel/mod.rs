@@ -11,6 +11,7 @@
 
 mod divide;
 mod join;
+mod junction;
 mod remark;
 mod roots;
 mod skeleton;
@@ -19,11 +20,12 @@ mod spread;
 pub use remark::{ChainStep, Remark};
 
 use crate::{Graph, Object};
-use join::{Grids, Joiner};
+use join::Joiner;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{Fault, Point, Scalar, SurfaceRef, Value};
+use rayon::prelude::*;
 use roots::Roots;
 use skeleton::{Rim, Skeleton};
 use spread::{EdgePlan, Places, along_edge, evaluated};
@@ -45,19 +47,43 @@ pub fn too_many_panels(count: u64) -> Fault {
 /// reported.
 const JOIN_ACCURACY: f64 = 1e-9;
 
+/// An edge, or a whole patch, within this share of the model's size from a coordinate plane lies in
+/// it: rounding of a sine must not open a seam or leave slivers at a plane of symmetry.
+const IN_PLANE: f64 = 1e-12;
+
 /// Which vertices there are and who computes them; independent of the scalar.
 #[derive(Clone, Debug)]
 pub struct Panelling {
-    topology: Arc<Topology>,
     skeleton: Arc<Skeleton>,
-    /// The vertices of each patch that has panels, that of (i, j) at `[i * (nv + 1) + j]`.
-    vertices: Arc<Vec<Vec<u32>>>,
-    /// The points of each patch by itself, in the order of the skeleton.
+    joint: Arc<Joint>,
+    /// The points of each patch by itself, in the order of the skeleton, at the state that this was
+    /// made of: as they were evaluated, and with exact zeros.
+    raw: Vec<Arc<Vec<Vec3>>>,
     points: Vec<Arc<Vec<Vec3>>>,
+    /// Parts of patches whose coordinate is exactly zero: patch, edge (4 for all of it), axis.
+    zeros: Vec<(u32, u8, u8)>,
     /// Point objects whose parameters divide edges, by their identity where this was made.
     names: Arc<HashMap<Key, Arc<str>>>,
     remarks: Vec<Remark>,
     measured: bool,
+    /// What the graph called its last change then.
+    clock: u64,
+}
+
+/// What follows from a skeleton alone, but for the vertices that are their own images and the side
+/// that panels face.
+#[derive(Debug)]
+struct Joint {
+    topology: Arc<Topology>,
+    /// The vertex of each point of each patch; those that only patches without panels have come
+    /// after the topology's.
+    vertices: Vec<Vec<u32>>,
+    count: u32,
+    /// For each patch, which points of its boundary are their own images.
+    fixed: Vec<Vec<bool>>,
+    /// Panel edges with one panel: patch and the places of both ends in its grid.
+    rim: Vec<(u32, u32, u32)>,
+    inward: bool,
 }
 
 /// The counts of divisions of another state of a model, to be kept where they are free.
@@ -76,14 +102,20 @@ impl Panelling {
     /// # Errors
     /// A [`Fault`] when there would be too many panels.
     pub fn new(graph: &Graph<f64>) -> Result<Self, Fault> {
-        Self::like(graph, None)
+        Self::renewed(graph, None, None)
     }
 
-    /// The same with the counts of `nominal` wherever nothing else determines them.
+    /// The same with the counts of `nominal` wherever nothing else determines them. Of `before`, a
+    /// panelling of the same graph at an earlier state, what has not changed is taken over; the
+    /// result is the same without it.
     ///
     /// # Errors
     /// A [`Fault`] when there would be too many panels.
-    pub fn like(graph: &Graph<f64>, nominal: Option<&Nominal>) -> Result<Self, Fault> {
+    pub fn renewed(
+        graph: &Graph<f64>,
+        nominal: Option<&Nominal>,
+        before: Option<&Panelling>,
+    ) -> Result<Self, Fault> {
         let drafts = drafts(graph);
         let made = skeleton::make(graph, Roots::new(graph, &drafts), &drafts, nominal);
         let count = |frame: &skeleton::Frame| frame.divisions[0] as u64 * frame.divisions[1] as u64;
@@ -91,26 +123,58 @@ impl Panelling {
         if total > MOST_PANELS {
             return Err(too_many_panels(total));
         }
-        let skeleton = Arc::new(made.skeleton);
-        let mut panelling = Self {
-            topology: Arc::default(),
-            names: Arc::new(names(graph, &skeleton)),
-            points: Vec::new(),
-            vertices: Arc::default(),
-            skeleton,
-            remarks: made.remarks,
-            measured: made.measured,
+        let before = before.filter(|b| *b.skeleton == made.skeleton);
+        let skeleton = before.map_or_else(|| Arc::new(made.skeleton), |b| b.skeleton.clone());
+        let names = match before {
+            Some(before) => before.names.clone(),
+            None => Arc::new(names(graph, &skeleton)),
         };
-        let evaluated = panelling.evaluated(graph);
+        // Divisions that hang on marks of other objects move with these.
+        let hangs = |frame: &skeleton::Frame| {
+            frame.plans.iter().any(|p| matches!(p, EdgePlan::Segments(_) | EdgePlan::Like(_)))
+        };
+        let kept = |patch: usize| {
+            let before = before?;
+            let unchanged = drafts[patch].object.changed_at <= before.clock;
+            (unchanged && !hangs(&skeleton.frames[patch])).then(|| before.raw[patch].clone())
+        };
+        let evaluated = evaluated_all(&skeleton, &names, graph, kept);
         // Every draft has a value in its own graph.
-        panelling.points = evaluated.into_iter().flatten().collect();
-        panelling.join().map_err(|e| Fault::new("too-many-panels", e.to_string()))?;
-        Ok(panelling)
+        let raw: Vec<_> = evaluated.into_iter().flatten().collect();
+        let mut points = raw.clone();
+        let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));
+        let zeros = zeros(&skeleton, &points, size.diagonal());
+        set_zeros(&skeleton, &zeros, &mut points);
+        let fixed = fixed(&skeleton, &points);
+        let joint = match before.filter(|b| b.joint.fixed == fixed) {
+            Some(before)
+                if before.joint.inward == before.joint.faces_inward(&skeleton, &points) =>
+            {
+                before.joint.clone()
+            }
+            _ => {
+                let joint = Joint::new(&skeleton, &points, fixed);
+                Arc::new(joint.map_err(|e| Fault::new("too-many-panels", e.to_string()))?)
+            }
+        };
+        let mut remarks = made.remarks;
+        remarks.extend(joint.apart(&skeleton, &points, size.diagonal()));
+        Ok(Self {
+            skeleton,
+            joint,
+            raw,
+            points,
+            zeros,
+            names,
+            remarks,
+            measured: made.measured,
+            clock: graph.last_change(),
+        })
     }
 
     /// The connectivity.
     pub fn topology(&self) -> &Arc<Topology> {
-        &self.topology
+        &self.joint.topology
     }
 
     /// What was noticed at the joins.
@@ -145,114 +209,275 @@ impl Panelling {
     /// The positions of all vertices, evaluated with the scalar of `graph`; `None` when a surface
     /// has no value there.
     pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
-        let points: Option<Vec<_>> = self.evaluated(graph).into_iter().collect();
-        Some(self.gathered(&points?))
+        let points = evaluated_all(&self.skeleton, &self.names, graph, |_| None);
+        let mut points = points.into_iter().collect::<Option<Vec<_>>>()?;
+        set_zeros(&self.skeleton, &self.zeros, &mut points);
+        Some(self.gathered(&points))
     }
 
     /// The mesh, evaluated with the scalar of `graph`.
     pub fn mesh<T: Scalar>(&self, graph: &Graph<T>) -> Option<Mesh<T>> {
-        Mesh::new(self.topology.clone(), self.positions(graph)?).ok()
+        Mesh::new(self.topology().clone(), self.positions(graph)?).ok()
     }
 
     /// The mesh at the state that the panelling was made of.
     pub fn own_mesh(&self) -> Option<Mesh<f64>> {
-        Mesh::new(self.topology.clone(), self.gathered(&self.points)).ok()
+        Mesh::new(self.topology().clone(), self.gathered(&self.points)).ok()
     }
 
     /// The vertices' positions from those of the patches by themselves.
     fn gathered<T: Real>(&self, points: &[Arc<Vec<Vec3<T>>>]) -> Vec<Vec3<T>> {
-        let mut positions = vec![Vec3::zero(); self.topology.vertex_count()];
-        let meshed = self.skeleton.frames.iter().zip(points).filter(|(f, _)| f.meshed);
-        let patches: Vec<_> = meshed.map(|(_, p)| p).zip(self.vertices.iter()).collect();
+        let mut positions = vec![Vec3::zero(); self.topology().vertex_count()];
+        let patches = self.skeleton.frames.iter().zip(points).zip(&self.joint.vertices);
         // Backwards, so that the first patch has the last word.
-        for (points, vertices) in patches.into_iter().rev() {
+        for ((_, points), vertices) in patches.rev().filter(|((f, _), _)| f.meshed) {
             for (&vertex, &p) in vertices.iter().zip(points.iter()) {
                 positions[vertex as usize] = p;
             }
         }
         positions
     }
+}
 
-    /// The points of each patch by itself, evaluated with the scalar of `graph`.
-    fn evaluated<T: Scalar>(&self, graph: &Graph<T>) -> Vec<Option<Arc<Vec<Vec3<T>>>>> {
-        let frames = &self.skeleton.frames;
-        let known = Known::new(graph, &self.skeleton, &self.names);
-        frames
-            .iter()
-            .enumerate()
-            .map(|(patch, _)| {
-                let surface = known.surfaces[patch].as_ref()?;
-                let edge = |k: usize| along_edge(k, patch as u32, &known);
-                let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
-                Some(Arc::new(evaluated(surface, &edges)))
+/// Patches of fewer points than this are evaluated on the calling thread.
+const WORTH_A_THREAD: usize = 4096;
+
+/// The points of each patch by itself, evaluated with the scalar of `graph`; those that `kept` has
+/// are not evaluated again.
+fn evaluated_all<T: Scalar>(
+    skeleton: &Skeleton,
+    names: &HashMap<Key, Arc<str>>,
+    graph: &Graph<T>,
+    kept: impl Fn(usize) -> Option<Arc<Vec<Vec3<T>>>> + Sync,
+) -> Vec<Option<Arc<Vec<Vec3<T>>>>> {
+    let known = Known::new(graph, skeleton, names);
+    let one = |patch: usize| {
+        if let Some(points) = kept(patch) {
+            return Some(points);
+        }
+        let surface = known.surfaces[patch].as_ref()?;
+        let edge = |k: usize| along_edge(k, patch as u32, &known);
+        let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
+        Some(Arc::new(evaluated(surface, &edges)))
+    };
+    let count = skeleton.frames.len();
+    let points = |f: &skeleton::Frame| (f.divisions[0] + 1) * (f.divisions[1] + 1);
+    if count < 2 || skeleton.frames.iter().map(points).sum::<usize>() < WORTH_A_THREAD {
+        return (0..count).map(one).collect();
+    }
+    (0..count).into_par_iter().map(one).collect()
+}
+
+/// The points of edge 0..4 of a patch's grid, or (4) all of them.
+fn indices([nu, nv]: [usize; 2], part: u8) -> impl Iterator<Item = usize> {
+    let ((i0, i1), (j0, j1)) = match part {
+        0 => ((0, nu), (0, 0)),
+        1 => ((nu, nu), (0, nv)),
+        2 => ((0, nu), (nv, nv)),
+        3 => ((0, 0), (0, nv)),
+        _ => ((0, nu), (0, nv)),
+    };
+    (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| i * (nv + 1) + j))
+}
+
+/// The parts of patches that lie in a coordinate plane but for rounding.
+fn zeros(skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32, u8, u8)> {
+    let near = IN_PLANE * size;
+    let mut found = Vec::new();
+    for (patch, (frame, points)) in skeleton.frames.iter().zip(points).enumerate() {
+        for axis in 0..3u8 {
+            let at = |k: usize| points[k][usize::from(axis)];
+            let inside = |part| indices(frame.divisions, part).all(|k| at(k).abs() <= near);
+            let edges: Vec<u8> = (0..4).filter(|&k| inside(k)).collect();
+            let whole = edges.len() == 4 && inside(4);
+            let parts = if whole { vec![4] } else { edges };
+            for part in parts {
+                found.push((patch as u32, part, axis));
+            }
+        }
+    }
+    found
+}
+
+/// Makes the coordinates zero; their derivatives stay.
+fn set_zeros<T: Real>(
+    skeleton: &Skeleton,
+    zeros: &[(u32, u8, u8)],
+    points: &mut [Arc<Vec<Vec3<T>>>],
+) {
+    for &(patch, part, axis) in zeros {
+        let divisions = skeleton.frames[patch as usize].divisions;
+        let points = &mut points[patch as usize];
+        let zero = |k: usize| points[k][usize::from(axis)].re().to_bits() == 0;
+        if indices(divisions, part).all(zero) {
+            continue;
+        }
+        let points = Arc::make_mut(points);
+        for k in indices(divisions, part) {
+            let mut p = points[k].to_array();
+            let x = &mut p[usize::from(axis)];
+            *x = T::from_parts(|part| if part == 0 { 0.0 } else { x.part(part) });
+            points[k] = p.into();
+        }
+    }
+}
+
+/// For each patch that is an image, which points of its boundary are those of its original.
+fn fixed(skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>]) -> Vec<Vec<bool>> {
+    let of_patch = |(patch, frame): (usize, &skeleton::Frame)| {
+        let Some((original, _)) = frame.image else { return Vec::new() };
+        if skeleton.frames[original].divisions != frame.divisions {
+            return Vec::new();
+        }
+        let boundary = (0..4).flat_map(|k| indices(frame.divisions, k));
+        // -0 and 0 are one place.
+        boundary.map(|k| points[patch][k] == points[original][k]).collect()
+    };
+    skeleton.frames.iter().enumerate().map(of_patch).collect()
+}
+
+impl Joint {
+    /// Joins the vertices, numbers them and turns the panels.
+    fn new(
+        skeleton: &Skeleton,
+        points: &[Arc<Vec<Vec3>>],
+        fixed: Vec<Vec<bool>>,
+    ) -> Result<Self, MeshError> {
+        let mut joiner = Joiner::new(skeleton);
+        joiner.join_images(|patch, at| fixed[patch].get(at) == Some(&true));
+        let Joiner { grids, mut joined, .. } = joiner;
+        let mut number = vec![u32::MAX; grids.count() as usize];
+        let mut count = 0u32;
+        let mut used = 0;
+        let mut vertices = vec![Vec::new(); skeleton.frames.len()];
+        for meshed in [true, false] {
+            for (patch, frame) in skeleton.frames.iter().enumerate() {
+                if frame.meshed != meshed {
+                    continue;
+                }
+                let numbered = grids.all(patch).map(|v| {
+                    let number = &mut number[joined.find(v) as usize];
+                    if *number == u32::MAX {
+                        *number = count;
+                        count += 1;
+                    }
+                    *number
+                });
+                vertices[patch] = numbered.collect();
+            }
+            if meshed {
+                used = count;
+            }
+        }
+        let rim = rim(skeleton, &vertices);
+        let topology = Arc::default();
+        let mut joint = Self { topology, vertices, count, fixed, rim, inward: false };
+        joint.inward = joint.faces_inward(skeleton, points);
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(used as usize)?;
+        for (vertices, frame) in joint.vertices.iter().zip(&skeleton.frames) {
+            if !frame.meshed {
+                continue;
+            }
+            let [nu, nv] = frame.divisions;
+            let info = PatchInfo {
+                name: frame.name.to_string(),
+                tag: Tag::among(frame.tags.iter().map(|t| &**t)),
+                tags: frame.tags.iter().map(|t| t.to_string()).collect(),
+                colour: Some((frame.colour & 15) as u8),
+                kind: frame.kind.to_string(),
+            };
+            let reversed = frame.reversed != joint.inward;
+            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), reversed)?;
+        }
+        joint.topology = builder.build().into();
+        Ok(joint)
+    }
+
+    /// The pairs of patches whose shared vertices are not in one place.
+    fn apart(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<Remark> {
+        const NONE: u32 = u32::MAX;
+        let mut owner: Vec<(u32, Vec3)> = vec![(NONE, Vec3::zero()); self.count as usize];
+        let mut worst: HashMap<(u32, u32), (f64, Vec3)> = HashMap::new();
+        for (patch, frame) in skeleton.frames.iter().enumerate() {
+            for k in (0..4).flat_map(|k| indices(frame.divisions, k)) {
+                let p = points[patch][k];
+                let slot = &mut owner[self.vertices[patch][k] as usize];
+                if slot.0 == NONE {
+                    *slot = (patch as u32, p);
+                }
+                let distance = p.distance(slot.1);
+                if distance > JOIN_ACCURACY * size {
+                    let entry = worst.entry((slot.0, patch as u32)).or_insert((0.0, p));
+                    if distance > entry.0 {
+                        *entry = (distance, p);
+                    }
+                }
+            }
+        }
+        let mut worst: Vec<_> = worst.into_iter().collect();
+        worst.sort_by_key(|(pair, _)| *pair);
+        let name = |patch: u32| skeleton.frames[patch as usize].name.to_string();
+        worst
+            .into_iter()
+            .map(|((a, b), (distance, at))| {
+                let patches = [name(a), name(b)];
+                Remark::Apart { patches, distance, at }
             })
             .collect()
     }
 
-    /// Joins the vertices and numbers them.
-    fn join(&mut self) -> Result<(), MeshError> {
-        let skeleton = self.skeleton.clone();
-        let mut joiner = Joiner::new(&skeleton);
-        let points = &self.points;
-        joiner.join_images(|patch, at| {
-            let Some((original, _)) = skeleton.frames[patch].image else { return false };
-            let vertex = boundary_index(&skeleton.frames[patch], at);
-            // -0 and 0 are one place.
-            points[patch][vertex] == points[original][vertex]
-        });
-        let Joiner { grids, mut joined, .. } = joiner;
-        self.remarks.extend(apart(&skeleton, points, &grids, &mut joined));
-        let inward = faces_inward(&skeleton, points, &grids, &mut joined);
-        let mut builder = TopologyBuilder::new();
-        let mut number = vec![u32::MAX; grids.count() as usize];
-        let mut count = 0u32;
-        let mut patches = Vec::new();
-        for (patch, _) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
-            let vertices = grids.all(patch).map(|v| {
-                let number = &mut number[joined.find(v) as usize];
-                if *number == u32::MAX {
-                    *number = count;
-                    count += 1;
-                }
-                *number
-            });
-            patches.push(vertices.collect::<Vec<u32>>());
+    /// True when the panels as a whole, turned as their surfaces say, face inward: then all of
+    /// them are turned round. A closed mesh has a negative volume then; of an open one, the cone
+    /// from the middle of its rim has. A flat one faces as its surface says.
+    fn faces_inward(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>]) -> bool {
+        let (mut centre, mut length) = (Vec3::zero(), 0.0);
+        for &(patch, a, b) in &self.rim {
+            let at = |k: u32| points[patch as usize][k as usize];
+            let step = at(a).distance(at(b));
+            centre += (at(a) + at(b)) * (0.5 * step);
+            length += step;
         }
-        builder.add_vertices(count as usize)?;
-        let meshed = skeleton.frames.iter().filter(|f| f.meshed);
-        for (vertices, frame) in patches.iter().zip(meshed) {
+        if length > 0.0 {
+            centre = centre / length;
+        }
+        let (mut volume, mut size) = (0.0, 0.0);
+        for (frame, points) in skeleton.frames.iter().zip(points).filter(|(f, _)| f.meshed) {
             let [nu, nv] = frame.divisions;
-            let info = PatchInfo {
-                name: frame.name.to_string(),
-                tag: Tag::Wetted,
-                colour: Some((frame.colour & 15) as u8),
-                kind: frame.kind.to_string(),
-            };
-            let reversed = frame.reversed != inward;
-            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), reversed)?;
+            let sign = if frame.reversed { -1.0 } else { 1.0 };
+            let at = |i: usize, j: usize| points[i * (nv + 1) + j] - centre;
+            for (i, j) in (0..nu).flat_map(|i| (0..nv).map(move |j| (i, j))) {
+                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+                let cone = (a + c).dot((c - a).cross(d - b));
+                volume += sign * cone;
+                size += cone.abs();
+            }
         }
-        self.topology = builder.build().into();
-        self.vertices = Arc::new(patches);
-        Ok(())
+        volume < -1e-6 * size
     }
 }
 
-/// The place in the patch's grid of entry `at` of [`Grids::boundary`].
-fn boundary_index(frame: &skeleton::Frame, mut at: usize) -> usize {
-    let [nu, nv] = frame.divisions;
-    let index = |i: usize, j: usize| i * (nv + 1) + j;
-    if at <= nu {
-        return index(at, 0);
+/// The panel edges at the rims of patches that have one panel, in the order of their vertices.
+fn rim(skeleton: &Skeleton, vertices: &[Vec<u32>]) -> Vec<(u32, u32, u32)> {
+    let mut all: Vec<((u32, u32), (u32, u32, u32))> = Vec::new();
+    for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+        for k in 0..4 {
+            let mut before: Option<usize> = None;
+            for at in indices(frame.divisions, k) {
+                if let Some(last) = before {
+                    let (a, b) = (vertices[patch][last], vertices[patch][at]);
+                    if a != b {
+                        let places = (patch as u32, last as u32, at as u32);
+                        all.push(((a.min(b), a.max(b)), places));
+                    }
+                }
+                before = Some(at);
+            }
+        }
     }
-    at -= nu + 1;
-    if at <= nv {
-        return index(nu, at);
-    }
-    at -= nv + 1;
-    if at <= nu {
-        return index(at, nv);
-    }
-    index(0, at - nu - 1)
+    all.sort_unstable();
+    let alone = all.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() == 1);
+    alone.map(|run| run[0].1).collect()
 }
 
 fn surface_of<T: Scalar>(object: &Object<T>) -> Option<&SurfaceRef<T>> {
@@ -406,91 +631,4 @@ impl<T: Scalar> Places<T> for Known<'_, T> {
             _ => None,
         }
     }
-}
-
-/// The pairs of patches whose shared vertices are not in one place.
-fn apart(
-    skeleton: &Skeleton,
-    points: &[Arc<Vec<Vec3>>],
-    grids: &Grids,
-    joined: &mut join::UnionFind,
-) -> Vec<Remark> {
-    let all = points.iter().flat_map(|p| p.iter());
-    let size = all.fold(Box3::EMPTY, |b, &p| b.including(p)).diagonal();
-    const NONE: u32 = u32::MAX;
-    let mut owner: Vec<(u32, Vec3)> = vec![(NONE, Vec3::zero()); grids.count() as usize];
-    let mut worst: HashMap<(u32, u32), (f64, Vec3)> = HashMap::new();
-    for (patch, frame) in skeleton.frames.iter().enumerate() {
-        for vertex in grids.boundary(frame, patch) {
-            let p = points[patch][(vertex - grids.first(patch)) as usize];
-            let slot = &mut owner[joined.find(vertex) as usize];
-            if slot.0 == NONE {
-                *slot = (patch as u32, p);
-            }
-            let distance = p.distance(slot.1);
-            if distance > JOIN_ACCURACY * size {
-                let entry = worst.entry((slot.0, patch as u32)).or_insert((0.0, p));
-                if distance > entry.0 {
-                    *entry = (distance, p);
-                }
-            }
-        }
-    }
-    let mut worst: Vec<_> = worst.into_iter().collect();
-    worst.sort_by_key(|(pair, _)| *pair);
-    let name = |patch: u32| skeleton.frames[patch as usize].name.to_string();
-    worst
-        .into_iter()
-        .map(|((a, b), (distance, at))| Remark::Apart { patches: [name(a), name(b)], distance, at })
-        .collect()
-}
-
-/// True when the panels as a whole, turned as their surfaces say, face inward: then all of
-/// them are turned round. A closed mesh has a negative volume then; of an open one, the cone
-/// from the middle of its rim has. A flat one faces as its surface says.
-fn faces_inward(
-    skeleton: &Skeleton,
-    points: &[Arc<Vec<Vec3>>],
-    grids: &Grids,
-    joined: &mut join::UnionFind,
-) -> bool {
-    let meshed = || skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed);
-    let mut rim: HashMap<(u32, u32), (u32, Vec3, Vec3)> = HashMap::new();
-    for (patch, frame) in meshed() {
-        let point = |vertex: u32| points[patch][(vertex - grids.first(patch)) as usize];
-        for k in 0..4 {
-            for pair in grids.edge(frame, patch, k).windows(2) {
-                let (a, b) = (joined.find(pair[0]), joined.find(pair[1]));
-                if a != b {
-                    let ends = (point(pair[0]), point(pair[1]));
-                    rim.entry((a.min(b), a.max(b))).or_insert((0, ends.0, ends.1)).0 += 1;
-                }
-            }
-        }
-    }
-    let mut open: Vec<_> = rim.into_iter().filter(|(_, (count, ..))| *count == 1).collect();
-    // In a fixed order, so that the sum has the same bits every time.
-    open.sort_unstable_by_key(|(edge, _)| *edge);
-    let (mut centre, mut length) = (Vec3::zero(), 0.0);
-    for (_, (_, a, b)) in open {
-        let step = a.distance(b);
-        centre += (a + b) * (0.5 * step);
-        length += step;
-    }
-    if length > 0.0 {
-        centre = centre / length;
-    }
-    let (mut volume, mut size) = (0.0, 0.0);
-    for (patch, frame) in meshed() {
-        let [nu, nv] = frame.divisions;
-        let sign = if frame.reversed { -1.0 } else { 1.0 };
-        let at = |i: usize, j: usize| points[patch][i * (nv + 1) + j] - centre;
-        for (i, j) in (0..nu).flat_map(|i| (0..nv).map(move |j| (i, j))) {
-            let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-            let cone = (a + c).dot((c - a).cross(d - b));
-            volume += sign * cone;
-            size += cone.abs();
-        }
-    }
-    volume < -1e-6 * size
 }

@@ -43,6 +43,20 @@ pub enum Remark {
         /// Where.
         at: Vec3,
     },
+    /// The corner of a patch lies in the middle of an edge of another and is no vertex of it, or at
+    /// a vertex of it that is another one.
+    Junction {
+        /// The patch, and the edge's patch.
+        patches: [String; 2],
+        /// (u, v) of the corner.
+        corner: [u8; 2],
+        /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) and the parameter along it.
+        edge: (u8, f64),
+        /// True when the edge has a vertex there.
+        twin: bool,
+        /// Where.
+        at: Vec3,
+    },
     /// As many more contradictions as are not told one by one.
     More(usize),
 }
@@ -55,6 +69,7 @@ impl Remark {
                 "divisions-contradict"
             }
             Remark::Apart { .. } => "edges-apart",
+            Remark::Junction { .. } => "corner-not-joined",
         }
     }
 
@@ -70,6 +85,13 @@ impl Remark {
             Remark::Apart { .. } => {
                 "let both surfaces use the same curve, or a snake of one as the edge of the other"
             }
+            Remark::Junction { twin: false, .. } => {
+                "let the corner be a bead, ring or magnet on that edge, and the neighbours' edges run \
+                 along parts of its curve"
+            }
+            Remark::Junction { .. } => {
+                "build both patches on the same point and the same curves: places are not compared"
+            }
             Remark::More(_) => "mend those that are told first",
         }
     }
@@ -80,6 +102,7 @@ impl Remark {
             Remark::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
             Remark::Pieces { patch, .. } => Some(patch),
             Remark::Apart { patches, .. } => Some(&patches[1]),
+            Remark::Junction { patches, .. } => Some(&patches[0]),
             Remark::More(_) => None,
         }
     }
@@ -135,6 +158,17 @@ impl std::fmt::Display for Remark {
                 "`{a}` and `{b}` share an edge but lie {distance:.3e} apart at ({}, {}, {})",
                 at.x, at.y, at.z
             ),
+            Remark::Junction { patches: [a, b], corner: [u, v], edge: (k, t), twin, at } => {
+                let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(*k) % 4];
+                let along = if k % 2 == 0 { 'u' } else { 'v' };
+                let how = if *twin { "meets" } else { "lies in the middle of" };
+                write!(
+                    f,
+                    "the corner (u, v) = ({u}, {v}) of `{a}` {how} edge {edge} of `{b}` at {along} = \
+                     {t:.6} but is not joined to it, at ({}, {}, {})",
+                    at.x, at.y, at.z
+                )
+            }
             Remark::More(n) => write!(f, "{n} more contradictions among divisions"),
         }
     }

@@ -1,0 +1,115 @@
+"""Panels from outside: tags, quality, closure, joins, and what the command says of them."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import moldloft
+from moldloft.cli import main
+
+# Half a box of 4 x 1 x 1, symmetric in y = 0, open there and at the water, with a keel's tag below.
+BOX = """
+Model info(symmetry = "y");
+AbsPoint A(0, 0, -1); AbsPoint B(4, 0, -1); AbsPoint C(4, 1, -1); AbsPoint D(0, 1, -1);
+AbsPoint E(0, 0, 0); AbsPoint F(4, 0, 0); AbsPoint G(4, 1, 0); AbsPoint H(0, 1, 0);
+Line ab(A, B); Line dc(D, C); Line hg(H, G); Line ad(A, D); Line eh(E, H); Line bc(B, C);
+Line fg(F, G); Line ef(E, F);
+RuledSurf bottom(ab, dc, divisions = {8, 3}, tags = {"wetted", "keel"}, orientation = 1);
+RuledSurf side(dc, hg, divisions = {0, 2}, orientation = 1);
+RuledSurf bow(ad, eh, orientation = 1);
+RuledSurf stern(bc, fg);
+"""
+LID = 'RuledSurf lid(ef, hg, tags = "lid");\n'
+
+
+@pytest.fixture
+def box() -> moldloft.Model:
+    return moldloft.loads(BOX)
+
+
+def test_what_is_open_has_names(box: moldloft.Model) -> None:
+    closure = box.mesh().closure()
+    assert not closure["closed"]
+    assert closure["closed_with_lids_and_mirror"]
+    found = {(e["patch"], e["edge"], e["closed_by"]) for e in closure["edges"]}
+    assert found == {
+        ("bottom", "v = 0", "mirror y"),
+        ("bow", "u = 0", "mirror y"),
+        ("stern", "u = 0", "mirror y"),
+        ("side", "v = 1", "lid"),
+        ("bow", "v = 1", "lid"),
+        ("stern", "v = 1", "lid"),
+    }
+    assert not box.mesh().closure(level=None)["closed_with_lids_and_mirror"]
+    lidded = moldloft.loads(BOX + LID).mesh()
+    assert {e["closed_by"] for e in lidded.closure(level=None)["edges"]} == {"mirror y"}
+    assert lidded.patch("lid").divisions == (8, 3)
+
+
+def test_tags_select(box: moldloft.Model) -> None:
+    model = moldloft.loads(BOX + LID)
+    assert [p.name for p in model.mesh(tags="lid").patches] == ["lid"]
+    keel = model.mesh(tags=["keel", "lid"])
+    assert [(p.name, p.tag, p.tags) for p in keel.patches] == [
+        ("bottom", "wetted", ["wetted", "keel"]),
+        ("lid", "lid", ["lid"]),
+    ]
+    assert keel.area == pytest.approx(8.0)
+    with pytest.raises(moldloft.Error, match="no patch has the tag `keal`"):
+        box.mesh(tags="keal")
+
+
+def test_tags_reach_files(tmp_path, box: moldloft.Model) -> None:
+    box.write(tmp_path / "box.obj")
+    assert "\ng bottom wetted keel\n" in (tmp_path / "box.obj").read_text()
+    box.write(tmp_path / "keel.stl", tags="keel")
+    assert (tmp_path / "keel.stl").stat().st_size < 5000
+    pyvista = pytest.importorskip("pyvista")
+    box.write(tmp_path / "box.vtp")
+    read = pyvista.read(tmp_path / "box.vtp")
+    assert np.asarray(read.cell_data["tag keel"]).sum() == 24
+
+
+def test_the_worst_panels_are_named(box: moldloft.Model) -> None:
+    quality = box.mesh().quality()
+    assert quality["bottom"]["aspect"]["max"] == pytest.approx(1.5)
+    assert quality["bottom"]["angle"]["min"] == pytest.approx(np.pi / 2)
+    # The side's panels are 0.5 x 0.5, the bottom's 0.5 x 1/3.
+    assert quality["bottom"]["jump"]["max"] == pytest.approx(1.5)
+    worst = quality["bottom"]["jump"]
+    assert worst["place"][1] == 2
+    assert worst["centre"][1] == pytest.approx(5 / 6)
+
+
+def test_many_patches_are_measured_in_no_time() -> None:
+    lines = ["AbsPoint A0(0, 0, 0); AbsPoint B0(1, 0, 0); Line l0(A0, B0);"]
+    for k in range(1, 2001):
+        lines.append(
+            f"AbsPoint A{k}(0, {k}, 0); AbsPoint B{k}(1, {k}, 0); Line l{k}(A{k}, B{k}); "
+            f"RuledSurf S{k}(l{k - 1}, l{k}, divisions = {{2, 2}});"
+        )
+    assert len(moldloft.loads("\n".join(lines)).mesh().patches) == 2000
+
+
+def test_the_command_tells_all_of_it(tmp_path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "box.sdl"
+    path.write_text(BOX)
+    assert main(["build", str(path), "--quality"]) == 0
+    out = capsys.readouterr().out
+    assert "open edge: 3 panel edges of bow, v = 1, length 1, closed by lid" in out
+    assert "closed with lids and mirror" in out
+    assert "worst panels, by (i, j) along u and v" in out
+    assert main(["build", str(path), "--tag", "keel", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [mesh["name"] for mesh in data["meshes"]] == ["bottom"]
+    assert main(["check", str(path), "--quality", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["closure"]["closed_with_lids_and_mirror"]
+    assert data["quality"]["side"]["quads"] == 16
+    path.write_text(BOX.replace("{0, 2}", "{9, 2}"))
+    assert main(["check", str(path), "--quality"]) == 0
+    told = capsys.readouterr()
+    assert "divisions-contradict" in told.out + told.err
