@@ -1,15 +1,16 @@
-use crate::env::{Environment, Param};
+use crate::env::{Evaluation, Param};
 use crate::interpreter::{Inputs, Seed};
 use crate::module::Modules;
 use crate::place::NumberPath;
 use crate::program::{self, Program};
+use crate::solve::Solved;
 use crate::world::World;
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Sources};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
 use moldloft_num::Dual4;
-use moldloft_registry::{Class, Context, Registry, Row, Scalar, Value};
+use moldloft_registry::{Class, Registry, Row, Scalar, Value};
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -31,7 +32,9 @@ pub struct Document {
     panelled: Option<(u64, Arc<Panelled>)>,
     /// The counts of divisions at the text's own values, and the version of the text.
     nominal: Option<(u64, Nominal)>,
-    applied: Applied,
+    pub(crate) applied: Applied,
+    /// The solve sets of the last run.
+    pub(crate) solved: Vec<Solved>,
     cancelled: Arc<AtomicBool>,
 }
 
@@ -43,18 +46,6 @@ pub(crate) enum Source {
     ModelFile(Box<crate::model_file::ModelFileSource>),
     /// Nothing: the file could not be read.
     None,
-}
-
-/// A graph and what the run that made it left behind.
-pub(crate) struct Evaluation<T: Scalar> {
-    pub graph: Graph<T>,
-    pub env: Environment<T>,
-}
-
-impl<T: Scalar> Default for Evaluation<T> {
-    fn default() -> Self {
-        Self { graph: Graph::new(Context::default()), env: Environment::default() }
-    }
 }
 
 /// The panels of a model and their positions.
@@ -106,6 +97,7 @@ impl Document {
             panelled: None,
             nominal: None,
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
+            solved: Vec::new(),
             cancelled: Arc::default(),
         }
     }
@@ -158,6 +150,10 @@ impl Document {
         let seeds = HashSet::new();
         self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
         self.plain = evaluation;
+        self.solved.clear();
+        if !self.plain.env.solves.is_empty() {
+            self.solve();
+        }
         self.applied
     }
 
@@ -436,6 +432,8 @@ impl Document {
             self.overrides = before;
             return Err(errors);
         }
+        // Conditions may have changed.
+        rerun |= !self.solved.is_empty();
         for edit in &edits {
             rerun |= self.must_rerun(edit);
         }

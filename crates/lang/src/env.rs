@@ -1,8 +1,10 @@
 use crate::module::{Name, RoutineAt};
+use crate::solve::SolveStatus;
 use indexmap::IndexMap;
 use moldloft_diag::Span;
+use moldloft_model::Graph;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Scalar, Value};
+use moldloft_registry::{Context, Scalar, Value};
 use moldloft_syntax::sdl::{StmtId, Type};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -83,6 +85,31 @@ pub(crate) struct Origin {
     pub repeated: bool,
 }
 
+/// A graph and what the run that made it left behind.
+pub(crate) struct Evaluation<T: Scalar> {
+    pub graph: Graph<T>,
+    pub env: Environment<T>,
+}
+
+impl<T: Scalar> Default for Evaluation<T> {
+    fn default() -> Self {
+        Self { graph: Graph::new(Context::default()), env: Environment::default() }
+    }
+}
+
+/// A solve set as a run found it.
+#[derive(Clone, Debug)]
+pub(crate) struct Solve<T> {
+    pub name: Arc<str>,
+    pub span: Span,
+    /// Parameters, by their numbers.
+    pub unknowns: Vec<usize>,
+    /// What becomes zero.
+    pub conditions: Vec<T>,
+    /// The most steps.
+    pub steps: usize,
+}
+
 /// All that a run leaves behind: what expressions may refer to afterwards.
 #[derive(Debug)]
 pub(crate) struct Environment<T: Scalar> {
@@ -93,6 +120,9 @@ pub(crate) struct Environment<T: Scalar> {
     /// Objects made in loops and subroutines, by the name without its last index.
     pub families: IndexMap<Arc<str>, Vec<Key>>,
     pub origins: Vec<Origin>,
+    pub solves: Vec<Solve<T>>,
+    /// Steps and status of the solve sets, once they are solved.
+    pub solved: IndexMap<String, (usize, SolveStatus)>,
     pub printed: Vec<String>,
     /// True when the run ended early, so that objects may be missing.
     pub stopped: bool,
@@ -107,6 +137,8 @@ impl<T: Scalar> Default for Environment<T> {
             param_values: Vec::new(),
             families: IndexMap::new(),
             origins: Vec::new(),
+            solves: Vec::new(),
+            solved: IndexMap::new(),
             printed: Vec::new(),
             stopped: false,
         }

@@ -265,12 +265,31 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return Err(self.no_such_object(&text));
         }
         let value = self.expr(m, base)?;
-        let value = match value {
+        let value = match self.opened(value) {
             list @ Value::List(_) => list,
             other => self.read(other, m.program[base].span)?,
         };
         let section = self.section(m, &value, subs)?;
         variables::part(&value, &section)
+    }
+
+    /// The objects of an entity list, unread; any other value as it is.
+    pub fn opened(&self, value: Value<T>) -> Value<T> {
+        let Value::Object(key) = value else { return value };
+        let list = self.run.graph().get(key).filter(|o| o.row.name == "EntityList");
+        match list.and_then(|o| o.args.first()) {
+            Some(Value::List(items)) => {
+                let mut all = Vec::with_capacity(items.len());
+                for item in items.iter() {
+                    match self.opened(item.clone()) {
+                        Value::List(inner) => all.extend(inner.iter().cloned()),
+                        other => all.push(other),
+                    }
+                }
+                Value::list(all)
+            }
+            _ => value,
+        }
     }
 
     fn no_such_object(&self, text: &str) -> Diagnostic {
@@ -463,8 +482,45 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(number) = crate::member::of_patch(self.run.graph(), object, word) {
             return Some(number.map(Value::Number));
         }
+        if object.row.name == crate::solve::KIND
+            && let Some(value) = self.member_of_solve(&object.name, word)
+        {
+            return Some(value);
+        }
         let at = object.row.field(word)?;
         Some(Ok(object.args[at].clone()))
+    }
+
+    /// An unknown of a solve set, or a number of its report.
+    fn member_of_solve(&self, set: &str, word: &str) -> Option<Evaluated<T>> {
+        let solve = self.env.solves.iter().find(|s| &*s.name == set)?;
+        let ends = |n: &&usize| {
+            let name = &self.env.params[**n].name;
+            name == word || name.rsplit('.').next() == Some(word)
+        };
+        if let Some(&number) = solve.unknowns.iter().find(ends) {
+            return Some(Ok(Value::Number(self.env.param_values[number])));
+        }
+        let known = self.env.solved.get(set).copied();
+        let later = || {
+            Err(Diagnostic::error("no-value", format!("`{word}` is known after the run only"))
+                .help("ask for it from outside, as in `moldloft eval`"))
+        };
+        Some(match word {
+            "residual" => {
+                let largest = solve.conditions.iter().map(|c| c.abs());
+                Ok(Value::Number(largest.fold(T::zero(), T::max)))
+            }
+            "iterations" => match known {
+                Some((steps, _)) => Ok(Value::Number(T::from(steps as f64))),
+                None => later(),
+            },
+            "status" => match known {
+                Some((_, status)) => Ok(Value::text(status.word())),
+                None => later(),
+            },
+            _ => return None,
+        })
     }
 
     fn call(&mut self, m: &Module, callee: ExprId, args: List<Arg>, span: Span) -> Evaluated<T> {

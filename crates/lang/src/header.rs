@@ -61,7 +61,7 @@ impl<T: Real> Build<T> for Model<T> {
 
 /// The rows of this crate that are kinds.
 pub(crate) fn rows() -> Vec<Row> {
-    vec![<Model<f64> as StaticRow>::row()]
+    vec![<Model<f64> as StaticRow>::row(), crate::solve::row()]
 }
 
 /// The header's text of that field in the first object of kind `Model`; empty without one.

@@ -533,6 +533,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         span: Span,
     ) -> Result<Flow<T>, Diagnostic> {
         let value = self.expr(m, list)?;
+        let value = self.opened(value);
+        let value = match value {
+            Value::Object(_) => self.read(value, m.program[list].span)?,
+            other => other,
+        };
         let items: Vec<Value<T>> = match &value {
             Value::List(items) => items.to_vec(),
             Value::Numbers(a) => a.items.iter().map(|&x| Value::Number(x)).collect(),
@@ -724,7 +729,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let number = self.env.params.len();
         self.env.params.push(Param {
             name: text,
-            value: x,
+            value: value.re(),
             default: default.re(),
             range,
             is_int,

@@ -41,6 +41,7 @@ mod rename;
 mod routine;
 mod sections;
 pub mod show;
+mod solve;
 mod variables;
 mod world;
 
@@ -50,6 +51,7 @@ pub use env::Param;
 pub use hydro::{Options as FloatOptions, named as named_hydrostatics};
 pub use interpreter::MOST_STEPS;
 pub use sections::Section;
+pub use solve::{SolveStatus, Solved};
 pub use world::{NoFiles, ReadError, ReadText, World};
 
 use moldloft_registry::Registry;

@@ -1,6 +1,7 @@
 //! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
 
-use crate::document::{Document, Evaluation, Source};
+use crate::document::{Document, Source};
+use crate::env::Evaluation;
 use crate::interpreter::Inputs;
 use crate::program::Program;
 use indexmap::IndexMap;
@@ -173,6 +174,9 @@ impl Document {
                 }
                 x
             };
+            let unknowns = self.seeded_unknowns(&mut evaluation, &seed, &seeded_objects);
+            let seed =
+                |name: &str, x: Dual4| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
             self.evaluate(&mut evaluation, &seed, &seeded_objects, false);
             outcome = each(self, &mut evaluation, pass.len());
             if outcome.is_err() {

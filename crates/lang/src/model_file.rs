@@ -4,8 +4,7 @@
 //! field of the line is which argument. Parents may stand below their children in the file: the
 //! objects are declared in an order in which they do not.
 
-use crate::document::Evaluation;
-use crate::env::{Binding, Bound, Environment};
+use crate::env::{Binding, Bound, Environment, Evaluation};
 use crate::interpreter::Inputs;
 use crate::module::{Module, Modules};
 use crate::place::{self, NumberPath};

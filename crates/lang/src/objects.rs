@@ -94,6 +94,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let seed = self.inputs.seed;
             crate::place::seed(row, &mut filled, full, seed);
         }
+        if row.name == crate::solve::KIND {
+            self.solve_set(m, args, row, positional, &mut filled, full, name.span)?;
+        }
         let origin = self.env.origins.len() as u32;
         let declaration = Declaration { name: full, row, args: filled, head, origin };
         let key = self.run.declare(declaration).map_err(|fault| {

@@ -1,7 +1,6 @@
 //! A program as a producer of objects.
 
-use crate::document::Evaluation;
-use crate::env::Environment;
+use crate::env::{Environment, Evaluation};
 use crate::interpreter::{Inputs, Interpreter, STACK_BYTES};
 use crate::module::{Loader, Modules};
 use crate::place::{self, NumberPath};

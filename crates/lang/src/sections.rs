@@ -1,43 +1,51 @@
-//! The plane sections that a model asks for: stations, waterlines, buttocks.
+//! The sections that a model asks for: stations, waterlines, buttocks, cylinders, meridians.
 
 use crate::Document;
 use moldloft_model::{Polyline, Sectioned};
+use moldloft_num::trace::Key;
 use moldloft_registry::Value;
+use std::collections::HashMap;
 
-/// The lines of one plane of a contours object.
+/// The lines of one section of a contours object.
 #[derive(Clone, Debug)]
 pub struct Section {
     /// The contours object, such as `stations`.
     pub contours: String,
-    /// The plane's coordinate axis: 0, 1, 2 for X, Y, Z.
+    /// The plane's coordinate axis: 0, 1, 2 for X, Y, Z; 3 for sections of other kinds.
     pub axis: usize,
-    /// The plane's coordinate.
+    /// The plane's coordinate, the distance, the radius, or the angle in radians.
     pub value: f64,
-    /// The lines on each shown surface that it cuts, with the surface's name.
+    /// The lines on each surface that it cuts, with the surface's name.
     pub lines: Vec<(String, Vec<Polyline>)>,
 }
 
 impl Document {
-    /// The sections of all shown surfaces by all shown contours, planes without lines left out.
+    /// The sections by all shown contours of the surfaces that they name, or of all shown ones;
+    /// sections without lines left out.
     pub fn sections(&self) -> Vec<Section> {
-        let shown = || self.graph().objects().filter(|o| o.head.shown());
-        let surfaces: Vec<_> = shown()
-            .filter_map(|o| match o.value() {
-                Some(Value::Surface(surface)) => {
-                    Some((o.name.to_string(), Sectioned::new(surface, &o.head)))
-                }
-                _ => None,
-            })
-            .collect();
+        let graph = self.graph();
+        let shown = || graph.objects().filter(|o| o.head.shown());
+        let is_surface = |key: Key| match graph.get(key)?.value()? {
+            Value::Surface(surface) => Some(surface),
+            _ => None,
+        };
+        let all: Vec<Key> = shown().map(|o| o.key).filter(|k| is_surface(*k).is_some()).collect();
+        let mut tables: HashMap<Key, Sectioned<'_>> = HashMap::new();
         let mut sections = Vec::new();
         for object in shown() {
             let Some(Value::Contours(contours)) = object.value() else { continue };
+            let keys = contours.surfaces.as_ref().unwrap_or(&all);
+            for &key in keys {
+                if let (Some(surface), Some(object)) = (is_surface(key), graph.get(key)) {
+                    tables.entry(key).or_insert_with(|| Sectioned::new(surface, &object.head));
+                }
+            }
             for &value in &contours.values {
-                let cut = |(name, surface): &(String, Sectioned<'_>)| {
-                    let lines = surface.section(contours.axis, value);
-                    (!lines.is_empty()).then(|| (name.clone(), lines))
+                let cut = |key: &Key| {
+                    let lines = tables.get(key)?.section(&contours.family, value);
+                    (!lines.is_empty()).then_some((graph.get(*key)?.name.to_string(), lines))
                 };
-                let lines: Vec<_> = surfaces.iter().filter_map(cut).collect();
+                let lines: Vec<_> = keys.iter().filter_map(cut).collect();
                 if !lines.is_empty() {
                     sections.push(Section {
                         contours: object.name.to_string(),

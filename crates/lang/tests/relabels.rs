@@ -157,8 +157,8 @@ fn laws_that_are_none_are_refused() {
         ("Relabel x({0});", "too-few-items", "at least 2"),
         ("CosRelabel x(\"middle\");", "unknown-end", "\"middle\""),
         ("CosRelabel x(\"both\", 1.5);", "out-of-range", "weight"),
-        ("GeoRelabel x(0);", "out-of-range", "ratio"),
-        ("GeoRelabel x(-1);", "out-of-range", "ratio"),
+        ("GeoRelabel x(0);", "out-of-range", "`ratio`"),
+        ("GeoRelabel x(-1);", "out-of-range", "`ratio`"),
         ("TanhRelabel x(101);", "out-of-range", "strength"),
         ("TableRelabel x({0, 0.5, 1}, {0, 1});", "wrong-length", "3 parameters"),
         ("TableRelabel x({0, 0.5, 0.5, 1}, {0, 0.1, 0.2, 1});", "not-monotone", "number 3"),
@@ -176,12 +176,12 @@ fn laws_that_are_none_are_refused() {
         assert!(common::told(&document)[0].contains(says), "{:?}", common::told(&document));
     }
     // What a failed law blocks says so; repaired, it comes back.
-    let mut document = open(&format!("{WING} GeoRelabel x(0); Line y(A, B, relabel = x);"));
+    let mut document =
+        open(&format!("{WING} Relabel x({{0, 0.5, 0.4, 1}}); Line y(A, B, relabel = x);"));
     assert_eq!(ids(&document).len(), 1);
-    document.set(&[("x.ratio".into(), 2.0)]).unwrap();
+    document.set(&[("x.values[3]".into(), 0.6)]).unwrap();
     assert!(ids(&document).is_empty());
-    let at = (2.0_f64.sqrt() - 1.0) * 1.0;
-    assert!((number(&mut document, "y(0.5).x") - at).abs() < 1e-15);
+    assert!((number(&mut document, "y(0.5).x") - 0.5375).abs() < 1e-15);
 }
 
 const MODEL_FILE: &str = "\

@@ -1,7 +1,7 @@
-//! Plane sections of the exact surfaces: stations, waterlines, buttocks.
+//! Sections of the exact surfaces: stations, waterlines, buttocks, and those by cylinders and angles.
 
 use moldloft_num::{Vec3, find_root};
-use moldloft_registry::{Head, SurfaceRef};
+use moldloft_registry::{Family, Head, SurfaceRef};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One line of a section: points on the surface and in the plane, to rounding.
@@ -41,28 +41,33 @@ impl<'s> Sectioned<'s> {
         Self { surface, us, vs, points }
     }
 
-    /// The lines in which the plane `coordinate[axis] = value` cuts the surface, those that begin
-    /// at an edge first, each from the edge point of lowest grid index.
-    pub fn section(&self, axis: usize, value: f64) -> Vec<Polyline> {
+    /// The lines in which the member `value` of a family cuts the surface, those that begin at an
+    /// edge first, each from the edge point of lowest grid index.
+    pub fn section(&self, family: &Family<f64>, value: f64) -> Vec<Polyline> {
         let nv = self.vs.len();
-        let above = |i: usize, j: usize| self.points[i * nv + j][axis] >= value;
+        let heights: Vec<f64> = self.points.iter().map(|&p| family.height(value, p)).collect();
+        // At a pole on the section all heights are rounding: they must have one sign.
+        let size = self.points.iter().fold(0.0f64, |m, p| m.max(p.norm()));
+        let epsilon = 64.0 * f64::EPSILON * size;
+        let above = |i: usize, j: usize| heights[i * nv + j] >= -epsilon;
+        let point = |u: f64, v: f64| self.surface.jet(u, v, moldloft_num::Order::Zero).p;
+        let height = |u: f64, v: f64| family.height(value, point(u, v));
         let mut crossings: BTreeMap<GridEdge, [f64; 2]> = BTreeMap::new();
         for i in 0..self.us.len() {
             for j in 0..nv {
                 if i + 1 < self.us.len() && above(i, j) != above(i + 1, j) {
-                    let at = |u: f64| self.height(u, self.vs[j], axis, value);
-                    if let Ok(u) = find_root(at, self.us[i], self.us[i + 1]) {
-                        crossings.insert((i, j, true), [u, self.vs[j]]);
-                    }
+                    let at = |u: f64| height(u, self.vs[j]);
+                    let u = root(at, self.us[i], self.us[i + 1]);
+                    crossings.insert((i, j, true), [u, self.vs[j]]);
                 }
                 if j + 1 < nv && above(i, j) != above(i, j + 1) {
-                    let at = |v: f64| self.height(self.us[i], v, axis, value);
-                    if let Ok(v) = find_root(at, self.vs[j], self.vs[j + 1]) {
-                        crossings.insert((i, j, false), [self.us[i], v]);
-                    }
+                    let at = |v: f64| height(self.us[i], v);
+                    let v = root(at, self.vs[j], self.vs[j + 1]);
+                    crossings.insert((i, j, false), [self.us[i], v]);
                 }
             }
         }
+        crossings.retain(|_, [u, v]| family.holds(value, point(*u, *v)));
         let mut links: BTreeMap<GridEdge, Vec<GridEdge>> = BTreeMap::new();
         let cells: BTreeSet<(usize, usize)> =
             crossings.keys().flat_map(|&e| self.cells(e)).collect();
@@ -76,7 +81,7 @@ impl<'s> Sectioned<'s> {
                     // A saddle: the middle tells which corners are connected.
                     let (u, v) =
                         (0.5 * (self.us[i] + self.us[i + 1]), 0.5 * (self.vs[j] + self.vs[j + 1]));
-                    let middle = self.height(u, v, axis, value) >= 0.0;
+                    let middle = height(u, v) >= 0.0;
                     if middle == above(i, j) { &[(0, 1), (2, 3)] } else { &[(0, 3), (1, 2)] }
                 }
                 _ => &[],
@@ -86,11 +91,7 @@ impl<'s> Sectioned<'s> {
                 links.entry(cut[b]).or_default().push(cut[a]);
             }
         }
-        self.chains(&crossings, links)
-    }
-
-    fn height(&self, u: f64, v: f64, axis: usize, value: f64) -> f64 {
-        self.surface.jet(u, v, moldloft_num::Order::Zero).p[axis] - value
+        self.chains(&crossings, links, epsilon)
     }
 
     fn cells(&self, (i, j, along_u): GridEdge) -> Vec<(usize, usize)> {
@@ -114,6 +115,7 @@ impl<'s> Sectioned<'s> {
         &self,
         crossings: &BTreeMap<GridEdge, [f64; 2]>,
         links: BTreeMap<GridEdge, Vec<GridEdge>>,
+        epsilon: f64,
     ) -> Vec<Polyline> {
         let mut seen = BTreeSet::new();
         let mut lines = Vec::new();
@@ -129,11 +131,31 @@ impl<'s> Sectioned<'s> {
                 chain.push(next);
                 at = next;
             }
-            let uv: Vec<[f64; 2]> = chain.iter().map(|e| crossings[e]).collect();
+            let mut uv: Vec<[f64; 2]> = chain.iter().map(|e| crossings[e]).collect();
             let point = |&[u, v]: &[f64; 2]| self.surface.jet(u, v, moldloft_num::Order::Zero).p;
+            let mut points: Vec<Vec3> = uv.iter().map(point).collect();
             let closed = chain.len() > 2 && links[&start].len() == 2 && links[&at].contains(&start);
-            lines.push(Polyline { points: uv.iter().map(point).collect(), uv, closed });
+            // A line may run along a pole: one point of it is enough.
+            let mut kept = vec![true; points.len()];
+            for k in 1..points.len() {
+                kept[k] = points[k].distance(points[k - 1]) > epsilon;
+            }
+            let (mut at_point, mut at_place) = (kept.iter(), kept.iter());
+            points.retain(|_| at_point.next() == Some(&true));
+            uv.retain(|_| at_place.next() == Some(&true));
+            if points.len() > 1 {
+                lines.push(Polyline { points, uv, closed });
+            }
         }
         lines
     }
+}
+
+/// The root between `low` and `high`; the end that is nearer to one when rounding hides it.
+fn root(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
+    find_root(&f, low, high).unwrap_or_else(
+        |_| {
+            if f(low).abs() <= f(high).abs() { low } else { high }
+        },
+    )
 }

@@ -11,7 +11,7 @@ use moldloft_mesh::Mesh;
 use moldloft_model::{Polyline, Sectioned};
 use moldloft_num::Vec3;
 use moldloft_picture::{Line, Options, patch_colour, render};
-use moldloft_registry::Value;
+use moldloft_registry::{Family, Value};
 
 /// Contours on pictures: dark grey, so that they show on every patch.
 const CONTOUR_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
@@ -224,7 +224,7 @@ fn cuts(document: &Document, axis: usize, values: &[f64]) -> Vec<drawing::Contou
         let Some(Value::Surface(surface)) = object.value() else { continue };
         let sectioned = Sectioned::new(surface, &object.head);
         for (lines, &value) in lines.iter_mut().zip(values) {
-            lines.extend(sectioned.section(axis, value).iter().map(points));
+            lines.extend(sectioned.section(&Family::coordinate(axis), value).iter().map(points));
         }
     }
     let cut = values.iter().zip(lines).filter(|(_, lines)| !lines.is_empty());

@@ -93,6 +93,8 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
 
     let mut infos = Vec::new();
     let mut reads = Vec::new();
+    // Fields whose count or range may only be known when an object was evaluated.
+    let mut checks: Vec<usize> = Vec::new();
     for (k, field) in fields.named.iter().enumerate() {
         let field_ident = field.ident.as_ref().expect("named fields have names");
         let ty = &field.ty;
@@ -116,8 +118,11 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
             None => quote!(None),
         };
         let (min, max) = (bound(&o.min), bound(&o.max));
-        let min_items = o.min_items.map_or(quote!(0), |e| quote!(#e));
+        let min_items = o.min_items.as_ref().map_or(quote!(0), |e| quote!(#e));
         let unit = if o.angle { quote!(Angle) } else { quote!(None) };
+        if o.min.is_some() || o.max.is_some() || min_items.to_string() != "0" {
+            checks.push(k);
+        }
         infos.push(quote!(::moldloft_registry::Field {
             name: #text,
             help: #help,
@@ -140,6 +145,17 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         .map(|info| quote!({ type T = f64; type S = f64; let _ = ::core::marker::PhantomData::<(T, S)>; #info }))
         .collect();
 
+    let check = if checks.is_empty() {
+        quote!()
+    } else {
+        let fields: Vec<&Tokens> = checks.iter().map(|&k| &infos[k]).collect();
+        quote!(
+            for (at, field) in [#((#checks, #fields)),*] {
+                ::moldloft_registry::check_evaluated(&field, &args[at])
+                    .map_err(|fault| fault.in_field(at))?;
+            }
+        )
+    };
     let count = infos.len();
     let (extra, finish) = if relabelled {
         let extra = quote!(, ::moldloft_registry::export::RELABEL_FIELD);
@@ -183,6 +199,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                 args: &[::moldloft_registry::Value<T>],
                 context: &::moldloft_registry::Context,
             ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::Fault> {
+                #check
                 let this = Self { #(#reads),* };
                 let nesting = args.iter().map(::moldloft_registry::Value::depth).max().unwrap_or(0);
                 let context = ::moldloft_registry::Context { nesting, ..*context };

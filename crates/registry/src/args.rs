@@ -143,7 +143,7 @@ fn check<T: Real>(
                 Value::Object(key) => class_of(*key),
                 other => other.class(),
             };
-            if found == Class::Any {
+            if found == Class::Any || gives_items(field.class, found) {
                 return Ok(());
             }
             return Err(Fault::new(
@@ -155,15 +155,57 @@ fn check<T: Real>(
             .help("write the items in braces: {a, b}"));
         }
     };
-    if length < field.min_items {
-        return Err(Fault::new(
-            "too-few-items",
-            format!("`{}` needs at least {} items, found {length}", field.name, field.min_items),
-        )
-        .expected(format!("at least {} {}s", field.min_items, field.class.name()))
-        .found(format!("{length}")));
+    enough(field, length)
+}
+
+fn enough(field: &Field, length: usize) -> Result<(), Fault> {
+    if length >= field.min_items {
+        return Ok(());
     }
-    Ok(())
+    Err(Fault::new(
+        "too-few-items",
+        format!("`{}` needs at least {} items, found {length}", field.name, field.min_items),
+    )
+    .expected(format!("at least {} {}s", field.min_items, field.class.name()))
+    .found(format!("{length}")))
+}
+
+/// True when an object of class `found` stands for a list of items of class `item`.
+fn gives_items(item: Class, found: Class) -> bool {
+    match found {
+        Class::List => true,
+        Class::Numbers => matches!(item, Class::Number | Class::Integer | Class::Any),
+        Class::Vectors => matches!(item, Class::Vector | Class::Point | Class::Any),
+        _ => false,
+    }
+}
+
+/// Checks what could not be checked when the argument was the name of an object: how many items
+/// it has, and the range of its numbers.
+///
+/// # Errors
+/// A [`Fault`] with its item.
+pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), Fault> {
+    if field.many {
+        let length = match value {
+            Value::List(items) => items.len(),
+            Value::Numbers(a) => a.items.len(),
+            Value::Vectors(a) => a.items.len(),
+            _ => return Ok(()),
+        };
+        enough(field, length)?;
+    }
+    if field.min.is_none() && field.max.is_none() {
+        return Ok(());
+    }
+    match value {
+        Value::Number(x) => range(field, x.re()),
+        Value::Numbers(a) => {
+            let each = a.items.iter().enumerate();
+            each.map(|(k, x)| range(field, x.re()).map_err(|f| f.in_item(k))).collect()
+        }
+        _ => Ok(()),
+    }
 }
 
 fn range(field: &Field, x: f64) -> Result<(), Fault> {

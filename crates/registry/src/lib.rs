@@ -20,7 +20,7 @@ mod relabelled;
 mod row;
 mod value;
 
-pub use args::{Given, arrange};
+pub use args::{Given, arrange, check_evaluated};
 pub use class::Class;
 pub use fault::{Fault, Place};
 pub use found::{Found, FoundStatus};
@@ -30,7 +30,7 @@ pub use read::{FromValue, Mirror, many};
 pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SurfaceRef};
 pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
-pub use value::{Array, ArrayShape, Contours, Value};
+pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value};
 
 /// What the derive macro's output refers to.
 #[doc(hidden)]

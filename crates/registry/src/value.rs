@@ -1,6 +1,6 @@
 use crate::{Class, CurveRef, FieldRef, Found, Point, RelabelRef, SurfaceRef};
 use moldloft_num::trace::Key;
-use moldloft_num::{Frame, Plane, Real, Vec3};
+use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
 
 /// A row `[n]` or a grid `[m, n]` of numbers or vectors; the first index runs fastest in meaning
@@ -44,13 +44,81 @@ impl std::fmt::Display for ArrayShape {
     }
 }
 
-/// A family of parallel plane sections.
+/// What a family of contours is made of: each member is where this number has one value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Family<T> {
+    /// The distance from a plane, along its normal.
+    Planes(Plane<T>),
+    /// The distance from a line: cylinders about it.
+    Cylinders(Axis<T>),
+    /// The angle about a line, right-handed, from the half-plane on the side of the unit vector
+    /// `zero`, which is normal to the line: half-planes.
+    Angles {
+        /// The line.
+        axis: Axis<T>,
+        /// The direction of angle 0.
+        zero: Vec3<T>,
+    },
+}
+
+/// The axis of contours that are not sections by planes of constant x, y or z.
+pub const OBLIQUE: usize = 3;
+
+/// A family of sections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contours<T> {
-    /// Axis of the sections' common normal: 0, 1, 2 for X, Y, Z.
+    /// Axis of the sections' common normal: 0, 1, 2 for X, Y, Z, or [`OBLIQUE`].
     pub axis: usize,
-    /// The coordinates of the sections along that axis.
+    /// What has one value on each section.
+    pub family: Family<T>,
+    /// The values: coordinates, distances, radii, or angles in radians.
     pub values: Vec<T>,
+    /// The surfaces that are cut; all that are shown, when there is no list.
+    pub surfaces: Option<Vec<Key>>,
+}
+
+impl<T: Real> Family<T> {
+    /// Planes on which the coordinate 0, 1 or 2 is constant.
+    pub fn coordinate(axis: usize) -> Self {
+        let mut normal = [0.0; 3];
+        normal[axis] = 1.0;
+        Family::Planes(Plane { point: Vec3::zero(), normal: Vec3::lifted(normal.into()) })
+    }
+
+    fn parts(&self) -> [Vec3<T>; 3] {
+        match self {
+            Family::Planes(p) => [p.point, p.normal, Vec3::zero()],
+            Family::Cylinders(a) => [a.point, a.direction, Vec3::zero()],
+            Family::Angles { axis, zero } => [axis.point, axis.direction, *zero],
+        }
+    }
+
+    /// A function of position that vanishes on the section of that value, and changes sign there.
+    pub fn height(&self, value: T, p: Vec3<T>) -> T {
+        match self {
+            Family::Planes(plane) => plane.distance(p) - value,
+            Family::Cylinders(axis) => (p - axis.foot(p)).norm() - value,
+            Family::Angles { axis, zero } => {
+                let across = axis.direction.cross(*zero);
+                let d = p - axis.point;
+                d.dot(across) * value.cos() - d.dot(*zero) * value.sin()
+            }
+        }
+    }
+
+    /// True where a zero of [`Self::height`] belongs to the section: for angles the half-plane on
+    /// its own side of the axis.
+    pub fn holds(&self, value: T, p: Vec3<T>) -> bool {
+        match self {
+            Family::Angles { axis, zero } => {
+                let across = axis.direction.cross(*zero);
+                let d = p - axis.point;
+                let along = d.dot(*zero) * value.cos() + d.dot(across) * value.sin();
+                along.re() >= -1e-12 * d.re().norm()
+            }
+            _ => true,
+        }
+    }
 }
 
 /// Anything that an expression, an argument or an object can be.
@@ -159,7 +227,10 @@ impl<T: Real> Value<T> {
                 a.origin.bits_eq(b.origin) && a.axes.iter().zip(&b.axes).all(|(x, y)| x.bits_eq(*y))
             }
             (Value::Contours(a), Value::Contours(b)) => {
-                a.axis == b.axis
+                let pairs = a.family.parts().into_iter().zip(b.family.parts());
+                std::mem::discriminant(&a.family) == std::mem::discriminant(&b.family)
+                    && pairs.into_iter().all(|(x, y)| x.bits_eq(y))
+                    && (a.axis, &a.surfaces) == (b.axis, &b.surfaces)
                     && a.values.len() == b.values.len()
                     && a.values.iter().zip(&b.values).all(|(x, y)| x.bits_eq(*y))
             }
@@ -223,7 +294,10 @@ impl<T: Real> Value<T> {
             Value::Point(p) => p.xyz.is_finite(),
             Value::Plane(p) => p.point.is_finite() && p.normal.is_finite(),
             Value::Frame(f) => f.origin.is_finite() && f.axes.iter().all(|a| a.is_finite()),
-            Value::Contours(c) => c.values.iter().all(|x| x.is_finite()),
+            Value::Contours(c) => {
+                let finite = c.family.parts().iter().all(|v| v.is_finite());
+                finite && c.values.iter().all(|x| x.is_finite())
+            }
             _ => true,
         }
     }

@@ -1,18 +1,21 @@
-//! Families of plane sections.
+//! Families of sections: by parallel planes, by cylinders about a line, by half-planes through it.
 
-use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Contours, Fault, Kind, Value};
+use moldloft_num::{Axis, Plane, Real, Vec3};
+use moldloft_registry::{
+    Build, Context, Contours, Family, Fault, Kind, OBLIQUE, Point, SurfaceRef, Value,
+};
 use std::sync::Arc;
 
 /// The most sections of one family.
 const MOST_SECTIONS: i64 = 10_000;
 
-fn contours<T: Real>(
-    axis: usize,
+/// The values start + i step, for i from first to last, in the fields `field` and the one after.
+fn values<T: Real>(
     [first, last]: [i32; 2],
     start: T,
     step: T,
-) -> Result<Value<T>, Fault> {
+    field: usize,
+) -> Result<Vec<T>, Fault> {
     let count = i64::from(last) - i64::from(first) + 1;
     if count < 1 {
         return Err(Fault::new(
@@ -21,16 +24,36 @@ fn contours<T: Real>(
         )
         .expected(format!("a last index of at least {first}"))
         .found(last.to_string())
-        .in_field(1));
+        .in_field(field + 1));
     }
     if count > MOST_SECTIONS {
         return Err(Fault::new("out-of-range", format!("{count} sections are too many"))
             .expected(format!("at most {MOST_SECTIONS}"))
             .found(count.to_string())
-            .in_field(1));
+            .in_field(field + 1));
     }
-    let values = (first..=last).map(|i| start + step * f64::from(i)).collect();
-    Ok(Value::Contours(Arc::new(Contours { axis, values })))
+    Ok((first..=last).map(|i| start + step * f64::from(i)).collect())
+}
+
+fn contours<T: Real>(
+    axis: usize,
+    family: Family<T>,
+    values: Vec<T>,
+    surfaces: Option<Vec<SurfaceRef<T>>>,
+    field: usize,
+) -> Result<Value<T>, Fault> {
+    let key = |(k, surface): (usize, SurfaceRef<T>)| {
+        surface.key.ok_or_else(|| {
+            Fault::new("wrong-class", "contours are drawn on surfaces that have a name")
+                .expected("names of surfaces")
+                .found("a surface without a name")
+                .in_item(k)
+                .in_field(field)
+        })
+    };
+    let surfaces = surfaces.map(|list| list.into_iter().enumerate().map(key).collect());
+    let contours = Contours { axis, family, values, surfaces: surfaces.transpose()? };
+    Ok(Value::Contours(Arc::new(contours)))
 }
 
 macro_rules! contour_kind {
@@ -47,11 +70,14 @@ macro_rules! contour_kind {
             start: T,
             /// Distance of neighbouring sections.
             step: T,
+            /// The surfaces to cut; all that are shown, when none are given.
+            surfaces: Option<Vec<SurfaceRef<T>>>,
         }
 
         impl<T: Real> Build<T> for $name<T> {
             fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-                contours($axis, [self.first, self.last], self.start, self.step)
+                let values = values([self.first, self.last], self.start, self.step, 0)?;
+                contours($axis, Family::coordinate($axis), values, self.surfaces, 4)
             }
         }
     };
@@ -69,3 +95,133 @@ contour_kind!(
     /// Sections z = start + i step, for i from first to last: the waterlines of a hull.
     ZContours, 2, "ZContours waterlines(-2, 2, 0, 0.25);"
 );
+
+/// Sections by planes parallel to a given one, at the distances start + i step from it along its
+/// normal, for i from first to last: diagonals, cant frames.
+#[derive(Kind)]
+#[kind(
+    class = Contours,
+    columns = "plane first last start step",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0.5, 2); TwoPointPlane deck(A, B); \
+               PlaneContours diagonals(deck, 0, 4, -1, 0.5);"
+)]
+pub struct PlaneContours<T: Real> {
+    /// The plane of distance 0.
+    plane: Plane<T>,
+    /// First index i.
+    first: i32,
+    /// Last index i.
+    last: i32,
+    /// Distance of the section with index 0 from the plane.
+    start: T,
+    /// Distance of neighbouring sections.
+    step: T,
+    /// The surfaces to cut; all that are shown, when none are given.
+    surfaces: Option<Vec<SurfaceRef<T>>>,
+}
+
+impl<T: Real> Build<T> for PlaneContours<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let values = values([self.first, self.last], self.start, self.step, 1)?;
+        contours(OBLIQUE, Family::Planes(self.plane), values, self.surfaces, 5)
+    }
+}
+
+/// Sections by cylinders about a line, of the radii start + i step, for i from first to last: the
+/// sections of a propeller blade.
+#[derive(Kind)]
+#[kind(
+    class = Contours,
+    columns = "line first last start step",
+    example = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0.25, 0); Line shaft(O, X); \
+               CylinderContours radii(shaft, 0, 8, 0.2, 0.1);"
+)]
+pub struct CylinderContours<T: Real> {
+    /// The common axis: the line through the ends of a curve.
+    line: Axis<T>,
+    /// First index i.
+    first: i32,
+    /// Last index i.
+    last: i32,
+    /// Radius of the section with index 0.
+    start: T,
+    /// Difference of neighbouring radii.
+    step: T,
+    /// The surfaces to cut; all that are shown, when none are given.
+    surfaces: Option<Vec<SurfaceRef<T>>>,
+}
+
+impl<T: Real> Build<T> for CylinderContours<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let values = values([self.first, self.last], self.start, self.step, 1)?;
+        if let Some(k) = values.iter().position(|r| r.re() <= 0.0) {
+            let radius = values[k].re();
+            let index = i64::from(self.first) + k as i64;
+            return Err(Fault::new("out-of-range", format!("a cylinder of radius {radius}"))
+                .expected("positive radii")
+                .found(format!("the radius {radius} for i = {index}"))
+                .in_field(3));
+        }
+        contours(OBLIQUE, Family::Cylinders(self.line), values, self.surfaces, 5)
+    }
+}
+
+/// Sections by half-planes through a line, at the angles start + i step about it (right-handed), for
+/// i from first to last: the meridians of a body of revolution.
+///
+/// Angle 0 is on the side of the point `zero` or, without one, of the z-axis (of the x-axis when
+/// the line is within a degree of z).
+#[derive(Kind)]
+#[kind(
+    class = Contours,
+    columns = "line first last start step",
+    example = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0.25, 0); Line shaft(O, X); AbsPoint up(0, 0.5, 2); \
+               AngleContours meridians(shaft, 0, 3, 0, 0.5); \
+               AngleContours others(shaft, 0, 3, 0.25, 0.5, zero = up);"
+)]
+pub struct AngleContours<T: Real> {
+    /// The common axis: the line through the ends of a curve.
+    line: Axis<T>,
+    /// First index i.
+    first: i32,
+    /// Last index i.
+    last: i32,
+    /// Angle of the section with index 0, in radians (degrees in model files).
+    #[field(angle)]
+    start: T,
+    /// Angle between neighbouring sections, in radians (degrees in model files).
+    #[field(angle)]
+    step: T,
+    /// A point in the half-plane of angle 0.
+    zero: Option<Point<T>>,
+    /// The surfaces to cut; all that are shown, when none are given.
+    surfaces: Option<Vec<SurfaceRef<T>>>,
+}
+
+/// A line nearer to the z-axis than this (the cosine of a degree) has its zero toward x.
+const UPRIGHT: f64 = 0.999_847_695;
+
+impl<T: Real> Build<T> for AngleContours<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let axis = self.line;
+        let toward = match &self.zero {
+            Some(point) => point.xyz - axis.foot(point.xyz),
+            None => {
+                let upright = axis.direction.z.re().abs() > UPRIGHT;
+                let d: Vec3<T> =
+                    if upright { Vec3::of(1.0, 0.0, 0.0) } else { Vec3::of(0.0, 0.0, 1.0) };
+                d - axis.direction * axis.direction.dot(d)
+            }
+        };
+        let Some(zero) = toward.normalized() else {
+            let key = self.zero.as_ref().and_then(|p| p.key);
+            return Err(Fault::new("coincident-points", "the point of angle 0 lies on the axis")
+                .expected("a point off the axis")
+                .found("no direction from the axis to it")
+                .related(key, "lies on the axis")
+                .in_field(5));
+        };
+        let values = values([self.first, self.last], self.start, self.step, 1)?;
+        contours(OBLIQUE, Family::Angles { axis, zero }, values, self.surfaces, 6)
+    }
+}

@@ -21,6 +21,7 @@ mod field;
 mod foil;
 mod frame;
 mod intrinsics;
+mod lists;
 mod normal;
 mod plane;
 mod point;
@@ -153,6 +154,12 @@ pub fn rows() -> Vec<Row> {
         contours::XContours,
         contours::YContours,
         contours::ZContours,
+        contours::PlaneContours,
+        contours::CylinderContours,
+        contours::AngleContours,
+        lists::RealList,
+        lists::KnotList,
+        lists::EntityList,
         intrinsics::Uniform,
         intrinsics::Cosine,
         intrinsics::DTanh,

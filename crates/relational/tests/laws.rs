@@ -170,7 +170,12 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
             vec![gradient, Vec3::new(value, T::zero(), T::zero())]
         }
         Value::Numbers(a) => return a.items.clone(),
-        Value::Contours(c) => return c.values.clone(),
+        Value::List(items) => return items.iter().flat_map(samples).collect(),
+        Value::Contours(c) => {
+            // How far a point is from each section.
+            let p = Vec3::of(0.3, -1.2, 0.8);
+            return c.values.iter().map(|&value| c.family.height(value, p)).collect();
+        }
         Value::Number(x) => return vec![*x],
         other => panic!("no samples of {other:?}"),
     };

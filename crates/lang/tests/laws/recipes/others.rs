@@ -26,6 +26,21 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "Relabel" => {
             format!("{{0, {}*w, {}, 1}}, degree = 2", p.number(0.05, 0.2), p.number(0.5, 0.9))
         }
+        "SolveSet" => {
+            // h = 0.5 w + 0.25 + what the unknown adds: solved by x = w^2.
+            let x = p.name("x");
+            let name = p.point();
+            p.text += &format!("param float {x} = 1; AbsPoint {x}p({x}, {x}*h, {name}.z);\n");
+            format!("{{{x}}}, {{{x}p.x^1.5 - w*{x}p.x^0.5 - 0.125*({x} - w)^3}}")
+        }
+        "PlaneContours" => format!("{}, 0, 3, {x}, {y}", p.random.pick(&p.planes)),
+        "CylinderContours" | "AngleContours" => {
+            let [a, b] = p.points();
+            format!("{}, 0, 3, 0.5*w, 0.25", p.object("Line", &format!("{a}, {b}")))
+        }
+        "RealList" => format!("{{{x}, {y}*w}}"),
+        "KnotList" => format!("{{0, 0, {}*w, 2, 2}}", p.number(0.1, 0.9)),
+        "EntityList" => format!("{{{}, {}}}", p.point(), p.curve()),
         "CosRelabel" => {
             let end = *p.random.pick(&["both", "start", "end"]);
             format!("\"{end}\", {}", p.number(0.2, 0.9))
