@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from moldloft._core import Diagnostic, __version__
     from moldloft.builder import Builder, model, param
     from moldloft.errors import Error, FileError, ModelError, UnknownNameError
-    from moldloft.hydrostatics import Hydrostatics
+    from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
     from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model, Param, load, loads
     from moldloft.objects import Object
@@ -33,6 +33,7 @@ __all__ = [
     "Diagnostic",
     "Error",
     "FileError",
+    "HydrostaticTable",
     "Hydrostatics",
     "Mesh",
     "Model",
@@ -40,6 +41,7 @@ __all__ = [
     "Object",
     "Param",
     "Patch",
+    "RightingCurve",
     "UnknownNameError",
     "__version__",
     "load",
@@ -56,7 +58,9 @@ _HOMES = {
     "FileError": "moldloft.errors",
     "ModelError": "moldloft.errors",
     "UnknownNameError": "moldloft.errors",
+    "HydrostaticTable": "moldloft.hydrostatics",
     "Hydrostatics": "moldloft.hydrostatics",
+    "RightingCurve": "moldloft.hydrostatics",
     "Mesh": "moldloft.mesh",
     "Patch": "moldloft.mesh",
     "Model": "moldloft.models",

@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+import csv
+import io
+import math
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, fields
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["Hydrostatics"]
+from moldloft.errors import Error
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve"]
 
 
 @dataclass(frozen=True)
 class Hydrostatics:
-    """The figures of a body floating at a level; lengths in the model's unit.
+    """The figures of a body afloat; lengths in the model's unit, angles in radians.
 
     Figures that have no meaning, such as those of the waterplane of a body that is all under
-    water, are ``None``.
+    water, are ``None``. Centres (``lcb`` to ``vcb``, ``lcf``, ``tcf``) are in the body's own axes;
+    the extents of the waterplane of a body that is trimmed or heeled are in level ones.
     """
 
     level: float
@@ -81,8 +96,242 @@ class Hydrostatics:
     """Height of the transverse metacentre above the lowest point."""
     kml: float | None = None
     """Height of the longitudinal metacentre above the lowest point."""
+    trim: float = 0.0
+    """Turn about the axis across; positive sinks what has large x."""
+    heel: float = 0.0
+    """Turn about the body's x axis; positive sinks what has large y."""
+    draft_low_x: float | None = None
+    """Depth of the upright body's lowest height below the water, on the centre line at the body's
+    lowest x."""
+    draft_mid: float | None = None
+    """The same in the middle of its length."""
+    draft_high_x: float | None = None
+    """The same at its highest x."""
+    freeboard: float | None = None
+    """Height of the lowest open edge over the water, such as the sheer of a hull without deck;
+    negative where it is under: then the body floods and the other figures are in doubt."""
+    weight: float | None = None
+    """Displacement times gravity."""
+    tpc: float | None = None
+    """Mass that sinks the body by a centimetre."""
+    mtc: float | None = None
+    """Moment (mass times length) that trims the body by a centimetre between the ends of the
+    waterline: from ``gml`` where a centre of gravity was given, else from ``bml``."""
+    gmt: float | None = None
+    """Transverse metacentric height, where a centre of gravity was given."""
+    gml: float | None = None
+    """Longitudinal metacentric height."""
+    gz: float | None = None
+    """Righting arm; positive where it turns back a positive heel."""
+    trim_arm: float | None = None
+    """The same along the body; zero in trim."""
+    righting_moment: float | None = None
+    """Righting arm times weight."""
+    status: str = "given"
+    """``"given"`` for a given attitude; ``"converged"`` or ``"not-converged"`` for a sought one."""
+    iterations: int = 0
+    """Newton steps to the sought attitude."""
+    residual: float = 0.0
+    """What is left of the equations of rest: volume over volume, arms over the body's diagonal."""
+    stable: bool | None = None
+    """Whether small turns about the free axes are righted, for a sought attitude."""
+    derivatives: dict[str, dict[str, float]] = field(default_factory=dict)
+    """Exact derivatives ``[figure][parameter]``, where parameters were asked for."""
 
-    def as_dict(self) -> dict[str, float | int | bool | str]:
+    @property
+    def floods(self) -> bool:
+        """True when an open edge is under water."""
+        return self.freeboard is not None and self.freeboard < 0
+
+    def as_dict(self) -> dict[str, Any]:
         """All figures that have a meaning, by name, in a fixed order."""
         pairs = ((field.name, getattr(self, field.name)) for field in fields(self))
-        return {name: value for name, value in pairs if value is not None}
+        kept = {name: value for name, value in pairs if value is not None}
+        if not self.derivatives:
+            del kept["derivatives"]
+        return kept
+
+
+_NUMBERS = [
+    f.name for f in fields(Hydrostatics) if f.name not in ("sides", "status", "derivatives")
+]
+
+
+class _Rows:
+    """Rows of figures: what tables and curves have in common."""
+
+    rows: tuple[Hydrostatics, ...]
+    """One for each draft or heel."""
+
+    def __init__(self, rows: Sequence[Hydrostatics]) -> None:
+        self.rows = tuple(rows)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[Hydrostatics]:
+        return iter(self.rows)
+
+    def column(self, name: str) -> NDArray[np.float64]:
+        """One figure of all rows; ``nan`` where it has no meaning."""
+        import numpy as np
+
+        if name not in _NUMBERS:
+            known = ", ".join(_NUMBERS)
+            raise Error(f"error: there is no figure `{name}`; there are: {known}")
+        values = [getattr(row, name) for row in self.rows]
+        return np.array([math.nan if v is None else v for v in values], dtype=np.float64)
+
+    def derivative(self, name: str, by: str) -> NDArray[np.float64]:
+        """The derivative of one figure by a parameter in all rows; ``nan`` where it has none."""
+        import numpy as np
+
+        rows = [row.derivatives.get(name, {}).get(by, math.nan) for row in self.rows]
+        return np.array(rows, dtype=np.float64)
+
+    @property
+    def floods(self) -> bool:
+        """True when an open edge is under water in some row."""
+        return any(row.floods for row in self.rows)
+
+    def as_list(self) -> list[dict[str, Any]]:
+        """The rows as dictionaries."""
+        return [row.as_dict() for row in self.rows]
+
+    def csv(self, columns: Sequence[str] | None = None) -> str:
+        """The rows as comma-separated text (RFC 4180), a header first; angles in radians.
+
+        Parameters
+        ----------
+        columns
+            Which figures; by default all that have a meaning in some row.
+        """
+        wanted = columns or [n for n in _NUMBERS if any(getattr(r, n) is not None for r in self)]
+        for name in wanted:
+            self.column(name)
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\r\n")
+        writer.writerow(wanted)
+        for row in self.rows:
+            values = [getattr(row, name) for name in wanted]
+            writer.writerow(["" if v is None else repr(v) for v in values])
+        return text.getvalue()
+
+    def write_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write :meth:`csv` to a file, whole or not at all."""
+        from moldloft.files import Output, commit
+
+        path = Path(path)
+        return commit(path.parent, [Output(path.name, self.csv().encode())])[0]
+
+
+class HydrostaticTable(_Rows):
+    """Hydrostatics over a range of drafts; see :meth:`moldloft.Model.hydrostatic_table`."""
+
+    def plot(self, path: str | os.PathLike[str]) -> Path:
+        """Draw the hydrostatic curves: displacement, centres and metacentres over the draft.
+
+        Needs matplotlib (``pip install 'moldloft[plot]'``); the file's ending gives its form.
+        """
+        figure, axes = _axes(3)
+        draft = self.column("draft")
+        shown = [
+            (["displacement"], "displacement (mass)"),
+            (["lcb", "lcf"], "centres along x"),
+            (["kb", "kmt"], "height over the lowest point"),
+        ]
+        for axis, (names, label) in zip(axes, shown, strict=True):
+            for name in names:
+                axis.plot(self.column(name), draft, label=name)
+            axis.set_xlabel(label)
+            axis.set_ylabel("draft")
+            axis.grid(True)
+            axis.legend()
+        return _save(figure, path)
+
+
+class RightingCurve(_Rows):
+    """Righting arms over heel; see :meth:`moldloft.Model.righting_curve`."""
+
+    @property
+    def heels(self) -> NDArray[np.float64]:
+        """The heels, in radians."""
+        return self.column("heel")
+
+    @property
+    def gz(self) -> NDArray[np.float64]:
+        """The righting arms."""
+        return self.column("gz")
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """The heel (in radians) and the arm of the row with the largest arm."""
+        best = max(self.rows, key=lambda row: row.gz if row.gz is not None else -math.inf)
+        return best.heel, best.gz if best.gz is not None else math.nan
+
+    @property
+    def vanishing(self) -> float | None:
+        """The positive heel, in radians, at which a positive arm falls to zero.
+
+        It lies on the straight line between two rows; ``None`` when the arm stays positive.
+        """
+        rows = [(row.heel, row.gz) for row in self.rows if row.gz is not None]
+        for (a, p), (b, q) in pairwise(rows):
+            if b > 0 and p > 0 >= q:
+                return a + (b - a) * p / (p - q)
+        return None
+
+    def area(self, low: float, high: float) -> float:
+        """The integral of the arm between two heels in radians: trapezoids on the rows."""
+        import numpy as np
+
+        order = np.argsort(self.heels)
+        heels, arms = self.heels[order], self.gz[order]
+        if not heels[0] - 1e-12 <= low <= high <= heels[-1] + 1e-12:
+            raise Error("error: the area is asked beyond the heels of the curve")
+        inner = heels[(heels > low) & (heels < high)]
+        x = np.concatenate([[low], inner, [high]])
+        y = np.interp(x, heels, arms)
+        return float(np.sum((y[1:] + y[:-1]) / 2 * np.diff(x)))
+
+    def plot(self, path: str | os.PathLike[str]) -> Path:
+        """Draw the righting arms over the heel in degrees.
+
+        Needs matplotlib (``pip install 'moldloft[plot]'``); the file's ending gives its form.
+        """
+        figure, (axis,) = _axes(1)
+        axis.plot([math.degrees(heel) for heel in self.heels], self.gz, label="GZ")
+        wet = [row for row in self.rows if row.floods]
+        if wet:
+            heels = [math.degrees(row.heel) for row in wet]
+            axis.plot(heels, [row.gz for row in wet], "rx", label="open edge under water")
+        axis.axhline(0, color="0.3", linewidth=0.8)
+        axis.set_xlabel("heel (degrees)")
+        axis.set_ylabel("righting arm")
+        axis.grid(True)
+        axis.legend()
+        return _save(figure, path)
+
+
+def _axes(columns: int) -> tuple[Any, list[Any]]:
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise Error("error: plots need matplotlib\nhelp: pip install 'moldloft[plot]'") from error
+    figure = Figure(figsize=(4.5 * columns + 1.5, 4.8), layout="constrained")
+    return figure, list(figure.subplots(1, columns, squeeze=False).flat)
+
+
+def _save(figure: Any, path: str | os.PathLike[str]) -> Path:
+    from moldloft.files import Output, commit
+
+    path = Path(path)
+    kind = path.suffix.lstrip(".").lower()
+    known = figure.canvas.get_supported_filetypes()
+    if kind not in known:
+        raise Error(f"error: no plot ends in `.{kind}`; there are: {', '.join(sorted(known))}")
+    drawn = io.BytesIO()
+    # Without a date the same figures give the same file.
+    metadata = {"Date": None} if kind == "svg" else None
+    figure.savefig(drawn, format=kind, metadata=metadata)
+    return commit(path.parent, [Output(path.name, drawn.getvalue())])[0]

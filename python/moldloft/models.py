@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft import _core
-from moldloft.errors import FileError, ModelError, UnknownNameError
-from moldloft.hydrostatics import Hydrostatics
+from moldloft.errors import Error, FileError, ModelError, UnknownNameError
+from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
 from moldloft.objects import Object
 
 if TYPE_CHECKING:
@@ -288,21 +288,181 @@ class Model:
         return self._document.junctions()
 
     def hydrostatics(
-        self, *, level: float = 0.0, density: float = 1.0, sides: str = "both"
+        self,
+        *,
+        level: float | None = None,
+        draft: float | None = None,
+        trim: float = 0.0,
+        heel: float = 0.0,
+        cg: Sequence[float] | None = None,
+        density: float = 1.0,
+        gravity: float | None = None,
+        sides: str = "both",
+        by: Sequence[str] = (),
     ) -> Hydrostatics:
-        """What the panels displace when the water stands at ``z = level``.
+        """What the panels displace at a given draft, trim and heel, and how stiffly they float.
 
         Parameters
         ----------
         level
-            Height of the water.
+            Height of the water over the model's origin, by default 0.
+        draft
+            Instead of the level: the depth of the upright body's lowest point below the water, on
+            the centre line in the middle of its length.
+        trim, heel
+            In radians, about the origin; positive sinks what has large x, or large y.
+        cg
+            The centre of gravity in the model's axes, for metacentric heights and arms.
         density
             Mass per volume of the water, in the model's units.
+        gravity
+            In the model's unit of length per second squared, by default 9.80665 m/s².
         sides
             For a model that is mirrored in y = 0: ``"both"`` counts its image too, ``"one"``
-            does not. A model without symmetry is always counted as it is.
+            does not (and cannot heel). A model without symmetry is always counted as it is.
+        by
+            Parameters or literals to differentiate the figures by.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... param float beam = 2 in [1, 3];
+        ... AbsPoint a(0, -beam/2, 0); AbsPoint b(6, -beam/2, 0);
+        ... AbsPoint c(0, beam/2, 0); AbsPoint d(6, beam/2, 0);
+        ... AbsPoint e(0, -beam/2, 1); AbsPoint f(0, beam/2, 1);
+        ... AbsPoint g(6, -beam/2, 1); AbsPoint h(6, beam/2, 1);
+        ... Line ab(a, b); Line cd(c, d); Line eg(e, g); Line fh(f, h);
+        ... Line ac(a, c); Line ef(e, f); Line bd(b, d); Line gh(g, h);
+        ... RuledSurf bottom(ab, cd, orientation = 1);
+        ... RuledSurf port(ab, eg); RuledSurf starboard(cd, fh, orientation = 1);
+        ... RuledSurf bow(ac, ef, orientation = 1); RuledSurf stern(bd, gh);
+        ... ''')
+        >>> afloat = m.hydrostatics(draft=0.5, by=["beam"])
+        >>> round(afloat.volume, 12), round(afloat.derivatives["volume"]["beam"], 12)
+        (6.0, 3.0)
         """
-        return Hydrostatics(**self._document.hydrostatics(level, density, sides))
+        if level is not None and draft is not None:
+            raise Error("error: give the level or the draft, not both")
+        given, number = ("level", 0.0 if level is None else float(level))
+        if draft is not None:
+            given, number = "draft", float(draft)
+        row = (given, number, float(trim), float(heel), False, False)
+        return self._floating([row], cg, density, gravity, sides, by)[0]
+
+    def equilibrium(
+        self,
+        displacement: float,
+        *,
+        cg: Sequence[float] | None = None,
+        free: Sequence[str] | None = None,
+        trim: float = 0.0,
+        heel: float = 0.0,
+        density: float = 1.0,
+        gravity: float | None = None,
+        sides: str = "both",
+        by: Sequence[str] = (),
+    ) -> Hydrostatics:
+        """The attitude at rest of a body of given mass.
+
+        Parameters
+        ----------
+        displacement
+            The mass.
+        cg
+            The centre of gravity in the model's axes.
+        free
+            What is sought besides the draft: ``"trim"``, ``"heel"``, or both, which is the default
+            where ``cg`` is given. A model mirrored in y = 0 with its centre of gravity there stays
+            upright by default.
+        trim, heel
+            Kept where they are not free; else where the search begins, in radians.
+        density, gravity, sides, by
+            As for :meth:`hydrostatics`. Derivatives are those of the whole solution.
+
+        Returns
+        -------
+        Hydrostatics
+            Its ``status`` says whether the attitude is one of rest, its ``stable`` whether small
+            turns are righted.
+
+        Raises
+        ------
+        ModelError
+            When the body cannot carry the mass.
+        """
+        if free is None:
+            upright = "y" in self.symmetry and cg is not None and cg[1] == 0 and heel == 0
+            free = () if cg is None else ("trim",) if upright else ("trim", "heel")
+        unknown = set(free) - {"trim", "heel"}
+        if unknown:
+            raise Error(f"error: free are `trim` and `heel`, not `{unknown.pop()}`")
+        trims, heels = "trim" in free, "heel" in free
+        row = ("displacement", float(displacement), float(trim), float(heel), trims, heels)
+        return self._floating([row], cg, density, gravity, sides, by)[0]
+
+    def hydrostatic_table(
+        self,
+        drafts: Sequence[float] | NDArray[np.float64],
+        *,
+        trim: float = 0.0,
+        cg: Sequence[float] | None = None,
+        density: float = 1.0,
+        gravity: float | None = None,
+        sides: str = "both",
+        by: Sequence[str] = (),
+    ) -> HydrostaticTable:
+        """Hydrostatics over a range of drafts; arguments as for :meth:`hydrostatics`."""
+        rows = [("draft", float(draft), float(trim), 0.0, False, False) for draft in drafts]
+        return HydrostaticTable(self._floating(rows, cg, density, gravity, sides, by))
+
+    def righting_curve(
+        self,
+        heels: Sequence[float] | NDArray[np.float64],
+        displacement: float,
+        *,
+        cg: Sequence[float],
+        trim: float = 0.0,
+        free_trim: bool = True,
+        density: float = 1.0,
+        gravity: float | None = None,
+        by: Sequence[str] = (),
+    ) -> RightingCurve:
+        """Righting arms over heel, at one displacement.
+
+        Parameters
+        ----------
+        heels
+            In radians.
+        displacement
+            The mass.
+        cg
+            The centre of gravity in the model's axes.
+        trim, free_trim
+            Whether the body trims freely at each heel, else the trim it keeps.
+        density, gravity, by
+            As for :meth:`hydrostatics`.
+        """
+        rows = [
+            ("displacement", float(displacement), float(trim), float(heel), free_trim, False)
+            for heel in heels
+        ]
+        return RightingCurve(self._floating(rows, cg, density, gravity, "both", by))
+
+    def _floating(
+        self,
+        rows: Sequence[tuple[str, float, float, float, bool, bool]],
+        cg: Sequence[float] | None,
+        density: float,
+        gravity: float | None,
+        sides: str,
+        by: Sequence[str],
+    ) -> list[Hydrostatics]:
+        centre = None if cg is None else [float(x) for x in cg]
+        if centre is not None and len(centre) != 3:
+            raise Error(f"error: a centre of gravity is x, y, z, not {len(centre)} numbers")
+        answers = self._document.floating(rows, density, gravity, centre, sides, list(by))
+        return [Hydrostatics(**answer) for answer in answers]
 
     def jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
         """Exact derivatives of every mesh vertex.

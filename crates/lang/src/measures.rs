@@ -151,7 +151,7 @@ impl Document {
 
     /// Runs the model with seeded numbers, four directions a pass, and hands each pass on with
     /// the number of directions in use.
-    fn passes(
+    pub(crate) fn passes(
         &mut self,
         by: &[String],
         mut each: impl FnMut(&mut Self, &mut Evaluation<Dual4>, usize) -> Result<(), Vec<Diagnostic>>,
@@ -198,7 +198,7 @@ impl Document {
     }
 }
 
-fn no_mesh() -> Diagnostic {
+pub(crate) fn no_mesh() -> Diagnostic {
     Diagnostic::error("no-mesh", "the model has no panels")
         .help("declare a surface, and show it (visible = 1)")
 }

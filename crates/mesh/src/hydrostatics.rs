@@ -282,30 +282,8 @@ pub fn hydrostatics<T: Real>(mesh: &Mesh<T>, options: FloatOptions<T>) -> Hydros
     let middle = mesh.bounds().centre();
     let y0 = if symmetry == Symmetry::None { middle.y } else { 0.0 };
     let origin = Vec3::new(middle.x.into(), y0.into(), level);
-    let skin: Vec<usize> = (mesh.patches().iter())
-        .filter(|p| p.info.tag.is_skin())
-        .flat_map(|p| p.faces.clone())
-        .collect();
-
-    let sums = chunked_sum(
-        0..skin.len(),
-        Sums::zero,
-        |sum, k| {
-            let panel = mesh.panel(skin[k]);
-            let Some(cut) = below(&panel, level) else { return };
-            for p in cut.corners() {
-                sum.extent.reach_down(p.z);
-            }
-            for (p, q) in cut.waterline() {
-                let (a, b) = (p - origin, q - origin);
-                sum.green += (a.x * b.y - b.x * a.y) * 0.5;
-                sum.extent.reach_along(p.x, p.y);
-                sum.extent.reach_along(q.x, q.y);
-            }
-            cut.pieces(|piece| sum.take(piece, origin));
-        },
-        |sum, part| sum.add(part),
-    );
+    let skin = skin_of(mesh);
+    let sums = integrals(mesh, &skin, origin);
 
     let outward = sums.forms[2].re() >= 0.0;
     let side = T::from(if outward { 1.0 } else { -1.0 });
@@ -349,6 +327,43 @@ pub fn hydrostatics<T: Real>(mesh: &Mesh<T>, options: FloatOptions<T>) -> Hydros
         open_edges: open_edges_below(mesh, level.re(), symmetry != Symmetry::None),
         outward,
     }
+}
+
+/// The faces of the patches that bound the body.
+pub(crate) fn skin_of<T: Real>(mesh: &Mesh<T>) -> Vec<usize> {
+    let skin = mesh.patches().iter().filter(|p| p.info.tag.is_skin());
+    skin.flat_map(|p| p.faces.clone()).collect()
+}
+
+/// The volume below the water, of what the mesh shows, and its first moments about `origin`, whose z
+/// is the level; both negative where the panels' normals point inward.
+pub(crate) fn displaced<T: Real>(mesh: &Mesh<T>, skin: &[usize], origin: Vec3<T>) -> (T, Vec3<T>) {
+    let sums = integrals(mesh, skin, origin);
+    (sums.forms[2], sums.moment)
+}
+
+/// The integrals below the water; `origin` is (x0, y0, level).
+fn integrals<T: Real>(mesh: &Mesh<T>, skin: &[usize], origin: Vec3<T>) -> Sums<T> {
+    let level = origin.z;
+    chunked_sum(
+        0..skin.len(),
+        Sums::zero,
+        |sum, k| {
+            let panel = mesh.panel(skin[k]);
+            let Some(cut) = below(&panel, level) else { return };
+            for p in cut.corners() {
+                sum.extent.reach_down(p.z);
+            }
+            for (p, q) in cut.waterline() {
+                let (a, b) = (p - origin, q - origin);
+                sum.green += (a.x * b.y - b.x * a.y) * 0.5;
+                sum.extent.reach_along(p.x, p.y);
+                sum.extent.reach_along(q.x, q.y);
+            }
+            cut.pieces(|piece| sum.take(piece, origin));
+        },
+        |sum, part| sum.add(part),
+    )
 }
 
 /// The area inside the waterline. The waterline runs along the edge of the skin, which is clockwise

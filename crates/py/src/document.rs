@@ -10,8 +10,7 @@ use crate::work::interruptible;
 use crate::world::FileWorld;
 use crate::write;
 use moldloft_diag::Sources;
-use moldloft_lang::{Document, Format};
-use moldloft_mesh::{FloatOptions, Symmetry, hydrostatics};
+use moldloft_lang::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
 use moldloft_model::Object;
 use moldloft_num::Vec3;
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
@@ -386,37 +385,49 @@ impl PyDocument {
         Ok(array)
     }
 
-    fn hydrostatics<'py>(
+    /// The model afloat: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
+    /// heel, whether trim and heel are free; a dictionary for each.
+    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (rows, density, gravity, centre, sides, by))]
+    fn floating<'py>(
         &self,
         py: Python<'py>,
-        level: f64,
+        rows: Vec<(String, f64, f64, f64, bool, bool)>,
         density: f64,
+        gravity: Option<f64>,
+        centre: Option<[f64; 3]>,
         sides: &str,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let mirrored = self.lock(py).symmetry().contains('y');
-        let (symmetry, counted) = match (mirrored, sides) {
-            (false, "both" | "one") => (Symmetry::None, "whole"),
-            (true, "both") => (Symmetry::MirroredTwice, "both"),
-            (true, "one") => (Symmetry::MirroredOnce, "one"),
+        by: Vec<String>,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let one_side = match sides {
+            "both" => false,
+            "one" => true,
             _ => return Err(plain_error(format!("sides are `both` or `one`, not `{sides}`"))),
         };
-        if !(level.is_finite() && density.is_finite() && density > 0.0) {
-            return Err(plain_error("the level must be a finite number and the density positive"));
+        let centimetre = 10.0 / write::length_unit(&self.lock(py)).1;
+        let gravity = gravity.unwrap_or(write::GRAVITY * 100.0 * centimetre);
+        if !(density > 0.0 && density.is_finite() && gravity > 0.0 && gravity.is_finite()) {
+            return Err(plain_error("density and gravity must be positive numbers"));
         }
-        let options = FloatOptions { level, symmetry, density };
-        let panelled = self.long_checked(py, |d| d.panelled().map_err(|e| vec![e]))?;
-        let h = py.detach(|| hydrostatics(&panelled.mesh, options));
-        let dict = PyDict::new(py);
-        dict.set_item("level", h.level)?;
-        dict.set_item("sides", counted)?;
-        for (name, value) in h.figures() {
-            dict.set_item(name, value)?;
+        let finite = |r: &(String, f64, f64, f64, bool, bool)| {
+            r.0 == "displacement" || [r.1, r.2, r.3].iter().all(|x| x.is_finite())
+        };
+        if !rows.iter().all(finite) || centre.is_some_and(|c| c.iter().any(|x| !x.is_finite())) {
+            return Err(plain_error("level, draft, trim, heel and centre must be finite numbers"));
         }
-        dict.set_item("open_edges", h.open_edges)?;
-        dict.set_item("closure_error", h.closure_error)?;
-        dict.set_item("waterplane_error", h.waterplane_error)?;
-        dict.set_item("outward", h.outward)?;
-        Ok(dict)
+        let request = |(given, x, trim, heel, free_trim, free_heel): (String, f64, _, _, _, _)| {
+            let immersion = match given.as_str() {
+                "level" => Immersion::Level(x),
+                "draft" => Immersion::Draft(x),
+                _ => Immersion::Mass { mass: x, free_trim, free_heel },
+            };
+            FloatRequest { immersion, trim, heel }
+        };
+        let requests: Vec<FloatRequest> = rows.into_iter().map(request).collect();
+        let options = AfloatOptions { density, gravity, centimetre, centre, one_side };
+        let names = by.clone();
+        let answers = self.long_checked(py, move |d| d.floating(&requests, options, &by))?;
+        answers.iter().map(|answer| float_facts(py, answer, &names)).collect()
     }
 
     /// The files of a format: name and content of each.
@@ -455,6 +466,38 @@ impl PyDocument {
         let picture = self.long_checked(py, move |d| portrait(d, &kind, width, height))?;
         Ok(PyBytes::new(py, &picture))
     }
+}
+
+fn float_facts<'py>(
+    py: Python<'py>,
+    answer: &FloatAnswer,
+    by: &[String],
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("sides", answer.sides)?;
+    for (name, value) in &answer.figures {
+        dict.set_item(name, value + 0.0)?;
+    }
+    dict.set_item("open_edges", answer.open_edges)?;
+    dict.set_item("closure_error", answer.closure_error)?;
+    dict.set_item("waterplane_error", answer.waterplane_error)?;
+    dict.set_item("outward", answer.outward)?;
+    dict.set_item("status", answer.status)?;
+    dict.set_item("iterations", answer.iterations)?;
+    dict.set_item("residual", answer.residual)?;
+    dict.set_item("stable", answer.stable)?;
+    let derivatives = PyDict::new(py);
+    if !by.is_empty() {
+        for ((name, _), row) in answer.figures.iter().zip(&answer.derivatives) {
+            let one = PyDict::new(py);
+            for (parameter, slope) in by.iter().zip(row) {
+                one.set_item(parameter, slope + 0.0)?;
+            }
+            derivatives.set_item(name, one)?;
+        }
+    }
+    dict.set_item("derivatives", derivatives)?;
+    Ok(dict)
 }
 
 /// The canonical text of a program.

@@ -22,7 +22,7 @@ const CONTOUR_WIDTH: f32 = 1.5;
 type Outcome<R> = Result<R, Vec<Diagnostic>>;
 
 /// Standard gravity in metres per second squared (ISO 80000-3).
-const GRAVITY: f64 = 9.80665;
+pub const GRAVITY: f64 = 9.80665;
 
 /// What a user may ask of the files of panel codes.
 #[derive(Clone, Debug, Default)]
@@ -181,7 +181,7 @@ fn lines(document: &mut Document, stem: &str) -> Outcome<Vec<NamedFile>> {
 }
 
 /// The model's unit of length and its size in millimetres; metres when it names none that is known.
-fn length_unit(document: &Document) -> (String, f64) {
+pub fn length_unit(document: &Document) -> (String, f64) {
     const KNOWN: [(&str, f64); 5] =
         [("m", 1000.0), ("cm", 10.0), ("mm", 1.0), ("ft", 304.8), ("in", 25.4)];
     let header = document.graph().objects().find(|o| o.row.name == "Model");

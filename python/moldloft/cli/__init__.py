@@ -13,6 +13,7 @@ __all__ = ["main"]
 
 COMMANDS = {
     "build": "run a model, mesh it, measure it, write it",
+    "hydro": "hydrostatics, equilibrium, tables over drafts, righting arms",
     "check": "report what is wrong with a model",
     "eval": "the value of expressions in a model's names",
     "new": "a model to start from",

@@ -303,6 +303,8 @@ def _floating(floating: Hydrostatics) -> str:
     sides = {"both": "both sides", "one": "one side", "whole": "the whole body"}[floating.sides]
     lines = [f"hydrostatics at z = {_number(floating.level)}, {sides}"]
     hidden = {"level", "sides", "open_edges", "closure_error", "waterplane_error", "outward"}
+    hidden |= {"trim", "heel", "status", "iterations", "residual"}
+    hidden |= {"draft_low_x", "draft_mid", "draft_high_x", "weight"}
     figures = {k: v for k, v in floating.as_dict().items() if k not in hidden}
     width = max(map(len, figures))
     lines += [f"  {name.ljust(width)}  {_number(value)}" for name, value in figures.items()]

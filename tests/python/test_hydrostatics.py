@@ -1,0 +1,238 @@
+"""A model afloat: closed forms, symmetric models, derivatives, and what cannot float."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+
+import moldloft
+from conftest import SAILBOAT
+
+# An open box barge, half of it (y >= 0), its keel at z = 0.
+BARGE = """
+Model info(symmetry = "y", units = "m");
+param float length = 12 in [6, 20];
+param float beam = 4 in [2, 8];
+param float height = 3 in [1, 5];
+AbsPoint a(0, 0, 0); AbsPoint b(length, 0, 0);
+AbsPoint c(0, beam/2, 0); AbsPoint d(length, beam/2, 0);
+AbsPoint e(0, 0, height); AbsPoint f(length, 0, height);
+AbsPoint g(0, beam/2, height); AbsPoint h(length, beam/2, height);
+BCurve fore({a, c, g}, degree = 1); BCurve aft({b, d, h}, degree = 1);
+Line stem(a, e); Line post(b, f);
+RuledSurf hull(fore, aft, divisions = {6, 6});
+RuledSurf bow(fore, stem, divisions = {6, 3}, orientation = 1);
+RuledSurf stern(aft, post, divisions = {6, 3});
+"""
+
+# A cone with its tip down, of 48 sides, and a cylinder.
+CONE = """
+AbsPoint tip(0, 0, 0); AbsPoint rim(2, 0, 4); AbsPoint top(0, 0, 4);
+Line side(tip, rim); Line axis(tip, top);
+RevSurf cone(side, axis, divisions = {8, 48}, orientation = 1);
+"""
+CYLINDER = """
+AbsPoint low(0, 0, 0); AbsPoint edge(1, 0, 0); AbsPoint rim(1, 0, 3); AbsPoint high(0, 0, 3);
+Line axis(low, high);
+BCurve profile({low, edge, rim}, degree = 1);
+RevSurf cylinder(profile, axis, divisions = {8, 96}, orientation = 1);
+"""
+L, B, H, T = 12.0, 4.0, 3.0, 1.3
+KG = 1.1
+
+
+@pytest.fixture
+def barge() -> moldloft.Model:
+    return moldloft.loads(BARGE)
+
+
+def test_a_barge_by_closed_forms(barge):
+    afloat = barge.hydrostatics(draft=T, cg=(6, 0, KG), density=1.025)
+    mass = 1.025 * L * B * T
+    gmt, gml = T / 2 + B**2 / (12 * T) - KG, T / 2 + L**2 / (12 * T) - KG
+    expected = {
+        "volume": L * B * T,
+        "displacement": mass,
+        "weight": mass * 9.80665,
+        "lcb": 6,
+        "vcb": T / 2,
+        "lcf": 6,
+        "bmt": B**2 / (12 * T),
+        "bml": L**2 / (12 * T),
+        "kmt": T / 2 + B**2 / (12 * T),
+        "gmt": gmt,
+        "gml": gml,
+        "tpc": 1.025 * L * B / 100,
+        "mtc": mass * gml / (100 * L),
+        "cb": 1,
+        "cp": 1,
+        "cm": 1,
+        "cwp": 1,
+        "freeboard": H - T,
+        "draft_mid": T,
+    }
+    for name, value in expected.items():
+        assert getattr(afloat, name) == pytest.approx(value, rel=1e-12), name
+    assert (afloat.sides, afloat.status, afloat.floods) == ("both", "given", False)
+
+
+def test_a_wall_sided_righting_curve(barge):
+    heels = np.radians([-20, -5, 0, 10, 25])
+    curve = barge.righting_curve(heels, L * B * T, cg=(6, 0, KG))
+    bm = B**2 / (12 * T)
+    gm = T / 2 + bm - KG
+    expected = (gm + bm * np.tan(heels) ** 2 / 2) * np.sin(heels)
+    np.testing.assert_allclose(curve.gz, expected, atol=1e-12)
+    assert all(row.status == "converged" for row in curve)
+    assert not curve.floods
+    np.testing.assert_allclose(curve.column("displacement"), L * B * T, rtol=1e-12)
+    area = curve.area(0, heels[-1])
+    assert 0 < area < heels[-1] * expected[-1]
+
+
+def test_a_deck_edge_under_water_is_said(barge, cli, model_file):
+    curve = barge.righting_curve(np.radians([0, 30, 60]), L * B * T, cg=(6, 0, KG))
+    assert [row.floods for row in curve] == [False, False, True]
+    path = model_file(BARGE)
+    done = cli(
+        "hydro", path, "--displacement", L * B * T, f"--cg=6,0,{KG}", "--gz", "0,60,7", "--json"
+    )
+    assert "open edge of the skin is under water" in done.stderr
+    rows = json.loads(done.stdout)
+    assert len(rows) == 7 and rows[-1]["freeboard"] < 0
+
+
+def test_a_cone_by_closed_forms():
+    model = moldloft.loads(CONE)
+    # A regular pyramid of n sides is the cone scaled by its area; radius = draft / 2.
+    n = 48
+    share = n * math.sin(2 * math.pi / n) / (2 * math.pi)
+    draft = 3.0
+    afloat = model.hydrostatics(draft=draft)
+    radius = draft / 2
+    assert afloat.volume == pytest.approx(share * math.pi * radius**2 * draft / 3, rel=1e-12)
+    assert afloat.vcb == pytest.approx(0.75 * draft, rel=1e-12)
+    # BM = I / V = 3 r^2 / (4 T) for the circle.
+    assert afloat.bmt == pytest.approx(3 * radius**2 / (4 * draft), rel=5e-3)
+    rest = model.equilibrium(afloat.volume, cg=(0, 0, 2.0), free=["trim", "heel"])
+    assert rest.draft_mid == pytest.approx(draft, rel=1e-12)
+    assert rest.status == "converged" and rest.stable is True
+
+
+def test_a_cylinder_by_closed_forms():
+    model = moldloft.loads(CYLINDER)
+    n, draft = 96, 1.2
+    area = n * math.sin(2 * math.pi / n) / 2
+    rest = model.equilibrium(area * draft * 1.025, density=1.025)
+    assert rest.draft == pytest.approx(draft, rel=1e-12)
+    assert rest.bmt == pytest.approx(1 / (4 * draft), rel=2e-3)
+    assert rest.cm == pytest.approx(1, rel=1e-12)
+
+
+def test_equilibrium_with_a_weight_off_the_middle(barge):
+    rest = barge.equilibrium(L * B * T, cg=(6.4, 0.1, KG))
+    assert rest.status == "converged" and rest.stable and rest.iterations < 15
+    assert rest.trim > 0 and rest.heel > 0
+    assert abs(rest.gz) < 1e-12 and abs(rest.trim_arm) < 1e-12
+    upright = barge.equilibrium(L * B * T, cg=(6.4, 0, KG))
+    assert upright.heel == 0 and upright.trim > 0, "a symmetric model stays upright"
+    both = barge.equilibrium(L * B * T, cg=(6.4, 0, KG), free=["trim", "heel"])
+    assert both.trim == pytest.approx(upright.trim, rel=1e-10)
+
+
+def test_a_quarter_counts_four_times():
+    text = BARGE.replace('"y"', '"xy"')
+    whole, quarter = moldloft.loads(BARGE), moldloft.loads(text)
+    quarter["length"] = 6
+    afloat = quarter.hydrostatics(draft=T)
+    assert afloat.volume == pytest.approx(whole.hydrostatics(draft=T).volume, rel=1e-12)
+    assert afloat.lcb == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize("model", ["barge", "yacht"])
+def test_derivatives_equal_central_differences(model):
+    if model == "barge":
+        m, by, base = moldloft.loads(BARGE), "beam", 4.0
+        mass, cg = L * B * T, (6.3, 0.05, KG)
+    else:
+        m = moldloft.load(SAILBOAT / "hull.sdl")
+        (by, param), *_ = m.params.items()
+        base = param.value
+        at = m.hydrostatics()
+        mass, cg = 0.8 * at.displacement, (at.lcb + 0.2, 0.05, at.vcb + 0.5)
+    heels = [0.1, 0.3]
+    rest = m.equilibrium(mass, cg=cg, by=[by])
+    curve = m.righting_curve(heels, mass, cg=cg, by=[by])
+    h = 1e-5 * base
+
+    def at(value: float) -> tuple[moldloft.Hydrostatics, np.ndarray]:
+        m[by] = value
+        return m.equilibrium(mass, cg=cg), m.righting_curve(heels, mass, cg=cg).gz
+
+    (up, gz_up), (down, gz_down) = at(base + h), at(base - h)
+    for name in ["level", "trim", "heel", "lcb", "vcb", "gmt", "gml", "wetted_area", "tpc", "mtc"]:
+        difference = (getattr(up, name) - getattr(down, name)) / (2 * h)
+        slope = rest.derivatives[name][by]
+        assert slope == pytest.approx(difference, rel=2e-5, abs=1e-6), name
+    difference = (gz_up - gz_down) / (2 * h)
+    np.testing.assert_allclose(curve.derivative("gz", by), difference, rtol=2e-5, atol=1e-7)
+
+
+def test_tables_as_csv_and_plot(barge, tmp_path):
+    table = barge.hydrostatic_table(np.linspace(0.5, 2.5, 5), cg=(6, 0, KG), by=["length"])
+    np.testing.assert_allclose(table.column("volume"), L * B * table.column("draft"))
+    np.testing.assert_allclose(table.derivative("volume", "length"), B * table.column("draft"))
+    path = table.write_csv(tmp_path / "table.csv")
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    assert len(rows) == 5 and float(rows[0]["kmt"]) == table.rows[0].kmt
+    assert b"<svg" in table.plot(tmp_path / "table.svg").read_bytes()
+    curve = barge.righting_curve(np.radians([0, 20, 70]), L * B * T, cg=(6, 0, KG))
+    assert curve.plot(tmp_path / "gz.png").read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(moldloft.Error, match="no plot ends in"):
+        curve.plot(tmp_path / "gz.dwg")
+    with pytest.raises(moldloft.Error, match="there is no figure"):
+        table.csv(["gmx"])
+
+
+def test_what_cannot_float(barge):
+    with pytest.raises(moldloft.ModelError, match="more than the body displaces"):
+        barge.equilibrium(1000)
+    with pytest.raises(moldloft.ModelError, match="not a positive number"):
+        barge.equilibrium(-1)
+    with pytest.raises(moldloft.ModelError, match="centre of gravity"):
+        barge.equilibrium(50, free=["trim"])
+    with pytest.raises(moldloft.ModelError, match="one side"):
+        barge.equilibrium(20, cg=(6, 0, 1), free=["heel"], sides="one")
+    with pytest.raises(moldloft.Error, match="not both"):
+        barge.hydrostatics(level=1, draft=1)
+    with pytest.raises(moldloft.Error, match="finite"):
+        barge.hydrostatics(draft=math.nan)
+    with pytest.raises(moldloft.Error, match="free are"):
+        barge.equilibrium(50, cg=(6, 0, 1), free=["sway"])
+    plate = moldloft.loads(
+        "AbsPoint a(0,0,0); AbsPoint b(1,0,0); AbsPoint c(0,1,0); AbsPoint d(1,1,0);"
+        "Line ab(a, b); Line cd(c, d); RuledSurf plate(ab, cd);"
+    )
+    with pytest.raises(moldloft.ModelError, match="enclose no body"):
+        plate.equilibrium(1)
+
+
+def test_on_the_command_line(cli, model_file, tmp_path):
+    path = model_file(BARGE)
+    done = cli("hydro", path, "--draft", 1.3, "--cg=6,0,1.1", "--by", "beam")
+    assert "gmt" in done.stdout and "d/dbeam" in done.stdout
+    done = cli("hydro", path, "--displacement", 62.4, "--cg=6.2,0.1,1.1", "--json")
+    assert json.loads(done.stdout)["status"] == "converged"
+    done = cli("hydro", path, "--table", "0.5,2.5,5", "--csv", "t.csv", "--plot", "t.svg")
+    assert done.stdout.splitlines()[0].split()[:2] == ["draft", "displacement"]
+    assert (tmp_path / "t.csv").exists() and (tmp_path / "t.svg").exists()
+    done = cli("hydro", path, "--displacement", 62.4, "--cg=6,0,1.1", "--gz=0,25,6")
+    assert "largest arm" in done.stdout
+    cli("hydro", path, "--gz=0,25,6", status=1)
+    cli("hydro", path, "--displacement", 1e9, status=1)
+    cli("hydro", path, "--table", "0.5,2.5,1", status=2)
+    cli("hydro", path, "--cg", "1,2", status=2)
