@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model, Param, load, loads
     from moldloft.objects import Object
+    from moldloft.sketches import Sketch, SketchError
 
 __all__ = [
     "Builder",
@@ -42,6 +43,8 @@ __all__ = [
     "Param",
     "Patch",
     "RightingCurve",
+    "Sketch",
+    "SketchError",
     "UnknownNameError",
     "__version__",
     "load",
@@ -70,6 +73,8 @@ _HOMES = {
     "model": "moldloft.builder",
     "param": "moldloft.builder",
     "Object": "moldloft.objects",
+    "Sketch": "moldloft.sketches",
+    "SketchError": "moldloft.sketches",
 }
 
 

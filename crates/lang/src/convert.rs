@@ -69,7 +69,13 @@ impl Document {
                 Ok(model.to_canonical(|line| objects.find(model.slice(line.name)).is_none()))
             }
             (Source::Program, Format::Sdl) => sdl::format(&self.text()),
-            (Source::Program, Format::ModelFile) => ToModelFile::new(self).text(),
+            (Source::Sketch(sketch), Format::Sdl) => {
+                let base = sketch.path.rsplit(['/', '\\']).next().unwrap_or(&sketch.path);
+                Ok(format!("load {};\n", quoted(base)))
+            }
+            (Source::Program | Source::Sketch(_), Format::ModelFile) => {
+                ToModelFile::new(self).text()
+            }
             (Source::None, _) => Ok(String::new()),
         }
     }

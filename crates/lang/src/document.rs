@@ -3,6 +3,7 @@ use crate::interpreter::{Inputs, Seed};
 use crate::module::Modules;
 use crate::place::NumberPath;
 use crate::program::{self, Program};
+use crate::sketch_file::{self, SketchFile};
 use crate::solve::Solved;
 use crate::world::World;
 use indexmap::IndexMap;
@@ -44,6 +45,8 @@ pub(crate) enum Source {
     Program,
     /// A model file.
     ModelFile(Box<crate::model_file::ModelFileSource>),
+    /// A sketch file: module 0 is an empty program, and the sketch is brought in after it.
+    Sketch(Arc<SketchFile>),
     /// Nothing: the file could not be read.
     None,
 }
@@ -112,14 +115,20 @@ impl Document {
         let lower = name.to_ascii_lowercase();
         let model_file = lower.ends_with(".ms2")
             || (!lower.ends_with(".sdl") && text.trim_start().starts_with("MultiSurf"));
-        if model_file {
+        let at = (self.modules.len() > 0).then_some(0);
+        if sketch_file::is_sketch(&lower) {
+            let (program, _) = moldloft_syntax::sdl::parse("", file);
+            self.modules.add(name, program, &self.registry, at);
+            self.text_diagnostics = Vec::new();
+            let sketch = SketchFile::open(name, &text, file, &*self.world);
+            self.source = Source::Sketch(Arc::new(sketch));
+        } else if model_file {
             let (source, diagnostics) = crate::model_file::ModelFileSource::parse(text, file);
             self.text_diagnostics = diagnostics;
             self.source = Source::ModelFile(Box::new(source));
         } else {
             let (program, diagnostics) = moldloft_syntax::sdl::parse(text, file);
             self.text_diagnostics = diagnostics;
-            let at = (self.modules.len() > 0).then_some(0);
             self.modules.add(name, program, &self.registry, at);
             self.source = Source::Program;
         }
@@ -137,7 +146,9 @@ impl Document {
             None => self.sources.add(name.clone(), text),
         };
         // Literals of objects were changed in the old text.
-        self.overrides.retain(|name, _| !name.contains('.'));
+        let params = &self.plain.env.params;
+        self.overrides
+            .retain(|name, _| !name.contains('.') || params.iter().any(|p| p.name == *name));
         self.parse(&name, text.to_string(), file);
         self.run();
         self.applied
@@ -170,12 +181,17 @@ impl Document {
         let inputs =
             Inputs { overrides: &self.overrides, seed, seeded_objects, cancelled: &self.cancelled };
         let applied = match &self.source {
-            Source::Program => {
+            Source::Program | Source::Sketch(_) => {
+                let sketch = match &self.source {
+                    Source::Sketch(sketch) => Some(sketch.clone()),
+                    _ => None,
+                };
                 let program = Program {
                     modules: &mut self.modules,
                     world: &*self.world,
                     registry: &self.registry,
                     sources: &mut self.sources,
+                    sketch,
                 };
                 program.run(evaluation, inputs, &mut found)
             }
@@ -207,7 +223,7 @@ impl Document {
             let mut diagnostic = crate::place::unplaced(fault);
             diagnostic.message = format!("`{}`: {}", object.name, diagnostic.message);
             let span = match &self.source {
-                Source::Program => {
+                Source::Program | Source::Sketch(_) => {
                     program::fault_span(&self.modules, &evaluation.env, object, fault)
                 }
                 Source::ModelFile(source) => source.fault_span(object, fault),
@@ -266,7 +282,9 @@ impl Document {
         object: &moldloft_model::Object<T>,
     ) -> Option<moldloft_diag::Span> {
         match &self.source {
-            Source::Program => program::declared_at(&self.modules, &evaluation.env, object),
+            Source::Program | Source::Sketch(_) => {
+                program::declared_at(&self.modules, &evaluation.env, object)
+            }
             Source::ModelFile(source) => source.declared_at(object),
             Source::None => None,
         }
@@ -389,6 +407,9 @@ impl Document {
     pub fn text(&self) -> String {
         match &self.source {
             Source::Program => self.modules.get(0).program.text_with_edits(),
+            Source::Sketch(sketch) => {
+                self.sources.text(sketch.file).map_or(String::new(), |text| text.to_string())
+            }
             Source::ModelFile(source) => source.text(),
             Source::None => String::new(),
         }
@@ -506,9 +527,23 @@ impl Document {
                     "only numbers can be set; edit the text to change what an object is built on",
                 ));
         }
+        if let Some(sketch) = self.plain.env.sketches.iter().find(|s| {
+            object.name.strip_prefix(s.as_str()).is_some_and(|rest| rest.starts_with('.'))
+        }) {
+            let start = format!("{sketch}.");
+            let params = self.params().iter().filter(|p| p.name.starts_with(&start));
+            let params: Vec<&str> = params.map(|p| p.name.as_str()).collect();
+            return Err(Diagnostic::error(
+                "not-a-literal",
+                format!("`{name}` follows from the dimensions of the sketch"),
+            )
+            .help(format!("set a dimension: {}", params.join(", "))));
+        }
         let place = match &self.source {
-            Source::Program => program::literal(&self.modules, &self.plain.env, object, &path)
-                .map(LiteralPlace::Program),
+            Source::Program | Source::Sketch(_) => {
+                program::literal(&self.modules, &self.plain.env, object, &path)
+                    .map(LiteralPlace::Program)
+            }
             Source::ModelFile(source) => source.literal(object, &path).map(LiteralPlace::ModelFile),
             Source::None => unreachable!("there are objects"),
         };

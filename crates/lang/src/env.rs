@@ -124,6 +124,10 @@ pub(crate) struct Environment<T: Scalar> {
     /// Steps and status of the solve sets, once they are solved.
     pub solved: IndexMap<String, (usize, SolveStatus)>,
     pub printed: Vec<String>,
+    /// Loaded sketches by the name that their parts begin with.
+    pub sketches: Vec<String>,
+    /// Numbers and objects of sketches by full name, as spelled and in small letters.
+    pub sketch_members: HashMap<String, Value<T>>,
     /// True when the run ended early, so that objects may be missing.
     pub stopped: bool,
 }
@@ -140,6 +144,8 @@ impl<T: Scalar> Default for Environment<T> {
             solves: Vec::new(),
             solved: IndexMap::new(),
             printed: Vec::new(),
+            sketches: Vec::new(),
+            sketch_members: HashMap::new(),
             stopped: false,
         }
     }

@@ -248,6 +248,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(key) = self.run.find(text) {
             return Some(Value::Object(key));
         }
+        let members = &self.env.sketch_members;
+        if let Some(value) = members.get(text).or_else(|| members.get(&text.to_ascii_lowercase())) {
+            return Some(value.clone());
+        }
         self.env.families.contains_key(text).then(|| self.family(text))
     }
 

@@ -79,6 +79,8 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     /// Failed objects that the program was told of when it read them.
     pub blocked: HashSet<Key>,
     executed: HashSet<usize>,
+    /// Sketch files that were brought in.
+    pub sketches_done: HashSet<String>,
     /// Names that are declared somewhere in the main file: for hints at what comes later.
     pub(crate) current: usize,
 }
@@ -111,6 +113,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             told: HashSet::new(),
             blocked: HashSet::new(),
             executed: HashSet::new(),
+            sketches_done: HashSet::new(),
             current: 0,
         }
     }
@@ -367,6 +370,10 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             StmtKind::Assert { condition, message } => self.assert(m, condition, message)?,
             StmtKind::Load(path) => {
                 let path = m.program[path].to_string();
+                if crate::sketch_file::is_sketch(&path) {
+                    self.load_sketch(&path, id, span)?;
+                    return Ok(Flow::Next);
+                }
                 let module = self.modules.load(self.current, &path, span, &mut self.loader)?;
                 return Ok(self.module(module));
             }

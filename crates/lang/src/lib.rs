@@ -42,6 +42,8 @@ mod rename;
 mod routine;
 mod sections;
 pub mod show;
+mod sketch_file;
+mod sketches;
 mod solve;
 mod variables;
 mod world;
@@ -61,5 +63,6 @@ use moldloft_registry::Registry;
 /// All rows of the project: every crate's list, joined.
 pub fn registry() -> Registry {
     let rows = moldloft_relational::rows().into_iter().chain(moldloft_fair::rows());
+    let rows = rows.chain(moldloft_sketch::entity::rows());
     Registry::new(rows.chain(intrinsics::rows()).chain(header::rows()))
 }

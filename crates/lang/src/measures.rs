@@ -47,6 +47,7 @@ impl Document {
             world: &*self.world,
             registry: &self.registry,
             sources: &mut self.sources,
+            sketch: None,
         };
         program.eval(evaluation, inputs, text)
     }

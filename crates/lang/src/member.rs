@@ -30,6 +30,12 @@ pub(crate) fn of_value<T: Scalar>(
             ("v", _, Some(place)) => number(place.1[1]),
             _ => None,
         },
+        (Value::Mesh(mesh), None) => match name {
+            "volume" => number(mesh.volume),
+            "area" => number(mesh.area),
+            "centroid" => Some(Ok(Value::Vector(mesh.centroid))),
+            _ => None,
+        },
         (Value::Curve(curve), None) if name == "length" => {
             // To about twelve digits, as the function of this name.
             let speed = |t: f64| curve.jet(T::from(t), Order::First)[1].re().norm();
@@ -99,6 +105,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
         Value::Curve(_) => vec!["length"],
         Value::Surface(_) => vec!["area"],
+        Value::Mesh(_) => vec!["volume", "area", "centroid"],
         _ => Vec::new(),
     }
 }

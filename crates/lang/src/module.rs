@@ -1,4 +1,5 @@
 use crate::World;
+use crate::sketch_file::SketchFile;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_registry::{Registry, Row};
 use moldloft_syntax::sdl::{self, Program, RoutineId, Symbol};
@@ -38,6 +39,9 @@ pub(crate) struct Modules {
     names: Vec<Arc<str>>,
     /// Loaded files by the name the world gave, and the outcome of each request.
     loaded: HashMap<(usize, String), Result<usize, Diagnostic>>,
+    /// Sketch files, and the outcome of each request.
+    sketches: Vec<Arc<SketchFile>>,
+    sketched: HashMap<(usize, String), Result<Arc<SketchFile>, Diagnostic>>,
 }
 
 impl Modules {
@@ -88,6 +92,7 @@ impl Modules {
             Some(at) => {
                 self.modules[at] = module;
                 self.loaded.retain(|(from, _), _| *from != at);
+                self.sketched.retain(|(from, _), _| *from != at);
                 at
             }
             None => {
@@ -147,6 +152,48 @@ impl Modules {
         let outcome = self.read(from, path, span, loader);
         self.loaded.insert((from, path.to_string()), outcome.clone());
         outcome
+    }
+
+    /// The sketch file that `load "path"` in module `from` means, run when it is new.
+    pub fn load_sketch(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<Arc<SketchFile>, Diagnostic> {
+        if let Some(known) = self.sketched.get(&(from, path.to_string())) {
+            return known.clone();
+        }
+        let outcome = self.read_sketch(from, path, span, loader);
+        self.sketched.insert((from, path.to_string()), outcome.clone());
+        outcome
+    }
+
+    fn read_sketch(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<Arc<SketchFile>, Diagnostic> {
+        let from_path = self.modules[from].path.clone();
+        let read = loader
+            .world
+            .read(path, Some(&from_path))
+            .map_err(|e| Diagnostic::error("cannot-read", e.message).at(span).maybe_help(e.help))?;
+        let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
+        // A text that is the same as before was run before.
+        let known = self.sketches.iter().find(|s| {
+            s.path == read.name && loader.sources.text(s.file).is_some_and(|t| **t == *text)
+        });
+        if let Some(known) = known {
+            return Ok(known.clone());
+        }
+        let file = loader.sources.add(read.name.clone(), text);
+        let sketch = Arc::new(SketchFile::open(&read.name, text, file, loader.world));
+        self.sketches.push(sketch.clone());
+        Ok(sketch)
     }
 
     fn read(

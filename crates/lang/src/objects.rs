@@ -40,6 +40,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let word = m.program.name(kind.symbol);
         let row = match &m.rows[kind.symbol.0 as usize] {
             Some(row) if row.kind => row,
+            None if word == "Sketch"
+                && !self.env.routines.contains_key(&m.names[kind.symbol.0 as usize]) =>
+            {
+                return self.sketch_object(m, id, name, args, span);
+            }
             other => {
                 if let Some(&routine) = self.env.routines.get(&m.names[kind.symbol.0 as usize]) {
                     return self.instance(m, routine, name, args, span);
@@ -182,6 +187,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         args: List<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
+        let full = self.instance_name(m, name)?;
+        let prefix: Arc<str> = format!("{full}.").into();
+        self.call_routine(m, routine, args, Some(prefix), span)?;
+        Ok(())
+    }
+
+    /// Makes `name` stand for a group of objects; the full name that theirs begin with.
+    pub fn instance_name(&mut self, m: &Module, name: Ident) -> Result<Arc<str>, Diagnostic> {
         let name_id = m.names[name.symbol.0 as usize];
         let (full, turn) = self.full_name(m, name)?;
         if turn.is_none() {
@@ -196,8 +209,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             None => full.clone(),
         };
         self.bind(name_id, name.span, Binding::Instance(family));
-        let prefix: Arc<str> = format!("{full}.").into();
-        self.call_routine(m, routine, args, Some(prefix), span)?;
-        Ok(())
+        Ok(full)
     }
 }

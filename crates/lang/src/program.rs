@@ -4,11 +4,14 @@ use crate::env::{Environment, Evaluation};
 use crate::interpreter::{Inputs, Interpreter, STACK_BYTES};
 use crate::module::{Loader, Modules};
 use crate::place::{self, NumberPath};
+use crate::sketch_file::SketchFile;
+use crate::sketches::Site;
 use crate::world::World;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_model::{Applied, Extent, Object};
 use moldloft_registry::{Fault, Registry, Scalar, Value};
 use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind};
+use std::sync::Arc;
 
 /// What running a program needs.
 pub(crate) struct Program<'a> {
@@ -16,6 +19,8 @@ pub(crate) struct Program<'a> {
     pub world: &'a dyn World,
     pub registry: &'a Registry,
     pub sources: &'a mut Sources,
+    /// The sketch that is the model, when it is no program.
+    pub sketch: Option<Arc<SketchFile>>,
 }
 
 /// Why a number of an object is no literal of the text.
@@ -56,11 +61,16 @@ impl Program<'_> {
             diagnostics: found,
         };
         // What is left to evaluate after the program is evaluated in the caller's thread pool.
-        let modules = self.modules;
+        let (modules, sketch) = (self.modules, self.sketch);
         graph
             .apply(Extent::Whole, |run| {
                 with_stack(|| {
-                    Interpreter::new(modules, loader, run, env, inputs).module(0);
+                    let mut interpreter = Interpreter::new(modules, loader, run, env, inputs);
+                    interpreter.module(0);
+                    if let Some(sketch) = &sketch {
+                        let span = Span::new(sketch.file, 0, 0);
+                        interpreter.sketch(sketch, Site { origin: u32::MAX, span });
+                    }
                 });
             })
             .1

@@ -112,7 +112,7 @@ impl Document {
                 .help("edit the text"))
         };
         if !matches!(self.source, Source::Program) {
-            return elsewhere("the model comes from a model file");
+            return elsewhere("the model comes from a model file or a sketch");
         }
         let Some(origin) = self.plain.env.origins.get(object.origin as usize) else {
             return elsewhere("it has no statement");

@@ -230,6 +230,11 @@ impl TopologyBuilder {
         Self::default()
     }
 
+    /// Goes on with what another one built.
+    pub fn extending(topology: Topology) -> Self {
+        Self { topology }
+    }
+
     /// Adds `count` vertices and returns their numbers.
     ///
     /// # Errors

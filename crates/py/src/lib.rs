@@ -14,6 +14,7 @@ mod foreign;
 mod mesh;
 mod portrait;
 mod reference;
+mod sketch;
 mod value;
 mod work;
 mod world;
@@ -36,6 +37,8 @@ mod _core {
     use crate::mesh::PyMesh;
     #[pymodule_export]
     use crate::reference::reference;
+    #[pymodule_export]
+    use crate::sketch::{PySketch, sketch_reference};
     #[pymodule_export]
     use crate::value::Shape;
 }

@@ -40,6 +40,17 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
             let items: PyResult<Vec<_>> = items.iter().map(|item| to_python(py, item)).collect();
             PyList::new(py, items?)?.into_any()
         }
+        Value::Mesh(mesh) => {
+            let dict = pyo3::types::PyDict::new(py);
+            let fill = |out: &mut [Vec3]| out.copy_from_slice(&mesh.points);
+            dict.set_item("vertices", arrays::filled(py, [mesh.points.len(), 3], fill).0)?;
+            let corners = PyArray::from_slice(py, mesh.triangles.as_flattened());
+            dict.set_item("triangles", corners.reshape([mesh.triangles.len(), 3])?)?;
+            dict.set_item("volume", mesh.volume)?;
+            dict.set_item("area", mesh.area)?;
+            dict.set_item("centroid", vector(py, mesh.centroid))?;
+            dict.into_any()
+        }
         other => Bound::new(py, Shape { class: other.class() })?.into_any(),
     })
 }

@@ -55,13 +55,15 @@ pub enum Class {
     Relabel,
     /// An implicit function of space.
     Field,
+    /// A body of triangles.
+    Mesh,
     /// A list.
     List,
 }
 
 impl Class {
     /// All classes, in the order of the reference.
-    pub const ALL: [Class; 26] = [
+    pub const ALL: [Class; 27] = [
         Class::Any,
         Class::Number,
         Class::Integer,
@@ -87,6 +89,7 @@ impl Class {
         Class::Contours,
         Class::Relabel,
         Class::Field,
+        Class::Mesh,
         Class::List,
     ];
 
@@ -118,6 +121,7 @@ impl Class {
             Class::Contours => "contours",
             Class::Relabel => "relabel",
             Class::Field => "field",
+            Class::Mesh => "mesh",
             Class::List => "list",
         }
     }
@@ -150,6 +154,7 @@ impl Class {
             Class::Contours => "contours",
             Class::Relabel => "a relabel",
             Class::Field => "a field",
+            Class::Mesh => "a mesh",
             Class::List => "a list",
         }
     }

@@ -11,6 +11,7 @@
 
 mod args;
 mod class;
+mod facets;
 mod fault;
 mod found;
 mod head;
@@ -22,6 +23,7 @@ mod value;
 
 pub use args::{Given, arrange, check_evaluated};
 pub use class::Class;
+pub use facets::Facets;
 pub use fault::{Fault, Place};
 pub use found::{Found, FoundStatus};
 pub use head::{HEAD, Head, Panels, Spacing};

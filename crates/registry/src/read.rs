@@ -1,4 +1,4 @@
-use crate::{Class, CurveRef, Fault, FieldRef, Point, RelabelRef, SurfaceRef, Value};
+use crate::{Class, CurveRef, Facets, Fault, FieldRef, Point, RelabelRef, SurfaceRef, Value};
 use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
 
@@ -157,6 +157,16 @@ impl<T: Real> FromValue<T> for RelabelRef<T> {
         match value {
             Value::Relabel(r) => Ok(r.clone()),
             other => wrong(Class::Relabel, other),
+        }
+    }
+}
+
+impl<T: Real> FromValue<T> for Arc<Facets<T>> {
+    const CLASS: Class = Class::Mesh;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Mesh(m) => Ok(m.clone()),
+            other => wrong(Class::Mesh, other),
         }
     }
 }

@@ -1,4 +1,4 @@
-use crate::{Class, CurveRef, FieldRef, Found, Point, RelabelRef, SurfaceRef};
+use crate::{Class, CurveRef, Facets, FieldRef, Found, Point, RelabelRef, SurfaceRef};
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
@@ -156,6 +156,8 @@ pub enum Value<T: Real> {
     Relabel(RelabelRef<T>),
     /// An implicit function.
     Field(FieldRef<T>),
+    /// A body of triangles.
+    Mesh(Arc<Facets<T>>),
 }
 
 impl<T: Real> Value<T> {
@@ -193,6 +195,7 @@ impl<T: Real> Value<T> {
             Value::Contours(_) => Class::Contours,
             Value::Relabel(_) => Class::Relabel,
             Value::Field(_) => Class::Field,
+            Value::Mesh(_) => Class::Mesh,
         }
     }
 
@@ -236,6 +239,7 @@ impl<T: Real> Value<T> {
             }
             (Value::Relabel(a), Value::Relabel(b)) => a.same(b),
             (Value::Field(a), Value::Field(b)) => a.same(b),
+            (Value::Mesh(a), Value::Mesh(b)) => Arc::ptr_eq(a, b) || a.same(b),
             _ => false,
         }
     }
@@ -298,6 +302,7 @@ impl<T: Real> Value<T> {
                 let finite = c.family.parts().iter().all(|v| v.is_finite());
                 finite && c.values.iter().all(|x| x.is_finite())
             }
+            Value::Mesh(m) => m.is_finite(),
             _ => true,
         }
     }

@@ -1,9 +1,7 @@
 //! Writers of finished objects: bytes out, no input or output.
 
-use crate::command::Picture;
+use crate::Solid;
 use crate::json::Json;
-use crate::twin::ObjectData;
-use crate::{Object, Projection, Solid};
 use moldloft_mesh::{Mesh, is_triangle};
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
@@ -264,95 +262,5 @@ pub fn dxf(mesh: &Facets, solid: &Solid<f64>, tolerance: f64) -> String {
         }
     }
     out.push_str("0\nENDSEC\n0\nEOF\n");
-    out
-}
-
-/// The picture: sketches as drawn, or solids from another side.
-pub(crate) fn svg(
-    objects: &[(&Object, &ObjectData)],
-    picture: &Picture,
-    window: [f64; 4],
-) -> String {
-    let view = match picture.view.as_str() {
-        "TOP" => Some(Projection { angle_deg: [0.0, 90.0, 0.0], scale: [1.0, 1.0, 0.0] }),
-        "FRONT" => Some(Projection { angle_deg: [0.0, 0.0, 90.0], scale: [1.0, 0.0, 1.0] }),
-        "SIDE" => Some(Projection { angle_deg: [0.0, 0.0, 90.0], scale: [0.0, 1.0, 1.0] }),
-        name => Projection::preset(name),
-    };
-    let mut strokes: Vec<([f64; 2], [f64; 2], &'static str)> = Vec::new();
-    let mut labels: Vec<([f64; 2], String)> = Vec::new();
-    for (object, data) in objects {
-        match (&view, &data.solid) {
-            (Some(view), Some(solid)) => {
-                for edge in &solid.edges {
-                    let [p, q] = edge.ends.map(|v| solid.vertices[v].at);
-                    let n = edge.piece.map_or(1, |_| 24);
-                    let at = |k: usize| match edge.piece {
-                        Some(piece) => piece.at(k as f64 / n as f64),
-                        None => [p, q][k],
-                    };
-                    for k in 0..n {
-                        strokes.push((view.project(at(k)), view.project(at(k + 1)), "#333"));
-                    }
-                }
-                let corners = solid.vertices.iter().map(|v| (view.project(v.at), v.id.to_string()));
-                labels.extend(corners);
-            }
-            _ => {
-                let d = &object.drawing;
-                for line in d.lines.values() {
-                    let [a, b] = [line.p, line.q].map(|p| [d.points[&p].u, d.points[&p].v]);
-                    let colour = match line.free.map(crate::Free::spelling) {
-                        Some("X") => "#c22",
-                        Some("Y") => "#292",
-                        Some("Z") => "#22c",
-                        Some("O") => "#777",
-                        Some(_) => "#a60",
-                        None => "#c0c",
-                    };
-                    strokes.push((a, b, if picture.types { colour } else { "#333" }));
-                }
-                labels.extend(d.points.iter().map(|(id, p)| ([p.u, p.v], id.to_string())));
-                if picture.planes {
-                    for l in &data.loose {
-                        let at =
-                            l.points.first().map_or([0.0; 2], |p| [d.points[p].u, d.points[p].v]);
-                        labels.push((at, format!("{} free", l.axis)));
-                    }
-                }
-            }
-        }
-    }
-    let [mut l, mut b, mut r, mut t] = window;
-    if view.is_some() {
-        [l, b, r, t] = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-        for p in strokes.iter().flat_map(|s| [s.0, s.1]) {
-            [l, b, r, t] = [l.min(p[0]), b.min(p[1]), r.max(p[0]), t.max(p[1])];
-        }
-        if l > r {
-            [l, b, r, t] = [0.0, 0.0, 1.0, 1.0];
-        }
-    }
-    let size = (r - l).max(t - b).max(f64::MIN_POSITIVE);
-    let (scale, margin) = (800.0 / size, 40.0);
-    let place = |p: [f64; 2]| [(p[0] - l) * scale + margin, (t - p[1]) * scale + margin];
-    let (w, h) = ((r - l) * scale + 2.0 * margin, (t - b) * scale + 2.0 * margin);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w:.1} {h:.1}\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-    );
-    for (p, q, colour) in strokes {
-        let ([x1, y1], [x2, y2]) = (place(p), place(q));
-        let _ = writeln!(
-            out,
-            "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{colour}\" stroke-width=\"1.6\"/>"
-        );
-    }
-    if picture.labels {
-        for (p, text) in labels {
-            let [x, y] = place(p);
-            let _ = writeln!(out, "<text x=\"{:.2}\" y=\"{:.2}\">{text}</text>", x + 4.0, y - 4.0);
-        }
-    }
-    out.push_str("</svg>\n");
     out
 }

@@ -487,15 +487,24 @@ pub fn chain_expression(
     let path = graphs(object, planes).0[axis.index()].path(a, b);
     let mut sum = String::new();
     for (d, forward) in path {
-        let (_, dimension) = object.dimensions.get_index(d)?;
-        let Measure::Along { .. } = dimension.measure else { return None };
+        // The reference is a number, and so is what hangs on given coordinates.
+        let term = match object.dimensions.get_index(d) {
+            Some((_, dimension)) => dimension.name.clone(),
+            None => {
+                let at = object.reference()?.at[axis.index()];
+                if at == 0.0 {
+                    continue;
+                }
+                format!("({})", moldloft_syntax::number::plain(at))
+            }
+        };
         sum.push_str(match (forward, sum.is_empty()) {
             (true, true) => "",
             (true, false) => " + ",
             (false, true) => "-",
             (false, false) => " - ",
         });
-        sum.push_str(&dimension.name);
+        sum.push_str(&term);
     }
     (!sum.is_empty()).then_some(sum)
 }

@@ -144,7 +144,11 @@ pub fn merge(
 }
 
 /// Makes references of dimensions that others determine.
-fn settle(out: &mut Object, report: &mut Merged, solve: &dyn Fn(&Object) -> Layout<f64>) {
+pub(crate) fn settle(
+    out: &mut Object,
+    report: &mut Merged,
+    solve: &dyn Fn(&Object) -> Layout<f64>,
+) {
     for fault in solve(out).faults {
         let (name, wrong) = match fault {
             DimensionFault::Redundant { name, .. } => (name, false),
@@ -219,6 +223,7 @@ pub fn clean(object: &Object, lines: &[[PointId; 2]], at: &BTreeMap<PointId, Vec
     let doomed: Vec<String> = (object.dimensions.iter())
         .filter(|(_, d)| match d.measure {
             Measure::Along { p, q, .. } => gone.contains(&p) || gone.contains(&q),
+            Measure::Datum { point, .. } => gone.contains(&point),
             _ => false,
         })
         .map(|(k, _)| k.clone())

@@ -11,7 +11,7 @@ use crate::triangulate::triangulate;
 use crate::{FaceId, Layout, Object, Planes, PointId};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Real, Vec3};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// A vertex of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,11 +104,23 @@ pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> O
     if object.faces.is_empty() {
         return None;
     }
-    let positions = layout.positions(planes)?;
-    let at = |p: PointId| planes.ids().binary_search(&p).ok().map(|k| positions[k]);
+    let place = Places { labels: Labels::new(planes.ids()), at: layout.positions(planes)? };
+    let mut around: BTreeMap<PointId, BTreeSet<PointId>> = BTreeMap::new();
+    if !object.curves.is_empty() {
+        for cycle in object.faces.values().flat_map(|f| f.loops()) {
+            let n = cycle.len();
+            for k in 0..n {
+                around
+                    .entry(cycle[k])
+                    .or_default()
+                    .extend([cycle[(k + n - 1) % n], cycle[(k + 1) % n]]);
+            }
+        }
+    }
     let mut build = Builder {
         object,
-        place: planes.ids().iter().copied().zip(positions.iter().copied()).collect(),
+        place,
+        around,
         corners: BTreeMap::new(),
         bent: BTreeMap::new(),
         curves: BTreeMap::new(),
@@ -116,7 +128,8 @@ pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> O
         next: object.drawing.next_point().0,
     };
     for (k, curve) in object.curves.values().enumerate() {
-        match trace(curve, &at, &layout.values) {
+        let traced = trace(curve, &|p| build.place.get(p), &layout.values);
+        match traced {
             Ok(traced) => {
                 let result = if curve.replaces { build.take(k, curve, &traced) } else { Ok(()) };
                 build.curves.insert(k, traced);
@@ -134,13 +147,57 @@ pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> O
     Some(build.finish())
 }
 
+/// Labels of points as places in a list: by a table where they are dense, else by search.
+struct Labels<'a> {
+    ids: &'a [PointId],
+    table: Vec<u32>,
+}
+
+impl<'a> Labels<'a> {
+    fn new(ids: &'a [PointId]) -> Labels<'a> {
+        let last = ids.last().map_or(0, |p| p.0 as usize);
+        let mut table = Vec::new();
+        if last <= 4 * ids.len() + 64 {
+            table.resize(last + 1, u32::MAX);
+            ids.iter().enumerate().for_each(|(k, p)| table[p.0 as usize] = k as u32);
+        }
+        Labels { ids, table }
+    }
+
+    fn index(&self, p: PointId) -> Option<usize> {
+        if self.table.is_empty() {
+            return self.ids.binary_search(&p).ok();
+        }
+        self.table.get(p.0 as usize).filter(|k| **k != u32::MAX).map(|k| *k as usize)
+    }
+}
+
+/// Where the points of the drawing are.
+struct Places<'a, T> {
+    labels: Labels<'a>,
+    at: Vec<Vec3<T>>,
+}
+
+impl<T: Real> Places<'_, T> {
+    fn get(&self, p: PointId) -> Option<Vec3<T>> {
+        self.labels.index(p).map(|k| self.at[k])
+    }
+
+    /// The place of a point of a face or curve: those exist.
+    fn of(&self, p: PointId) -> Vec3<T> {
+        self.get(p).unwrap_or_default()
+    }
+}
+
 fn pair(a: PointId, b: PointId) -> (PointId, PointId) {
     (a.min(b), a.max(b))
 }
 
 struct Builder<'a, T> {
     object: &'a Object,
-    place: BTreeMap<PointId, Vec3<T>>,
+    place: Places<'a, T>,
+    /// Points that share an edge of a face, where there are curves.
+    around: BTreeMap<PointId, BTreeSet<PointId>>,
     corners: BTreeMap<PointId, Corner<T>>,
     /// Edges that become curves: from the lower label to the higher.
     bent: BTreeMap<(PointId, PointId), (usize, Piece<T>)>,
@@ -217,14 +274,7 @@ impl<T: Real> Builder<'_, T> {
 
     /// The points that share an edge of a face with `at`.
     fn neighbours(&self, at: PointId) -> BTreeSet<PointId> {
-        let mut found = BTreeSet::new();
-        for cycle in self.object.faces.values().flat_map(|f| f.loops()) {
-            let n = cycle.len();
-            for k in (0..n).filter(|&k| cycle[k] == at) {
-                found.extend([cycle[(k + n - 1) % n], cycle[(k + 1) % n]]);
-            }
-        }
-        found
+        self.around.get(&at).cloned().unwrap_or_default()
     }
 
     /// A full circle or ellipse inscribed in the parallelogram of its lines: four corners at once.
@@ -234,12 +284,12 @@ impl<T: Real> Builder<'_, T> {
         [a, m, b]: [PointId; 3],
         traced: &Traced<T>,
     ) -> Result<(), Trouble> {
-        let (pa, pm, pb) = (self.place[&a], self.place[&m], self.place[&b]);
+        let [pa, pm, pb] = [a, m, b].map(|p| self.place.of(p));
         let fourth = pa + pb - pm;
         let size = (pa - pm).re().norm() + (pb - pm).re().norm();
         let close = |p: Vec3<T>, q: Vec3<T>| (p - q).re().norm() <= 1e-9 * size;
         let drawing = &self.object.drawing;
-        let c = (self.place.iter())
+        let c = (self.place.labels.ids.iter().zip(&self.place.at))
             .find(|(id, p)| {
                 let linked = |other| drawing.line_between(**id, other).is_some();
                 close(**p, fourth) && linked(a) && linked(b)
@@ -258,7 +308,7 @@ impl<T: Real> Builder<'_, T> {
             return Err(Trouble::Taken(m));
         }
         for (from, at, to) in way {
-            let [pf, p, pt] = [from, at, to].map(|id| self.place[&id]);
+            let [pf, p, pt] = [from, at, to].map(|id| self.place.of(id));
             let tangents = [(pf + p) * half, (p + pt) * half];
             let sweep = T::from(0.5 * std::f64::consts::PI);
             let piece =
@@ -278,7 +328,7 @@ impl<T: Real> Builder<'_, T> {
                 let (q, tangent, id) = (own.ends[side], own.tangents[side], own.ids[side]);
                 let Some(other) = self.corners.get(&q).filter(|_| p < q) else { continue };
                 let Some(back) = on_line(other, p) else { continue };
-                let (from, to) = (self.place[&p].re(), self.place[&q].re());
+                let (from, to) = (self.place.of(p).re(), self.place.of(q).re());
                 let length = from.distance(to);
                 let reach = from.distance(tangent.re()) + to.distance(other.tangents[back].re());
                 if reach > length * (1.0 + 1e-9) {
@@ -299,7 +349,7 @@ impl<T: Real> Builder<'_, T> {
     /// What stands for corner `p` on the way from or to `other`.
     fn stand_in(&self, p: PointId, other: PointId) -> Option<(PointId, Vec3<T>)> {
         match self.corners.get(&p) {
-            None => Some((p, self.place[&p])),
+            None => Some((p, self.place.of(p))),
             Some(c) => {
                 let side = c.ends.iter().position(|e| *e == other)?;
                 Some((c.ids[side], c.tangents[side]))
@@ -309,11 +359,17 @@ impl<T: Real> Builder<'_, T> {
 
     fn finish(mut self) -> Solid<T> {
         self.drop_unsupported();
+        let halves: usize = self
+            .object
+            .faces
+            .values()
+            .map(|f| f.loops().map(<[PointId]>::len).sum::<usize>())
+            .sum();
         let mut out = Assembly {
-            vertices: Vec::new(),
-            number: BTreeMap::new(),
-            edges: Vec::new(),
-            known: BTreeMap::new(),
+            vertices: Vec::with_capacity(self.place.at.len()),
+            number: HashMap::with_capacity_and_hasher(self.place.at.len(), Quick::default()),
+            edges: Vec::with_capacity(halves / 2),
+            known: HashMap::with_capacity_and_hasher(halves / 2, Quick::default()),
         };
         let mut faces: Vec<SolidFace> = Vec::new();
         // Per third line of a corner, how a face runs its two successors.
@@ -477,7 +533,7 @@ impl<T: Real> Builder<'_, T> {
             let [a, b] = [arc[side], arc[1 - side]];
             let (far_a, far_b, far) = match self.corners.get(&q) {
                 None => {
-                    let apex = out.vertex(q, self.place[&q]);
+                    let apex = out.vertex(q, self.place.of(q));
                     (apex, apex, None)
                 }
                 Some(other) => {
@@ -519,12 +575,46 @@ impl<T: Real> Builder<'_, T> {
     }
 }
 
+/// A hash of small numbers: what they are multiplied by mixes their low bits into the high ones
+/// (Knuth, The Art of Computer Programming, volume 3, section 6.4).
+#[derive(Clone, Copy, Default)]
+struct Mixed(u64);
+
+impl std::hash::Hasher for Mixed {
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|b| self.write_u64(u64::from(*b)));
+    }
+
+    fn write_u32(&mut self, n: u32) {
+        self.write_u64(u64::from(n));
+    }
+
+    fn write_u8(&mut self, n: u8) {
+        self.write_u64(u64::from(n));
+    }
+
+    fn write_usize(&mut self, n: usize) {
+        self.write_u64(n as u64);
+    }
+
+    fn write_u64(&mut self, n: u64) {
+        self.0 = (self.0.rotate_left(23) ^ n).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+}
+
+type Quick = std::hash::BuildHasherDefault<Mixed>;
+
 /// Vertices and edges, each made once.
 struct Assembly<T> {
     vertices: Vec<Vertex<T>>,
-    number: BTreeMap<PointId, usize>,
+    // Looked up, never run through, so that their order does not show.
+    number: HashMap<PointId, usize, Quick>,
     edges: Vec<SolidEdge<T>>,
-    known: BTreeMap<(usize, usize, bool), usize>,
+    known: HashMap<(usize, usize, bool), usize, Quick>,
 }
 
 impl<T: Real> Assembly<T> {
@@ -561,6 +651,16 @@ impl<T: Real> Solid<T> {
             Some(piece) => piece.length(),
             None => self.vertices[e.ends[0]].at.distance(self.vertices[e.ends[1]].at),
         }
+    }
+
+    /// Points along an edge: its ends, and of a curve also `chords - 1` between them.
+    pub fn polyline(&self, edge: usize, chords: usize) -> Vec<Vec3<T>> {
+        let e = &self.edges[edge];
+        let n = if e.piece.is_some() { chords.max(1) } else { 1 };
+        let piece = self.piece((edge, true));
+        let inner = (1..n).map(|k| piece.at(T::from(k as f64 / n as f64)));
+        let [p, q] = e.ends.map(|v| self.vertices[v].at);
+        std::iter::once(p).chain(inner).chain([q]).collect()
     }
 
     /// Area, volume, centroid, inertia.
@@ -603,13 +703,13 @@ impl<T: Real> Solid<T> {
         }
     }
 
-    /// Chords per edge: as curves ask, else within `tolerance`; both ends of a patch agree.
-    fn chords(&self, tolerance: f64) -> Vec<usize> {
+    /// Chords per edge: as curves ask, else as `usual` says; both ends of a patch agree.
+    fn chords(&self, usual: &dyn Fn(&Piece<T>) -> usize) -> Vec<usize> {
         let mut chords: Vec<usize> = (self.edges.iter())
             .map(|e| match (e.piece, e.curve.and_then(|c| self.steps.get(&c))) {
                 (None, _) => 1,
                 (Some(_), Some(&steps)) => steps.clamp(1, 720) as usize,
-                (Some(piece), None) => piece.chords(tolerance),
+                (Some(piece), None) => usual(&piece),
             })
             .collect();
         loop {
@@ -629,7 +729,23 @@ impl<T: Real> Solid<T> {
 
     /// A mesh of triangles and quads within `tolerance` of curves; faces are its patches.
     pub fn mesh(&self, tolerance: f64) -> Mesh<T> {
-        let chords = self.chords(tolerance);
+        self.mesh_of(self.chords(&|piece| piece.chords(tolerance)))
+    }
+
+    /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so that
+    /// there are as many triangles whatever the sizes are.
+    pub fn faceted(&self) -> Mesh<T> {
+        let by_angle = |piece: &Piece<T>| match piece {
+            Piece::Conic { sweep, .. } => {
+                let n = (sweep.re().abs().to_degrees() / 5.0 - 1e-9).ceil();
+                if n.is_finite() { (n as usize).clamp(1, 720) } else { 1 }
+            }
+            Piece::Cubic(_) => 20,
+        };
+        self.mesh_of(self.chords(&by_angle))
+    }
+
+    fn mesh_of(&self, chords: Vec<usize>) -> Mesh<T> {
         let mut places: Vec<Vec3<T>> = self.vertices.iter().map(|v| v.at).collect();
         let mut inner: Vec<Vec<u32>> = Vec::new();
         for (e, &n) in chords.iter().enumerate() {
@@ -701,19 +817,24 @@ impl<T: Real> Solid<T> {
                 way.map(|v| v as usize).collect()
             })
             .collect();
-        let flat: Vec<Vec3> = places.iter().map(|p| p.re()).collect();
+        let flat = |v: usize| places[v].re();
         let mut normal = Vec3::zero();
         for cycle in &loops {
+            let first = flat(cycle[0]);
             for k in 0..cycle.len() {
-                let (p, q) = (flat[cycle[k]], flat[cycle[(k + 1) % cycle.len()]]);
-                normal += (p - flat[cycle[0]]).cross(q - flat[cycle[0]]);
+                let (p, q) = (flat(cycle[k]), flat(cycle[(k + 1) % cycle.len()]));
+                normal += (p - first).cross(q - first);
             }
         }
         let used: Vec<usize> = loops.iter().flatten().copied().collect();
-        let local: BTreeMap<usize, usize> = used.iter().enumerate().map(|(k, &v)| (v, k)).collect();
-        let points: Vec<Vec3> = used.iter().map(|&v| flat[v]).collect();
+        let points: Vec<Vec3> = used.iter().map(|&v| flat(v)).collect();
+        // A vertex that two cycles share has the first of its places in both, so that it stays one.
+        let mut first: HashMap<usize, usize, Quick> = HashMap::default();
+        for (k, &v) in used.iter().enumerate() {
+            first.entry(v).or_insert(k);
+        }
         let loops: Vec<Vec<usize>> =
-            loops.iter().map(|c| c.iter().map(|v| local[v]).collect()).collect();
+            loops.iter().map(|c| c.iter().map(|v| first[v]).collect()).collect();
         triangulate(&points, &loops, normal)
             .into_iter()
             .map(|t| t.map(|k| used[k] as u32))

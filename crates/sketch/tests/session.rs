@@ -618,7 +618,7 @@ impl Random {
 #[test]
 fn any_line_is_answered() {
     let rounds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 10_000_000 } else { 30_000 };
-    let verbs: Vec<&str> = command::verbs::VERBS.iter().map(|v| v.0).collect();
+    let verbs: Vec<&str> = command::verbs::VERBS.iter().map(|v| v.name).collect();
     let words = [
         "A",
         "B",

@@ -21,6 +21,7 @@ COMMANDS = {
     "convert": "between programs and model files",
     "graph": "the dependency digraph as SVG",
     "render": "a picture without a display",
+    "sketch": "a sketch file, or the sketch language line by line",
     "doc": "the reference of entity kinds and functions",
 }
 """Commands with a line about each; the module of the same name has ``add`` and ``run``."""

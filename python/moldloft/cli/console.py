@@ -40,7 +40,9 @@ def assignment(text: str) -> tuple[str, float]:
 
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Arguments of every command that runs a model."""
-    parser.add_argument("model", metavar="MODEL", help="an .sdl program or an .ms2 model file")
+    parser.add_argument(
+        "model", metavar="MODEL", help="an .sdl program, an .ms2 model file or a .skt sketch"
+    )
     parser.add_argument(
         "--set",
         metavar="NAME=NUMBER",

@@ -9,6 +9,7 @@
 //! same point object ([`join`]); never because they look close. The position of a shared vertex is
 //! computed once, by the first patch in the order of declaration.
 
+mod bodies;
 mod divide;
 mod join;
 mod junction;
@@ -20,6 +21,7 @@ mod spread;
 pub use remark::{ChainStep, Remark};
 
 use crate::{Graph, Object};
+use bodies::Body;
 use join::Joiner;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_num::trace::{Edges, Key};
@@ -56,6 +58,10 @@ const IN_PLANE: f64 = 1e-12;
 pub struct Panelling {
     skeleton: Arc<Skeleton>,
     joint: Arc<Joint>,
+    /// Bodies of triangles; their vertices come after all others.
+    bodies: Arc<Vec<Body>>,
+    /// The joint's topology and that of the bodies.
+    topology: Arc<Topology>,
     /// The points of each patch by itself, in the order of the skeleton, at the state that this was
     /// made of: as they were evaluated, and with exact zeros.
     raw: Vec<Arc<Vec<Vec3>>>,
@@ -119,7 +125,9 @@ impl Panelling {
         let drafts = drafts(graph);
         let made = skeleton::make(graph, Roots::new(graph, &drafts), &drafts, nominal);
         let count = |frame: &skeleton::Frame| frame.divisions[0] as u64 * frame.divisions[1] as u64;
-        let total: u64 = made.skeleton.frames.iter().map(count).sum();
+        let bodies = bodies::bodies(graph);
+        let total = made.skeleton.frames.iter().map(count).sum::<u64>()
+            + bodies.iter().map(Body::panels).sum::<u64>();
         if total > MOST_PANELS {
             return Err(too_many_panels(total));
         }
@@ -159,9 +167,22 @@ impl Panelling {
         };
         let mut remarks = made.remarks;
         remarks.extend(joint.apart(&skeleton, &points, size.diagonal()));
+        let whole = before.filter(|b| {
+            let alike = b.bodies.len() == bodies.len()
+                && b.bodies.iter().zip(&bodies).all(|(a, b)| a.is_like(b));
+            alike && Arc::ptr_eq(&b.joint, &joint)
+        });
+        let topology = match whole {
+            Some(before) => before.topology.clone(),
+            None if bodies.is_empty() => joint.topology.clone(),
+            None => bodies::with_bodies(&joint.topology, &bodies)
+                .map_err(|e| Fault::new("too-many-panels", e.to_string()))?,
+        };
         Ok(Self {
             skeleton,
             joint,
+            bodies: Arc::new(bodies),
+            topology,
             raw,
             points,
             zeros,
@@ -174,7 +195,7 @@ impl Panelling {
 
     /// The connectivity.
     pub fn topology(&self) -> &Arc<Topology> {
-        &self.joint.topology
+        &self.topology
     }
 
     /// What was noticed at the joins.
@@ -201,7 +222,8 @@ impl Panelling {
         Nominal(counts.collect())
     }
 
-    /// The names of the patches' surfaces, in the order of the topology's patches.
+    /// The names of the patches' surfaces, in the order of the topology's patches; bodies of
+    /// triangles come after them.
     pub fn surfaces(&self) -> impl Iterator<Item = &Arc<str>> {
         self.skeleton.frames.iter().filter(|f| f.meshed).map(|f| &f.name)
     }
@@ -212,7 +234,7 @@ impl Panelling {
         let points = evaluated_all(&self.skeleton, &self.names, graph, |_| None);
         let mut points = points.into_iter().collect::<Option<Vec<_>>>()?;
         set_zeros(&self.skeleton, &self.zeros, &mut points);
-        Some(self.gathered(&points))
+        Some(self.gathered(&points, &self.body_points(graph)?))
     }
 
     /// The mesh, evaluated with the scalar of `graph`.
@@ -222,12 +244,15 @@ impl Panelling {
 
     /// The mesh at the state that the panelling was made of.
     pub fn own_mesh(&self) -> Option<Mesh<f64>> {
-        Mesh::new(self.topology().clone(), self.gathered(&self.points)).ok()
+        Mesh::new(self.topology().clone(), self.gathered(&self.points, &self.own_body_points()))
+            .ok()
     }
 
-    /// The vertices' positions from those of the patches by themselves.
-    fn gathered<T: Real>(&self, points: &[Arc<Vec<Vec3<T>>>]) -> Vec<Vec3<T>> {
+    /// The vertices' positions from those of the patches by themselves, and those of the bodies.
+    fn gathered<T: Real>(&self, points: &[Arc<Vec<Vec3<T>>>], bodies: &[Vec3<T>]) -> Vec<Vec3<T>> {
         let mut positions = vec![Vec3::zero(); self.topology().vertex_count()];
+        let last = positions.len() - bodies.len();
+        positions[last..].copy_from_slice(bodies);
         let patches = self.skeleton.frames.iter().zip(points).zip(&self.joint.vertices);
         // Backwards, so that the first patch has the last word.
         for ((_, points), vertices) in patches.rev().filter(|((f, _), _)| f.meshed) {

@@ -10,12 +10,12 @@ pub const MAX_LABEL: u32 = 1_000_000;
 /// A cursor over tokens.
 pub struct Args<'a> {
     tokens: &'a [Token],
-    usage: &'static str,
+    usage: &'a str,
 }
 
 impl<'a> Args<'a> {
     /// The tokens after the verb, and how the verb is used.
-    pub fn new(tokens: &'a [Token], usage: &'static str) -> Args<'a> {
+    pub fn new(tokens: &'a [Token], usage: &'a str) -> Args<'a> {
         Args { tokens, usage }
     }
 

@@ -12,6 +12,7 @@ use crate::{
     Variable, chain, chain_text,
 };
 use moldloft_syntax::number::plain;
+use std::sync::Arc;
 
 impl Session {
     pub(super) fn dimension(&mut self, args: &mut Args) -> Result<(), Fault> {
@@ -45,11 +46,10 @@ impl Session {
                 ));
             }
         };
-        let view = self.view(&object);
-        if view.planes.counts()[axis.index()] == 0 {
+        if object.drawing.lines.is_empty() {
             return Err(Fault::new(
                 398,
-                format!("there are no planes on axis {axis}"),
+                format!("there are no planes on axis {axis}: no line fixes any point there"),
                 "draw lines first",
             ));
         }
@@ -169,6 +169,9 @@ impl Session {
             (_, Some(second)) => Measure::Equal(first, second),
             _ => return Err(args.wants("a second line")),
         };
+        if kind != "EQUAL" && args.len() == 0 {
+            return self.measured(&object, name, measure);
+        }
         let value = if kind == "EQUAL" && (args.len() == 0 || args.tokens_at(0, "IN")) {
             Expr::number(1.0)
         } else {
@@ -195,6 +198,23 @@ impl Session {
         }
         self.active_mut()?.add_dimension(Dimension { role, ..dimension });
         self.tell_counts()
+    }
+
+    /// A derived dimension without a value: it only shows what the others make it.
+    fn measured(&mut self, object: &Object, name: String, measure: Measure) -> Result<(), Fault> {
+        let (view, layout) = self.laid_out(object);
+        let Some(x) = layout.measured(object, &view.planes, &measure) else {
+            return Err(Fault::new(
+                404,
+                format!("{name} cannot be measured yet: its points are not determined"),
+                "give it a value, or the missing dimensions; CHECK lists them",
+            ));
+        };
+        self.out.push(Reply::note(format!("{name} measures {}", plain(x))));
+        let dimension =
+            Dimension { name, measure, value: None, role: Role::Reference, range: None };
+        self.active_mut()?.add_dimension(dimension);
+        Ok(())
     }
 
     /// Asks whether the estimated value is right (a dimension without a value).
@@ -272,8 +292,9 @@ impl Session {
 
     /// `X 2/3 Y 1/1 Z 0/2`.
     pub(super) fn tell_counts(&mut self) -> Result<(), Fault> {
-        let object = self.active()?.clone();
-        let (_, layout) = self.laid_out(&object);
+        let object = self.active_arc()?;
+        let worked = self.worked(&object);
+        let layout = &worked.layout;
         let part = |a: Axis| {
             let c = layout.counts[a.index()];
             format!("{a} {}/{}", c.given, c.required)
@@ -375,13 +396,18 @@ impl Session {
 
     /// Changes or adds a dimension, unless that makes a new fault.
     fn put(&mut self, dimension: Dimension) -> Result<(), Fault> {
-        let mut object = self.active()?.clone();
-        let before = self.laid_out(&object).1.faults;
+        in_range(&dimension.name, dimension.value.as_ref(), dimension.range)?;
+        let old = self.active_arc()?;
+        let before = self.worked(&old);
         let name = dimension.name.clone();
+        let mut object = Object::clone(&old);
         object.add_dimension(dimension);
-        for fault in self.laid_out(&object).1.faults {
-            match &fault {
+        let mut object = Arc::new(object);
+        let tried = self.worked(&object);
+        for fault in &tried.layout.faults {
+            match fault {
                 DimensionFault::Redundant { name: n, .. } if *n == name => {
+                    let object = Arc::make_mut(&mut object);
                     if let Some(d) = object.dimensions.get_mut(&name.to_ascii_lowercase()) {
                         d.role = Role::Reference;
                     }
@@ -389,24 +415,28 @@ impl Session {
                         "396: {name} is determined already; it agrees and is a reference"
                     )));
                 }
-                _ if before.contains(&fault) => {}
-                _ => return Err(dimension_fault(&fault)),
+                _ if before.layout.faults.contains(fault) => {}
+                _ => return Err(dimension_fault(fault)),
             }
         }
-        *self.active_mut()? = object;
+        self.replace_active(object);
         self.tell_counts()?;
         self.tell_validity()
     }
 
     fn put_variable(&mut self, variable: Variable) -> Result<(), Fault> {
-        let mut object = self.active()?.clone();
-        let before = self.laid_out(&object).1.faults;
+        in_range(&variable.name, Some(&variable.value), variable.range)?;
+        let old = self.active_arc()?;
+        let before = self.worked(&old);
+        let mut object = Object::clone(&old);
         object.variables.insert(variable.name.to_ascii_lowercase(), variable);
-        let faults = self.laid_out(&object).1.faults;
-        if let Some(fault) = faults.iter().find(|f| !before.contains(f)) {
+        let object = Arc::new(object);
+        let tried = self.worked(&object);
+        let mut faults = tried.layout.faults.iter();
+        if let Some(fault) = faults.find(|f| !before.layout.faults.contains(f)) {
             return Err(dimension_fault(fault));
         }
-        *self.active_mut()? = object;
+        self.replace_active(object);
         self.tell_validity()
     }
 
@@ -535,6 +565,20 @@ fn along(
         (sum, at) = if at == a { (sum + value, b) } else { (sum - value, a) };
     }
     Some(sum)
+}
+
+/// Refuses a plain number outside its range.
+fn in_range(name: &str, value: Option<&Expr>, range: Option<[f64; 2]>) -> Result<(), Fault> {
+    match (value.and_then(Expr::literal), range) {
+        (Some(x), Some([low, high])) if !(low..=high).contains(&x) => {
+            let (low, high) = (plain(low), plain(high));
+            Err(Fault::text(
+                format!("{name} = {} is outside its range, {low} to {high}", plain(x)),
+                format!("give a number in it, or another range: SET {name} {} IN lo hi", plain(x)),
+            ))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Three significant digits: what a picture can tell.

@@ -302,6 +302,13 @@ impl Session {
                 }
                 _ => {
                     let name = args.name("a name")?;
+                    if kind == "CURVE" && object.curves.is_empty() {
+                        return Err(Fault::new(
+                            105,
+                            format!("object {} has no curves", object.name),
+                            "ARC, CIRCLE, QUADRATIC, CUBIC and ELLIPSE draw them",
+                        ));
+                    }
                     let key = name.to_ascii_lowercase();
                     let found = match kind {
                         "CURVE" => object.curves.shift_remove(&key).is_some(),

@@ -9,11 +9,13 @@ pub(super) use crate::script::measure_text;
 use crate::script::script;
 use crate::twin::{ObjectData, from_json, object_data, to_json};
 use crate::{Dimension, Measure, Object, Role, Variable, export};
+use moldloft_syntax::number::plain;
+use std::sync::Arc;
 
 impl Session {
     /// All objects with what follows from them.
     pub fn objects(&mut self) -> Vec<ObjectData> {
-        let objects: Vec<Object> = self.state.objects.values().map(|o| (**o).clone()).collect();
+        let objects: Vec<Arc<Object>> = self.state.objects.values().map(Arc::clone).collect();
         objects.iter().map(|o| self.data(o)).collect()
     }
 
@@ -22,10 +24,9 @@ impl Session {
         Json::map([("objects", Json::list(self.objects().iter().map(ObjectData::to_json)))])
     }
 
-    fn data(&mut self, object: &Object) -> ObjectData {
-        let (view, layout) = self.laid_out(object);
-        let solid = crate::solid(object, &view.planes, &layout);
-        object_data(object, &view.planes, &layout, solid)
+    fn data(&mut self, object: &Arc<Object>) -> ObjectData {
+        let worked = self.worked(object);
+        object_data(object, &worked.view.planes, &worked.layout, worked.solid().cloned())
     }
 
     pub(super) fn save(&mut self, args: &mut Args) -> Result<(), Fault> {
@@ -68,7 +69,7 @@ impl Session {
         } else {
             objects.iter().map(|o| script(o)).collect()
         };
-        self.out.push(Reply::output(&file, text.into_bytes()));
+        self.write(&file, text.into_bytes());
         Ok(())
     }
 
@@ -106,6 +107,66 @@ impl Session {
                 self.nested(&format!("RENAME \"{name}\" TO \"{new}\""))?;
             }
         }
+        Ok(())
+    }
+
+    /// `IMPORT file`: the lines of a DXF drawing become points and lines; other files are read as by
+    /// INPUT.
+    pub(super) fn import(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let file = args.name("the name of a file")?;
+        args.end()?;
+        let text = self.read(&file)?;
+        if !file.to_ascii_lowercase().ends_with(".dxf") {
+            let words = [crate::command::words::Token { kind: Kind::Text, text: file }];
+            return self.input(&mut Args::new(&words, ""), true);
+        }
+        let strokes = crate::import::dxf_lines(&text).map_err(|why| {
+            Fault::new(399, format!("{file} is no DXF drawing: {why}"), "EXPORT DXF writes one")
+        })?;
+        if strokes.is_empty() {
+            return Err(Fault::new(102, format!("{file} has no lines"), "draw LINE or polyline"));
+        }
+        if self.active_object().is_none() {
+            let stem = std::path::Path::new(&file).file_stem().map(|s| s.to_string_lossy());
+            let name: String = stem.map_or("NONAME".into(), |s| s.chars().take(32).collect());
+            self.nested(&format!("SKETCH \"{}\"", name.replace('"', "_")))?;
+        }
+        self.draw_strokes(&strokes)?;
+        let numbers: Vec<String> = strokes.iter().flatten().flatten().map(|x| plain(*x)).collect();
+        self.recorded = Some(format!("STROKES {}", numbers.join(" ")));
+        Ok(())
+    }
+
+    /// `STROKES u v u v …`: lines by their ends, as a host's canvas has them.
+    pub(super) fn strokes(&mut self, args: &mut Args) -> Result<(), Fault> {
+        let mut strokes = Vec::new();
+        while args.at_number() {
+            let mut end = || -> Result<[f64; 2], Fault> {
+                Ok([args.number("the coordinate u of an end")?, args.number("its coordinate v")?])
+            };
+            strokes.push([end()?, end()?]);
+        }
+        args.end()?;
+        if strokes.is_empty() {
+            return Err(args.wants("four numbers for each line"));
+        }
+        self.draw_strokes(&strokes)
+    }
+
+    fn draw_strokes(&mut self, strokes: &[crate::import::Stroke]) -> Result<(), Fault> {
+        let ends = strokes.iter().flatten();
+        let size = ends.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()));
+        let points = self.active()?.drawing.points.len() + 2 * strokes.len();
+        if size > 1e9 || points > super::session::MAX_POINTS {
+            return Err(Fault::new(
+                200,
+                format!("{} lines on this page are too many, or it ends beyond 1e9", strokes.len()),
+                "draw a part of them",
+            ));
+        }
+        let drawing = self.active_mut()?.draw();
+        let (points, lines) = crate::import::draw(drawing, strokes, 1e-6 * size);
+        self.out.push(Reply::note(format!("{points} points and {lines} lines")));
         Ok(())
     }
 
@@ -167,6 +228,13 @@ impl Session {
     pub(super) fn export(&mut self, args: &mut Args) -> Result<(), Fault> {
         const FORMATS: [&str; 8] = ["STL", "OBJ", "GLTF", "3MF", "DXF", "SVG", "JSON", "SKETCH83"];
         let format = args.name("a format")?.to_ascii_uppercase();
+        if format == "STEP" {
+            return Err(Fault::new(
+                600,
+                "STEP is not written yet",
+                "EXPORT 3MF or GLTF for meshes, DXF for edges and facets",
+            ));
+        }
         if !FORMATS.contains(&format.as_str()) {
             return Err(Fault::new(
                 600,
@@ -182,7 +250,7 @@ impl Session {
         }
         let file = if args.len() > 0 { Some(args.name("the name of a file")?) } else { None };
         args.end()?;
-        let object = self.active()?.clone();
+        let object = self.active_arc()?;
         let extension = format.to_ascii_lowercase();
         let file = file.unwrap_or_else(|| format!("{}.{extension}", object.name));
         let data = self.data(&object);
@@ -195,24 +263,20 @@ impl Session {
                         object.name
                     )));
                 }
-                let mut short = object.clone();
+                let mut short = Object::clone(&object);
                 short.name = object.name.chars().take(6).collect();
                 script(&short).into_bytes()
             }
             "SVG" => {
-                let shown: Vec<Object> = self
-                    .state
-                    .objects
-                    .values()
-                    .filter(|o| o.display)
-                    .map(|o| (**o).clone())
-                    .collect();
+                let shown: Vec<Arc<Object>> =
+                    self.state.objects.values().filter(|o| o.display).map(Arc::clone).collect();
                 if shown.is_empty() {
                     return Err(Fault::new(112, "nothing is displayed", "DISPLAY shows objects"));
                 }
                 let all: Vec<ObjectData> = shown.iter().map(|o| self.data(o)).collect();
-                let pairs: Vec<(&Object, &ObjectData)> = shown.iter().zip(&all).collect();
-                export::svg(&pairs, &self.state.picture, self.window()).into_bytes()
+                let pairs: Vec<(&Object, &ObjectData)> =
+                    shown.iter().map(|o| &**o).zip(&all).collect();
+                crate::picture::svg(&pairs, &self.state.picture, self.page()).into_bytes()
             }
             _ => {
                 let Some(solid) = &data.solid else {
@@ -233,7 +297,7 @@ impl Session {
                 }
             }
         };
-        self.out.push(Reply::output(&file, bytes));
+        self.write(&file, bytes);
         Ok(())
     }
 }

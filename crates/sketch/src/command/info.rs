@@ -171,8 +171,9 @@ impl Session {
     /// What a change of values has done to an otherwise finished object: planes that passed each
     /// other, faces that are no longer flat, curves that no longer fit.
     pub(super) fn tell_validity(&mut self) -> Result<(), Fault> {
-        let object = self.active()?.clone();
-        let (view, layout) = self.laid_out(&object);
+        let object = self.active_arc()?;
+        let worked = self.worked(&object);
+        let (view, layout) = (&worked.view, &worked.layout);
         let planes = &view.planes;
         if let Some(e) = view.estimate() {
             let clear = 0.02 * e.extent();
@@ -192,7 +193,7 @@ impl Session {
                 }
             }
         }
-        if let Some(solid) = crate::solid(&object, planes, &layout) {
+        if let Some(solid) = worked.solid() {
             for (id, face) in &object.faces {
                 let at: Vec<_> =
                     face.loops().flatten().filter_map(|p| layout.point(planes, *p)).collect();
@@ -204,6 +205,8 @@ impl Session {
                         plain(rounded(off))
                     ));
                     reply.code = Some(703);
+                    reply.next =
+                        Some("UNDO, or draw a line across it and GENERATE FACES".to_owned());
                     self.out.push(reply);
                 }
             }
@@ -518,6 +521,14 @@ impl Session {
             let text: Vec<String> = face.outer.iter().map(ToString::to_string).collect();
             let text = format!("face {id} runs {}", text.join(" "));
             self.out.push(Reply::note(text));
+            self.state.picture.face = Some(id);
+            return Ok(());
+        }
+        if args.at("FACE") && args.tokens_at(1, "OFF") {
+            args.skip();
+            args.skip();
+            args.end()?;
+            self.state.picture.face = None;
             return Ok(());
         }
         let what = ["LABELS", "PLANES", "TYPES"].into_iter().find(|w| args.at(w));
@@ -537,9 +548,11 @@ impl Session {
 
     /// The window on the page, as wide as all points when none was set.
     pub(super) fn window(&self) -> [f64; 4] {
-        if let Some(w) = self.state.picture.window {
-            return w;
-        }
+        self.state.picture.window.unwrap_or_else(|| self.page())
+    }
+
+    /// The part of the page that is drawn on.
+    pub(super) fn page(&self) -> [f64; 4] {
         let mut w = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
         for p in self.state.objects.values().flat_map(|o| o.drawing.points.values()) {
             w = [w[0].min(p.u), w[1].min(p.v), w[2].max(p.u), w[3].max(p.v)];

@@ -1,6 +1,7 @@
 //! The command language: lines in, replies out.
 
 mod args;
+mod boolean;
 mod curves;
 mod dims;
 mod draw;

@@ -94,6 +94,8 @@ pub(crate) struct Picture {
     pub types: bool,
     /// `SKETCH`, `TOP`, `FRONT`, `SIDE` or the name of a projection.
     pub view: String,
+    /// A face that stands out.
+    pub face: Option<crate::FaceId>,
     /// The window on the page: left, bottom, right, top.
     pub window: Option<[f64; 4]>,
 }
@@ -124,6 +126,22 @@ impl View {
     }
 }
 
+/// An object with what follows from it, kept while it is the same.
+pub(crate) struct Worked {
+    pub object: Arc<Object>,
+    pub view: Arc<View>,
+    pub layout: Layout<f64>,
+    solid: std::sync::OnceLock<Option<Solid<f64>>>,
+}
+
+impl Worked {
+    /// The body, once there are faces and all dimensions.
+    pub fn solid(&self) -> Option<&Solid<f64>> {
+        let make = || solid(&self.object, &self.view.planes, &self.layout);
+        self.solid.get_or_init(make).as_ref()
+    }
+}
+
 /// Runs commands on objects.
 ///
 /// ```
@@ -138,6 +156,8 @@ impl View {
 pub struct Session {
     pub(crate) state: State,
     undo: Vec<State>,
+    /// How many states were too old to be kept.
+    forgotten: usize,
     redo: Vec<State>,
     history: Vec<String>,
     journal: Vec<String>,
@@ -145,16 +165,23 @@ pub struct Session {
     pub(crate) question: Option<Question>,
     begun: String,
     views: Vec<Arc<View>>,
+    worked: Vec<Arc<Worked>>,
     depth: usize,
     over: bool,
+    /// What SAVE and EXPORT wrote in the line that is running, which the host has not seen yet.
+    pub(crate) written: BTreeMap<String, Vec<u8>>,
+    /// What the journal takes in place of the command that is running.
+    pub(crate) recorded: Option<String>,
     /// Replies of the command that is running.
     pub(crate) out: Vec<Reply>,
 }
 
 /// Undo goes back this far.
 const MAX_UNDO: usize = 500;
+/// Points, lines and faces that all states of the way back hold together, at most.
+const MAX_PARTS: usize = 2_000_000;
 /// Longer lines are refused.
-const MAX_LINE: usize = 1 << 16;
+const MAX_LINE: usize = 1 << 22;
 /// Files that run files.
 const MAX_DEPTH: usize = 8;
 /// More points than this in one object are refused.
@@ -179,11 +206,13 @@ impl Session {
             planes: false,
             types: true,
             view: "SKETCH".into(),
+            face: None,
             window: None,
         };
         Session {
             state: State { objects: IndexMap::new(), active: None, picture, sketch83: false },
             undo: Vec::new(),
+            forgotten: 0,
             redo: Vec::new(),
             history: Vec::new(),
             journal: Vec::new(),
@@ -191,8 +220,11 @@ impl Session {
             question: None,
             begun: String::new(),
             views: Vec::new(),
+            worked: Vec::new(),
             depth: 0,
             over: false,
+            written: BTreeMap::new(),
+            recorded: None,
             out: Vec::new(),
         }
     }
@@ -200,6 +232,12 @@ impl Session {
     /// Runs a line: one or more commands, or a part of one that ends in `&`. A refused command
     /// changes nothing; those after it in the line are run.
     pub fn run_line(&mut self, line: &str) -> Vec<Reply> {
+        if line.contains('\n') {
+            return self.run_text(line);
+        }
+        if self.depth == 0 {
+            self.written.clear();
+        }
         if self.begun.len() + line.len() > MAX_LINE {
             self.begun.clear();
             let text = format!("the line is longer than {MAX_LINE} bytes");
@@ -229,40 +267,68 @@ impl Session {
 
     fn run_command(&mut self, command: &Command) -> Vec<Reply> {
         let before = self.state.clone();
+        let marks = (self.undo.len() + self.forgotten, self.journal.len());
         let outer = std::mem::take(&mut self.out);
-        let result = self.dispatch(command);
+        let found = verbs::find(&command.tokens[0].text);
+        let verb = found.as_ref().map_or("", |f| f.0);
+        let result = found.and_then(|(verb, note)| {
+            self.out.extend(note.map(Reply::note));
+            self.dispatch(verb, command)
+        });
         let mut replies = std::mem::replace(&mut self.out, outer);
         match result {
             Ok(()) => {
                 self.history.push(command.text.clone());
-                let head = command.tokens[0].text.to_ascii_uppercase();
-                let steps =
-                    head.len() >= 2 && ("UNDO".starts_with(&head) || "REDO".starts_with(&head));
-                let nested = matches!(verbs::find(&head), Ok(("RUN" | "INPUT", _)));
-                if steps {
-                    self.journal.push(command.text.clone());
-                } else if !nested && !same(&before, &self.state) {
-                    self.journal.push(command.text.clone());
+                let changed = !same(&before, &self.state);
+                // The commands of a file were recorded one by one.
+                let nested = matches!(verb, "RUN" | "INPUT");
+                // What was drawn from a file is recorded as such: the file may be gone later.
+                let text = self.recorded.take().unwrap_or_else(|| command.text.clone());
+                let steps = matches!(verb, "UNDO" | "REDO");
+                // Questions and answers count too: an answer means nothing without its question.
+                let asked = self.question.is_some() && !matches!(verb, "HELP" | "LIST" | "SHOW");
+                let answered = matches!(verb, "ACCEPT" | "REJECT" | "REVERSE" | "YES" | "NO");
+                if !nested && (changed || steps || asked || answered) {
+                    self.journal.push(text);
+                }
+                if !nested && !steps && changed {
                     self.undo.push(before);
-                    if self.undo.len() > MAX_UNDO {
-                        self.undo.remove(0);
-                    }
+                    self.forget();
                     self.redo.clear();
                 }
             }
             Err(fault) => {
+                // What a file did before its command was refused is taken back as well.
                 self.state = before;
+                self.recorded = None;
+                self.undo.truncate(marks.0.saturating_sub(self.forgotten));
+                self.journal.truncate(marks.1);
                 replies.push(fault.into());
             }
         }
         replies
     }
 
-    fn dispatch(&mut self, command: &Command) -> Result<(), Fault> {
-        let (verb, note) = verbs::find(&command.tokens[0].text)?;
-        self.out.extend(note.map(Reply::note));
-        let usage = verbs::VERBS.iter().find(|v| v.0 == verb).map_or("", |v| v.1);
-        let args = &mut Args::new(&command.tokens[1..], usage);
+    /// Forgets the oldest states: beyond a number of steps, or of parts that they hold.
+    fn forget(&mut self) {
+        let parts = |s: &State| -> usize {
+            let of = |o: &Arc<Object>| {
+                o.drawing.points.len() + o.drawing.lines.len() + o.faces.len() + 1
+            };
+            s.objects.values().map(of).sum()
+        };
+        let steps = match self.undo.last().map(parts) {
+            Some(n) => (MAX_PARTS / n.max(1)).clamp(1, MAX_UNDO),
+            None => MAX_UNDO,
+        };
+        let beyond = self.undo.len().saturating_sub(steps);
+        self.undo.drain(..beyond);
+        self.forgotten += beyond;
+    }
+
+    fn dispatch(&mut self, verb: &'static str, command: &Command) -> Result<(), Fault> {
+        let usage = verbs::row(verb).map_or(String::new(), verbs::Verb::usage);
+        let args = &mut Args::new(&command.tokens[1..], &usage);
         let answer = matches!(verb, "ACCEPT" | "REJECT" | "REPEAT" | "YES" | "NO")
             || (verb == "REVERSE" && args.len() == 0);
         if answer {
@@ -277,6 +343,7 @@ impl Session {
             "POINT" => self.point(args),
             "LINE" => self.line(args),
             "POLYLINE" => self.polyline(args),
+            "STROKES" => self.strokes(args),
             "SPLIT" => self.split(args),
             "WELD" => self.weld(args),
             "DELETE" => self.delete(args),
@@ -301,6 +368,7 @@ impl Session {
             "REVOLVE" => self.revolve(args),
             "CLEAN" => self.clean(args),
             "MERGE" => self.merge(args),
+            "UNION" | "CUT" | "COMMON" => self.combine(args, verb),
             "MEASURE" => self.measure(args),
             "ARC" | "CIRCLE" | "ELLIPSE" => self.corner_curve(args, verb),
             "QUADRATIC" | "PARABOLA" => self.chain_curve(args, 3),
@@ -312,6 +380,7 @@ impl Session {
             "DUMP" => self.dump(args),
             "SAVE" => self.save(args),
             "INPUT" | "RUN" => self.input(args, verb == "INPUT"),
+            "IMPORT" => self.import(args),
             "EXPORT" => self.export(args),
             "GIVE" => self.give(args),
             "DECLARE" => self.declare(args),
@@ -343,6 +412,16 @@ impl Session {
         &self.journal
     }
 
+    /// Whether a question waits for an answer.
+    pub fn asks(&self) -> bool {
+        self.question.is_some()
+    }
+
+    /// Whether the last line ended in `&`, so that the next one goes on with it.
+    pub fn begun(&self) -> bool {
+        !self.begun.is_empty()
+    }
+
     /// All commands so far.
     pub fn history(&self) -> &[String] {
         &self.history
@@ -359,7 +438,7 @@ impl Session {
         let first = line.rsplit(';').next().unwrap_or("").trim_start().len() <= last.len();
         let starts = |name: &str| name.to_ascii_uppercase().starts_with(&last);
         if first {
-            let verbs = verbs::VERBS.iter().map(|v| v.0.to_owned());
+            let verbs = verbs::VERBS.iter().map(|v| v.name.to_owned());
             return verbs.filter(|v| starts(v)).collect();
         }
         let objects = self.state.objects.values().map(|o| o.name.clone());
@@ -375,6 +454,28 @@ impl Session {
         self.state.objects.get(&name.to_lowercase()).map(|o| &**o)
     }
 
+    /// The names of all objects, in the order they were made.
+    pub fn names(&self) -> Vec<String> {
+        self.state.objects.values().map(|o| o.name.clone()).collect()
+    }
+
+    /// Dimensions and variables of an object with value and range, in the order of entry.
+    pub fn numbers(&mut self, name: &str) -> Option<Vec<(String, Option<f64>, Option<[f64; 2]>)>> {
+        let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
+        let worked = self.worked(&object);
+        let values = &worked.layout.values;
+        let variables = object.variables.iter().map(|(k, v)| (k, &v.name, v.range));
+        let dimensions = object.dimensions.iter().map(|(k, d)| (k, &d.name, d.range));
+        let row = |(k, n, r): (&String, &String, _)| (n.clone(), values.get(k).copied(), r);
+        Some(variables.chain(dimensions).map(row).collect())
+    }
+
+    /// The body of an object, once it has faces and all dimensions.
+    pub fn solid(&mut self, name: &str) -> Option<Solid<f64>> {
+        let object = Arc::clone(self.state.objects.get(&name.to_lowercase())?);
+        self.worked(&object).solid().cloned()
+    }
+
     /// The active object.
     pub fn active_object(&self) -> Option<&Object> {
         self.object(self.state.active.as_deref()?)
@@ -387,7 +488,16 @@ impl Session {
         self.state.active = Some(key);
     }
 
+    /// A file that the host writes.
+    pub(crate) fn write(&mut self, name: &str, bytes: Vec<u8>) {
+        self.written.insert(name.to_owned(), bytes.clone());
+        self.out.push(Reply::output(name, bytes));
+    }
+
     pub(crate) fn read(&self, name: &str) -> Result<String, Fault> {
+        if let Some(text) = self.written.get(name).and_then(|b| String::from_utf8(b.clone()).ok()) {
+            return Ok(text);
+        }
         self.files.read(name).map_err(|why| {
             Fault::new(600, format!("cannot read \"{name}\": {why}"), "check the name")
         })
@@ -421,6 +531,20 @@ impl Session {
         })
     }
 
+    /// The active object, shared.
+    pub(crate) fn active_arc(&self) -> Result<Arc<Object>, Fault> {
+        self.active()?;
+        let key = self.state.active.as_deref().unwrap_or_default();
+        Ok(Arc::clone(&self.state.objects[key]))
+    }
+
+    /// Puts another state of the active object in its place.
+    pub(crate) fn replace_active(&mut self, object: Arc<Object>) {
+        if let Some(key) = self.state.active.clone() {
+            self.state.objects.insert(key, object);
+        }
+    }
+
     /// Takes an object's name if one is next, and makes it active.
     pub(crate) fn take_object(&mut self, args: &mut Args) -> Result<(), Fault> {
         if let Some(token) = args.peek().filter(|t| !matches!(t.kind, words::Kind::Number(..))) {
@@ -452,6 +576,21 @@ impl Session {
         }
         self.views.push(Arc::clone(&view));
         view
+    }
+
+    /// An object with its layout and body, from memory when it is the very same.
+    pub(crate) fn worked(&mut self, object: &Arc<Object>) -> Arc<Worked> {
+        if let Some(known) = self.worked.iter().find(|w| Arc::ptr_eq(&w.object, object)) {
+            return Arc::clone(known);
+        }
+        let (view, layout) = self.laid_out(object);
+        let solid = std::sync::OnceLock::new();
+        let worked = Arc::new(Worked { object: Arc::clone(object), view, layout, solid });
+        if self.worked.len() >= 4 {
+            self.worked.remove(0);
+        }
+        self.worked.push(Arc::clone(&worked));
+        worked
     }
 
     /// Planes and layout of an object.
@@ -492,15 +631,22 @@ impl Session {
     fn help(&mut self, args: &mut Args) -> Result<(), Fault> {
         let text = match args.peek() {
             None => {
-                let lines = verbs::VERBS.iter().map(|(v, _, does)| format!("{v:<11}{does}"));
-                lines.collect::<Vec<_>>().join("\n")
+                let mut group = "";
+                let mut lines = Vec::new();
+                for verb in verbs::VERBS.iter() {
+                    if verb.group != group {
+                        group = verb.group;
+                        lines.push(format!("{group}:"));
+                    }
+                    lines.push(format!("  {:<11}{}", verb.name, verb.does));
+                }
+                lines.join("\n")
             }
             Some(token) => {
                 args.skip();
                 args.end()?;
-                let (verb, _) = verbs::find(&token.text)?;
-                let row = verbs::VERBS.iter().find(|v| v.0 == verb);
-                row.map_or(String::new(), |(_, usage, does)| format!("{usage}\n{does}"))
+                let row = verbs::row(verbs::find(&token.text)?.0);
+                row.map_or(String::new(), |v| format!("{}\n    {}", v.forms.join("\n"), v.does))
             }
         };
         self.out.push(Reply::note(text));

@@ -1,125 +1,81 @@
 //! The verbs, how they may be shortened, and their help.
 
 use super::Fault;
+use std::sync::LazyLock;
 
-/// Every verb with its use and what it does.
-pub const VERBS: &[(&str, &str, &str)] = &[
-    ("SKETCH", "SKETCH [name] [2D [XY|XZ|YZ] | 3D]", "starts an object, or goes on with it"),
-    ("MODIFY", "MODIFY [name]", "goes on with an object"),
-    ("POINT", "POINT [id] [AT] u v", "draws a point, or moves it on the page"),
-    ("LINE", "LINE [id] [FROM] p [TO] q [TYPE X|Y|Z|H|P|F|O]", "draws a line; its slope names it"),
-    ("POLYLINE", "POLYLINE p q … [CLOSE]", "draws lines from point to point"),
-    ("SPLIT", "SPLIT line part", "puts a point on a line, at a part of its length"),
-    ("WELD", "WELD p q", "makes two points one"),
-    (
-        "DELETE",
-        "DELETE name | DELETE POINT|LINE|FACE|CURVE|DIMENSION id …",
-        "removes an object or parts",
-    ),
-    (
-        "AXES",
-        "AXES α β [γ] | preset | AUTO [SCALE x y z]",
-        "says how the axes were drawn, in degrees",
-    ),
-    ("TYPE", "TYPE line … [AS] type | TYPE AUTO", "types lines"),
-    ("ALIGN", "ALIGN axis p q …", "puts points into one plane"),
-    ("UNALIGN", "UNALIGN axis p q", "takes that back"),
-    (
-        "DIMENSION",
-        "DIMENSION [name] [axis] p [TO] q [value] [REVERSED|FORWARD] [IN lo hi] | LENGTH l | SLOPE l | ANGLE l m | EQUAL l m",
-        "gives a dimension",
-    ),
-    (
-        "SET",
-        "SET name value | POINT p axis value | UP axis | NAMES SEED|STANDARD | UNITS u | SKETCH83 ON|OFF",
-        "changes a dimension, variable or setting",
-    ),
-    ("UNSET", "UNSET name", "takes a value away"),
-    ("VARIABLE", "VARIABLE name value [IN lo hi]", "defines a named number"),
-    ("REFERENCE", "REFERENCE p x y [z]", "says where a point is"),
-    ("REVERSE", "REVERSE name", "turns the direction of a dimension"),
-    ("EXTENSIONS", "EXTENSIONS [axis]", "lists the dimensioning planes"),
-    ("CHECK", "CHECK [name]", "lists what is doubtful, missing or contradictory"),
-    ("WHY", "WHY name | WHY axis p q | WHY p", "explains a plane or a dimension"),
-    ("ESTIMATE", "ESTIMATE", "guesses the solid from the picture"),
-    ("CONVERT", "CONVERT [name]", "computes the coordinates"),
-    ("GENERATE", "GENERATE FACES [name] [ASK|AUTO]", "finds the faces"),
-    ("CREATE", "CREATE FACES [name] [ASK|AUTO]", "the same"),
-    ("FACE", "FACE [id RUNS] p q r … {HOLE p q r …}", "adds a face"),
-    ("CHOOSE", "CHOOSE n", "takes the n-th solid that fits"),
-    ("EXTRUDE", "EXTRUDE [name] [axis] value", "makes a solid of a cross section"),
-    ("REVOLVE", "REVOLVE [name] line angle", "turns a cross section about one of its lines"),
-    ("CLEAN", "CLEAN [name]", "removes lines between faces of one plane"),
-    ("MERGE", "MERGE a [b] [INTO] c [TOL t]", "unites objects"),
-    ("MEASURE", "MEASURE [name] [VOLUME|AREA|CENTROID|INERTIA]", "prints properties"),
-    (
-        "ARC",
-        "ARC [name] LINES l m | CORNER p [a b] [RADIUS value] [STEPS n] [KEEP]",
-        "rounds a corner",
-    ),
-    (
-        "CIRCLE",
-        "CIRCLE [name] LINES l m | CORNER p [a b] [RADIUS value] [KEEP]",
-        "a circle in a corner",
-    ),
-    ("QUADRATIC", "QUADRATIC [name] LINES l m | POINTS a b c", "a parabola through three points"),
-    ("PARABOLA", "PARABOLA [name] LINES l m | POINTS a b c", "the same"),
-    ("CUBIC", "CUBIC [name] LINES l m n … | POINTS a b c d … [CENTRIPETAL]", "Overhauser cubics"),
-    ("OVERHAUSER", "OVERHAUSER [name] LINES l m n … | POINTS a b c d …", "the same"),
-    (
-        "ELLIPSE",
-        "ELLIPSE [name] [ARC|FULL] LINES l m | CORNER p [a b] [SEMI m n] [KEEP]",
-        "an ellipse or its quarter",
-    ),
-    ("USING", "USING name", "makes an object the active one"),
-    ("RENAME", "RENAME old [TO] new", "renames an object"),
-    ("COPY", "COPY name [TO] name", "copies an object"),
-    ("MOVE", "MOVE name dx dy dz", "moves an object"),
-    ("ROTATE", "ROTATE name axis degrees", "turns an object by quarter turns"),
-    ("MIRROR", "MIRROR name axis", "mirrors an object"),
-    ("SCALE", "SCALE name factor", "scales an object"),
-    ("DUMP", "DUMP [name]", "prints an object as JSON"),
-    (
-        "SAVE",
-        "SAVE [name …] [AS] [file]",
-        "writes objects as commands, or as JSON by the file's name",
-    ),
-    ("INPUT", "INPUT file [INTO name]", "reads objects"),
-    ("RUN", "RUN file", "runs a file of commands"),
-    ("EXPORT", "EXPORT STL|OBJ|GLTF|3MF|DXF|SVG|JSON|SKETCH83 [name] [file]", "writes an object"),
-    ("DISPLAY", "DISPLAY [name|ALL]", "shows objects"),
-    ("ERASE", "ERASE [name|ALL]", "hides objects"),
-    (
-        "SHOW",
-        "SHOW LABELS|PLANES|TYPES [ON|OFF] | FACE id",
-        "what the picture shows; traces a face",
-    ),
-    ("ZOOM", "ZOOM [factor | FIT | WINDOW u v u v]", "the part of the page that the picture shows"),
-    ("PAN", "PAN du dv", "moves that part"),
-    ("VIEW", "VIEW preset|TOP|FRONT|SIDE|SKETCH", "from where the picture shows solids"),
-    (
-        "LIST",
-        "LIST [POINTS|LINES|FACES|CURVES|DIMENSIONS|PLANES|OBJECTS|VARIABLES] [name]",
-        "lists parts",
-    ),
-    ("UNDO", "UNDO [n]", "takes back commands"),
-    ("REDO", "REDO [n]", "does them again"),
-    ("HISTORY", "HISTORY", "lists the commands so far"),
-    ("HELP", "HELP [verb]", "explains a verb"),
-    ("QUIT", "QUIT", "ends"),
-    ("END", "END", "ends the definition of an object"),
-    (
-        "GIVE",
-        "GIVE name X p TO q|POINT p X|LENGTH l|… = value [ONLY]",
-        "a dimension exactly as it is, for files",
-    ),
-    ("DECLARE", "DECLARE name value [IN lo hi]", "a variable that may read later names, for files"),
-    ("ACCEPT", "ACCEPT", "answers a question about a face"),
-    ("REJECT", "REJECT", "answers a question about a face"),
-    ("REPEAT", "REPEAT", "asks again"),
-    ("YES", "YES", "answers a question"),
-    ("NO", "NO", "answers a question"),
-];
+/// A verb of the language.
+#[derive(Clone, Debug)]
+pub struct Verb {
+    /// The word.
+    pub name: &'static str,
+    /// The heading it stands under.
+    pub group: &'static str,
+    /// Its forms.
+    pub forms: Vec<&'static str>,
+    /// What it does.
+    pub does: &'static str,
+}
+
+impl Verb {
+    /// Its forms in one line.
+    pub fn usage(&self) -> String {
+        self.forms.join(" | ")
+    }
+}
+
+/// Every verb once, in the order of the help.
+///
+/// The table `verbs.txt` is the only place where they are described: HELP, completion and the
+/// command reference of `docs/sketch.md` read it. REVERSE stands there twice, as a command and as an
+/// answer; only the first counts here.
+pub static VERBS: LazyLock<Vec<Verb>> = LazyLock::new(|| {
+    let mut verbs: Vec<Verb> = Vec::new();
+    for verb in table() {
+        if verbs.iter().all(|v| v.name != verb.name) {
+            verbs.push(verb);
+        }
+    }
+    verbs
+});
+
+/// The rows of the table.
+fn table() -> Vec<Verb> {
+    let mut rows: Vec<Verb> = Vec::new();
+    let (mut group, mut forms) = ("", Vec::new());
+    for line in include_str!("verbs.txt").lines().filter(|l| !l.is_empty()) {
+        if let Some(heading) = line.strip_prefix("# ") {
+            group = heading;
+        } else if let Some(does) = line.strip_prefix("    ") {
+            let forms = std::mem::take(&mut forms);
+            let name = forms.first().map_or("", |f: &&str| f.split(' ').next().unwrap_or(f));
+            rows.push(Verb { name, group, forms, does });
+        } else {
+            forms.push(line);
+        }
+    }
+    rows
+}
+
+/// The row of a verb.
+pub fn row(name: &str) -> Option<&'static Verb> {
+    VERBS.iter().find(|v| v.name == name)
+}
+
+/// The command reference as Markdown, for `docs/sketch.md`.
+pub fn reference() -> String {
+    let mut out = String::new();
+    let mut group = "";
+    for verb in table() {
+        if verb.group != group {
+            group = verb.group;
+            out.push_str(&format!("\n### {group}\n\n| command | does |\n| --- | --- |\n"));
+        }
+        let forms: Vec<String> =
+            verb.forms.iter().map(|f| format!("`{}`", f.replace('|', "\\|"))).collect();
+        out.push_str(&format!("| {} | {} |\n", forms.join("<br>"), verb.does));
+    }
+    out
+}
 
 /// The verb that a word stands for, and a note when it was read generously.
 ///
@@ -130,7 +86,7 @@ pub const VERBS: &[(&str, &str, &str)] = &[
 /// Names the verbs it could be.
 pub fn find(word: &str) -> Result<(&'static str, Option<String>), Fault> {
     let upper = word.to_ascii_uppercase();
-    let names = || VERBS.iter().map(|v| v.0);
+    let names = || VERBS.iter().map(|v| v.name);
     if let Some(verb) = names().find(|v| *v == upper) {
         return Ok((verb, None));
     }

@@ -8,11 +8,13 @@
 //!
 //! `edges -> sheets -> regions (cut where they cross) -> cells -> labels -> faces`
 
+mod boolean;
 mod cells;
 mod label;
 mod regions;
 mod wire;
 
+pub use boolean::{Operation, Walls, combine};
 use cells::{Cells, Forest};
 use moldloft_num::Vec3;
 use regions::{Half, Region, Sheet};

@@ -102,6 +102,11 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
                 _ => format!("{strand}, \"y=0\""),
             }
         }
+        "ConjugateArc" => {
+            let sweep = p.number(0.5, 6.0);
+            format!("{}, {sweep}*w/h", p.points::<3>().join(", "))
+        }
+        "CubicChain" => format!("{{{}}}", p.points::<7>().join(", ")),
         "MirrCurve" => format!("{}, {}", p.curve(), p.mirror()),
         "FairCurve" => {
             let closed = p.random.below(3) == 0;

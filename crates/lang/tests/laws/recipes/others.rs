@@ -74,6 +74,10 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let end = p.object("TanhRelabel", "2, \"end\"");
             format!("{{{law}, {end}}}")
         }
+        "MeshBody" => {
+            let points = p.points::<4>().join(", ");
+            format!("{{{points}}}, {{1, 3, 2, 1, 2, 4, 2, 3, 4, 3, 1, 4}}")
+        }
         _ => return None,
     })
 }

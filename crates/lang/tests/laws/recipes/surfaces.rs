@@ -35,6 +35,17 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let net = p.points::<6>().join(", ");
             format!("{{{net}}}, nu = 3, nv = 2, degree_u = 2, degree_v = 1, {divisions}")
         }
+        "FacePatch" => match p.random.below(3) {
+            0 => format!("{{{}}}, {divisions}", p.points::<3>().join(", ")),
+            1 => format!("{{{}}}, {divisions}", p.points::<4>().join(", ")),
+            _ => {
+                // A plane pentagon that grows with w.
+                let corners: Vec<String> = [(0, 0), (4, 0), (5, 2), (3, 4), (-1, 3)]
+                    .map(|(x, y)| p.object("AbsPoint", &format!("{x}*w, {y}, {x} + {y}*w")))
+                    .to_vec();
+                format!("{{{}}}, {divisions}", corners.join(", "))
+            }
+        },
         "RevSurf" => {
             let [a, b] = p.points();
             let line = p.object("Line", &format!("{a}, {b}"));

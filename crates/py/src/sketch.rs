@@ -1,0 +1,320 @@
+//! Sketches: a session of the command language.
+
+use crate::arrays;
+use crate::error::{plain_error, unknown_name};
+use crate::work::interruptible;
+use moldloft_diag::Severity;
+use moldloft_mesh::Mesh;
+use moldloft_num::Vec3;
+use moldloft_picture::{Camera, Line, Options, render};
+use moldloft_sketch::{Files, Reply, Session, Solid, script};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use pyo3::types::PyBytes;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The most bytes of one file.
+const LARGEST: u64 = 64 << 20;
+
+/// Edges on pictures: dark grey.
+const EDGE_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
+
+/// In picture points.
+const EDGE_WIDTH: f32 = 1.5;
+
+/// Reads what a person names: beside the running script first, then from the present folder.
+struct Disk {
+    folder: Option<PathBuf>,
+}
+
+impl Files for Disk {
+    fn read(&self, name: &str) -> Result<String, String> {
+        let beside = self.folder.iter().map(|f| f.join(name)).find(|p| p.exists());
+        let path = beside.unwrap_or_else(|| PathBuf::from(name));
+        let reason = |e: std::io::Error| e.to_string();
+        let file = std::fs::File::open(&path).map_err(reason)?;
+        let mut bytes = Vec::new();
+        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(reason)?;
+        if bytes.len() as u64 > LARGEST {
+            return Err("it is larger than 64 MiB".into());
+        }
+        String::from_utf8(bytes).map_err(|_| "it is no text in UTF-8".into())
+    }
+}
+
+/// A reply: severity, code, text, next step, and a file to write.
+type Answer<'py> =
+    (&'static str, Option<u16>, String, Option<String>, Option<(String, Bound<'py, PyBytes>)>);
+
+/// A session of the sketch language.
+#[pyclass(frozen, name = "SketchSession", module = "moldloft._core")]
+pub struct PySketch {
+    inner: Arc<Mutex<Session>>,
+}
+
+impl PySketch {
+    fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Session> {
+        // A panic is our own bug and was shown as such; the session is still in one piece.
+        self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Work without Python's lock that Ctrl-C can leave.
+    fn long<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Session) -> R + Send + 'static,
+    ) -> PyResult<R> {
+        let inner = self.inner.clone();
+        let never = AtomicBool::new(false);
+        interruptible(py, &never, move || {
+            work(&mut inner.lock().unwrap_or_else(PoisonError::into_inner))
+        })
+    }
+
+    fn solid(&self, py: Python<'_>, name: &str) -> PyResult<Solid<f64>> {
+        let wanted = name.to_owned();
+        let data = self.long(py, move |s| {
+            s.objects().into_iter().find(|o| o.name.eq_ignore_ascii_case(&wanted))
+        })?;
+        let Some(data) = data else { return Err(no_object(name)) };
+        data.solid.ok_or_else(|| {
+            plain_error(format!(
+                "`{name}` has no faces yet, or misses dimensions: see CHECK and GENERATE FACES"
+            ))
+        })
+    }
+}
+
+fn no_object(name: &str) -> PyErr {
+    unknown_name(format!("there is no object `{name}` in this sketch"))
+}
+
+fn answer(py: Python<'_>, reply: Reply) -> Answer<'_> {
+    let severity = match reply.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        _ => "note",
+    };
+    let file = reply.file.map(|f| (f.name, PyBytes::new(py, &f.bytes)));
+    (severity, reply.code, reply.text, reply.next, file)
+}
+
+/// Chords of curves within a thousandth of the body's size, unless a tolerance is given.
+fn mesh_of(solid: &Solid<f64>, tolerance: Option<f64>) -> Mesh<f64> {
+    let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
+    solid.mesh(tolerance.filter(|t| *t > 0.0).unwrap_or(1e-3 * size))
+}
+
+#[pymethods]
+impl PySketch {
+    #[new]
+    fn new(folder: Option<String>) -> Self {
+        let folder = folder.as_deref().map(Path::new).map(Path::to_path_buf);
+        Self { inner: Arc::new(Mutex::new(Session::with_files(Box::new(Disk { folder })))) }
+    }
+
+    fn run_line<'py>(&self, py: Python<'py>, line: String) -> PyResult<Vec<Answer<'py>>> {
+        let replies = self.long(py, move |s| s.run_line(&line))?;
+        Ok(replies.into_iter().map(|r| answer(py, r)).collect())
+    }
+
+    /// The journal's commands from number `start` on.
+    fn journal(&self, py: Python<'_>, start: usize) -> Vec<String> {
+        let session = self.lock(py);
+        session.journal().get(start..).unwrap_or_default().to_vec()
+    }
+
+    fn journal_length(&self, py: Python<'_>) -> usize {
+        self.lock(py).journal().len()
+    }
+
+    fn complete(&self, py: Python<'_>, line: &str) -> Vec<String> {
+        self.lock(py).complete(line)
+    }
+
+    fn over(&self, py: Python<'_>) -> bool {
+        self.lock(py).over()
+    }
+
+    fn begun(&self, py: Python<'_>) -> bool {
+        self.lock(py).begun()
+    }
+
+    fn asks(&self, py: Python<'_>) -> bool {
+        self.lock(py).asks()
+    }
+
+    /// The active object's name.
+    fn active(&self, py: Python<'_>) -> Option<String> {
+        self.lock(py).active_object().map(|o| o.name.clone())
+    }
+
+    fn names(&self, py: Python<'_>) -> Vec<String> {
+        self.lock(py).names()
+    }
+
+    fn objects_json(&self, py: Python<'_>) -> PyResult<String> {
+        self.long(py, |s| s.objects_json().to_string())
+    }
+
+    /// The commands that make the objects, or one of them.
+    fn text(&self, py: Python<'_>, name: Option<&str>) -> PyResult<String> {
+        let session = self.lock(py);
+        let names = name.map_or_else(|| session.names(), |n| vec![n.to_owned()]);
+        names
+            .iter()
+            .map(|n| session.object(n).map(script).ok_or_else(|| no_object(n)))
+            .collect::<PyResult<String>>()
+    }
+
+    /// Rows of name, value, low, high of dimensions and variables; `None` for no value or range.
+    #[allow(clippy::type_complexity)]
+    fn numbers(
+        &self,
+        py: Python<'_>,
+        name: &str,
+    ) -> PyResult<Vec<(String, Option<f64>, Option<f64>, Option<f64>)>> {
+        let mut session = self.lock(py);
+        let rows = session.numbers(name).ok_or_else(|| no_object(name))?;
+        let row = |(n, v, r): (String, Option<f64>, Option<[f64; 2]>)| {
+            (n, v, r.map(|r| r[0]), r.map(|r| r[1]))
+        };
+        Ok(rows.into_iter().map(row).collect())
+    }
+
+    /// Labels and coordinates of the points; NaN where they are free.
+    #[allow(clippy::type_complexity)]
+    fn points<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<(Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<f64>>)> {
+        let wanted = name.to_owned();
+        let data = self.long(py, move |s| {
+            s.objects().into_iter().find(|o| o.name.eq_ignore_ascii_case(&wanted))
+        })?;
+        let Some(data) = data else { return Err(no_object(name)) };
+        let labels: Vec<u32> = data.points.iter().map(|p| p.0.0).collect();
+        let at: Vec<Vec3> =
+            data.points.iter().map(|p| p.1.map(|x| x.unwrap_or(f64::NAN)).into()).collect();
+        let array = arrays::filled(py, [at.len(), 3], |out| out.copy_from_slice(&at)).0;
+        Ok((PyArray1::from_vec(py, labels), array))
+    }
+
+    /// Vertices and faces of four corners, the last twice for a triangle.
+    #[allow(clippy::type_complexity)]
+    #[pyo3(signature = (name, tolerance=None))]
+    fn mesh<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        tolerance: Option<f64>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)> {
+        let solid = self.solid(py, name)?;
+        let mesh = py.detach(|| mesh_of(&solid, tolerance));
+        let positions = mesh.positions();
+        let fill = |out: &mut [Vec3]| out.copy_from_slice(positions);
+        let vertices = arrays::filled(py, [positions.len(), 3], fill).0;
+        let faces = PyArray2::<u32>::zeros(py, [mesh.faces().len(), 4], false);
+        faces.readwrite().as_slice_mut()?.copy_from_slice(mesh.faces().as_flattened());
+        Ok((vertices, faces))
+    }
+
+    /// Derivatives by dimensions: of the volume, of the area, of the centroid `(n, 3)`, of the body's
+    /// vertices `(n, vertices, 3)`.
+    #[allow(clippy::type_complexity)]
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        by: Vec<String>,
+    ) -> PyResult<(
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray2<f64>>,
+        Bound<'py, PyArray3<f64>>,
+    )> {
+        // Whether it is the object that is missing or one of the numbers.
+        self.lock(py).object(name).ok_or_else(|| no_object(name))?;
+        let wanted = name.to_owned();
+        let gradient = self.long(py, move |s| s.gradient(&wanted, &by))?;
+        let gradient = gradient.map_err(|missing| match missing.as_str() {
+            "" => plain_error(format!("`{name}` has no faces yet, or misses dimensions")),
+            other => unknown_name(format!("there is no dimension or variable `{other}`")),
+        })?;
+        let vertices = gradient.points.first().map_or(0, Vec::len);
+        let n = gradient.volume.len();
+        let points: Vec<Vec3> = gradient.points.into_iter().flatten().collect();
+        Ok((
+            PyArray1::from_vec(py, gradient.volume),
+            PyArray1::from_vec(py, gradient.area),
+            arrays::filled(py, [n, 3], |out| out.copy_from_slice(&gradient.centroid)).0,
+            arrays::filled(py, [n, vertices, 3], |out| out.copy_from_slice(&points)).0,
+        ))
+    }
+
+    /// Rows of volume, area and centroid at each value of a dimension; NaN where there is no body.
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        by: String,
+        values: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.lock(py).object(name).ok_or_else(|| no_object(name))?;
+        let wanted = name.to_owned();
+        let swept = self.long(py, move |s| s.sweep(&wanted, &by, &values))?;
+        let swept = swept.map_err(|missing| {
+            unknown_name(format!("there is no dimension or variable `{missing}`"))
+        })?;
+        let rows: Vec<Vec<f64>> = (swept.iter())
+            .map(|s| match s.mass {
+                Some(m) => vec![m.volume, m.area, m.centroid.x, m.centroid.y, m.centroid.z],
+                None => vec![f64::NAN; 5],
+            })
+            .collect();
+        if rows.is_empty() {
+            return Ok(PyArray2::zeros(py, [0, 5], false));
+        }
+        PyArray2::from_vec2(py, &rows).map_err(plain_error)
+    }
+
+    /// A picture of the body.
+    #[pyo3(signature = (name, width, height, azimuth=-60.0, elevation=25.0))]
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        width: usize,
+        height: usize,
+        azimuth: f64,
+        elevation: f64,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let solid = self.solid(py, name)?;
+        let png = py.detach(|| {
+            let mesh = mesh_of(&solid, None);
+            let lines: Vec<Line> = (0..solid.edges.len())
+                .map(|e| Line {
+                    points: solid.polyline(e, 24),
+                    colour: EDGE_COLOUR,
+                    width: EDGE_WIDTH,
+                })
+                .collect();
+            let camera =
+                Camera { azimuth_deg: azimuth, elevation_deg: elevation, ..Camera::default() };
+            render(&mesh, &lines, &Options { width, height, camera, ..Options::default() })
+        });
+        let png = png.map_err(plain_error)?;
+        Ok(PyBytes::new(py, &png))
+    }
+}
+
+/// The command reference as Markdown.
+#[pyfunction]
+pub fn sketch_reference() -> String {
+    moldloft_sketch::command::verbs::reference()
+}

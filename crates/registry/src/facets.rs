@@ -1,0 +1,85 @@
+use moldloft_num::{Real, Vec3};
+
+/// A body bounded by triangles, or an open sheet of them, with its measures.
+///
+/// For implicit modelling it is the closed mesh from which a set can be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Facets<T> {
+    /// The vertices.
+    pub points: Vec<Vec3<T>>,
+    /// Corners of the triangles, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Enclosed volume; of no meaning for an open sheet.
+    pub volume: T,
+    /// Area of all triangles.
+    pub area: T,
+    /// Centre of the volume, or of the area where there is none.
+    pub centroid: Vec3<T>,
+}
+
+impl<T: Real> Facets<T> {
+    /// The triangles with the measures that follow from them (divergence theorem; the sums run about
+    /// the mean of the vertices, so that distant bodies keep their digits).
+    ///
+    /// # Panics
+    /// When a corner is no vertex.
+    pub fn new(points: Vec<Vec3<T>>, triangles: Vec<[u32; 3]>) -> Self {
+        let n = points.len().max(1) as f64;
+        let middle = points.iter().fold(Vec3::<f64>::zero(), |s, p| s + p.re()) / n;
+        let middle = middle.map(T::from);
+        let (mut volume, mut area) = (T::zero(), T::zero());
+        let (mut moment, mut sheet) = (Vec3::zero(), Vec3::zero());
+        for t in &triangles {
+            let [a, b, c] = t.map(|v| points[v as usize] - middle);
+            let normal = (b - a).cross(c - a) * T::from(0.5);
+            let part = a.dot(normal) / 3.0;
+            volume += part;
+            moment += (a + b + c) * (part * 0.25);
+            let size = normal.norm();
+            area += size;
+            sheet += (a + b + c) * (size / 3.0);
+        }
+        let size = area.re() * area.re().abs().sqrt();
+        let centroid = if volume.re().abs() > 1e-12 * size {
+            middle + moment / volume
+        } else if area.re() > 0.0 {
+            middle + sheet / area
+        } else {
+            middle
+        };
+        Self { points, triangles, volume, area, centroid }
+    }
+
+    /// True when vertices and measures are the same bits and the triangles the same.
+    pub fn same(&self, o: &Self) -> bool {
+        self.triangles == o.triangles
+            && self.points.len() == o.points.len()
+            && self.points.iter().zip(&o.points).all(|(a, b)| a.bits_eq(*b))
+            && self.volume.bits_eq(o.volume)
+            && self.area.bits_eq(o.area)
+            && self.centroid.bits_eq(o.centroid)
+    }
+
+    /// True when every number in it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.points.iter().all(|p| p.is_finite()) && self.volume.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_distant_tetrahedron() {
+        let far = Vec3::of(1e6, -2e6, 3e6);
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let points: Vec<Vec3> = points.iter().map(|&p| Vec3::from(p) + far).collect();
+        let body = Facets::new(points, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+        assert!((body.volume - 1.0 / 6.0).abs() < 1e-9);
+        assert!((body.area - (1.5 + 0.75f64.sqrt())).abs() < 1e-9);
+        assert!((body.centroid - far).distance(Vec3::of(0.25, 0.25, 0.25)) < 1e-6);
+        let sheet = Facets::new(body.points[..3].to_vec(), vec![[0, 1, 2]]);
+        assert!((sheet.centroid - far).distance(Vec3::of(1.0 / 3.0, 1.0 / 3.0, 0.0)) < 1e-6);
+    }
+}

@@ -1,0 +1,288 @@
+"""``moldloft sketch``: run a sketch file, or talk to it line by line."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from moldloft.cli.console import print_json
+from moldloft.errors import Error, FileError
+
+if TYPE_CHECKING:
+    from moldloft.cli.journal import Journal, Left
+    from moldloft.sketches import Reply, Sketch
+
+__all__ = ["add", "run"]
+
+_HISTORY_LENGTH = 2000
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    parser.epilog = (
+        "Without FILE, commands are read from standard input: a prompt with history and "
+        "completion on a terminal. HELP lists the commands, HELP VERB explains one."
+    )
+    parser.add_argument(
+        "file", metavar="FILE", nargs="?", help="a file of commands (.skt), or its JSON twin"
+    )
+    parser.add_argument(
+        "--set",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="a dimension or variable of the last object, after FILE was run; may be repeated",
+    )
+    parser.add_argument("--json", action="store_true", help="the objects as data, and the replies")
+    parser.add_argument(
+        "--edit", action="store_true", help="go on at the prompt after FILE was run"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="DIR", default=".", help="folder for SAVE and EXPORT, here"
+    )
+    parser.add_argument(
+        "-q", "--quiet", action="store_true", help="only warnings and errors of the commands"
+    )
+    restore = parser.add_mutually_exclusive_group()
+    restore.add_argument(
+        "--recover", action="store_true", help="go on with a session that ended unsaved"
+    )
+    restore.add_argument(
+        "--discard", action="store_true", help="forget sessions that ended unsaved, then go on"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Runs the file, the prompt, or both."""
+    from moldloft.sketches import Sketch
+
+    if options.recover and options.file and not options.edit:
+        options.edit = True
+    sketch = Sketch(Path(options.file).parent if options.file else None)
+    host = Host(sketch, options)
+    if options.file:
+        host.run_file(Path(options.file))
+    for assignment in options.set:
+        name, _, value = assignment.partition("=")
+        host.run_line(f'SET {name.strip()} "{value.strip()}"')
+    if options.edit or not options.file:
+        host.prompt()
+    if options.json:
+        data = json.loads(sketch._session.objects_json())
+        data["ok"] = not host.refused
+        data["replies"] = [reply.to_dict() for reply in host.replies]
+        print_json(data)
+    return 1 if host.refused else 0
+
+
+class Host:
+    """What a session needs of the outside: replies shown, files written, changes recorded."""
+
+    def __init__(self, sketch: Sketch, options: argparse.Namespace) -> None:
+        self.sketch = sketch
+        self.session = sketch._session
+        self.options = options
+        self.refused = False
+        self.replies: list[Reply] = []
+        self.journal: Journal | None = None
+        self.recorded = 0
+        #: Whether the file that is edited was just written, with everything in it.
+        self.rewritten = False
+        #: Length of the session's journal when everything was last saved.
+        self.saved = 0
+
+    # -- running -----------------------------------------------------------------------------
+
+    def run_file(self, path: Path) -> None:
+        """Runs all lines of a file."""
+        try:
+            text = path.read_text(encoding="utf-8")
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise FileError(f"error: cannot read `{path}`: {reason}") from error
+        except UnicodeDecodeError as error:
+            raise FileError(f"error: cannot read `{path}`: it is no text in UTF-8") from error
+        if text.lstrip().startswith(("[", "{")):
+            self.run_line(f'INPUT "{path.name}"', where=str(path))
+        else:
+            for number, line in enumerate(text.splitlines(), 1):
+                self.run_line(line, where=f"{path}:{number}")
+                if self.session.over():
+                    break
+        self.saved = self.recorded = self.session.journal_length()
+
+    def run_line(self, line: str, where: str = "") -> None:
+        """Runs a line, shows its replies and writes its files."""
+        from moldloft.sketches import Reply
+
+        for severity, code, text, following, file in self.session.run_line(line):
+            reply = Reply(severity, text, following, code, file)
+            self.replies.append(reply)
+            if file is not None:
+                reply = self._write(reply, file)
+            self._show(reply, where)
+        length = self.session.journal_length()
+        if self.journal is not None and self.rewritten:
+            # The file holds everything now: running it and then the old journal would do it twice.
+            self.journal.restart()
+        elif self.journal is not None and length != self.recorded:
+            self.journal.append(self.session.journal(self.recorded))
+        self.recorded = length
+        self.rewritten = False
+
+    def _write(self, reply: Reply, file: tuple[str, bytes]) -> Reply:
+        from moldloft.files import Output, commit
+        from moldloft.sketches import Reply
+
+        path = Path(self.options.output, file[0])
+        try:
+            commit(path.parent, [Output(path.name, file[1])])
+        except Error as error:
+            text = str(error).removeprefix("error: ")
+            return Reply("error", text, "choose another name or folder", 600)
+        whole = path.suffix.lower() == ".json" or file[1] == self.session.text(None).encode()
+        if path.suffix.lower() in (".skt", ".json") and whole:
+            self.saved = self.session.journal_length()
+            own = self.options.file
+            self.rewritten = own is not None and path.resolve() == Path(own).resolve()
+        return Reply("note", f"wrote {path} ({len(file[1])} bytes)")
+
+    def _show(self, reply: Reply, where: str) -> None:
+        self.refused |= reply.is_error
+        text = str(reply)
+        if reply.severity != "note":
+            print(f"{where}: {text}" if where else text, file=sys.stderr)
+        elif not self.options.json and not self.options.quiet:
+            print(text)
+
+    # -- the prompt --------------------------------------------------------------------------
+
+    def prompt(self) -> None:
+        """Reads commands until QUIT or the end of the input."""
+        terminal = sys.stdin.isatty()
+        self._begin(terminal)
+        assert self.journal is not None
+        with _line_editor(self.sketch) if terminal else contextlib.nullcontext():
+            if terminal:
+                print("moldloft sketch: HELP lists the commands, QUIT ends", file=sys.stderr)
+            while not self.session.over():
+                try:
+                    line = self._read(terminal)
+                except EOFError:
+                    break
+                except KeyboardInterrupt:
+                    # The line is dropped, as in a shell.
+                    print(file=sys.stderr)
+                    continue
+                self.run_line(line)
+        unsaved = self.session.journal_length() > self.saved
+        self.journal.close(keep=unsaved)
+        if unsaved and not self.options.json:
+            print(
+                "not saved: `moldloft sketch --recover` goes on with it; SAVE writes a file",
+                file=sys.stderr,
+            )
+
+    def _read(self, terminal: bool) -> str:
+        if terminal:
+            name = self.session.active() or "sketch"
+            mark = "&" if self.session.begun() else "?" if self.session.asks() else ">"
+            return input(f"{name}{mark} ")
+        line = sys.stdin.readline()
+        if not line:
+            raise EOFError
+        return line.rstrip("\r\n")
+
+    def _begin(self, terminal: bool) -> None:
+        """Opens the journal, after what an earlier session may have left."""
+        from moldloft.cli.journal import ENDING, LAST, Journal, beside, left_behind, state_folder
+
+        own = beside(Path(self.options.file)) if self.options.file else None
+        folder = state_folder()
+        others = sorted(folder.glob(f"*{ENDING}")) if folder.is_dir() else []
+        killed = [own] if own else [path for path in others if path.name != LAST]
+        left = left_behind(killed)
+        if self.options.recover and not left and not own:
+            left = left_behind([folder / LAST])
+        taken: Left | None = None
+        if self.options.discard:
+            for one in left:
+                one.path.unlink(missing_ok=True)
+        elif left and (self.options.recover or (terminal and self._wanted(left[0]))):
+            taken = left[0]
+        elif left:
+            print(_offer(left[0], self.options.file), file=sys.stderr)
+        elif self.options.recover:
+            raise Error("error: there is no unsaved session to go on with")
+        if taken is not None:
+            commands = taken.commands
+            before = self.refused
+            for command in commands:
+                self.run_line(command)
+            # What was refused then was not recorded; now only a file that is gone can be.
+            self.refused = before
+            text = f"restored: {len(commands)} commands of {taken.when}"
+            print(text, file=sys.stderr)
+        present = self.session.journal(self.saved) if own else self.session.journal(0)
+        try:
+            if own and (taken is not None or not left):
+                self.journal = Journal(own, present)
+            else:
+                self.journal = Journal.in_state_folder(present)
+        except OSError as error:
+            where = own or folder
+            reason = (error.strerror or str(error)).lower()
+            raise FileError(f"error: cannot keep a journal in `{where}`: {reason}") from error
+        if taken is not None and taken.path != self.journal.path:
+            taken.path.unlink(missing_ok=True)
+
+    def _wanted(self, left: Left) -> bool:
+        question = f"an unsaved session of {left.when} with {len(left.commands)} commands was found"
+        with contextlib.suppress(EOFError):
+            return input(f"{question}; go on with it? [Y/n] ").strip().lower() in ("", "y", "yes")
+        return False
+
+
+def _offer(left: Left, file: str | None) -> str:
+    again = f"moldloft sketch {file} --recover" if file else "moldloft sketch --recover"
+    forget = again.replace("--recover", "--discard")
+    return (
+        f"an unsaved session of {left.when} with {len(left.commands)} commands was found: "
+        f"`{again}` goes on with it, `{forget}` forgets it"
+    )
+
+
+@contextlib.contextmanager
+def _line_editor(sketch: Sketch) -> Iterator[None]:
+    """History and completion, where the platform has them."""
+    try:
+        import readline
+    except ImportError:
+        yield
+        return
+    from moldloft.cli.journal import state_folder
+
+    path = state_folder() / "history"
+    with contextlib.suppress(OSError):
+        readline.read_history_file(path)
+    readline.set_history_length(_HISTORY_LENGTH)
+
+    def complete(_: str, number: int) -> str | None:
+        line = readline.get_line_buffer()[: readline.get_endidx()]
+        found = sketch._session.complete(line)
+        return found[number] + " " if number < len(found) else None
+
+    readline.set_completer_delims(" ,=;")
+    readline.set_completer(complete)
+    readline.parse_and_bind("tab: complete")
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            readline.write_history_file(path)

@@ -1,0 +1,373 @@
+"""Sketches: a rough picture, types of lines and a few dimensions become an exact solid."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.errors import Error, FileError, UnknownNameError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Gradient", "Reply", "Sketch", "SketchError"]
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What a command answered.
+
+    Attributes
+    ----------
+    severity
+        ``"error"`` (the command was refused and changed nothing), ``"warning"`` or ``"note"``.
+    text
+        What is said.
+    next
+        The next step, for errors and questions.
+    code
+        The number of the manual's table of errors, where it has one.
+    file
+        Name and content of a file that SAVE or EXPORT made.
+    """
+
+    severity: str
+    text: str
+    next: str | None = None
+    code: int | None = None
+    file: tuple[str, bytes] | None = None
+
+    @property
+    def is_error(self) -> bool:
+        """Whether the command was refused."""
+        return self.severity == "error"
+
+    def __str__(self) -> str:
+        number = f" {self.code}" if self.code is not None else ""
+        head = "" if self.severity == "note" else f"{self.severity}{number}: "
+        lines = head + self.text
+        return f"{lines}\n  next: {self.next}" if self.next else lines
+
+    def to_dict(self) -> dict[str, Any]:
+        """The reply as plain data, without the bytes of its file."""
+        return {
+            "severity": self.severity,
+            "code": self.code,
+            "text": self.text,
+            "next": self.next,
+            "file": self.file[0] if self.file else None,
+        }
+
+
+class SketchError(Error, ValueError):
+    """A command was refused; ``replies`` holds all answers of the text that was run."""
+
+    def __init__(self, message: str, replies: Sequence[Reply] = ()) -> None:
+        super().__init__(message)
+        self.replies = tuple(replies)
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """Exact derivatives by dimensions, in the order they were asked for.
+
+    Attributes
+    ----------
+    by
+        The names.
+    volume, area
+        Shape ``(n,)``.
+    centroid
+        Shape ``(n, 3)``.
+    points
+        Of the vertices of :meth:`Sketch.mesh` that are corners of the body, ``(n, vertices, 3)``.
+    """
+
+    by: tuple[str, ...]
+    volume: NDArray[np.float64]
+    area: NDArray[np.float64]
+    centroid: NDArray[np.float64]
+    points: NDArray[np.float64]
+
+
+class Sketch:
+    """A session of the sketch language, with its objects.
+
+    Parameters
+    ----------
+    folder
+        Where INPUT and RUN look first; then in the present folder.
+
+    Examples
+    --------
+    >>> from moldloft import Sketch
+    >>> s = Sketch()
+    >>> _ = s.run('''
+    ...     SKETCH SLAB 2D XZ
+    ...     POINT 1 0 0; POINT 2 90 2; POINT 3 91 30; POINT 4 1 29
+    ...     POLYLINE 1 2 3 4 CLOSE
+    ...     DIMENSION W X 1 2 = 8; DIMENSION H Z 1 4 = 2 IN 1 5; EXTRUDE 5
+    ... ''')
+    >>> s.volume
+    80.0
+    >>> s["H"] = 3
+    >>> s.volume, s.gradient(["H"]).volume
+    (120.0, array([40.]))
+    >>> s.sweep("H", [1, 2])[:, 0]
+    array([40., 80.])
+    >>> s.run("SET H tall")
+    Traceback (most recent call last):
+      ...
+    moldloft.sketches.SketchError: error: H reads tall, which has no value
+      next: VARIABLE tall defines it
+    """
+
+    def __init__(self, folder: str | os.PathLike[str] | None = None) -> None:
+        self._session = _core.SketchSession(None if folder is None else os.fspath(folder))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], *, strict: bool = True) -> Sketch:
+        """Run a file of commands, or read a JSON twin.
+
+        Raises
+        ------
+        FileError
+            When it cannot be read.
+        SketchError
+            When a command was refused and ``strict`` is true.
+        """
+        path = Path(path)
+        try:
+            text = path.read_text(encoding="utf-8")
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise FileError(f"error: cannot read `{path}`: {reason}") from error
+        except UnicodeDecodeError as error:
+            raise FileError(f"error: cannot read `{path}`: it is no text in UTF-8") from error
+        sketch = cls(path.parent)
+        if text.lstrip().startswith(("[", "{")):
+            sketch.run(f'INPUT "{path.name}"', strict=strict)
+        else:
+            sketch.run(text, strict=strict)
+        return sketch
+
+    # -- commands ----------------------------------------------------------------------------
+
+    def run(self, text: str, *, strict: bool = True) -> list[Reply]:
+        """Run one or more lines of commands.
+
+        Parameters
+        ----------
+        text
+            The lines.
+        strict
+            Raise when a command is refused; the lines after it are then not run.
+
+        Returns
+        -------
+        list of Reply
+            Files that SAVE and EXPORT made are in the replies; nothing is written to disk.
+
+        Raises
+        ------
+        SketchError
+            For the first refused command.
+        """
+        replies: list[Reply] = []
+        for line in text.splitlines():
+            new = [Reply(s, t, n, c, f) for s, c, t, n, f in self._session.run_line(line)]
+            replies += new
+            bad = next((r for r in new if r.is_error), None)
+            if strict and bad is not None:
+                raise SketchError(str(bad), replies)
+        return replies
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write all objects as commands, or as JSON when the name ends so; whole or not at all."""
+        from moldloft.files import Output, commit
+
+        path = Path(path)
+        reply = self.run(f'SAVE AS "{path.name}"')[-1]
+        assert reply.file is not None
+        return commit(path.parent, [Output(path.name, reply.file[1])])[0]
+
+    def export(
+        self, path: str | os.PathLike[str], *, format: str | None = None, name: str | None = None
+    ) -> Path:
+        """Write an object: STL, OBJ, glTF, 3MF, DXF, SVG, JSON or PNG.
+
+        Parameters
+        ----------
+        path
+            The file.
+        format
+            By default what the file's name ends in.
+        name
+            The object; by default the active one.
+        """
+        from moldloft.files import Output, commit
+
+        path = Path(path)
+        wanted = (format or path.suffix.lstrip(".")).lower()
+        if wanted == "png":
+            data = self.picture(name=name)
+        else:
+            reply = self.run(f'EXPORT {wanted} "{self._name(name)}" "{path.name}"')[-1]
+            assert reply.file is not None
+            data = reply.file[1]
+        return commit(path.parent, [Output(path.name, data)])[0]
+
+    # -- objects -----------------------------------------------------------------------------
+
+    @property
+    def active(self) -> str | None:
+        """The name of the active object, which the properties below are about."""
+        return self._session.active()
+
+    @property
+    def names(self) -> list[str]:
+        """The names of all objects."""
+        return self._session.names()
+
+    @property
+    def objects(self) -> dict[str, dict[str, Any]]:
+        """All objects by name as data: what ``moldloft sketch --json`` prints."""
+        found = json.loads(self._session.objects_json())["objects"]
+        return {one["name"]: one for one in found}
+
+    @property
+    def volume(self) -> float | None:
+        """Enclosed volume of the active object; ``None`` without faces."""
+        volume: float | None = self._data()["volume"]
+        return volume
+
+    @property
+    def area(self) -> float | None:
+        """Area of all faces of the active object; ``None`` without faces."""
+        area: float | None = self._data()["area"]
+        return area
+
+    @property
+    def centroid(self) -> NDArray[np.float64] | None:
+        """Centre of the volume, or of the area of a cross section, ``(3,)``."""
+        centre = self._data()["centroid"]
+        return None if centre is None else np.array(centre)
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates of the active object's points, ``(n, 3)``; NaN where they are free."""
+        return self._session.points(self._name(None))[1]
+
+    @property
+    def labels(self) -> NDArray[np.uint32]:
+        """The labels of :attr:`points`, ``(n,)``."""
+        return self._session.points(self._name(None))[0]
+
+    @property
+    def dimensions(self) -> dict[str, float | None]:
+        """Variables and dimensions of the active object with their values."""
+        return {row[0]: row[1] for row in self._session.numbers(self._name(None))}
+
+    @property
+    def missing(self) -> dict[str, int]:
+        """How many dimensions are missing on each axis of the active object."""
+        missing: dict[str, int] = self._data()["missing"]
+        return missing
+
+    @property
+    def text(self) -> str:
+        """The commands that make all objects: running them gives the same ones."""
+        return self._session.text(None)
+
+    def mesh(
+        self, *, name: str | None = None, tolerance: float | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
+        """Vertices ``(n, 3)`` and faces ``(m, 4)`` of the body, counter-clockwise from outside.
+
+        Parameters
+        ----------
+        name
+            The object; by default the active one.
+        tolerance
+            How far chords may miss curves; by default a thousandth of the body's size.
+
+        Notes
+        -----
+        A triangle has its last vertex twice.
+        """
+        return self._session.mesh(self._name(name), tolerance)
+
+    def gradient(self, by: Sequence[str] | None = None, *, name: str | None = None) -> Gradient:
+        """Exact derivatives of volume, area, centroid and corners by dimensions.
+
+        Parameters
+        ----------
+        by
+            Dimensions and variables; by default all that have a value.
+        name
+            The object; by default the active one.
+        """
+        of = self._name(name)
+        if by is None:
+            by = [row[0] for row in self._session.numbers(of) if row[1] is not None]
+        return Gradient(tuple(by), *self._session.gradient(of, list(by)))
+
+    def sweep(self, by: str, values: ArrayLike, *, name: str | None = None) -> NDArray[np.float64]:
+        """Volume, area and centroid at each value of a dimension, ``(n, 5)``; the sketch stays.
+
+        Rows are NaN where there is no body.
+        """
+        wanted = np.asarray(values, dtype=np.float64).ravel().tolist()
+        return self._session.sweep(self._name(name), by, wanted)
+
+    def picture(
+        self,
+        width: int = 1200,
+        height: int = 800,
+        *,
+        name: str | None = None,
+        azimuth: float = -60.0,
+        elevation: float = 25.0,
+    ) -> bytes:
+        """A PNG of the body; the angles say from where, in degrees."""
+        return self._session.picture(self._name(name), width, height, azimuth, elevation)
+
+    def __getitem__(self, name: str) -> float:
+        for known, value, _, _ in self._session.numbers(self._name(None)):
+            if known.lower() == name.lower():
+                if value is None:
+                    raise UnknownNameError(f"`{known}` has no value")
+                return value
+        raise UnknownNameError(f"there is no dimension or variable `{name}`")
+
+    def __setitem__(self, name: str, value: float | str) -> None:
+        given = f'"{value}"' if isinstance(value, str) else repr(float(value))
+        self.run(f"SET {name} {given}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name.lower() in (n.lower() for n in self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f"<Sketch: {', '.join(self.names) or 'no objects'}>"
+
+    def _name(self, name: str | None) -> str:
+        found = name or self._session.active()
+        if found is None:
+            raise UnknownNameError("no object is active: start one with SKETCH")
+        return found
+
+    def _data(self) -> dict[str, Any]:
+        return self.objects[self._name(None)]

@@ -1,0 +1,410 @@
+"""Sketches from outside: the command, the journal, the class, the files."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import moldloft
+from moldloft import Sketch, SketchError, UnknownNameError
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "sketch"
+VOLUMES = {
+    "dam": ("DAM", 169_200.0),
+    "lock_wall": ("WALL", 49_840.0),
+    "shed": ("SHED", 240.0),
+    "bracket": ("BRACKET", 27.0 + 0.75 * (1.0 - np.pi / 4.0)),
+}
+
+SLAB = """SKETCH SLAB 2D XZ
+POINT 1 0 0; POINT 2 90 2; POINT 3 91 30; POINT 4 1 29
+POLYLINE 1 2 3 4 CLOSE
+DIMENSION W X 1 2 = 8; DIMENSION H Z 1 4 = 2 IN 1 5
+EXTRUDE 5
+"""
+
+
+@pytest.fixture
+def environment(tmp_path):
+    return {**os.environ, "XDG_STATE_HOME": str(tmp_path / "state"), "PYTHONUNBUFFERED": "1"}
+
+
+def command(*arguments, environment=None, text=None, folder=None):
+    line = [sys.executable, "-m", "moldloft", "sketch", *map(str, arguments)]
+    return subprocess.run(
+        line, input=text, capture_output=True, text=True, env=environment, cwd=folder, check=False
+    )
+
+
+# -- the command ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", VOLUMES)
+def test_a_file_is_run(name, environment):
+    done = command(EXAMPLES / f"{name}.skt", "--json", environment=environment)
+    assert done.returncode == 0 and done.stderr == ""
+    data = json.loads(done.stdout)
+    [one] = data["objects"]
+    object_name, volume = VOLUMES[name]
+    assert one["name"] == object_name and data["ok"] is True
+    assert one["volume"] == pytest.approx(volume, rel=1e-9)
+    for key in ("points", "lines", "faces", "area", "centroid", "missing", "dimensions"):
+        assert one[key]
+    assert one["missing"] == {"X": 0, "Y": 0, "Z": 0}
+    text = command(EXAMPLES / f"{name}.skt", environment=environment)
+    assert text.returncode == 0 and "complete" in text.stdout
+
+
+def test_dimensions_are_set_from_the_command_line(environment):
+    done = command(EXAMPLES / "dam.skt", "--set", "CREST=20", "--json", environment=environment)
+    assert json.loads(done.stdout)["objects"][0]["volume"] == pytest.approx(187_200.0)
+
+
+def test_errors_say_where_and_what_next(tmp_path, environment):
+    path = tmp_path / "bad.skt"
+    path.write_text("SKETCH A\nPOINT 1 0 0\nLINE 1 2\nDIM W X 1.2.3 4\n")
+    done = command(path, environment=environment)
+    assert done.returncode == 1 and "Traceback" not in done.stderr
+    assert f"{path}:3: error 101:" in done.stderr
+    assert f"{path}:4: error: two decimal points in 1.2.3" in done.stderr
+    assert done.stderr.count("next:") == 2
+    data = json.loads(command(path, "--json", environment=environment).stdout)
+    assert data["ok"] is False
+    assert [r["code"] for r in data["replies"] if r["severity"] == "error"] == [101, None]
+    missing = command(tmp_path / "none.skt", environment=environment)
+    assert missing.returncode == 1 and "no such file" in missing.stderr
+    binary = tmp_path / "x.skt"
+    binary.write_bytes(b"\xff\xfe\x00")
+    assert "UTF-8" in command(binary, environment=environment).stderr
+
+
+def test_a_pipe_talks_to_the_prompt(tmp_path, environment):
+    text = SLAB + "MEASURE VOLUME\nSAVE slab.skt\nNONSENSE\nQUIT\nSKETCH LATER\n"
+    done = command(environment=environment, text=text, folder=tmp_path)
+    assert "80" in done.stdout and "wrote slab.skt" in done.stdout
+    assert "no command NONSENSE" in done.stderr and done.returncode == 1
+    assert (tmp_path / "slab.skt").exists()
+    # Saved before the end: nothing is left to go on with.
+    assert "not saved" not in done.stderr
+    again = command("--json", environment=environment, text='INPUT "slab.skt"\n', folder=tmp_path)
+    assert json.loads(again.stdout)["objects"][0]["volume"] == 80.0
+
+
+def test_files_go_where_they_are_asked_for(tmp_path, environment):
+    path = tmp_path / "slab.skt"
+    path.write_text(SLAB + "EXPORT STL\nEXPORT SVG part/slab.svg\nSAVE SLAB AS slab.json\n")
+    done = command(path, "-o", tmp_path / "out", environment=environment)
+    assert done.returncode == 0, done.stderr
+    for name in ("SLAB.stl", "part/slab.svg", "slab.json"):
+        assert (tmp_path / "out" / name).stat().st_size > 100
+    twin = command(tmp_path / "out" / "slab.json", "--json", environment=environment)
+    assert json.loads(twin.stdout)["objects"][0]["volume"] == 80.0
+    # RUN and INPUT look beside the script.
+    path.with_name("two.skt").write_text("RUN slab.skt\n")
+    done = command(tmp_path / "two.skt", "-o", tmp_path / "out", "--json", environment=environment)
+    assert json.loads(done.stdout)["objects"][0]["name"] == "SLAB"
+
+
+# -- the journal ------------------------------------------------------------------------------
+
+
+def test_an_unsaved_session_can_be_gone_on_with(tmp_path, environment):
+    first = command(environment=environment, text=SLAB)
+    assert "--recover" in first.stderr
+    second = command("--recover", "--json", environment=environment, text="SET H 3\n")
+    assert "restored" in second.stderr
+    assert json.loads(second.stdout)["objects"][0]["volume"] == pytest.approx(120.0)
+    third = command("--recover", "--json", environment=environment, text="")
+    assert json.loads(third.stdout)["objects"][0]["volume"] == pytest.approx(120.0)
+
+
+def test_answers_are_restored_with_their_questions(environment):
+    text = SLAB + "DELETE DIMENSION H\nDIM T Z 1 4\nYES\nUNDO\nREDO\nGENERATE FACES ASK\nACCEPT\n"
+    first = command(environment=environment, text=text)
+    wanted = command("--json", environment=environment, text=text)
+    assert first.returncode == wanted.returncode == 0
+    restored = command("--recover", "--json", environment=environment, text="")
+    assert json.loads(restored.stdout)["objects"] == json.loads(wanted.stdout)["objects"]
+
+
+def _killed_at(moment: float, environment, lines: list[str]) -> int:
+    """Feeds lines to a prompt, kills it after a while; how many lines had been answered."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "moldloft", "sketch"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env=environment,
+        text=True,
+        bufsize=1,
+    )
+    answered = 0
+    end = None
+    for line in lines:
+        try:
+            process.stdin.write(line + "\n")
+            process.stdin.flush()
+        except BrokenPipeError:
+            break
+        if process.stdout.readline() == "":
+            break
+        answered += 1
+        if end is None:
+            end = time.monotonic() + moment
+        if time.monotonic() > end:
+            # Kill it while the next command may be under way.
+            process.stdin.write(lines[min(answered, len(lines) - 1)] + "\n")
+            break
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    process.stdout.close()
+    process.stdin.close()
+    return answered
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no SIGKILL here")
+def test_a_killed_process_loses_no_completed_command(environment):
+    rounds = 25 if os.environ.get("MOLDLOFT_SOAK") else 4
+    chance = random.Random(7)
+    # Each command is answered by one line, so the reader knows when it was completed.
+    lines = ["SKETCH A; POINT 1 1"] + [f"POINT {k} {k % 7}" for k in range(2, 400)]
+    for _ in range(rounds):
+        answered = _killed_at(chance.uniform(0.0, 0.15), environment, lines)
+        assert answered > 0
+        offered = command(environment=environment, text="")
+        assert "--recover" in offered.stderr
+        done = command("--recover", "--json", environment=environment, text="")
+        points = json.loads(done.stdout)["objects"][0]["points"]
+        # All that was answered, and at most the one that was under way.
+        assert answered <= len(points) <= answered + 1
+
+
+def test_a_torn_line_is_left_out(tmp_path, environment):
+    folder = tmp_path / "state" / "moldloft" / "sketch"
+    folder.mkdir(parents=True)
+    journal = folder / "20260101-000000-1.skj"
+    journal.write_text("! moldloft sketch journal 1\nSKETCH A\nPOINT 1 0 0\nPOINT 2 5")
+    done = command("--recover", "--json", environment=environment, text="")
+    assert len(json.loads(done.stdout)["objects"][0]["points"]) == 1
+    assert not journal.exists()
+    assert "no unsaved session" not in done.stderr
+
+
+def test_an_edited_file_keeps_its_journal_beside_it(tmp_path, environment):
+    path = tmp_path / "slab.skt"
+    path.write_text(SLAB)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "moldloft", "sketch", str(path), "--edit"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env=environment,
+        text=True,
+    )
+    process.stdin.write("SET H 4\nMEASURE VOLUME\n")
+    process.stdin.flush()
+    while "160" not in (line := process.stdout.readline()):
+        assert line
+    assert (tmp_path / "slab.skt.skj").exists()
+    process.kill()
+    process.wait()
+    done = command(path, "--recover", "--json", environment=environment, text="SAVE slab.skt\n",
+                   folder=tmp_path)  # fmt: skip
+    assert json.loads(done.stdout)["objects"][0]["volume"] == pytest.approx(160.0)
+    # Saved, so its journal is gone, and the file by itself is the new state.
+    assert not (tmp_path / "slab.skt.skj").exists()
+    assert Sketch.load(path).volume == pytest.approx(160.0)
+
+
+# -- the class --------------------------------------------------------------------------------
+
+
+def test_the_class(tmp_path):
+    s = Sketch.load(EXAMPLES / "dam.skt")
+    assert s.names == ["DAM"] and "dam" in s and len(s) == 1
+    assert s.volume == pytest.approx(169_200.0) and s.area == pytest.approx(20_968.0)
+    assert s.centroid == pytest.approx([22.93617, 25.0, 32.93617])
+    assert s.points.shape == (10, 3) and list(s.labels) == list(range(1, 11))
+    assert s["crest"] == 16.0 and s.dimensions["RUN"] == 54.0
+    s["CREST"] = 20
+    assert s.volume == pytest.approx(187_200.0)
+    s["CREST"] = "HEIGHT/4.5"
+    assert s.volume == pytest.approx(169_200.0)
+    vertices, faces = s.mesh()
+    assert vertices.shape == (10, 3) and faces.shape[1] == 4
+    path = s.save(tmp_path / "copy.skt")
+    assert Sketch.load(path).objects == s.objects
+    twin = s.save(tmp_path / "copy.json")
+    assert Sketch.load(twin).objects == s.objects
+    assert s.text == path.read_text()
+    assert s.picture(200, 150).startswith(b"\x89PNG")
+    with pytest.raises(SketchError, match="no dimension") as caught:
+        s["NOTHING"] = 1
+    assert caught.value.replies[-1].next
+    with pytest.raises(UnknownNameError):
+        s["NOTHING"]
+    with pytest.raises(UnknownNameError):
+        s.mesh(name="other")
+    with pytest.raises(UnknownNameError):
+        _ = Sketch().volume
+    assert isinstance(caught.value, (moldloft.Error, ValueError))
+
+
+def test_gradients_are_differences():
+    s = Sketch.load(EXAMPLES / "bracket.skt")
+    g = s.gradient()
+    assert g.by == ("R", "THICK", "LEG", "WIDTH", "BASE", "UPRIGHT")
+    before = s.points
+    for k, name in enumerate(g.by):
+        x, h = s[name], 1e-5
+        rows = s.sweep(name, [x - h, x + h])
+        slope = (rows[1] - rows[0]) / (2 * h)
+        assert g.volume[k] == pytest.approx(slope[0], abs=1e-6)
+        assert g.area[k] == pytest.approx(slope[1], abs=1e-5)
+        assert g.centroid[k] == pytest.approx(slope[2:], abs=1e-6)
+    assert np.array_equal(before, s.points)
+    assert g.points.shape[0] == 6 and g.points.shape[2] == 3
+    assert np.isnan(Sketch.load(EXAMPLES / "dam.skt").sweep("HEIGHT", [np.nan])).all()
+    with pytest.raises(UnknownNameError):
+        s.gradient(["nothing"])
+
+
+def test_threads_do_not_disturb_each_other():
+    from concurrent.futures import ThreadPoolExecutor
+
+    def volume(crest):
+        s = Sketch.load(EXAMPLES / "dam.skt")
+        s["CREST"] = crest
+        return s.volume
+
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(volume, [16, 18, 20, 22] * 3))
+    assert found == [volume(c) for c in [16, 18, 20, 22]] * 3
+
+
+# -- files ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", VOLUMES)
+def test_exports_are_read_back(name, tmp_path):
+    import meshio
+    import trimesh
+
+    s = Sketch.load(EXAMPLES / f"{name}.skt")
+    exact = VOLUMES[name][1]
+    for format in ("stl", "obj", "3mf"):
+        mesh = trimesh.load(s.export(tmp_path / f"{name}.{format}"), force="mesh")
+        mesh.merge_vertices()
+        assert mesh.is_watertight and mesh.is_winding_consistent, format
+        assert mesh.volume == pytest.approx(exact, rel=2e-4), format
+    # glTF is y up; a turn keeps the volume.
+    scene = trimesh.load(s.export(tmp_path / f"{name}.gltf"))
+    assert scene.volume == pytest.approx(exact, rel=2e-4)
+    assert scene.extents[1] == pytest.approx(np.ptp(s.points[:, 2]), rel=1e-6)
+    stl = meshio.read(tmp_path / f"{name}.stl")
+    assert sum(len(c.data) for c in stl.cells) == len(trimesh.load(tmp_path / f"{name}.stl").faces)
+    dxf = trimesh.load(s.export(tmp_path / f"{name}.dxf"))
+    lengths = sum(np.linalg.norm(np.diff(d, axis=0), axis=1).sum() for d in dxf.discrete)
+    assert lengths > 0 and np.isfinite(lengths)
+    data = json.loads(s.export(tmp_path / f"{name}.json").read_text())
+    assert data["volume"] == pytest.approx(exact, rel=1e-9)
+    svg = s.export(tmp_path / f"{name}.svg").read_text()
+    import xml.etree.ElementTree as ElementTree
+
+    assert ElementTree.fromstring(svg).tag.endswith("svg")
+
+
+def test_step_says_that_it_is_not_there_yet():
+    s = Sketch.load(EXAMPLES / "dam.skt")
+    with pytest.raises(SketchError, match="STEP is not written yet"):
+        s.run("EXPORT STEP")
+
+
+def test_a_dxf_drawing_becomes_a_sketch(tmp_path):
+    path = tmp_path / "plan.dxf"
+    corners = [(0, 0), (90, 0), (90, 30), (0, 30)]
+    text = "0\nSECTION\n2\nENTITIES\n"
+    for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True):
+        text += f"0\nLINE\n8\n0\n10\n{a}\n20\n{b}\n30\n0\n11\n{c}\n21\n{d}\n31\n0\n"
+    path.write_text(text + "0\nENDSEC\n0\nEOF\n")
+    s = Sketch(tmp_path)
+    s.run('SKETCH PLAN 2D XY\nIMPORT "plan.dxf"\nDIM W X 1 2 = 9; DIM H Y 2 3 = 3; EXTRUDE 2')
+    assert s.volume == pytest.approx(54.0)
+
+
+# -- in models --------------------------------------------------------------------------------
+
+
+def test_a_sketch_is_a_model(tmp_path):
+    m = moldloft.load(EXAMPLES / "dam.skt")
+    assert list(m.params) == ["dam.CREST", "dam.LENGTH1", "dam.HEIGHT", "dam.PARAPET"]
+    assert m.params["dam.CREST"].range == (10.0, 30.0)
+    assert m.mesh().summary["closed"] and m.mesh().summary["volume"] == pytest.approx(169_200.0)
+    m["dam.CREST"] = 20
+    assert m.eval("dam.volume") == pytest.approx(187_200.0)
+    assert m.derivative("dam.volume", "dam.CREST") == pytest.approx(4_500.0)
+    assert m.jacobian(["dam.CREST", "dam.HEIGHT"]).shape == (10, 3, 2)
+    assert m["dam.p4"].z == pytest.approx(90.0)
+    solid = m.eval("dam.solid")
+    assert solid["vertices"].shape == (10, 3) and solid["volume"] == pytest.approx(187_200.0)
+    with pytest.raises(moldloft.ModelError, match="out of its range"):
+        m["dam.CREST"] = 99
+    with pytest.raises(moldloft.ModelError, match=r"dam\.CREST"):
+        m["dam.p4.z"] = 3
+
+
+def test_sweeps_over_dimensions():
+    m = moldloft.load(EXAMPLES / "dam.skt")
+    found = []
+    for crest in (12, 16, 20):
+        m["dam.CREST"] = crest
+        found.append(m.eval("dam.volume"))
+    assert np.diff(found) == pytest.approx([18_000.0, 18_000.0])
+
+
+def test_a_program_loads_a_sketch(tmp_path):
+    line = [sys.executable, "-m", "moldloft", "build", str(EXAMPLES / "site.sdl")]
+    line += ["--set", "dam.CREST=20", "--json", "--to", "stl", "-o", str(tmp_path)]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    data = json.loads(done.stdout)
+    assert data["params"]["dam.CREST"] == 20
+    [patch] = data["meshes"]
+    assert patch["name"] == "dam.solid" and patch["closed"]
+    assert patch["volume"] == pytest.approx(187_200.0)
+    import trimesh
+
+    mesh = trimesh.load(tmp_path / "site.stl", force="mesh")
+    mesh.merge_vertices()
+    assert mesh.is_watertight and mesh.volume == pytest.approx(187_200.0)
+
+
+def test_faults_of_a_sketch_point_into_it(tmp_path):
+    (tmp_path / "a.skt").write_text("SKETCH A\nPOINT 1 0 0\nLINE 1 2\n")
+    (tmp_path / "m.sdl").write_text('load "a.skt";\n')
+    line = [sys.executable, "-m", "moldloft", "check", str(tmp_path / "m.sdl")]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "a.skt:3:1" in done.stderr and "[101]" in done.stderr
+
+
+# -- documentation ----------------------------------------------------------------------------
+
+
+def test_the_pictures_are_those_of_the_scripts(tmp_path):
+    images = Path(__file__).parents[2] / "docs" / "images"
+    for name in VOLUMES:
+        s = Sketch.load(EXAMPLES / f"{name}.skt")
+        s.run("SHOW PLANES")
+        drawn = s.export(tmp_path / f"{name}.svg").read_text()
+        assert drawn == (images / f"sketch-{name}.svg").read_text()
+        assert (images / f"sketch-{name}.png").read_bytes().startswith(b"\x89PNG")
