@@ -22,7 +22,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic, __version__
     from moldloft.builder import Builder, model, param
-    from moldloft.errors import Error, FileError, ModelError, UnknownNameError
+    from moldloft.errors import Error, FairingError, FileError, ModelError, UnknownNameError
+    from moldloft.fairing import fair
     from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
     from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model, Param, load, loads
@@ -33,6 +34,7 @@ __all__ = [
     "Builder",
     "Diagnostic",
     "Error",
+    "FairingError",
     "FileError",
     "HydrostaticTable",
     "Hydrostatics",
@@ -47,6 +49,7 @@ __all__ = [
     "SketchError",
     "UnknownNameError",
     "__version__",
+    "fair",
     "load",
     "loads",
     "model",
@@ -58,6 +61,7 @@ _HOMES = {
     "Diagnostic": "moldloft._core",
     "__version__": "moldloft._core",
     "Error": "moldloft.errors",
+    "FairingError": "moldloft.errors",
     "FileError": "moldloft.errors",
     "ModelError": "moldloft.errors",
     "UnknownNameError": "moldloft.errors",
@@ -75,6 +79,7 @@ _HOMES = {
     "Object": "moldloft.objects",
     "Sketch": "moldloft.sketches",
     "SketchError": "moldloft.sketches",
+    "fair": "moldloft.fairing",
 }
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic
 
-__all__ = ["Error", "FileError", "ModelError", "UnknownNameError"]
+__all__ = ["Error", "FairingError", "FileError", "ModelError", "UnknownNameError"]
 
 
 class Error(Exception):
@@ -49,6 +49,24 @@ class Error(Exception):
 
 class ModelError(Error, ValueError):
     """The model, or an expression or value for it, is wrong; see ``diagnostics``."""
+
+
+class FairingError(Error, ValueError):
+    """Something cannot be faired as asked.
+
+    Attributes
+    ----------
+    index : int or None
+        The point that is at fault, counted from 0, where it is one.
+    """
+
+    index: int | None
+
+    def __init__(
+        self, message: str, diagnostics: Sequence[Diagnostic] = (), index: int | None = None
+    ) -> None:
+        super().__init__(message, diagnostics)
+        self.index = index
 
 
 class UnknownNameError(Error, KeyError):

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from moldloft._core import Document
+    from moldloft.fairing.surface import Look
 
     Floats = NDArray[np.float64]
 
@@ -126,6 +127,18 @@ class Object:
         if normals:
             return self._document.grid_with_normals(self.name, nu, nv)
         return self._document.grid(self.name, nu, nv)
+
+    def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
+        """Normals, curvatures and reflections of a surface.
+
+        Parameters
+        ----------
+        u, v
+            Parameters in [0, 1] along each direction, or numbers of even ones.
+        """
+        from moldloft.fairing.surface import Look, _parameters
+
+        return Look(self._document.look(self.name, _parameters(u), _parameters(v)))
 
     def delete(self) -> None:
         """Removes the object from the model and its text; refused while others depend on it."""

@@ -6,6 +6,9 @@ use moldloft_num::Vec3;
 /// How many times the median a jump must be to stand out.
 const OUTSTANDING: f64 = 8.0;
 
+/// The fewest jumps in which a pattern is known.
+const FEWEST: usize = 3;
+
 /// Something that noise does not explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Finding {
@@ -25,6 +28,27 @@ pub enum Finding {
     },
 }
 
+impl Finding {
+    /// The control point that it is about.
+    pub fn index(&self) -> usize {
+        match *self {
+            Finding::Corner { index, .. } | Finding::Outlier { index, .. } => index,
+        }
+    }
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let number = self.index() + 1;
+        match self {
+            Finding::Corner { .. } => write!(f, "point {number} looks like an intended break"),
+            Finding::Outlier { error, .. } => {
+                write!(f, "point {number} is off by {:.3e}: a wrong digit?", error.norm())
+            }
+        }
+    }
+}
+
 /// What stands out, largest first.
 ///
 /// A single wrong point spreads over the jumps as its column of the jump matrix (on uniform cubics
@@ -41,8 +65,16 @@ pub fn findings(job: &Job) -> Vec<Finding> {
     let listeners = rows.transposed(n);
     let size = relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
     let mut found = Vec::new();
-    for _ in 0..n / 8 + 1 {
+    // Jumps that neither pattern explains: sharp bends, and the ends, where too few jumps see a
+    // point to tell whose fault it is.
+    let mut plain = vec![false; left.len()];
+    for _ in 0..n / 4 + 1 {
         let mut lengths: Vec<f64> = left.iter().map(|e| e.norm()).collect();
+        for (length, plain) in lengths.iter_mut().zip(&plain) {
+            if *plain {
+                *length = 0.0;
+            }
+        }
         let worst = (0..left.len()).fold(0, |w, k| if lengths[k] > lengths[w] { k } else { w });
         let largest = lengths[worst];
         lengths.sort_by(f64::total_cmp);
@@ -55,6 +87,9 @@ pub fn findings(job: &Job) -> Vec<Finding> {
         for &k in columns {
             for corner in [false, true] {
                 let pattern = pattern(job, &jumps, &listeners, k as usize, corner);
+                if pattern.len() < FEWEST {
+                    continue;
+                }
                 let square: f64 = pattern.iter().map(|(_, x)| x * x).sum();
                 if square == 0.0 {
                     continue;
@@ -74,11 +109,13 @@ pub fn findings(job: &Job) -> Vec<Finding> {
                 }
             }
         }
-        let Some((explained, finding, change)) = best else { break };
-        let near: f64 = change.iter().map(|&(r, _)| left[r].norm_sq()).sum();
-        if explained < 0.5 * near {
-            break;
-        }
+        let near = |change: &[(usize, Vec3<f64>)]| -> f64 {
+            change.iter().map(|&(r, _)| left[r].norm_sq()).sum()
+        };
+        let Some((.., finding, change)) = best.filter(|(e, _, c)| *e >= 0.5 * near(c)) else {
+            plain[worst] = true;
+            continue;
+        };
         for (r, e) in change {
             left[r] -= e;
         }

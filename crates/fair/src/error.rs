@@ -64,10 +64,14 @@ pub enum FairError {
         /// The degree given.
         actual: usize,
     },
+    /// Steps of single points need a measure of squares.
+    Squares,
     /// Linear conditions cannot all hold within the tolerance.
     Contradiction {
         /// The conditions that could not be met, by position in the list given.
         conditions: Vec<usize>,
+        /// Conditions that keep the ends are among them.
+        ends: bool,
         /// The largest amount by which one of them is missed.
         miss: f64,
     },
@@ -120,13 +124,18 @@ impl fmt::Display for FairError {
             Self::Degree { expected, actual } => {
                 write!(f, "this measure needs degree {expected} or more, found {actual}")
             }
-            Self::Contradiction { conditions, miss } => {
-                let list: Vec<_> = conditions.iter().map(|c| (c + 1).to_string()).collect();
+            Self::Contradiction { conditions, ends, miss } => {
+                let own = ends.then(|| "of the ends".to_string());
+                let list: Vec<_> =
+                    conditions.iter().map(|c| (c + 1).to_string()).chain(own).collect();
                 write!(
                     f,
                     "conditions {} cannot hold within the tolerance (missed by {miss:.3e})",
                     list.join(", ")
                 )
+            }
+            Self::Squares => {
+                write!(f, "a sum of lengths has no steps of single points: take the optimum")
             }
             Self::Singular => write!(f, "the equations have no unique solution"),
             Self::TooLarge { needed, allowed } => {

@@ -173,7 +173,7 @@ impl Job {
     }
 
     /// Rows over homogeneous control points as rows over the control points.
-    pub(crate) fn own_rows(&self, rows: &Rows) -> Rows {
+    pub fn own_rows(&self, rows: &Rows) -> Rows {
         match &self.weights {
             None => rows.clone(),
             Some(w) => rows.clone().with_columns_scaled(w),
@@ -211,7 +211,7 @@ impl Job {
     }
 
     /// `points` as the measure sees them.
-    pub(crate) fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
+    pub fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
         let origin = self.origin();
         points.iter().map(|&p| p - origin).collect()
     }

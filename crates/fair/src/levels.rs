@@ -45,10 +45,8 @@ pub fn levels(
     let mut value = vec![0.0; n];
     for _ in 0..cycles {
         for level in (0..=deepest).rev() {
-            let stride = 1usize << level;
-            if 4 * stride > n {
-                continue;
-            }
+            // Bumps that are wider than the curve do not fit on it.
+            let Some(stride) = 1usize.checked_shl(level).filter(|&s| s <= n / 4) else { continue };
             for centre in (0..n).step_by(stride) {
                 // The bump's points, in order; level 0 is a single point.
                 let half = if level == 0 { 0 } else { 2 * stride as isize - 1 };

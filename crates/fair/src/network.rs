@@ -437,18 +437,83 @@ impl Network {
         Ok((points, certificate))
     }
 
+    /// The surface of a net with these control points.
+    ///
+    /// # Errors
+    /// [`FairError::Count`] when there are more or fewer, or the network is no net.
+    pub fn surface(&self, points: &[Vec3<f64>]) -> Result<BSplineSurface<f64>, FairError> {
+        let expected = self.points.len();
+        let Some([u, v]) = self.net.as_ref().filter(|_| points.len() == expected) else {
+            let actual = points.len();
+            return Err(FairError::Count { what: "control points of a net", expected, actual });
+        };
+        let ((ku, pu), (kv, pv)) = (u.knot_vector(), v.knot_vector());
+        let places = || pu.iter().flat_map(|&i| pv.iter().map(move |&j| i * v.count() + j));
+        let weights = self.weights.as_ref().map(|w| places().map(|k| w[k]).collect());
+        let net = places().map(|k| points[k]).collect();
+        BSplineSurface::new(ku, kv, net, weights).map_err(|_| FairError::Singular)
+    }
+
+    /// The volume between the faired and the original surface of a net is zero to first order, so
+    /// that a hull keeps its displacement: the sum over the control points of their moves times the
+    /// integral of their basis function along S_u x S_v.
+    ///
+    /// # Errors
+    /// As [`Network::surface`].
+    pub fn volume_condition(&self) -> Result<Condition, FairError> {
+        let surface = self.surface(&self.points)?;
+        let Some(spaces) = &self.net else { return Err(FairError::Singular) };
+        let [u, v] = spaces.each_ref().map(|space| {
+            let (start, end) = space.domain();
+            let mut out = Vec::new();
+            for k in space.spans() {
+                let (a, b) = (space.knot(k), space.knot(k + 1));
+                for (x, w) in GAUSS {
+                    let t = 0.5 * (a + b) + 0.5 * (b - a) * x;
+                    let basis = space.basis(k, t);
+                    let columns: Vec<usize> = space.columns(k).collect();
+                    let share = (t - start) / (end - start);
+                    let weight = 0.5 * (b - a) * w / (end - start);
+                    out.push((share, weight, columns, basis.rows[0].to_vec()));
+                }
+            }
+            out
+        });
+        let count = spaces[1].count();
+        let mut slope = vec![Vec3::zero(); self.points.len()];
+        for (s, ws, cu, fu) in &u {
+            for (t, wt, cv, fv) in &v {
+                let jet = surface.jet(*s, *t, moldloft_num::Order::First);
+                let flux = jet.u.cross(jet.v) * (ws * wt);
+                let mut entries = Vec::with_capacity(cu.len() * cv.len());
+                for (&i, &x) in cu.iter().zip(fu) {
+                    for (&j, &y) in cv.iter().zip(fv) {
+                        let at = i * count + j;
+                        entries.push((at, x * y * self.weights.as_ref().map_or(1.0, |w| w[at])));
+                    }
+                }
+                let total: f64 = match &self.weights {
+                    None => 1.0,
+                    Some(_) => entries.iter().map(|e| e.1).sum(),
+                };
+                for (at, x) in entries {
+                    slope[at] += flux * (x / total);
+                }
+            }
+        }
+        let entries: Vec<_> = slope.into_iter().enumerate().collect();
+        let mut condition = Condition { entries, value: 0.0 };
+        condition.value = condition.at(&self.points);
+        Ok(condition)
+    }
+
     /// The largest displacement of the surface of a net on a grid of about four samples to a span;
     /// for other networks the largest move of a point.
     pub fn sampled(&self, points: &[Vec3<f64>]) -> f64 {
         let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
         let largest = |all: &[Vec3<f64>]| all.iter().map(|m| m.norm()).fold(0.0, f64::max);
         let Some([u, v]) = &self.net else { return largest(&moved) };
-        let ((ku, pu), (kv, pv)) = (u.knot_vector(), v.knot_vector());
-        let at = |i: usize, j: usize| i * v.count() + j;
-        let places = || pu.iter().flat_map(|&i| pv.iter().map(move |&j| at(i, j)));
-        let weights = self.weights.as_ref().map(|w| places().map(|k| w[k]).collect());
-        let net = places().map(|k| moved[k]).collect();
-        let Ok(surface) = BSplineSurface::new(ku, kv, net, weights) else { return f64::NAN };
+        let Ok(surface) = self.surface(&moved) else { return f64::NAN };
         let steps =
             |n: usize| -> Vec<f64> { (0..=4 * n).map(|k| k as f64 / (4 * n) as f64).collect() };
         let (us, vs) = (steps(u.count()), steps(v.count()));
@@ -457,6 +522,14 @@ impl Network {
         largest(&grid)
     }
 }
+
+/// The rule of Gauss and Legendre with four points, on [-1, 1].
+const GAUSS: [(f64, f64); 4] = [
+    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    (-0.339_981_043_584_856_3, 0.652_145_154_862_546_2),
+    (0.339_981_043_584_856_3, 0.652_145_154_862_546_2),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+];
 
 /// What a fairing did to a network, for reports.
 #[derive(Clone, Debug, PartialEq)]
@@ -492,9 +565,22 @@ impl Network {
     /// # Errors
     /// As [`Network::optimum`], [`Network::sweeps`] and [`Network::passes`].
     pub fn report(&self, measure: Measure, mode: NetworkMode) -> Result<NetworkReport, FairError> {
+        self.report_with(measure, mode, Vec::new())
+    }
+
+    /// The same under linear conditions, which the joint optimum alone can keep.
+    ///
+    /// # Errors
+    /// As [`Network::report`].
+    pub fn report_with(
+        &self,
+        measure: Measure,
+        mode: NetworkMode,
+        conditions: Vec<Condition>,
+    ) -> Result<NetworkReport, FairError> {
         let (points, certificate) = match mode {
             NetworkMode::Joint(bound) => {
-                let best = self.optimum(measure, bound, Vec::new(), 1e-9)?;
+                let best = self.optimum(measure, bound, conditions, 1e-9)?;
                 (best.points, best.certificate)
             }
             NetworkMode::Sweeps(count) => self.sweeps(measure, count)?,

@@ -78,6 +78,29 @@ impl Condition {
     /// The area that the curve sweeps round the origin in the plane of `normal` keeps its value to
     /// first order: area is quadratic in the control points, its slope is taken at `points`.
     pub fn area(space: &Space, points: &[Vec3<f64>], normal: Vec3<f64>) -> Self {
+        // d/dp and d/dp' of (n . (p x p')) / 2.
+        Self::integral(space, points, |p, d| (d.cross(normal) * 0.5, normal.cross(p) * 0.5))
+    }
+
+    /// The volume that the curve sweeps when it turns about an axis through the origin keeps its
+    /// value to first order: pi times the integral of r^2 along the axis, r the distance from it.
+    pub fn revolution(space: &Space, points: &[Vec3<f64>], axis: Vec3<f64>) -> Self {
+        let axis = axis.normalized().unwrap_or(Vec3::of(1.0, 0.0, 0.0));
+        Self::integral(space, points, |p, d| {
+            let across = p - axis * p.dot(axis);
+            let pi = std::f64::consts::PI;
+            (across * (2.0 * pi * d.dot(axis)), axis * (pi * across.norm_sq()))
+        })
+    }
+
+    /// The integral over the parameter of something that depends on position and first derivative
+    /// keeps its value to first order; `slopes` are its derivatives by both. Exact for polynomials of
+    /// degree 15 in the parameter.
+    fn integral(
+        space: &Space,
+        points: &[Vec3<f64>],
+        slopes: impl Fn(Vec3<f64>, Vec3<f64>) -> (Vec3<f64>, Vec3<f64>),
+    ) -> Self {
         let mut slope = vec![Vec3::zero(); points.len()];
         for k in space.spans() {
             let (a, b) = (space.knot(k), space.knot(k + 1));
@@ -101,11 +124,10 @@ impl Condition {
                     p[0] += points[c] * basis.rows[0][j];
                     p[1] += points[c] * basis.rows[1][j];
                 }
-                // d/dc of (n . (x x x')) / 2.
+                let (by_value, by_slope) = slopes(p[0], p[1]);
                 for (j, c) in space.columns(k).enumerate() {
-                    let by_value = p[1].cross(normal) * (0.5 * w * basis.rows[0][j]);
-                    let by_slope = normal.cross(p[0]) * (0.5 * w * basis.rows[1][j]);
-                    slope[c] += by_value + by_slope;
+                    slope[c] +=
+                        by_value * (w * basis.rows[0][j]) + by_slope * (w * basis.rows[1][j]);
                 }
             }
         }
@@ -406,8 +428,9 @@ impl<'a> Parts<'a> {
                 (condition.at(&points) - condition.value).abs()
             };
             let miss = missed.iter().map(off).fold(0.0, f64::max);
-            let conditions = missed.into_iter().map(|k| k.saturating_sub(self.own)).collect();
-            return Err(FairError::Contradiction { conditions, miss });
+            let ends = missed.iter().any(|&k| k < self.own);
+            let conditions = missed.into_iter().filter_map(|k| k.checked_sub(self.own)).collect();
+            return Err(FairError::Contradiction { conditions, ends, miss });
         }
         // Squares are solved as halves.
         let unit = if self.norm == Norm::Square { 2.0 } else { 1.0 };

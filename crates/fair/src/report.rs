@@ -2,7 +2,7 @@
 
 use crate::{
     Certificate, Deviation, FairError, Finding, Job, Jumps, Local, LocalOptions, Measure, Norm,
-    Optimum, OptimumOptions, Stopped, ball_gap, deviation, local, optimum, shape,
+    Optimum, OptimumOptions, Stopped, ball_gap, deviation, levels, local, optimum, shape, sweeps,
 };
 use moldloft_num::Vec3;
 use std::fmt;
@@ -14,6 +14,10 @@ pub enum Mode {
     Optimum(OptimumOptions),
     /// Local steps.
     Local(LocalOptions),
+    /// So many sweeps over all points; see [`sweeps`].
+    Sweeps(Measure, usize),
+    /// So many cycles over waves of all lengths; see [`levels`].
+    Levels(Measure, usize),
 }
 
 /// Counts and sums over a curve.
@@ -54,11 +58,11 @@ pub struct Report {
     pub stopped: Option<Stopped>,
     /// Limits that are reached; for the optimum.
     pub active: Option<usize>,
-    /// Corners and wrong points that the original's jumps give away.
+    /// Corners and wrong points that the original's jumps give away and that are not marked.
     pub findings: Vec<Finding>,
     /// The jump at each knot, before and after, for jump plots.
     pub jumps: [Vec<f64>; 2],
-    /// Things the user should know.
+    /// Things the user should know, besides the findings.
     pub notes: Vec<String>,
 }
 
@@ -112,6 +116,17 @@ pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
             let gap = ball_gap(job, &rows, Norm::Square, &points);
             (points, options.measure, gap, steps, Some(stopped), None)
         }
+        Mode::Sweeps(measure, count) | Mode::Levels(measure, count) => {
+            if measure.norm() != Norm::Square {
+                return Err(FairError::Squares);
+            }
+            let points = match mode {
+                Mode::Sweeps(..) => sweeps(job, *measure, *count)?,
+                _ => levels(job, *measure, *count, u32::BITS)?,
+            };
+            let gap = ball_gap(job, &job.measure_rows(*measure)?, Norm::Square, &points);
+            (points, *measure, gap, *count, Some(Stopped::Steps), None)
+        }
     };
     let (before, after) = (numbers(job, measure, &job.points)?, numbers(job, measure, &points)?);
     let rows = job.own_rows(&Jumps::of(&job.space).rows);
@@ -129,7 +144,7 @@ pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
         steps,
         stopped,
         active,
-        findings: crate::findings(job),
+        findings: unmarked(job),
         jumps,
         notes: Vec::new(),
     };
@@ -137,19 +152,15 @@ pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
     Ok(report)
 }
 
+/// What stands out and is not taken into account yet.
+fn unmarked(job: &Job) -> Vec<Finding> {
+    let mut found = crate::findings(job);
+    found.retain(|f| !job.marks.contains(&f.index()));
+    found
+}
+
 fn notes(job: &Job, report: &Report) -> Vec<String> {
     let mut notes = Vec::new();
-    for finding in &report.findings {
-        let (index, text) = match finding {
-            Finding::Corner { index, .. } => (index, "looks like an intended break".to_string()),
-            Finding::Outlier { index, error } => {
-                (index, format!("is off by {:.3e}: a wrong digit?", error.norm()))
-            }
-        };
-        if !job.marks.contains(index) {
-            notes.push(format!("point {} {text}", index + 1));
-        }
-    }
     if report.stopped == Some(Stopped::Stalled) {
         notes.push(
             "the literal rule stalled: the worst knot's point sits on its limit; rank by \
@@ -218,6 +229,7 @@ impl fmt::Display for Report {
             }
             (None, None) => {}
         }
+        self.findings.iter().try_for_each(|finding| writeln!(f, "note: {finding}"))?;
         self.notes.iter().try_for_each(|note| writeln!(f, "note: {note}"))
     }
 }

@@ -147,6 +147,9 @@ pub fn curvatures(samples: &[Sample]) -> Vec<f64> {
 
 /// The number of monotone runs in a list of numbers when reversals smaller than `share` of the
 /// range are ignored; 0 for a constant list.
+///
+/// The first run begins where the numbers have left their first one by that much: ripples before do
+/// not count. So a list read backwards may have a few runs more or fewer.
 pub fn monotone_runs(values: &[f64], share: f64) -> usize {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -157,46 +160,61 @@ pub fn monotone_runs(values: &[f64], share: f64) -> usize {
         return 0;
     }
     let (mut runs, mut rising) = (0, None);
-    // The extremes since the last turn: of a rising run its top, of a falling one its bottom.
-    let (mut top, mut bottom) = (values[0], values[0]);
+    // The extreme since the last turn: of a rising run its top, of a falling one its bottom.
+    let mut extreme = values[0];
     for &v in values {
-        match rising {
-            Some(true) => top = top.max(v),
-            Some(false) => bottom = bottom.min(v),
-            None => (top, bottom) = (top.max(v), bottom.min(v)),
-        }
-        if rising != Some(true) && v > bottom + least {
-            (runs, rising, top) = (runs + 1, Some(true), v);
-        } else if rising != Some(false) && v < top - least {
-            (runs, rising, bottom) = (runs + 1, Some(false), v);
+        let on = match rising {
+            None => false,
+            Some(true) => v >= extreme,
+            Some(false) => v <= extreme,
+        };
+        if on {
+            extreme = v;
+        } else if (v - extreme).abs() > least {
+            (runs, rising, extreme) = (runs + 1, Some(v > extreme), v);
         }
     }
     runs
 }
 
 /// The number of sign changes of the curvature: how often x' x x'' turns against its last
-/// direction, values within rounding of zero left out.
+/// direction. Where it comes to zero and goes back there are two inflections in one place; a
+/// straight stretch is a change where it begins and where it ends. A curve that is straight within
+/// rounding has none.
+///
+/// On rounded data, whose second differences are often exactly zero, rounding decides whether such a
+/// place is a touch or none.
 pub fn inflections(samples: &[Sample]) -> usize {
-    let axes: Vec<_> = samples
-        .iter()
-        .map(|s| {
-            let [d1, d2, _] = s.derivatives;
-            let size = d1.norm() * d2.norm();
-            (d1.cross(d2), size)
-        })
-        .collect();
+    let most = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, f64::max);
+    if most(&Sample::curvature) * most(&|s| (s.point - samples[0].point).norm()) <= 1e-9 {
+        return 0;
+    }
     let mut last: Option<Vec3<f64>> = None;
     let mut changes = 0;
-    for (axis, size) in axes {
-        if axis.norm() <= 1e-9 * size || size == 0.0 {
+    // Where the curve is straight: from and to. Both sides of a knot are one place.
+    let mut straight: Option<[f64; 2]> = None;
+    for s in samples {
+        let [d1, d2, _] = s.derivatives;
+        let axis = d1.cross(d2);
+        if axis.norm() <= 1e-9 * d1.norm() * d2.norm() {
+            straight = Some([straight.map_or(s.t, |[from, _]| from), s.t]);
             continue;
         }
-        if last.is_some_and(|l| l.dot(axis) < 0.0) {
+        if let Some(before) = last {
+            let turned = before.dot(axis) < 0.0;
+            changes += match straight {
+                None => usize::from(turned),
+                Some([from, to]) if from < to => 2,
+                Some(_) => 2 - usize::from(turned),
+            };
+        } else if straight.is_some_and(|[from, to]| from < to) {
             changes += 1;
         }
+        straight = None;
         last = Some(axis);
     }
-    changes
+    let ends_straight = straight.is_some_and(|[from, to]| from < to);
+    changes + usize::from(last.is_some() && ends_straight)
 }
 
 /// Samples on each span for counts.

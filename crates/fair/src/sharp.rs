@@ -14,6 +14,8 @@ pub struct Sharp<T> {
     pub points: Vec<Vec3<T>>,
     /// The control points that are breaks: they stand at the data points of that name.
     pub marks: Vec<usize>,
+    /// The parameter of each given point, in their order.
+    pub at: Vec<f64>,
 }
 
 /// The spline through all points that is continuous, and no more, at the points `breaks` (from 0):
@@ -58,7 +60,7 @@ pub fn interpolate_sharp<T: Real>(
     let Some(&first) = breaks.first() else {
         let fit = crate::interpolate(degree, &plain, spacing, closed)?;
         let points = fit_with(&fit, points)?;
-        return Ok(Sharp { fit, points, marks: Vec::new() });
+        return Ok(Sharp { fit, points, marks: Vec::new(), at });
     };
     if !closed {
         return open(degree, points, &at, &breaks);
@@ -73,7 +75,13 @@ pub fn interpolate_sharp<T: Real>(
     from.push(1.0);
     let mut moved: Vec<usize> = breaks.iter().map(|b| b - first).collect();
     moved.push(count);
-    open(degree, &turned, &from, &moved)
+    let mut sharp = open(degree, &turned, &from, &moved)?;
+    let turned_at = std::mem::take(&mut sharp.at);
+    sharp.at = vec![0.0; count];
+    for (k, t) in turned_at.into_iter().take(count).enumerate() {
+        sharp.at[(first + k) % count] = t;
+    }
+    Ok(sharp)
 }
 
 /// The same for open curves at given parameters; `breaks` ascend.
@@ -117,7 +125,7 @@ fn open<T: Real>(
         control[c] = points[i];
         fit.points[c] = points[i].re();
     }
-    Ok(Sharp { fit, points: control, marks })
+    Ok(Sharp { fit, points: control, marks, at: at.to_vec() })
 }
 
 /// A piece with at least `degree + 1` points: those that are missing are taken from the polynomial
@@ -172,8 +180,11 @@ mod tests {
                 for (&m, b) in s.marks.iter().zip(breaks) {
                     assert!(s.points[m].bits_eq(points[b]));
                 }
-                // Straight sides are straight to the corner.
                 let p = |t| sample_at(&s.fit.space, &s.points, None, t).point;
+                for (&t, &q) in s.at.iter().zip(&points) {
+                    assert!((p(t) - q).norm() < 1e-12);
+                }
+                // Straight sides are straight to the corner.
                 let corner = s.fit.parameters[1..]
                     .iter()
                     .copied()

@@ -28,7 +28,7 @@ fn rows() -> Vec<Row> {
             input: [5.385165e-4, 5.700000e-6, 1.313000e-4],
             steps: [[1.308567e-4, 3.89e-8], [1.308287e-4, 1.18e-9]],
             stall: 1165,
-            pieces: [22, 2],
+            pieces: [19, 2],
             inflections: [0, 0],
             truth: [3.36e-5, 2.79e-5],
         },
@@ -106,8 +106,7 @@ fn steps_reach_the_figures_of_the_table() {
     }
 }
 
-/// Curvature counts. The table counts a run of zero curvature as a sign of its own, which shows in
-/// rounded data only; a closed curve's counts are of this program.
+/// Curvature counts of the table; a closed curve's are of this program.
 #[test]
 fn monotone_pieces_and_inflections() {
     for row in rows() {
@@ -117,22 +116,8 @@ fn monotone_pieces_and_inflections() {
             let pieces = shape::pieces(&job.space, points);
             assert!(pieces.abs_diff(row.pieces[k]) <= 1, "{} {k}: {pieces}", f.name);
             let samples = shape::samples(&job.space, points, None, 16);
-            let signs: Vec<i32> = shape::curvatures(&samples)
-                .into_iter()
-                .map(|c| {
-                    if c > 0.0 {
-                        1
-                    } else if c < 0.0 {
-                        -1
-                    } else {
-                        0
-                    }
-                })
-                .collect();
-            let changes = signs.windows(2).filter(|w| w[0] != w[1]).count();
+            let changes = shape::inflections(&samples);
             assert!(changes.abs_diff(row.inflections[k]) <= 1, "{} {k}: {changes}", f.name);
-            // True inflections are fewer where straight stretches stand between.
-            assert!(shape::inflections(&samples) <= changes);
         }
     }
 }

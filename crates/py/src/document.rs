@@ -3,6 +3,7 @@
 use crate::arrays;
 use crate::diagnostics::Diagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
+use crate::fair::Look;
 use crate::mesh::PyMesh;
 use crate::portrait::portrait;
 use crate::value::to_python;
@@ -12,7 +13,7 @@ use crate::write;
 use moldloft_diag::Sources;
 use moldloft_lang::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
 use moldloft_model::Object;
-use moldloft_num::Vec3;
+use moldloft_num::{Order, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
 use numpy::{PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -343,6 +344,36 @@ impl PyDocument {
             arrays::filled(py, [nu, nv, 3], fill).0
         });
         Ok((points, normals))
+    }
+
+    /// Normals, curvatures and reflections of a surface on a grid of parameters.
+    fn look(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        u: PyReadonlyArray1<'_, f64>,
+        v: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Look> {
+        let surface = self.surface_of(py, name)?;
+        let (us, vs) = (u.as_slice()?, v.as_slice()?);
+        Ok(py.detach(|| Look::of(&*surface, us, vs)))
+    }
+
+    /// First and second derivatives of a curve, and the parameters at which these may jump.
+    fn curve_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        t: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Vec<f64>)> {
+        let curve = self.curve_of(py, name)?;
+        let ts = t.as_slice()?;
+        let jets: Vec<_> = py.detach(|| ts.iter().map(|&t| curve.jet(t, Order::Second)).collect());
+        let part = |k: usize| {
+            let fill = |out: &mut [Vec3]| out.iter_mut().zip(&jets).for_each(|(o, j)| *o = j[k]);
+            arrays::filled(py, [jets.len(), 3], fill).0
+        };
+        Ok((part(1), part(2), curve.breaks()))
     }
 
     /// The panels; of the patches with one of the tags when any are given.

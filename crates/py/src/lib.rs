@@ -10,6 +10,7 @@ mod arrays;
 mod diagnostics;
 mod document;
 mod error;
+mod fair;
 mod foreign;
 mod mesh;
 mod portrait;
@@ -33,6 +34,8 @@ mod _core {
     use crate::diagnostics::{Diagnostic, Label};
     #[pymodule_export]
     use crate::document::{PyDocument, format_text};
+    #[pymodule_export]
+    use crate::fair::{Look, Net, Spline, Web, divided_differences, eta_y, monotone_runs};
     #[pymodule_export]
     use crate::mesh::PyMesh;
     #[pymodule_export]

@@ -22,6 +22,7 @@ COMMANDS = {
     "graph": "the dependency digraph as SVG",
     "render": "a picture without a display",
     "sketch": "a sketch file, or the sketch language line by line",
+    "fair": "fair points, a curve or a surface within a certified tolerance",
     "doc": "the reference of entity kinds and functions",
 }
 """Commands with a line about each; the module of the same name has ``add`` and ``run``."""

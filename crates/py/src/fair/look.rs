@@ -1,0 +1,147 @@
+//! What a surface looks like: curvatures and reflections on a grid.
+
+use super::refused;
+use crate::arrays;
+use moldloft_fair::surface::{self, Look as One};
+use moldloft_num::{Surface, Vec3};
+use numpy::ndarray::Array2;
+use numpy::{PyArray2, PyArray3, ToPyArray};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+/// A surface at a grid of parameters: normals, curvatures, and how light plays on it. Where it is
+/// singular all numbers are NaN.
+#[pyclass(frozen, module = "moldloft._core")]
+pub struct Look {
+    shape: [usize; 2],
+    points: Vec<Vec3>,
+    looks: Vec<Option<One>>,
+}
+
+impl Look {
+    pub fn of(surface: &dyn Surface<f64>, us: &[f64], vs: &[f64]) -> Self {
+        let shape = [us.len(), vs.len()];
+        let at = |k: usize| (us[k / vs.len()], vs[k % vs.len()]);
+        let count = us.len() * vs.len();
+        let looks = (0..count)
+            .into_par_iter()
+            .map(|k| {
+                let (u, v) = at(k);
+                surface::look(surface, u, v)
+            })
+            .collect();
+        let mut points = vec![Vec3::zero(); count];
+        surface.grid(us, vs, &mut points, None);
+        Self { shape, points, looks }
+    }
+
+    fn numbers<'py>(&self, py: Python<'py>, f: impl Fn(&One) -> f64) -> Bound<'py, PyArray2<f64>> {
+        let values = self.looks.iter().map(|l| l.as_ref().map_or(f64::NAN, &f)).collect();
+        let array = Array2::from_shape_vec((self.shape[0], self.shape[1]), values);
+        array.expect("as many looks as parameters").to_pyarray(py)
+    }
+
+    fn vectors<'py>(
+        &self,
+        py: Python<'py>,
+        f: impl Fn(usize) -> Vec3,
+    ) -> Bound<'py, PyArray3<f64>> {
+        let [m, n] = self.shape;
+        let fill = |out: &mut [Vec3]| out.iter_mut().enumerate().for_each(|(k, o)| *o = f(k));
+        arrays::filled(py, [m, n, 3], fill).0
+    }
+}
+
+const NOWHERE: Vec3 = Vec3 { x: f64::NAN, y: f64::NAN, z: f64::NAN };
+
+fn direction(v: [f64; 3], what: &str) -> PyResult<Vec3> {
+    let v = Vec3::from(v);
+    if v.is_finite() && v.norm() > 0.0 {
+        return Ok(v);
+    }
+    Err(refused(format!("the direction of the {what} has no length")))
+}
+
+#[pymethods]
+impl Look {
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+        self.vectors(py, |k| self.points[k])
+    }
+
+    #[getter]
+    fn normals<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+        self.vectors(py, |k| self.looks[k].map_or(NOWHERE, |l| l.normal))
+    }
+
+    #[getter]
+    fn gaussian<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.numbers(py, |l| l.curvatures.gaussian)
+    }
+
+    #[getter]
+    fn mean<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.numbers(py, |l| l.curvatures.mean)
+    }
+
+    #[getter]
+    fn largest<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.numbers(py, |l| l.curvatures.principal[0])
+    }
+
+    #[getter]
+    fn smallest<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.numbers(py, |l| l.curvatures.principal[1])
+    }
+
+    #[getter]
+    fn absolute<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.numbers(py, |l| l.curvatures.absolute())
+    }
+
+    fn isophote<'py>(
+        &self,
+        py: Python<'py>,
+        light: [f64; 3],
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let light = direction(light, "light")?;
+        Ok(self.numbers(py, |l| surface::isophote(l, light)))
+    }
+
+    fn highlight<'py>(
+        &self,
+        py: Python<'py>,
+        point: [f64; 3],
+        along: [f64; 3],
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let along = direction(along, "light line")?;
+        Ok(self.numbers(py, |l| surface::highlight(l, point.into(), along)))
+    }
+
+    fn reflection<'py>(
+        &self,
+        py: Python<'py>,
+        view: [f64; 3],
+        point: [f64; 3],
+        along: [f64; 3],
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (view, along) = (direction(view, "view")?, direction(along, "line")?);
+        Ok(self.numbers(py, |l| surface::reflection(l, view, point.into(), along)))
+    }
+
+    fn zebra<'py>(
+        &self,
+        py: Python<'py>,
+        view: [f64; 3],
+        axis: [f64; 3],
+        stripes: f64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (view, axis) = (direction(view, "view")?, direction(axis, "axis")?);
+        Ok(self.numbers(py, |l| surface::zebra(l, view, axis, stripes)))
+    }
+
+    fn orthotomic<'py>(&self, py: Python<'py>, p: [f64; 3], k: f64) -> Bound<'py, PyArray3<f64>> {
+        let at = |l: One| surface::orthotomic(&l, p.into(), k);
+        self.vectors(py, |i| self.looks[i].map_or(NOWHERE, at))
+    }
+}

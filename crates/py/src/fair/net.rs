@@ -1,0 +1,218 @@
+//! Nets of surfaces, and curves that share points.
+
+use super::solve::{bound, end, get, long_net, motion};
+use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
+use crate::arrays;
+use moldloft_fair::{End, Limit, Network, NetworkMode, NetworkReport, Space, Strand};
+use moldloft_num::Vec3;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A tensor-product spline surface with any knots, open or closed in each direction.
+#[pyclass(frozen, module = "moldloft._core")]
+pub struct Net {
+    spaces: [Space; 2],
+    points: Vec<Vec3>,
+    weights: Option<Vec<f64>>,
+}
+
+type Option1<'py> = Option<PyReadonlyArray1<'py, f64>>;
+
+impl Net {
+    fn network(&self, radii: Vec<f64>) -> PyResult<Network> {
+        let limit = Limit::new(moldloft_fair::Motion::Ball, radii).map_err(fair_error)?;
+        let (spaces, points) = (self.spaces.clone(), self.points.clone());
+        Network::net(spaces, points, self.weights.clone(), limit).map_err(fair_error)
+    }
+}
+
+#[pymethods]
+impl Net {
+    /// Points flat, (i, j) at `i * n + j`.
+    #[new]
+    #[pyo3(signature = (points, degrees, counts, forms, knots=(None, None), periods=(None, None), weights=None))]
+    fn new(
+        points: PyReadonlyArray2<'_, f64>,
+        degrees: [usize; 2],
+        counts: [usize; 2],
+        forms: [String; 2],
+        knots: (Option1<'_>, Option1<'_>),
+        periods: (Option<f64>, Option<f64>),
+        weights: Option1<'_>,
+    ) -> PyResult<Self> {
+        let points = vectors(&points)?;
+        let u = space(degrees[0], counts[0], &forms[0], floats(knots.0), periods.0);
+        let v = space(degrees[1], counts[1], &forms[1], floats(knots.1), periods.1);
+        let spaces = [u.map_err(fair_error)?, v.map_err(fair_error)?];
+        let net = Self { spaces, points, weights: floats(weights) };
+        net.network(vec![0.0; net.points.len()])?;
+        Ok(net)
+    }
+
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        (self.spaces[0].count(), self.spaces[1].count())
+    }
+
+    #[getter]
+    fn degrees(&self) -> (usize, usize) {
+        (self.spaces[0].degree(), self.spaces[1].degree())
+    }
+
+    #[getter]
+    fn closed(&self) -> (bool, bool) {
+        (self.spaces[0].is_closed(), self.spaces[1].is_closed())
+    }
+
+    fn knots<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>) {
+        let [u, v] = &self.spaces;
+        (u.knots().to_pyarray(py), v.knots().to_pyarray(py))
+    }
+
+    #[getter]
+    fn control_points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        let fill = |out: &mut [Vec3]| out.copy_from_slice(&self.points);
+        arrays::filled(py, [self.points.len(), 3], fill).0
+    }
+
+    /// The surface at a grid of parameters in [0, 1].
+    fn look(
+        &self,
+        py: Python<'_>,
+        us: PyReadonlyArray1<'_, f64>,
+        vs: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Look> {
+        let network = self.network(vec![0.0; self.points.len()])?;
+        let surface = network.surface(&self.points).map_err(fair_error)?;
+        let (us, vs) = (us.as_array().to_vec(), vs.as_array().to_vec());
+        Ok(py.detach(|| Look::of(&surface, &us, &vs)))
+    }
+
+    /// The sum of a measure over the curves along u and over those along v.
+    fn measure(&self, name: &str) -> PyResult<(f64, f64)> {
+        let network = self.network(vec![0.0; self.points.len()])?;
+        let (m, nv) = (measure(name)?, self.spaces[1].count());
+        let all = network.strands.len();
+        let value = |r| network.value(m, r, &self.points).map_err(fair_error);
+        Ok((value(0..nv)?, value(nv..all)?))
+    }
+
+    /// Fairs: the faired net and the report.
+    fn fair<'py>(
+        &self,
+        py: Python<'py>,
+        options: Bound<'py, PyDict>,
+    ) -> PyResult<(Self, Bound<'py, PyDict>)> {
+        let mut network = self.network(get(&options, "tolerance")?)?;
+        let word: String = get(&options, "motion")?;
+        network.limit.motion = motion(&word, get(&options, "direction")?)?;
+        network.limit =
+            Limit::new(network.limit.motion, network.limit.radii.clone()).map_err(fair_error)?;
+        let ends: (String, String) = get(&options, "ends")?;
+        let ends = [end(&ends.0)?, end(&ends.1)?];
+        network.strands.iter_mut().for_each(|s| s.ends = ends);
+        let (u, v): (Vec<usize>, Vec<usize>) = get(&options, "marks")?;
+        let mut network = network.with_breaks(&u, &v).map_err(fair_error)?;
+        network.kept.extend(get::<Vec<usize>>(&options, "fixed")?);
+        if get::<String>(&options, "order")? == "uv" {
+            // Passes begin with the curves along v.
+            let nv = self.spaces[1].count();
+            network.strands.rotate_left(nv);
+        }
+        let volume: bool = get(&options, "volume")?;
+        let (told, points) = solved(py, network, &options, volume)?;
+        let (spaces, weights) = (self.spaces.clone(), self.weights.clone());
+        Ok((Self { spaces, points, weights }, told))
+    }
+}
+
+/// Curves over common points.
+#[pyclass(frozen, module = "moldloft._core")]
+pub struct Web {
+    points: Vec<Vec3>,
+    /// Places, closed, own marks.
+    curves: Vec<(Vec<usize>, bool, Vec<usize>)>,
+    degree: usize,
+}
+
+#[pymethods]
+impl Web {
+    #[new]
+    fn new(
+        points: PyReadonlyArray2<'_, f64>,
+        curves: Vec<(Vec<usize>, bool, Vec<usize>)>,
+        degree: usize,
+    ) -> PyResult<Self> {
+        Ok(Self { points: vectors(&points)?, curves, degree })
+    }
+
+    fn fair<'py>(
+        &self,
+        py: Python<'py>,
+        options: Bound<'py, PyDict>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>)> {
+        let word: String = get(&options, "motion")?;
+        let motion = motion(&word, get(&options, "direction")?)?;
+        let limit = Limit::new(motion, get(&options, "tolerance")?).map_err(fair_error)?;
+        let mut strands = Vec::new();
+        for (k, (own, closed, marks)) in self.curves.iter().enumerate() {
+            let form = if *closed { "closed" } else { "floating" };
+            let space = space(self.degree, own.len(), form, None, None)
+                .map_err(|e| refused(format!("curve {}: {e}", k + 1)))?;
+            strands.push(Strand {
+                space,
+                points: own.clone(),
+                weights: None,
+                marks: marks.clone(),
+                ends: [End::Points(1); 2],
+            });
+        }
+        let mut network = Network::new(self.points.clone(), strands, limit).map_err(fair_error)?;
+        network.kept = get(&options, "fixed")?;
+        let (told, points) = solved(py, network, &options, false)?;
+        let fill = |out: &mut [Vec3]| out.copy_from_slice(&points);
+        Ok((arrays::filled(py, [points.len(), 3], fill).0, told))
+    }
+}
+
+fn solved<'py>(
+    py: Python<'py>,
+    network: Network,
+    options: &Bound<'py, PyDict>,
+    volume: bool,
+) -> PyResult<(Bound<'py, PyDict>, Vec<Vec3>)> {
+    let measure = measure(&get::<String>(options, "measure")?)?;
+    let mode: String = get(options, "mode")?;
+    let (passes, steps): (usize, usize) = (get(options, "passes")?, get(options, "steps")?);
+    let mode = match mode.as_str() {
+        "optimum" => NetworkMode::Joint(bound(&get::<String>(options, "bound")?)?),
+        "sweeps" => NetworkMode::Sweeps(steps),
+        "faithful" => NetworkMode::Passes(passes, steps),
+        _ => {
+            let known = "optimum, faithful, sweeps";
+            return Err(refused(format!("there is no mode `{mode}` of nets; there are: {known}")));
+        }
+    };
+    let told = long_net(py, move || {
+        let conditions = if volume { vec![network.volume_condition()?] } else { Vec::new() };
+        network.report_with(measure, mode, conditions)
+    })?;
+    let dict = dictionary(py, &told)?;
+    Ok((dict, told.points))
+}
+
+fn dictionary<'py>(py: Python<'py>, r: &NetworkReport) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("measure_before", r.measure[0])?;
+    dict.set_item("measure_after", r.measure[1])?;
+    dict.set_item("jumps_before", r.jumps[0])?;
+    dict.set_item("jumps_after", r.jumps[1])?;
+    dict.set_item("certified", r.certified)?;
+    dict.set_item("sampled", r.sampled)?;
+    dict.set_item("certificate", certificate(py, &r.certificate)?)?;
+    Ok(dict)
+}

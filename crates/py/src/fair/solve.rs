@@ -1,0 +1,231 @@
+//! From options to reports.
+
+use super::spline::told;
+use super::{Spline, certificate, fair_error, long, measure, refused};
+use moldloft_fair::{
+    Bound as Bounded, Condition, End, FairError, Job, Limit, LocalOptions, Mode, Motion, Numbers,
+    OptimumOptions, Report, Rule, Space, Step, Stops, local, report,
+};
+use moldloft_num::{Order, Vec3};
+use numpy::ToPyArray;
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+type Options<'a, 'py> = &'a Bound<'py, PyDict>;
+
+pub fn get<'py, R>(options: Options<'_, 'py>, name: &str) -> PyResult<R>
+where
+    R: FromPyObjectOwned<'py>,
+{
+    let value = options.get_item(name)?.ok_or_else(|| refused(format!("no option `{name}`")))?;
+    value.extract().map_err(Into::into)
+}
+
+pub fn motion(word: &str, direction: [f64; 3]) -> PyResult<Motion> {
+    Ok(match word {
+        "ball" => Motion::Ball,
+        "box" => Motion::Box,
+        "along" => Motion::Along(direction.into()),
+        "across" => Motion::Across(direction.into()),
+        _ => return Err(refused(format!("there is no motion `{word}`"))),
+    })
+}
+
+pub fn end(word: &str) -> PyResult<End> {
+    if let Some(count) = word.strip_prefix("points:").and_then(|n| n.parse().ok()) {
+        return Ok(End::Points(count));
+    }
+    End::named(word).ok_or_else(|| {
+        refused(format!(
+            "there is no end condition `{word}`; there are: free, position, tangent, curvature"
+        ))
+    })
+}
+
+pub fn bound(word: &str) -> PyResult<Bounded> {
+    Ok(match word {
+        "points" => Bounded::ControlPoints,
+        "curve" => Bounded::Bezier,
+        _ => return Err(refused(format!("there is no bound `{word}`; there are: curve, points"))),
+    })
+}
+
+/// One condition of the user's as linear conditions.
+fn conditions(
+    space: &Space,
+    points: &[Vec3],
+    word: &str,
+    t: f64,
+    v: [f64; 3],
+) -> PyResult<Vec<Condition>> {
+    let (a, b) = space.domain();
+    let at = a + (b - a) * t;
+    Ok(match word {
+        "through" => Condition::point(space, at, v.into()),
+        "tangent" => Condition::tangent(space, at, v.into()),
+        "derivative" => {
+            let scaled = Vec3::from(v) * (1.0 / (b - a));
+            Condition::derivative(space, at, Order::First, scaled)
+        }
+        "centroid" => Condition::centroid(points),
+        "area" => vec![Condition::area(space, points, v.into())],
+        "volume" => vec![Condition::revolution(space, points, v.into())],
+        _ => return Err(refused(format!("there is no condition `{word}`"))),
+    })
+}
+
+/// The job and the mode of a curve's options.
+fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)> {
+    let radii: Vec<f64> = get(options, "tolerance")?;
+    let motion = motion(&get::<String>(options, "motion")?, get(options, "direction")?)?;
+    let ends: (String, String) = get(options, "ends")?;
+    let mut limit = Limit::new(motion, radii).map_err(fair_error)?;
+    for index in get::<Vec<usize>>(options, "fixed")? {
+        let count = limit.radii.len();
+        let radius = limit.radii.get_mut(index);
+        *radius.ok_or_else(|| fair_error(FairError::Mark { index, count }))? = 0.0;
+    }
+    let job = Job {
+        space: spline.space.clone(),
+        points: spline.points.clone(),
+        weights: spline.weights.clone(),
+        limit,
+        marks: get(options, "marks")?,
+        ends: [end(&ends.0)?, end(&ends.1)?],
+    };
+    job.check().map_err(fair_error)?;
+    let named = measure(&get::<String>(options, "measure")?)?;
+    let mode: String = get(options, "mode")?;
+    let steps: usize = get(options, "steps")?;
+    let mut owners = Vec::new();
+    let local = |rule, step| {
+        let (least_move, least_drop, gap, pieces) = get(options, "stops")?;
+        Ok::<_, PyErr>(Mode::Local(LocalOptions {
+            rule,
+            step,
+            measure: named,
+            stops: Stops { steps, least_move, least_drop, gap, pieces },
+            log: get(options, "log")?,
+        }))
+    };
+    let mode = match mode.as_str() {
+        "optimum" => {
+            let mut chosen = OptimumOptions::of(named);
+            chosen.bound = bound(&get::<String>(options, "bound")?)?;
+            chosen.accuracy = get(options, "accuracy")?;
+            let wanted: Vec<(String, f64, [f64; 3])> = get(options, "conditions")?;
+            for (k, (word, t, v)) in wanted.iter().enumerate() {
+                let all = conditions(&job.space, &job.points, word, *t, *v)?;
+                owners.extend(std::iter::repeat_n(k, all.len()));
+                chosen.conditions.extend(all);
+            }
+            Mode::Optimum(chosen)
+        }
+        "faithful" => local(Rule::Achievable, Step::Knot)?,
+        "literal" => local(Rule::Literal, Step::Knot)?,
+        "vertex" => local(Rule::Achievable, Step::Vertex)?,
+        "sweeps" => Mode::Sweeps(named, steps),
+        "levels" => Mode::Levels(named, steps),
+        _ => {
+            let known = "optimum, faithful, literal, vertex, sweeps, levels";
+            return Err(refused(format!("there is no mode `{mode}`; there are: {known}")));
+        }
+    };
+    Ok((job, mode, owners))
+}
+
+pub fn curve<'py>(
+    py: Python<'py>,
+    spline: &Spline,
+    options: Options<'_, 'py>,
+) -> PyResult<(Spline, Bound<'py, PyDict>)> {
+    let (job, mode, owners) = asked(spline, options)?;
+    let logged = matches!(&mode, Mode::Local(options) if options.log);
+    let done = crate::work::interruptible(py, &Default::default(), move || {
+        let told = report(&job, &mode)?;
+        // The steps are made again for their log: a log of all steps is not always wanted.
+        let log = match &mode {
+            Mode::Local(options) if logged => local(&job, options)?.log,
+            _ => Vec::new(),
+        };
+        Ok::<_, FairError>((told, log))
+    })?;
+    let (told, log) = match done {
+        Ok(done) => done,
+        Err(FairError::Contradiction { conditions, ends, miss }) => {
+            return Err(contradiction(&conditions, ends, miss, &owners));
+        }
+        Err(other) => return Err(fair_error(other)),
+    };
+    let dict = dictionary(py, &told)?;
+    if logged {
+        let index: Vec<u32> = log.iter().map(|m| m.index).collect();
+        let to: Vec<Vec3> = log.iter().map(|m| m.to).collect();
+        dict.set_item("log_index", index.to_pyarray(py))?;
+        let fill = |out: &mut [Vec3]| out.copy_from_slice(&to);
+        dict.set_item("log_to", crate::arrays::filled(py, [to.len(), 3], fill).0)?;
+    }
+    let faired = Spline {
+        space: spline.space.clone(),
+        points: told.points,
+        weights: spline.weights.clone(),
+    };
+    Ok((faired, dict))
+}
+
+/// Which of the user's conditions contradict each other or the tolerance.
+fn contradiction(conditions: &[usize], ends: bool, miss: f64, owners: &[usize]) -> PyErr {
+    let mut whose: Vec<usize> = conditions.iter().map(|&c| owners[c] + 1).collect();
+    whose.dedup();
+    let list: Vec<String> = whose.iter().map(usize::to_string).collect();
+    let what = match (whose.len(), ends) {
+        (0, _) => "the conditions of the ends".to_string(),
+        (1, false) => format!("condition {}", list[0]),
+        (1, true) => format!("condition {} and those of the ends", list[0]),
+        (_, false) => format!("conditions {}", list.join(", ")),
+        (_, true) => format!("conditions {} and those of the ends", list.join(", ")),
+    };
+    refused(format!("{what} cannot hold within the tolerance (missed by {miss:.3e})"))
+}
+
+fn numbers<'py>(py: Python<'py>, n: &Numbers) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("measure", n.measure)?;
+    dict.set_item("jumps", n.jumps)?;
+    dict.set_item("largest_jump", n.largest_jump)?;
+    dict.set_item("pieces", n.pieces)?;
+    dict.set_item("inflections", n.inflections)?;
+    dict.set_item("largest_curvature", n.largest_curvature)?;
+    Ok(dict)
+}
+
+fn dictionary<'py>(py: Python<'py>, r: &Report) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("measure", r.measure)?;
+    dict.set_item("before", numbers(py, &r.before)?)?;
+    dict.set_item("after", numbers(py, &r.after)?)?;
+    let far = PyDict::new(py);
+    far.set_item("control", r.deviation.control)?;
+    far.set_item("certified", r.deviation.certified)?;
+    far.set_item("sampled", r.deviation.sampled)?;
+    far.set_item("length", r.deviation.length)?;
+    dict.set_item("deviation", far)?;
+    dict.set_item("certificate", certificate(py, &r.certificate)?)?;
+    dict.set_item("steps", r.steps)?;
+    dict.set_item("stopped", r.stopped.map(|s| s.name()))?;
+    dict.set_item("active", r.active)?;
+    dict.set_item("findings", r.findings.iter().copied().map(told).collect::<Vec<_>>())?;
+    dict.set_item("jumps_before", r.jumps[0].to_pyarray(py))?;
+    dict.set_item("jumps_after", r.jumps[1].to_pyarray(py))?;
+    dict.set_item("notes", &r.notes)?;
+    Ok(dict)
+}
+
+/// Work on nets.
+pub fn long_net<R: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<R, FairError> + Send + 'static,
+) -> PyResult<R> {
+    long(py, work)
+}

@@ -1,0 +1,533 @@
+"""``moldloft fair``: fair points, a curve, a surface or a network within a tolerance."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from moldloft.cli.console import Progress, assignment, print_json
+from moldloft.errors import Error, FairingError
+
+if TYPE_CHECKING:
+    from moldloft.fairing import Fairing, NetworkFairing, SurfaceFairing
+    from moldloft.fairing.files import GridFile, PointFile
+
+    Result = Fairing | SurfaceFairing | NetworkFairing
+
+__all__ = ["add", "run"]
+
+_EPILOG = """
+FILE is rows of points (CSV, blanks or tabs; an aerofoil with its title), a Plot3D surface, or an
+object of a model, as in `hull.sdl:keel`. Several curves that blank lines separate are a network:
+rows with the same numbers are one point of all curves that have it. Points count from 1.
+
+  moldloft fair section.csv --tol 0.005 -o faired.csv --plot faired.png
+  moldloft fair ring.csv --tol 1e-3 --closed --as fit
+  moldloft fair hull.p3d --tol 0.002 -o hull.vts --json
+  moldloft fair boat.sdl:sheer --tol 0.01 --measure third
+  moldloft fair hull.p3d --tol none --passes 10          the report of 1991, figure 13
+"""
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = _EPILOG
+    parser.add_argument("file", metavar="FILE", help="points, a Plot3D surface, or MODEL:OBJECT")
+    parser.add_argument(
+        "--tol",
+        metavar="D",
+        required=True,
+        type=_tolerance,
+        help="how far the result may be from the original; 0 changes nothing; `none` for no limit",
+    )
+    parser.add_argument(
+        "--as",
+        dest="role",
+        choices=["control", "points", "fit"],
+        help="points are control points (the default for files), are moved themselves, or lie on "
+        "the curve before it is faired",
+    )
+    parser.add_argument("--closed", action="store_true", help="the last point joins the first")
+    parser.add_argument(
+        "--mode",
+        choices=["optimum", "faithful", "literal", "vertex", "sweeps", "levels"],
+        help="the best there is, with a certificate (the default); or local steps: knots removed "
+        "and re-inserted, the report's literal rule, single points, sweeps, all wavelengths",
+    )
+    parser.add_argument(
+        "--measure",
+        choices=["second", "third", "jumps", "jump-lengths", "bending", "variation"],
+        default="second",
+        help="what there is to be little of; by default squared second differences",
+    )
+    parser.add_argument(
+        "--bound", choices=["curve", "points"], help="what the tolerance is a bound on"
+    )
+    parser.add_argument(
+        "--breaks",
+        metavar="auto|I,J",
+        default="",
+        help="points that are intended breaks; of surfaces rows, as in u5,v2; `auto` finds corners "
+        "and wrong digits",
+    )
+    parser.add_argument("--fixed", metavar="I,J", default="", help="points that do not move")
+    parser.add_argument(
+        "--ends",
+        metavar="END[,END]",
+        help="what open ends keep: free, position, tangent, curvature or a number of points; of a "
+        "network corners, ends or none",
+    )
+    parser.add_argument("--degree", type=int, default=3, help="polynomial degree, by default 3")
+    parser.add_argument(
+        "--along",
+        metavar="X,Y[,Z]",
+        type=_vector,
+        help="points move in this direction only, as in 0,1 for offsets at fixed stations",
+    )
+    parser.add_argument("--box", action="store_true", help="limit each coordinate by itself")
+    for word, what in (("through", "passes through X,Y[,Z]"), ("tangent", "runs along X,Y[,Z]")):
+        parser.add_argument(
+            f"--{word}",
+            metavar="T=X,Y[,Z]",
+            type=_condition,
+            action="append",
+            default=[],
+            help=f"the curve {what} at parameter T in [0, 1]; may be repeated",
+        )
+    parser.add_argument(
+        "--keep",
+        choices=["area", "volume", "centroid"],
+        action="append",
+        default=[],
+        help="keep the area, the volume (of revolution about x; of a surface that between it and "
+        "the original) or the centroid, to first order",
+    )
+    parser.add_argument("--spacing", choices=["chord", "centripetal", "uniform"], default="chord")
+    parser.add_argument(
+        "--count", type=int, help="fit so many control points by least squares instead of all"
+    )
+    parser.add_argument("--steps", type=int, help="local steps; of surfaces per point")
+    parser.add_argument(
+        "--passes", type=int, help="passes of the faithful mode, which this implies"
+    )
+    parser.add_argument("--block", type=int, help="the block of a Plot3D file, from 1")
+    parser.add_argument("-o", "--output", metavar="OUT", help="the faired points or surface")
+    parser.add_argument("--plot", metavar="P.png", help="pictures of it; .png or .svg")
+    parser.add_argument("--log", metavar="FILE", help="the local steps, replayable, as CSV")
+    parser.add_argument("--json", action="store_true", help="the report as data")
+    parser.add_argument(
+        "--set",
+        metavar="NAME=NUMBER",
+        type=assignment,
+        action="append",
+        default=[],
+        help="a parameter of the model; may be repeated",
+    )
+    parser.add_argument("--library", metavar="DIR", action="append", default=[])
+
+
+def _tolerance(text: str) -> float | None:
+    if text.lower() == "none":
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"`{text}` is neither a length nor `none`") from None
+    return value
+
+
+def _vector(text: str) -> list[float]:
+    try:
+        vector = [float(c) for c in text.split(",")]
+    except ValueError:
+        vector = []
+    if len(vector) not in (2, 3):
+        raise argparse.ArgumentTypeError(f"`{text}` is not of the form X,Y or X,Y,Z")
+    return vector
+
+
+def _condition(text: str) -> tuple[float, list[float]]:
+    t, equals, vector = text.partition("=")
+    try:
+        at = float(t)
+    except ValueError:
+        at = float("nan")
+    if not equals or not 0 <= at <= 1:
+        raise argparse.ArgumentTypeError(f"`{text}` is not of the form T=X,Y with T in [0, 1]")
+    return at, _vector(vector)
+
+
+def _places(text: str, count: int | None = None, what: str = "--breaks") -> list[int]:
+    """Numbers from 1 as indices."""
+    out = []
+    for word in filter(None, (w.strip() for w in text.split(","))):
+        if not word.isdigit() or int(word) < 1 or (count is not None and int(word) > count):
+            to = f" to {count}" if count else ""
+            raise FairingError(f"error: {what}: expected points from 1{to}, found `{word}`")
+        out.append(int(word) - 1)
+    return out
+
+
+def run(options: argparse.Namespace) -> int:
+    """Fairs and reports."""
+    if options.plot and Path(options.plot).suffix.lower() not in (".png", ".svg"):
+        raise Error(f"error: a plot is .png or .svg, not `{options.plot}`")
+    if options.tol is None and not options.json:
+        print(
+            "warning: without a tolerance nothing keeps the result near the data: steps without "
+            "end lead to a single polynomial",
+            file=sys.stderr,
+        )
+    if options.passes is not None and options.mode is None:
+        options.mode = "faithful"
+    if options.passes is not None and options.passes < 1:
+        raise Error(f"error: expected 1 pass or more, found {options.passes}")
+    options.mode = options.mode or "optimum"
+    with Progress() as progress:
+        progress.stage(f"reading {options.file}")
+        source = _source(options)
+        progress.stage("fairing")
+        result = source.fair(options)
+        data = result.as_dict()
+        data.update(source.facts())
+        files = []
+        if options.plot:
+            from moldloft.fairing.plot import needed
+
+            needed()
+        if options.output:
+            progress.stage(f"writing {options.output}")
+            files.append(source.write(result, Path(options.output)))
+        if options.log:
+            files.append(_write_log(result, Path(options.log)))
+        if options.plot:
+            progress.stage(f"drawing {options.plot}")
+            result.plot(options.plot)
+            files.append(options.plot)
+    data["files"] = [str(f) for f in files]
+    if options.json:
+        print_json(data)
+        return 0
+    print(source.title)
+    print(result)
+    for note in source.notes():
+        print(f"note: {note}")
+    for file in files:
+        print(f"wrote {file}")
+    return 0
+
+
+def _source(options: argparse.Namespace) -> _Source:
+    name = options.file
+    model, colon, thing = name.rpartition(":")
+    if colon and thing and Path(model).suffix.lower() in (".sdl", ".ms2", ".mul"):
+        return _Object(model, thing, options)
+    path = Path(name)
+    if path.suffix.lower() in (".sdl", ".ms2"):
+        raise Error(f"error: which object of `{name}` is to be faired? write `{name}:NAME`")
+    from moldloft.fairing.files import is_grid, read_grids, read_points
+
+    if is_grid(path):
+        return _Grids(read_grids(path), options)
+    return _Points(read_points(path))
+
+
+def _motion(options: argparse.Namespace) -> Any:
+    if options.along is not None:
+        return tuple(options.along)
+    return "box" if options.box else "ball"
+
+
+def _ends(options: argparse.Namespace) -> Any:
+    if options.ends is None:
+        return None
+    words = [w.strip() for w in options.ends.split(",")]
+    ends = [int(w) if w.isdigit() else w for w in words]
+    if len(ends) not in (1, 2):
+        raise Error(f"error: --ends: expected one or two, found {len(ends)}")
+    return ends[0] if len(ends) == 1 else tuple(ends)
+
+
+class _Source:
+    """What is faired: where it came from, and how it goes back."""
+
+    title = ""
+
+    def fair(self, options: argparse.Namespace) -> Result:
+        raise NotImplementedError
+
+    def facts(self) -> dict[str, Any]:
+        return {"source": self.title}
+
+    def notes(self) -> list[str]:
+        return []
+
+    def write(self, result: Any, path: Path) -> Path:
+        raise NotImplementedError
+
+
+def _curve_options(options: argparse.Namespace, count: int) -> dict[str, Any]:
+    passes = options.passes
+    steps = options.steps
+    if passes is not None and steps is None:
+        # A pass is one step a point.
+        steps = passes * count
+    breaks: Any = options.breaks
+    if breaks != "auto":
+        breaks = _places(breaks, count)
+    return {
+        "closed": options.closed,
+        "degree": options.degree,
+        "measure": options.measure,
+        "mode": options.mode,
+        "bound": options.bound,
+        "breaks": breaks,
+        "fixed": _places(options.fixed, None, "--fixed"),
+        "ends": _ends(options),
+        "motion": _motion(options),
+        "through": options.through,
+        "tangents": options.tangent,
+        "keep": options.keep,
+        "spacing": options.spacing,
+        "count": options.count,
+        "steps": steps,
+        "log": bool(options.log),
+    }
+
+
+def _encode_curve(result: Fairing, path: Path, like: PointFile | None) -> bytes:
+    from moldloft.fairing.files import points_text
+
+    delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
+    return points_text(result.points, like, delimiter).encode()
+
+
+def _commit(path: Path, data: bytes) -> Path:
+    from moldloft.files import Output, commit
+
+    return commit(path.parent, [Output(path.name, data)])[0]
+
+
+class _Points(_Source):
+    """A file of points."""
+
+    def __init__(self, file: PointFile) -> None:
+        self.file = file
+        self.said: list[str] = list(file.notes)
+        self.title = str(file.path)
+
+    def fair(self, options: argparse.Namespace) -> Result:
+        if len([b for b in self.file.blocks if len(b) > 1]) > 1:
+            return self._network(options)
+        from moldloft.fairing import fair
+
+        points = self.file.points
+        self.closing = False
+        if options.closed and len(points) > 1 and (points[0] == points[-1]).all():
+            self.said.append("the last point repeats the first and is not counted twice")
+            points = points[:-1]
+            self.closing = True
+        chosen = _curve_options(options, len(points))
+        try:
+            result = fair(points, options.tol, as_=options.role or "control", **chosen)
+        except FairingError as error:
+            raise self._placed(error) from error
+        return result
+
+    def _placed(self, error: FairingError) -> FairingError:
+        """The fault at its line."""
+        if error.index is None or error.index >= len(self.file.lines):
+            return error
+        line = self.file.lines[error.index]
+        text = str(error).removeprefix("error: ")
+        return FairingError(f"error: {self.file.path}:{line}: {text}", index=error.index)
+
+    def _network(self, options: argparse.Namespace) -> NetworkFairing:
+        from moldloft.fairing import network
+
+        places: dict[bytes, int] = {}
+        rows: list[int] = []
+        self.of_row: list[int] = []
+        for k, point in enumerate(self.file.points):
+            key = (point + 0.0).tobytes()
+            if key not in places:
+                places[key] = len(rows)
+                rows.append(k)
+            self.of_row.append(places[key])
+        curves = [[self.of_row[i] for i in block] for block in self.file.blocks]
+        first = [rows.index(rows[k]) for k in range(len(rows))]
+        assert first == list(range(len(rows)))
+        marks = [self.of_row[i] for i in _places(options.breaks, len(self.file.points))]
+        fixed: Any = options.ends or "corners"
+        if options.fixed:
+            fixed = [self.of_row[i] for i in _places(options.fixed, len(self.file.points))]
+        try:
+            return network(
+                self.file.points[rows],
+                curves,
+                options.tol,
+                degree=options.degree,
+                measure=options.measure,
+                mode=options.mode,
+                breaks=marks,
+                fixed=fixed,
+                motion=_motion(options),
+                passes=options.passes or 1,
+                steps=options.steps,
+            )
+        except FairingError as error:
+            if error.index is not None and error.index < len(rows):
+                error = FairingError(str(error), index=rows[error.index])
+            raise self._placed(error) from error
+
+    def notes(self) -> list[str]:
+        return self.said
+
+    def facts(self) -> dict[str, Any]:
+        return {"source": self.title, "source_notes": self.said}
+
+    def write(self, result: Any, path: Path) -> Path:
+        import numpy as np
+
+        from moldloft.fairing.files import points_text
+
+        if hasattr(result, "lists"):
+            return _commit(path, points_text(result.points[self.of_row], self.file).encode())
+        points = result.points
+        if self.closing:
+            points = np.concatenate([points, points[:1]])
+        same = path.suffix.lower() == self.file.path.suffix.lower()
+        like = self.file if same else None
+        delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
+        return _commit(path, points_text(points, like, delimiter).encode())
+
+
+def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
+    if text == "auto":
+        raise FairingError("error: --breaks: rows of surfaces are named, as in u5,v2")
+    out: dict[str, list[int]] = {"u": [], "v": []}
+    for word in filter(None, (w.strip() for w in text.split(","))):
+        if word[0] not in out or not word[1:].isdigit() or int(word[1:]) < 1:
+            raise FairingError(f"error: --breaks: expected rows as in u5,v2, found `{word}`")
+        out[word[0]].append(int(word[1:]) - 1)
+    return out["u"], out["v"]
+
+
+def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairing:
+    from moldloft.fairing import fair
+
+    for option, given in (
+        ("--through", options.through),
+        ("--tangent", options.tangent),
+        ("--count", options.count),
+        ("--log", options.log),
+        ("--fixed", options.fixed),
+    ):
+        if given:
+            raise Error(f"error: {option} is for curves")
+    chosen: dict[str, Any] = {
+        "as_": role,
+        "degree": options.degree,
+        "closed": (options.closed, False),
+        "measure": options.measure,
+        "mode": options.mode,
+        "bound": options.bound or "points",
+        "breaks": _surface_breaks(options.breaks),
+        "ends": 2 if options.ends is None else _ends(options),
+        "motion": _motion(options),
+        "keep": options.keep,
+        "passes": options.passes or 1,
+        "steps": options.steps,
+    }
+    return fair(grid, options.tol, **chosen)  # type: ignore[return-value]
+
+
+class _Grids(_Source):
+    """A Plot3D file."""
+
+    def __init__(self, file: GridFile, options: argparse.Namespace) -> None:
+        self.file = file
+        count = len(file.grids)
+        if options.block is None and count > 1:
+            raise Error(f"error: `{file.path}` has {count} blocks: choose one with --block")
+        self.at = (options.block or 1) - 1
+        if not 0 <= self.at < count:
+            raise Error(f"error: --block: expected 1 to {count}, found {options.block}")
+        m, n = file.grids[self.at].shape[:2]
+        block = f", block {self.at + 1}" if count > 1 else ""
+        self.title = f"{file.path}{block}: {m} x {n} points"
+
+    def fair(self, options: argparse.Namespace) -> Result:
+        return _fair_grid(self.file.grids[self.at], options.role or "control", options)
+
+    def write(self, result: Any, path: Path) -> Path:
+        if path.suffix.lower() == ".vts":
+            result.write_vtk(path)
+            return path
+        grids = list(self.file.grids)
+        grids[self.at] = result.points
+        return _commit(path, self.file.encoded(grids))
+
+
+class _Object(_Source):
+    """An object of a model: a curve, a surface, or rows of points."""
+
+    def __init__(self, model: str, name: str, options: argparse.Namespace) -> None:
+        from moldloft.fairing.objects import sampled
+        from moldloft.models import load
+
+        loaded = load(model, library=options.library)
+        if options.set:
+            loaded.set(dict(options.set))
+        self.title = f"{model}:{name}"
+        self.made = sampled(loaded, name, options.tol)
+        self.error = self.made.error
+
+    def fair(self, options: argparse.Namespace) -> Result:
+        from moldloft.fairing import fair
+
+        made = self.made
+        if made.points.ndim == 3:
+            return _fair_grid(made.points, options.role or made.role, options)
+        if made.closed:
+            options.closed = True
+        chosen = _curve_options(options, len(made.points))
+        if not options.breaks and made.breaks:
+            chosen["breaks"] = made.breaks
+        if made.role == "fit" and not made.breaks:
+            chosen["spacing"] = "uniform"
+        return fair(made.points, options.tol, as_=options.role or made.role, **chosen)
+
+    def facts(self) -> dict[str, Any]:
+        return {"source": self.title, "fit_error": self.error}
+
+    def notes(self) -> list[str]:
+        if self.error is None:
+            return []
+        count = " x ".join(str(n) for n in self.made.points.shape[:-1])
+        return [
+            f"{count} points of the object were fitted; between them it is {self.error:.2e} off"
+        ]
+
+    def write(self, result: Any, path: Path) -> Path:
+        if self.made.points.ndim == 3:
+            if path.suffix.lower() == ".vts":
+                result.write_vtk(path)
+                return path
+            from moldloft.fairing.files import GridFile
+
+            return _commit(path, GridFile(path, [], "stream").encoded([result.points]))
+        return _commit(path, _encode_curve(result, path, None))
+
+
+def _write_log(result: Any, path: Path) -> Path:
+    log = getattr(result, "log", None)
+    if log is None:
+        raise Error("error: --log: only local steps of curves are written down")
+    rows = ["point, x, y, z"]
+    for index, to in zip(*log, strict=True):
+        rows.append(", ".join([str(int(index) + 1), *(repr(float(c)) for c in to)]))
+    return _commit(path, ("\n".join(rows) + "\n").encode())

@@ -1,0 +1,87 @@
+"""Points as arrays, and what is refused about them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import FairingError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["direction", "narrowed", "points_of", "radii", "refuse_repeats"]
+
+
+def points_of(points: ArrayLike, dimensions: int = 2) -> tuple[Floats, int]:
+    """Points in three columns, and how many columns they came with."""
+    try:
+        given = np.asarray(points, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FairingError(f"error: the points are not an array of numbers: {error}") from error
+    if given.ndim != dimensions or given.shape[-1] not in (2, 3):
+        wanted = "(n, 2) or (n, 3)" if dimensions == 2 else "(m, n, 3)"
+        raise FairingError(f"error: expected points {wanted}, found an array {given.shape}")
+    width = given.shape[-1]
+    if width == 2:
+        given = np.concatenate([given, np.zeros((*given.shape[:-1], 1))], axis=-1)
+    flat = np.isfinite(given.reshape(-1, 3)).all(axis=1)
+    if not flat.all():
+        bad = int(np.flatnonzero(~flat)[0])
+        raise FairingError(f"error: point {bad + 1} is not finite", index=bad)
+    return np.ascontiguousarray(given), width
+
+
+def refuse_repeats(points: Floats, closed: bool) -> None:
+    """Neighbours that coincide have no direction between them."""
+    after = np.roll(points, -1, axis=0) if closed else points[1:]
+    before = points if closed else points[:-1]
+    same = (after == before).all(axis=1)
+    if same.any():
+        k = int(np.flatnonzero(same)[0])
+        second = (k + 1) % len(points)
+        hint = "a closed curve does not repeat its first point" if second == 0 else "remove one"
+        raise FairingError(
+            f"error: points {k + 1} and {second + 1} coincide: {hint}", index=max(k, second)
+        )
+
+
+def radii(tol: ArrayLike | None, count: int) -> list[float]:
+    """The tolerance of each point; infinite for none."""
+    if tol is None:
+        return [np.inf] * count
+    given = np.asarray(tol, dtype=np.float64)
+    try:
+        each = np.broadcast_to(given.ravel() if given.ndim else given, count)
+    except ValueError as error:
+        raise FairingError(
+            f"error: expected one tolerance or {count} of them, found {given.size}"
+        ) from error
+    bad = np.flatnonzero(np.isnan(each) | (each < 0))
+    if len(bad):
+        value = each[bad[0]]
+        raise FairingError(f"error: expected a tolerance of at least 0, found {value:g}")
+    return [float(r) for r in each]
+
+
+def direction(motion: Any) -> tuple[str, tuple[float, float, float]]:
+    """``"ball"``, ``"box"``, or a direction to move along, or ``("across", direction)``."""
+    if isinstance(motion, str):
+        return motion, (0.0, 0.0, 0.0)
+    word = "along"
+    if isinstance(motion, tuple) and len(motion) == 2 and isinstance(motion[0], str):
+        word, motion = motion
+    vector = np.asarray(motion, dtype=np.float64).ravel()
+    if vector.size == 2:
+        vector = np.append(vector, 0.0)
+    if vector.size != 3 or not np.isfinite(vector).all() or not vector.any():
+        raise FairingError(f"error: expected a direction of some length, found {motion!r}")
+    return word, (float(vector[0]), float(vector[1]), float(vector[2]))
+
+
+def narrowed(points: Floats, width: int) -> Floats:
+    """Points with the columns that the user's had."""
+    return np.ascontiguousarray(points[..., :width])

@@ -1,0 +1,574 @@
+"""Fairing of curves."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import direction, narrowed, points_of, radii, refuse_repeats
+from moldloft.fairing.report import Finding, Numbers, lines_of
+from moldloft.fairing.spline import Spline
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Fairing", "fair_curve"]
+
+MODES = ("optimum", "faithful", "literal", "vertex", "sweeps", "levels")
+MEASURES = ("second", "third", "jumps", "jump-lengths", "bending", "variation")
+ROLES = ("control", "points", "fit")
+
+
+@dataclass(frozen=True)
+class Fairing:
+    """A faired curve and all that is to be said about it."""
+
+    points: Floats
+    """The faired points, as many and with as many columns as were given: the control points, the
+    points, or where the faired curve has the parameters of the points."""
+    spline: Spline
+    """The faired curve."""
+    original: Spline
+    """The curve before."""
+    data: Floats
+    """The points that were given, in three columns."""
+    tol: float | None
+    """The largest tolerance; ``None`` for no limit."""
+    as_: str
+    """What the points were: ``"control"``, ``"points"`` or ``"fit"``."""
+    mode: str
+    """How it was done."""
+    measure: str
+    """What there was to be little of."""
+    breaks: tuple[int, ...]
+    """Points, from 0, that were intended breaks."""
+    before: Numbers
+    """The curve before."""
+    after: Numbers
+    """The faired curve."""
+    deviation_certified: float
+    """No point of the curve is farther from its original than this: proved, not sampled. For
+    ``as_="points"`` the largest move of a point."""
+    deviation_sampled: float
+    """The largest distance found by sampling."""
+    deviation_control: float
+    """The largest move of a control point."""
+    length: float
+    """The length of the original curve."""
+    value: float
+    """The measure of the result, as the certificate has it."""
+    gap: float
+    """No curve within the tolerance and with the conditions measures less than ``value - gap``."""
+    steps: int
+    """Newton steps, local steps or sweeps."""
+    stopped: str | None
+    """Which rule ended local steps: steps, move, drop, gap, pieces, stalled or done."""
+    active: int | None
+    """How many limits an optimum reaches."""
+    findings: tuple[Finding, ...]
+    """Corners and wrong points that stand out and were not taken into account."""
+    corrected: tuple[Finding, ...]
+    """Those that were, by ``breaks="auto"``."""
+    jump_lengths_before: Floats
+    """The jump at each knot before."""
+    jump_lengths_after: Floats
+    """The jump at each knot of the result."""
+    notes: tuple[str, ...]
+    """What the user should know."""
+    seconds: float
+    """Time of the fairing."""
+    log: tuple[NDArray[np.uint32], Floats] | None = field(default=None, repr=False)
+    """Local steps in order, when asked for: which point went where. Replayed on the original they
+    give the result's bits."""
+
+    @property
+    def control_points(self) -> Floats:
+        """The faired control points, ``(n, 3)``."""
+        return self.spline.control_points
+
+    @property
+    def jumps_before(self) -> float:
+        """Sum of squared jumps before."""
+        return self.before.jumps
+
+    @property
+    def jumps_after(self) -> float:
+        """Sum of squared jumps of the result."""
+        return self.after.jumps
+
+    @property
+    def deviation_percent(self) -> float:
+        """The certified deviation in percent of the length."""
+        return 100.0 * self.deviation_certified / self.length if self.length > 0 else 0.0
+
+    @property
+    def gap_relative(self) -> float:
+        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        size = max(self.value, 1e-12 * self.before.measure)
+        return self.gap / size if size > 0 else 0.0
+
+    @cached_property
+    def displacement(self) -> tuple[Floats, Floats]:
+        """How far each place of the curve has moved: share of the arc length and percent of it."""
+        if self.spline.closed != self.original.closed:
+            raise FairingError("error: the faired curve and its original are not alike")
+        before, after = self.original.samples(8), self.spline.samples(8)
+        far = np.linalg.norm(after.points - before.points, axis=1)
+        return before.arc, 100.0 * far / self.length if self.length > 0 else far
+
+    def as_dict(self) -> dict[str, Any]:
+        """The report as plain data: what ``moldloft fair --json`` prints."""
+        return {
+            "points": len(self.data),
+            "control_points": len(self.control_points),
+            "degree": self.spline.degree,
+            "closed": self.spline.closed,
+            "as": self.as_,
+            "mode": self.mode,
+            "measure": self.measure,
+            "tolerance": self.tol,
+            "breaks": [b + 1 for b in self.breaks],
+            "deviation_certified": self.deviation_certified,
+            "deviation_sampled": self.deviation_sampled,
+            "deviation_control": self.deviation_control,
+            "deviation_percent": self.deviation_percent,
+            "length": self.length,
+            "measure_before": self.before.measure,
+            "measure_after": self.after.measure,
+            "jumps_before": self.before.jumps,
+            "jumps_after": self.after.jumps,
+            "largest_jump_before": self.before.largest_jump,
+            "largest_jump_after": self.after.largest_jump,
+            "monotone_pieces_before": self.before.pieces,
+            "monotone_pieces_after": self.after.pieces,
+            "inflections_before": self.before.inflections,
+            "inflections_after": self.after.inflections,
+            "largest_curvature_before": self.before.largest_curvature,
+            "largest_curvature_after": self.after.largest_curvature,
+            "value": self.value,
+            "gap": self.gap,
+            "gap_relative": self.gap_relative,
+            "steps": self.steps,
+            "stopped": self.stopped,
+            "active": self.active,
+            "findings": [_finding(f) for f in self.findings],
+            "corrected": [_finding(f) for f in self.corrected],
+            "notes": list(self.notes),
+            "seconds": self.seconds,
+        }
+
+    def __str__(self) -> str:
+        b, a = self.before, self.after
+        rows = [
+            (self.measure, f"{b.measure:.6e}", f"{a.measure:.6e}"),
+            ("squared jumps", f"{b.jumps:.6e}", f"{a.jumps:.6e}"),
+            ("largest jump", f"{b.largest_jump:.6e}", f"{a.largest_jump:.6e}"),
+            ("largest curvature", f"{b.largest_curvature:.6g}", f"{a.largest_curvature:.6g}"),
+            ("monotone pieces", str(b.pieces), str(a.pieces)),
+            ("inflections", str(b.inflections), str(a.inflections)),
+        ]
+        left = f"at most {self.gap_relative:.1e} of it left to gain"
+        if not np.isfinite(self.gap):
+            left = "without a tolerance nothing bounds what is left to gain"
+        ended = f"{self.steps}"
+        if self.mode == "optimum":
+            ended += f" Newton steps, {self.active} limits reached"
+        elif self.stopped:
+            ended += f", ended by: {self.stopped}"
+        tail = [
+            (
+                "deviation",
+                f"certified {self.deviation_certified:.6e}, sampled {self.deviation_sampled:.6e}, "
+                f"{self.deviation_percent:.4g} % of the arc length",
+            ),
+            ("certificate", f"{self.value:.9e}, {left}"),
+            ("steps", ended),
+            ("time", f"{1e3 * self.seconds:.3g} ms"),
+        ]
+        text = lines_of(rows, tail)
+        told = [f"corrected: {f.text}" for f in self.corrected]
+        told += [f"note: {f.text}" for f in self.findings]
+        told += [f"note: {note}" for note in self.notes]
+        return "\n".join([text, *told])
+
+    def plot(self, path: str | PathLike[str]) -> None:
+        """Draw shape, zoom, curvature, comb, jumps, metric and displacement into a file.
+
+        PNG or SVG by the name's end. Needs Matplotlib: ``pip install 'moldloft[plot]'``.
+        """
+        from moldloft.fairing.plot import plot_curve
+
+        plot_curve(self, path)
+
+
+def _finding(f: Finding) -> dict[str, Any]:
+    return {"kind": f.kind, "point": f.index + 1, "vector": list(f.vector), "text": f.text}
+
+
+def _ends(ends: Any, closed: bool) -> tuple[str, str]:
+    both = ends if isinstance(ends, (tuple, list)) and len(ends) == 2 else (ends, ends)
+    words = tuple(f"points:{e}" if isinstance(e, int) else str(e) for e in both)
+    return ("free", "free") if closed else (words[0], words[1])
+
+
+def _conditions(
+    through: Iterable[tuple[float, ArrayLike]],
+    tangents: Iterable[tuple[float, ArrayLike]],
+    keep: Sequence[str],
+) -> list[tuple[str, float, tuple[float, float, float]]]:
+    out: list[tuple[str, float, tuple[float, float, float]]] = []
+    for word, rows in (("through", through), ("tangent", tangents)):
+        for t, vector in rows:
+            v, _ = points_of([np.asarray(vector, np.float64).ravel()])
+            if not 0 <= t <= 1:
+                raise FairingError(f"error: expected a parameter from 0 to 1, found {t:g}")
+            out.append((word, float(t), (float(v[0, 0]), float(v[0, 1]), float(v[0, 2]))))
+    for word in keep:
+        if word not in ("area", "centroid", "volume"):
+            raise FairingError(f"error: `{word}` cannot be kept; what can: area, centroid, volume")
+        axis = (1.0, 0.0, 0.0) if word == "volume" else (0.0, 0.0, 1.0)
+        out.append((word, 0.0, axis))
+    return out
+
+
+def fair_curve(
+    points: ArrayLike | Spline,
+    tol: ArrayLike | None,
+    *,
+    as_: str = "control",
+    closed: bool = False,
+    degree: int = 3,
+    measure: str = "second",
+    mode: str = "optimum",
+    bound: str | None = None,
+    breaks: Sequence[int] | str = (),
+    fixed: Sequence[int] = (),
+    ends: Any = None,
+    motion: Any = "ball",
+    through: Iterable[tuple[float, ArrayLike]] = (),
+    tangents: Iterable[tuple[float, ArrayLike]] = (),
+    keep: Sequence[str] = (),
+    spacing: str = "chord",
+    count: int | None = None,
+    steps: int | None = None,
+    least_move: float = 0.0,
+    least_drop: float = 0.0,
+    stop_gap: float = 0.0,
+    stop_pieces: bool = False,
+    accuracy: float = 1e-9,
+    log: bool = False,
+) -> Fairing:
+    """Fair a curve within a tolerance.
+
+    Parameters
+    ----------
+    points
+        ``(n, 2)`` or ``(n, 3)``, or a :class:`Spline`.
+    tol
+        How far the curve, or each point, may move; ``None`` for no limit.
+    as_
+        What points are: ``"control"``, the control points of a uniform spline; ``"points"``, moved
+        themselves, each within the tolerance; ``"fit"``, the curve passes through them before it is
+        faired (or near them: see ``count``). A spline is its own.
+    closed
+        Whether the last point is followed by the first, which is not repeated.
+    degree
+        Polynomial degree.
+    measure
+        What there is to be little of. ``"second"``: squared second differences (the measure of the
+        knot steps); ``"third"``: squared third differences; ``"jumps"``: squared jumps of the
+        highest derivative; ``"jump-lengths"``: their lengths, which leaves few polynomial pieces;
+        ``"bending"`` and ``"variation"``: integrals of the squared second and third derivative.
+    mode
+        ``"optimum"``: the least there is, with a certificate; continuous in the input.
+        ``"faithful"``: knots removed and re-inserted one by one, the longest achievable move first
+        (Farin and Sapidis); a small change of the input may change which comes first.
+        ``"literal"``: the largest jump first, as the report of 1991 has it; may stall.
+        ``"vertex"``: one control point at a time to its own best place. ``"sweeps"``: all points in
+        order. ``"levels"``: waves of all lengths, the longest first.
+    bound
+        ``"curve"``: the tolerance bounds the curve; ``"points"``: each control point. By default
+        the curve for fits and splines, points otherwise.
+    breaks
+        Points, from 0, that are intended breaks: they do not move by a bit and nothing is smoothed
+        across them; a fitted curve has corners there. ``"auto"`` takes corners that stand out as
+        breaks and lets single wrong points move by their error besides the tolerance; see
+        :attr:`Fairing.corrected`.
+    fixed
+        Points (control points of fits and splines), from 0, that do not move.
+    ends
+        What open ends keep: ``"free"``, ``"position"``, ``"tangent"``, ``"curvature"`` or a number
+        of control points; or two of these. By default the tangent for fits and splines, two points
+        otherwise.
+    motion
+        ``"ball"``; ``"box"``, each coordinate by itself; a direction such as ``(0, 1)``, the only
+        one in which points move (offsets at fixed stations); ``("across", direction)``, a plane in
+        which they stay.
+    through, tangents
+        Conditions of an optimum: pairs of a parameter in [0, 1] and the point or the direction
+        that the curve has there.
+    keep
+        What else an optimum keeps, to first order: ``"area"`` (swept about the origin in the xy
+        plane), ``"volume"`` (of revolution about the x axis), ``"centroid"`` (of the control
+        points).
+    spacing
+        Parameters of a fit: ``"chord"``, ``"centripetal"`` or ``"uniform"``.
+    count
+        Fit by least squares with so many control points instead of through all points.
+    steps
+        Local steps (by default one per point), sweeps (10) or cycles of levels (2).
+    least_move, least_drop, stop_gap, stop_pieces
+        Local steps end when a move is shorter than this share of the tolerance, a step lowers the
+        measure by less than this share, the certified gap is below this share, or n steps bring no
+        fewer monotone pieces.
+    accuracy
+        The certified gap of an optimum, as a share of the measure.
+    log
+        Whether local steps are written down.
+
+    Returns
+    -------
+    Fairing
+
+    Raises
+    ------
+    FairingError
+        With :attr:`~moldloft.errors.FairingError.index`, the point at fault.
+    """
+    if as_ not in ROLES:
+        raise FairingError(f"error: points are `control`, `points` or `fit`, not `{as_}`")
+    started = time.perf_counter()
+    made = _prepared(points, as_, closed, degree, spacing, count, breaks)
+    spline, data, width = made.spline, made.data, made.width
+    fitted = made.role in ("fit", "spline")
+    n = len(spline.control_points)
+    limits = radii(tol, n) if made.parameters is None else _spread(tol, made, n)
+    for finding in made.corrected:
+        if finding.kind == "outlier" and made.role != "fit":
+            limits[finding.index] += float(np.linalg.norm(finding.vector))
+    word, way = direction(motion)
+    if bound is None:
+        bound = "curve" if fitted else "points"
+    default = {"sweeps": 10, "levels": 2}.get(mode, n)
+    chosen = {
+        "tolerance": limits,
+        "motion": word,
+        "direction": way,
+        "ends": _ends(ends if ends is not None else ("tangent" if fitted else 2), spline.closed),
+        "marks": made.marks,
+        "fixed": [_index(f, n) for f in fixed],
+        "measure": measure,
+        "mode": mode,
+        "bound": bound,
+        "steps": default if steps is None else steps,
+        "stops": (least_move, least_drop, stop_gap, stop_pieces),
+        "conditions": _conditions(through, tangents, keep),
+        "accuracy": accuracy,
+        "log": log,
+    }
+    if chosen["conditions"] and mode != "optimum":
+        raise FairingError("error: only the optimum keeps conditions; take mode `optimum`")
+    core, told = spline._core.fair(chosen)
+    seconds = time.perf_counter() - started
+    return _result(made, Spline._of(core), told, tol, mode, width, seconds, data)
+
+
+@dataclass
+class _Prepared:
+    spline: Spline
+    data: Floats
+    width: int
+    role: str
+    breaks: tuple[int, ...]
+    marks: list[int]
+    parameters: Floats | None
+    findings: tuple[Finding, ...]
+    corrected: tuple[Finding, ...]
+
+
+def _index(given: Any, count: int) -> int:
+    k = int(given)
+    if not 0 <= k < count:
+        raise FairingError(
+            f"error: expected points from 0 to {count - 1}, found {k}", index=max(k, 0)
+        )
+    return k
+
+
+def _prepared(
+    points: ArrayLike | Spline,
+    role: str,
+    closed: bool,
+    degree: int,
+    spacing: str,
+    count: int | None,
+    breaks: Sequence[int] | str,
+) -> _Prepared:
+    """The spline to fair, and what the data give away."""
+    if isinstance(points, Spline):
+        data, width = points.control_points, 3
+        spline: Spline = points
+        role, parameters = "spline", None
+    else:
+        data, width = points_of(points)
+        refuse_repeats(data, closed)
+        least = 2 * degree + 2 if closed else degree + 2
+        if len(data) < least:
+            raise FairingError(
+                f"error: expected at least {least} points for degree {degree}, found {len(data)}"
+            )
+        spline = Spline(data, degree=degree, closed=closed, clamped=False)
+        parameters = None
+    found = spline.findings()
+    corrected: list[Finding] = []
+    if isinstance(breaks, str):
+        if breaks != "auto":
+            raise FairingError(f"error: breaks are numbers of points or `auto`, not `{breaks}`")
+        corrected, found = found, []
+        chosen = sorted({f.index for f in corrected if f.kind == "corner"})
+    else:
+        chosen = sorted({_index(b, len(data)) for b in breaks})
+        found = [f for f in found if f.index not in chosen]
+    marks = list(chosen)
+    moved = data
+    if role == "fit":
+        # A wrong digit is put right before the curve is laid through it.
+        moved = data.copy()
+        for f in corrected:
+            if f.kind == "outlier":
+                moved[f.index] -= f.vector
+        if count is not None:
+            core, parameters, _, _ = _least_squares(moved, degree, count, spacing, closed)
+            spline = core
+            if marks:
+                raise FairingError("error: a least-squares fit has no breaks: fit all points")
+        else:
+            spline, parameters, marks = Spline._interpolated(moved, degree, spacing, closed, chosen)
+    return _Prepared(
+        spline,
+        data,
+        width,
+        role,
+        tuple(chosen),
+        marks,
+        parameters,
+        tuple(found),
+        tuple(corrected),
+    )
+
+
+def _least_squares(
+    points: Floats, degree: int, count: int, spacing: str, closed: bool
+) -> tuple[Spline, Floats, float, float]:
+    from moldloft import _core
+
+    core, at, largest, rms = _core.Spline.least_squares(points, degree, count, spacing, closed)
+    return Spline._of(core), at, largest, rms
+
+
+def _spread(tol: ArrayLike | None, made: _Prepared, n: int) -> list[float]:
+    """The tolerance of data points as that of control points: the least near each."""
+    if tol is None or np.ndim(tol) == 0:
+        return radii(tol, n)
+    each = np.asarray(radii(tol, len(made.data)))
+    assert made.parameters is not None
+    p = made.spline.degree
+    knots = made.spline.knots
+    start, end = made.spline.domain
+    at = start + (end - start) * made.parameters
+    out = []
+    for j in range(n):
+        if made.spline.closed:
+            away = np.abs(
+                (at - knots[j] + 0.5 * (end - start)) % (end - start) - 0.5 * (end - start)
+            )
+            near = away <= (p + 1) * (end - start) / n
+        else:
+            near = (at >= knots[j]) & (at <= knots[j + p + 1])
+        out.append(float(each[near].min() if near.any() else each.min()))
+    return out
+
+
+def _result(
+    made: _Prepared,
+    faired: Spline,
+    told: dict[str, Any],
+    tol: ArrayLike | None,
+    mode: str,
+    width: int,
+    seconds: float,
+    data: Floats,
+) -> Fairing:
+    original, spline = made.spline, faired
+    before, after = Numbers(**told["before"]), Numbers(**told["after"])
+    far, certificate = told["deviation"], told["certificate"]
+    certified, sampled = far["certified"], far["sampled"]
+    notes = list(told["notes"])
+    if made.role == "points":
+        rows = faired.control_points
+        certified = sampled = far["control"]
+        closed = original.closed
+        laid = [
+            Spline._interpolated(p, original.degree, "uniform", closed, made.breaks)[0]
+            for p in (data, rows)
+        ]
+        original, spline = laid
+        before, after = (_counted(n, s) for n, s in ((before, laid[0]), (after, laid[1])))
+    elif made.parameters is not None:
+        rows = faired(made.parameters)
+    else:
+        rows = faired.control_points
+    log = (told["log_index"], told["log_to"]) if "log_index" in told else None
+    largest = None if tol is None else float(np.max(np.asarray(tol, np.float64)))
+    return Fairing(
+        points=narrowed(rows, width),
+        spline=spline,
+        original=original,
+        data=data,
+        tol=largest,
+        as_="control" if made.role == "spline" else made.role,
+        mode=mode,
+        measure=told["measure"],
+        breaks=made.breaks,
+        before=before,
+        after=after,
+        deviation_certified=certified,
+        deviation_sampled=sampled,
+        deviation_control=far["control"],
+        length=original.length if made.role == "points" else far["length"],
+        value=certificate["value"],
+        gap=certificate["gap"],
+        steps=told["steps"],
+        stopped=told["stopped"],
+        active=told["active"],
+        findings=made.findings,
+        corrected=made.corrected,
+        jump_lengths_before=told["jumps_before"],
+        jump_lengths_after=told["jumps_after"],
+        notes=tuple(notes),
+        seconds=seconds,
+        log=log,
+    )
+
+
+def _counted(numbers: Numbers, spline: Spline) -> Numbers:
+    """The same sums with the counts of the curve that is laid through the points."""
+    curvature = spline.samples().curvature
+    return Numbers(
+        numbers.measure,
+        numbers.jumps,
+        numbers.largest_jump,
+        spline.monotone_pieces(),
+        spline.inflections(),
+        float(np.abs(curvature).max()),
+    )

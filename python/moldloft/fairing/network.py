@@ -1,0 +1,280 @@
+"""Fairing of curves that share points."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import direction, narrowed, points_of, radii
+from moldloft.fairing.report import lines_of
+from moldloft.fairing.spline import Spline
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["NetworkFairing", "network"]
+
+
+@dataclass(frozen=True)
+class NetworkFairing:
+    """A faired network and all that is to be said about it."""
+
+    points: Floats
+    """The faired points, with as many columns as were given."""
+    curves: tuple[Spline, ...]
+    """The curves through them: at a shared point they all pass through the same coordinates."""
+    originals: tuple[Spline, ...]
+    """The curves before."""
+    data: Floats
+    """The points that were given, in three columns."""
+    lists: tuple[tuple[int, ...], ...]
+    """Of each curve its points, from 0; of a closed one the first again at the end."""
+    tol: float | None
+    """The largest tolerance; ``None`` for no limit."""
+    mode: str
+    """How it was done."""
+    measure: str
+    """What there was to be little of."""
+    shared: int
+    """How many points stand in more than one curve."""
+    measure_before: float
+    """The measure over all curves before."""
+    measure_after: float
+    """The measure of the result."""
+    jumps_before: float
+    """Sum of squared jumps over all curves before."""
+    jumps_after: float
+    """Sum of squared jumps of the result."""
+    deviation_certified: float
+    """No point has moved farther than this."""
+    deviation_curves: float
+    """The largest distance of a curve from its original, found by sampling: between points a curve
+    may swing a little farther than they moved."""
+    value: float
+    """The measure of the result, as the certificate has it."""
+    gap: float
+    """No network within the tolerance measures less than ``value - gap``."""
+    seconds: float
+    """Time of the fairing."""
+
+    @property
+    def deviation_sampled(self) -> float:
+        """The largest move of a point."""
+        moved = self.points - narrowed(self.data, self.points.shape[1])
+        return float(np.linalg.norm(moved, axis=1).max())
+
+    @property
+    def gap_relative(self) -> float:
+        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        size = max(self.value, 1e-12 * self.measure_before)
+        return self.gap / size if size > 0 else 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """The report as plain data: what ``moldloft fair --json`` prints."""
+        return {
+            "points": len(self.data),
+            "curves": len(self.curves),
+            "shared": self.shared,
+            "mode": self.mode,
+            "measure": self.measure,
+            "tolerance": self.tol,
+            "deviation_certified": self.deviation_certified,
+            "deviation_sampled": self.deviation_sampled,
+            "deviation_curves": self.deviation_curves,
+            "measure_before": self.measure_before,
+            "measure_after": self.measure_after,
+            "jumps_before": self.jumps_before,
+            "jumps_after": self.jumps_after,
+            "value": self.value,
+            "gap": self.gap,
+            "gap_relative": self.gap_relative,
+            "seconds": self.seconds,
+        }
+
+    def __str__(self) -> str:
+        rows = [
+            (self.measure, f"{self.measure_before:.6e}", f"{self.measure_after:.6e}"),
+            ("squared jumps", f"{self.jumps_before:.6e}", f"{self.jumps_after:.6e}"),
+        ]
+        left = f"at most {self.gap_relative:.1e} of it left to gain"
+        tail = [
+            ("network", f"{len(self.curves)} curves, {self.shared} shared points"),
+            (
+                "deviation",
+                f"certified {self.deviation_certified:.6e} at points, "
+                f"sampled {self.deviation_curves:.6e} along curves",
+            ),
+            ("certificate", f"{self.value:.9e}, {left}"),
+            ("time", f"{1e3 * self.seconds:.3g} ms"),
+        ]
+        return lines_of(rows, tail)
+
+    def plot(self, path: str | PathLike[str]) -> None:
+        """Draw the curves before and after, and where points moved, into a file (PNG or SVG)."""
+        from moldloft.fairing.plot import plot_network
+
+        plot_network(self, path)
+
+
+def network(
+    points: ArrayLike,
+    curves: Sequence[Sequence[int]],
+    tol: ArrayLike | None,
+    *,
+    degree: int = 3,
+    measure: str = "second",
+    mode: str = "optimum",
+    breaks: Sequence[int] = (),
+    fixed: Sequence[int] | str = "corners",
+    motion: Any = "ball",
+    passes: int = 1,
+    steps: int | None = None,
+) -> NetworkFairing:
+    """Fair curves that share points, all at once: the stations, waterlines and buttocks of a hull.
+
+    Parameters
+    ----------
+    points
+        ``(n, 3)`` or ``(n, 2)``.
+    curves
+        Of each curve its points, from 0; a closed curve ends with its first. A number that stands
+        in several lists is one point of all these curves.
+    tol
+        How far each point may move.
+    degree
+        Polynomial degree of the curves.
+    measure
+        What there is to be little of, summed over all curves; see :func:`~moldloft.fairing.fair`.
+    mode
+        ``"optimum"``, ``"faithful"`` (curve after curve, ``passes`` times) or ``"sweeps"``.
+    breaks
+        Points that are intended breaks of all their curves.
+    fixed
+        Points that do not move: ``"corners"`` (at which every curve that has them ends),
+        ``"ends"``, ``"none"``, or numbers.
+    motion
+        As for curves: ``(0, 1, 0)`` lets half-breadths of stations and waterlines move alone.
+    passes, steps
+        Of the faithful mode; sweeps.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, z = np.meshgrid(np.linspace(-1, 1, 9), np.linspace(0, 1, 7), indexing="ij")
+    >>> y = np.round((1 - x**2) * (1 - z**2), 2)
+    >>> grid = np.arange(x.size).reshape(x.shape)
+    >>> lines = [*grid, *grid.T]                          # stations and waterlines
+    >>> offsets = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    >>> faired = network(offsets, lines, 0.005, measure="jumps", motion=(0, 1, 0))
+    >>> faired.shared, faired.deviation_certified <= 0.005
+    (63, True)
+    >>> faired.jumps_after < 0.01 * faired.jumps_before
+    True
+    """
+    data, width = points_of(points)
+    started = time.perf_counter()
+    count = len(data)
+    lists: list[tuple[list[int], bool]] = []
+    marked = {_number(b, count) for b in breaks}
+    for k, given in enumerate(curves):
+        own = [_number(i, count) for i in given]
+        closed = len(own) > 1 and own[0] == own[-1]
+        own = own[:-1] if closed else own
+        if len(set(own)) < len(own):
+            raise FairingError(f"error: curve {k + 1} passes twice through a point")
+        least = 2 * degree + 2 if closed else degree + 2
+        if len(own) < least:
+            raise FairingError(
+                f"error: expected at least {least} points of curve {k + 1}, found {len(own)}"
+            )
+        lists.append((own, closed))
+    if not lists:
+        raise FairingError("error: there are no curves")
+    uses = np.zeros(count, int)
+    ends = np.zeros(count, int)
+    for own, closed in lists:
+        uses[own] += 1
+        if not closed:
+            ends[[own[0], own[-1]]] += 1
+    if isinstance(fixed, str):
+        kept = {
+            "corners": (ends > 0) & (ends == uses),
+            "ends": ends > 0,
+            "none": np.zeros(count, bool),
+        }.get(fixed)
+        if kept is None:
+            raise FairingError(
+                f"error: fixed points are corners, ends, none or numbers, not `{fixed}`"
+            )
+        still = [int(i) for i in np.flatnonzero(kept)]
+    else:
+        still = [_number(i, count) for i in fixed]
+    marks = [[k for k, i in enumerate(own) if i in marked] for own, _ in lists]
+    web = _core.Web(data, [(o, c, m) for (o, c), m in zip(lists, marks, strict=True)], degree)
+    word, way = direction(motion)
+    faired, told = web.fair(
+        {
+            "tolerance": radii(tol, count),
+            "motion": word,
+            "direction": way,
+            "fixed": still,
+            "measure": measure,
+            "mode": mode,
+            "bound": "points",
+            "passes": passes,
+            "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
+        }
+    )
+    laid: list[list[Spline]] = []
+    for rows in (data, faired):
+        made = [
+            Spline.interpolate(
+                rows[own], degree=degree, spacing="uniform", closed=closed, breaks=own_marks
+            )
+            for (own, closed), own_marks in zip(lists, marks, strict=True)
+        ]
+        laid.append(made)
+    seconds = time.perf_counter() - started
+    swing = [
+        np.linalg.norm(a.samples(8).points - b.samples(8).points, axis=1).max()
+        for b, a in zip(*laid, strict=True)
+    ]
+    return NetworkFairing(
+        points=narrowed(faired, width),
+        curves=tuple(laid[1]),
+        originals=tuple(laid[0]),
+        data=data,
+        lists=tuple(tuple(o + o[:1]) if c else tuple(o) for o, c in lists),
+        tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
+        mode=mode,
+        measure=measure,
+        shared=int((uses > 1).sum()),
+        measure_before=told["measure_before"],
+        measure_after=told["measure_after"],
+        jumps_before=told["jumps_before"],
+        jumps_after=told["jumps_after"],
+        deviation_certified=told["certified"],
+        deviation_curves=float(max(swing)),
+        value=told["certificate"]["value"],
+        gap=told["certificate"]["gap"],
+        seconds=seconds,
+    )
+
+
+def _number(given: Any, count: int) -> int:
+    k = int(given)
+    if not 0 <= k < count:
+        raise FairingError(
+            f"error: expected points from 0 to {count - 1}, found {k}", index=max(k, 0)
+        )
+    return k

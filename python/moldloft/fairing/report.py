@@ -1,0 +1,56 @@
+"""What a fairing has to say for itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["Finding", "Numbers", "lines_of"]
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Counts and sums over a curve."""
+
+    measure: float
+    """The measure that was asked for."""
+    jumps: float
+    """Sum of squared jumps of the highest derivative."""
+    largest_jump: float
+    """The largest jump."""
+    pieces: int
+    """Monotone pieces of the curvature, reversals below a thousandth of its range ignored."""
+    inflections: int
+    """Sign changes of the curvature."""
+    largest_curvature: float
+    """The largest curvature."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that noise does not explain."""
+
+    kind: str
+    """``"corner"``, probably an intended break, or ``"outlier"``, probably a wrong digit."""
+    index: int
+    """The point, from 0."""
+    vector: tuple[float, float, float]
+    """Of a corner the change of direction per step of the parameter, of an outlier its error."""
+    text: str
+    """A sentence about it; it counts points from 1."""
+
+    @staticmethod
+    def of(row: tuple[str, int, Any, str]) -> Finding:
+        """From the extension's row."""
+        kind, index, vector, text = row
+        return Finding(kind, index, (float(vector[0]), float(vector[1]), float(vector[2])), text)
+
+
+def lines_of(rows: list[tuple[str, str, str]], tail: list[tuple[str, str]]) -> str:
+    """The report's table: a line for each number before and after, then single facts."""
+    width = max(len(name) for name, *_ in [*rows, *tail])
+    wide = max(len(cell) for _, *cells in rows for cell in cells)
+    out = [f"{'':{width}}  {'before':>{wide}}  {'after':>{wide}}"]
+    out += [f"{name:{width}}  {b:>{wide}}  {a:>{wide}}" for name, b, a in rows]
+    out += [f"{name:{width}}  {fact}" for name, fact in tail]
+    return "\n".join(out)

@@ -1,0 +1,336 @@
+"""Spline curves and what can be asked of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.fairing.arrays import points_of, refuse_repeats
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Samples", "Spline", "divided_differences", "grid_metric", "monotone_runs"]
+
+PER_SPAN = 16
+"""Samples on each span where curvatures are counted."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """A curve at several parameters."""
+
+    t: Floats
+    """Parameters in [0, 1], ``(n,)``."""
+    points: Floats
+    """Positions, ``(n, 3)``."""
+    first: Floats
+    """First derivatives by t, ``(n, 3)``."""
+    second: Floats
+    """Second derivatives by t, ``(n, 3)``."""
+    third: Floats
+    """Third derivatives by t, ``(n, 3)``."""
+    curvature: Floats
+    """Curvature, ``(n,)``: of a plane curve positive where it turns left seen against +z (or
+    against the plane's normal nearest to it), of others not signed. 0 where the curve stands
+    still."""
+    torsion: Floats
+    """Torsion, ``(n,)``; 0 at inflections."""
+    curvature_slope: Floats
+    """Derivative of the curvature of a plane curve by arc length, ``(n,)``; NaN for others."""
+    plane: tuple[float, float, float] | None
+    """The unit normal of the curve's plane, when it lies in one."""
+
+    @property
+    def arc(self) -> Floats:
+        """The share of the length of the polyline through the points up to each, from 0 to 1."""
+        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        sums = np.concatenate([[0.0], np.cumsum(steps)])
+        return sums / sums[-1] if sums[-1] > 0 else sums
+
+
+class Spline:
+    """A spline curve: any degree, any knots, open or closed, with weights or without.
+
+    Parameters
+    ----------
+    control_points
+        ``(n, 2)`` or ``(n, 3)``, at least ``degree + 2`` of them (closed: ``2 degree + 2``).
+    degree
+        The polynomial degree.
+    knots
+        ``n + degree + 1`` knots that do not fall, of a closed curve n rising ones. Without them
+        they are uniform: clamped, so that the curve begins and ends at control points, or not.
+    weights
+        Positive weights of a rational curve.
+    closed
+        Whether the last control point is followed by the first.
+    clamped
+        Whether uniform knots of an open curve are clamped.
+    period
+        Of closed curves with knots: how far the first knot is from itself, once round.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> c = Spline([(0, 0), (1, 2), (2, 2), (3, -2), (4, 0)])
+    >>> c([0.0, 1.0])
+    array([[0., 0., 0.],
+           [4., 0., 0.]])
+    >>> c.inflections()
+    1
+    >>> Spline.interpolate(c(np.linspace(0, 1, 9)))(0.5).round(3)
+    array([2.061, 0.855, 0.   ])
+    """
+
+    def __init__(
+        self,
+        control_points: ArrayLike,
+        *,
+        degree: int = 3,
+        knots: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
+        closed: bool = False,
+        clamped: bool = True,
+        period: float | None = None,
+    ) -> None:
+        points, _ = points_of(control_points)
+        form = "closed" if closed else ("clamped" if clamped else "floating")
+        floats = [None if a is None else np.asarray(a, np.float64) for a in (knots, weights)]
+        self._core = _core.Spline(points, degree, form, floats[0], floats[1], period)
+
+    @classmethod
+    def _of(cls, core: _core.Spline) -> Spline:
+        spline = cls.__new__(cls)
+        spline._core = core
+        return spline
+
+    @classmethod
+    def interpolate(
+        cls,
+        points: ArrayLike,
+        *,
+        degree: int = 3,
+        spacing: str = "chord",
+        closed: bool = False,
+        breaks: Sequence[int] = (),
+    ) -> Spline:
+        """The spline through points.
+
+        Parameters
+        ----------
+        points
+            ``(n, 2)`` or ``(n, 3)``; a closed curve does not repeat the first.
+        degree
+            The polynomial degree.
+        spacing
+            How points get their parameters: ``"chord"``, ``"centripetal"`` or ``"uniform"``.
+        closed
+            Whether the curve returns to the first point.
+        breaks
+            Points, from 0, at which the curve may have corners. A closed curve with breaks becomes
+            an open one that begins and ends at the first of them.
+        """
+        return cls._interpolated(points, degree, spacing, closed, breaks)[0]
+
+    @classmethod
+    def _interpolated(
+        cls, points: ArrayLike, degree: int, spacing: str, closed: bool, breaks: Sequence[int]
+    ) -> tuple[Spline, Floats, list[int]]:
+        """The spline, its data's parameters and the control points that are breaks."""
+        rows, _ = points_of(points)
+        refuse_repeats(rows, closed)
+        core, at, marks = _core.Spline.interpolate(
+            rows, degree, spacing, closed, [int(b) for b in breaks]
+        )
+        return cls._of(core), at, marks
+
+    @classmethod
+    def least_squares(
+        cls,
+        points: ArrayLike,
+        count: int,
+        *,
+        degree: int = 3,
+        spacing: str = "chord",
+        closed: bool = False,
+    ) -> Spline:
+        """The spline with ``count`` control points nearest to points in the sum of squares."""
+        rows, _ = points_of(points)
+        refuse_repeats(rows, closed)
+        return cls._of(_core.Spline.least_squares(rows, degree, count, spacing, closed)[0])
+
+    @property
+    def degree(self) -> int:
+        """The polynomial degree."""
+        return self._core.degree
+
+    @property
+    def knots(self) -> Floats:
+        """The knots: all of an open curve, one period of a closed one."""
+        return self._core.knots
+
+    @property
+    def control_points(self) -> Floats:
+        """The control points, ``(n, 3)``."""
+        return self._core.control_points
+
+    @property
+    def weights(self) -> Floats | None:
+        """The weights of a rational curve."""
+        return self._core.weights
+
+    @property
+    def closed(self) -> bool:
+        """Whether the curve is closed."""
+        return self._core.closed
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """The knots that t = 0 and t = 1 stand for."""
+        return self._core.domain
+
+    def open_form(self) -> tuple[Floats, Floats, list[float] | None]:
+        """Knots over [0, 1], control points and weights of the curve as an open spline.
+
+        Others draw a closed curve from these too.
+        """
+        return self._core.open_form()
+
+    def at(self, t: ArrayLike) -> Samples:
+        """Position, derivatives, curvature and torsion at parameters in [0, 1]."""
+        flat = np.ascontiguousarray(np.asarray(t, np.float64).ravel())
+        return Samples(**self._core.at(flat))
+
+    def samples(self, per_span: int = PER_SPAN) -> Samples:
+        """The same, ``per_span + 1`` times on each span; knots are looked at from both sides."""
+        return Samples(**self._core.spans(per_span))
+
+    def __call__(self, t: ArrayLike) -> Floats:
+        """Positions at parameters in [0, 1], of their shape and three coordinates."""
+        shape = np.shape(t)
+        return self.at(t).points.reshape(*shape, 3)
+
+    def curvature(self, t: ArrayLike) -> Floats:
+        """Curvature at parameters in [0, 1]; see :attr:`Samples.curvature`."""
+        return self.at(t).curvature.reshape(np.shape(t))
+
+    def torsion(self, t: ArrayLike) -> Floats:
+        """Torsion at parameters in [0, 1]."""
+        return self.at(t).torsion.reshape(np.shape(t))
+
+    @property
+    def length(self) -> float:
+        """Its length."""
+        return self._core.length()
+
+    def comb(self, scale: float | None = None, per_span: int = 8) -> tuple[Floats, Floats]:
+        """The curvature comb: feet on the curve and tips at distance ``scale`` times curvature.
+
+        Parameters
+        ----------
+        scale
+            Square of a length; by default such that the longest tooth is a tenth of the curve's
+            extent.
+        per_span
+            Teeth on each span.
+
+        Returns
+        -------
+        tuple of two arrays
+            Feet and tips, ``(k, 3)`` each. The tips of a plane curve are on the outside of the
+            bend.
+        """
+        if scale is None:
+            samples = self.samples(per_span)
+            extent = float(np.ptp(samples.points, axis=0).max())
+            largest = float(np.abs(samples.curvature).max())
+            scale = 0.1 * extent / largest if largest > 0 else 0.0
+        return self._core.comb(scale, per_span)
+
+    def jumps(self) -> tuple[Floats, Floats]:
+        """Where the highest derivative jumps: parameters ``(k,)`` and jump vectors ``(k, 3)``.
+
+        Free of the parameter's unit: on uniform cubics the fourth difference of the control
+        points.
+        """
+        return self._core.jumps()
+
+    def measure(self, name: str) -> float:
+        """A measure of unfairness, as in :func:`~moldloft.fairing.fair`."""
+        return self._core.measure(name)
+
+    def monotone_pieces(self, share: float = 1e-3, per_span: int = PER_SPAN) -> int:
+        """In how many pieces the curvature rises or falls.
+
+        Reversals below a share of its range are ignored.
+        """
+        return self._core.monotone_pieces(share, per_span)
+
+    def inflections(self, per_span: int = PER_SPAN) -> int:
+        """How often the curvature changes its sign."""
+        return self._core.inflections(per_span)
+
+    def logarithmic_curvature(self, per_span: int = PER_SPAN) -> Floats:
+        """The logarithmic curvature graph of a plane curve, ``(k, 2)``.
+
+        Rows of log of the radius of curvature and log of |radius ds / d radius|: a straight line of
+        slope -1 for a clothoid, 1 for a logarithmic spiral, 2 for the involute of a circle.
+        """
+        return self._core.logarithmic(per_span)
+
+    def orthotomic(self, p: ArrayLike, k: float = 2.0, per_span: int = PER_SPAN) -> Floats:
+        """The k-orthotomic for a point p, ``(m, 3)``.
+
+        It has cusps exactly at inflections, when p lies on no tangent.
+        """
+        point, _ = points_of([np.asarray(p, np.float64).ravel()])
+        return self._core.orthotomic([float(c) for c in point[0]], k, per_span)
+
+    def findings(self) -> list[Any]:
+        """Corners and single wrong control points that stand out among the jumps."""
+        from moldloft.fairing.report import Finding
+
+        return [Finding.of(row) for row in self._core.findings()]
+
+    def __repr__(self) -> str:
+        kind = "closed " if self.closed else ""
+        return f"<{kind}spline of degree {self.degree}, {len(self.control_points)} control points>"
+
+
+def monotone_runs(values: ArrayLike, share: float = 1e-3) -> int:
+    """In how many pieces a list rises or falls, reversals below a share of its range ignored.
+
+    >>> monotone_runs([0, 1, 2, 1.9999, 3, 1])
+    2
+    """
+    return _core.monotone_runs(np.ascontiguousarray(values, np.float64), share)
+
+
+def divided_differences(points: ArrayLike, t: ArrayLike) -> Floats:
+    """Second divided differences of points at rising parameters, ``(n - 2, 3)``.
+
+    >>> divided_differences([(0, 0), (1, 1), (3, 9)], [0, 1, 3])
+    array([[0., 1., 0.]])
+    """
+    rows, _ = points_of(points)
+    return _core.divided_differences(rows, np.ascontiguousarray(t, np.float64))
+
+
+def grid_metric(grid: ArrayLike) -> Floats:
+    """The metric eta_y of a plane grid, ``(m, n)``: how its lines crowd across the body.
+
+    Parameters
+    ----------
+    grid
+        ``(m, n, 2)`` or ``(m, n, 3)``, i along the body and j away from it; z is not looked at.
+    """
+    points, _ = points_of(grid, 3)
+    m, n = points.shape[:2]
+    return _core.eta_y(points.reshape(-1, 3), m, n).reshape(m, n)

@@ -1,0 +1,522 @@
+"""Fairing of surfaces, and how light plays on them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import direction, points_of, radii
+from moldloft.fairing.report import lines_of
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["Look", "SplineSurface", "SurfaceFairing", "fair_surface"]
+
+
+def _vector(v: ArrayLike) -> list[float]:
+    flat = [float(c) for c in np.asarray(v, np.float64).ravel()]
+    if len(flat) != 3:
+        raise FairingError(f"error: expected a vector of three numbers, found {len(flat)}")
+    return flat
+
+
+class Look:
+    """A surface on a grid of parameters: its normals and curvatures, and how light plays on it.
+
+    Made by :meth:`SplineSurface.look` and by :meth:`moldloft.Object.look`. Arrays are ``(m, n)`` or
+    ``(m, n, 3)``, NaN where the surface is singular.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads('''
+    ... AbsPoint A(1, 0, 0); AbsPoint B(1, 0, 2); AbsPoint C(0, 0, 0); AbsPoint D(0, 0, 2);
+    ... Line l(A, B); Line axis(C, D); RevSurf tube(l, axis, 0, 3);
+    ... ''')
+    >>> look = m["tube"].look(5, 5)
+    >>> bool(abs(look.gaussian).max() < 1e-12), abs(look.mean).round(12).max().item()
+    (True, 0.5)
+    """
+
+    def __init__(self, core: _core.Look) -> None:
+        self._core = core
+
+    @property
+    def points(self) -> Floats:
+        """Positions."""
+        return self._core.points
+
+    @property
+    def normals(self) -> Floats:
+        """Unit normals along the product of the derivatives by u and v."""
+        return self._core.normals
+
+    @property
+    def gaussian(self) -> Floats:
+        """Gaussian curvature, the product of the principal ones: 0 on cylinders and cones."""
+        return self._core.gaussian
+
+    @property
+    def mean(self) -> Floats:
+        """Mean curvature, positive where the surface bends towards its normal: 0 on soap films."""
+        return self._core.mean
+
+    @property
+    def principal(self) -> tuple[Floats, Floats]:
+        """The principal curvatures, the larger first."""
+        return self._core.largest, self._core.smallest
+
+    @property
+    def absolute(self) -> Floats:
+        """Sum of the principal curvatures' sizes: 0 on planes only."""
+        return self._core.absolute
+
+    def isophotes(self, light: ArrayLike = (0, 0, 1)) -> Floats:
+        """The cosine between normal and light, whose level lines are the isophotes."""
+        return self._core.isophote(_vector(light))
+
+    def highlight(self, point: ArrayLike, along: ArrayLike) -> Floats:
+        """Signed distance of the normal from a light line.
+
+        It is 0 on the highlight line and small on the highlight band.
+        """
+        return self._core.highlight(_vector(point), _vector(along))
+
+    def reflection(self, view: ArrayLike, point: ArrayLike, along: ArrayLike) -> Floats:
+        """Zero where an eye far away in direction ``view`` sees the line reflected."""
+        return self._core.reflection(_vector(view), _vector(point), _vector(along))
+
+    def zebra(
+        self, view: ArrayLike = (0, 0, 1), axis: ArrayLike = (1, 0, 0), stripes: float = 8
+    ) -> Floats:
+        """Stripes, 1 and -1, by the angle of the mirrored view round an axis."""
+        return self._core.zebra(_vector(view), _vector(axis), stripes)
+
+    def orthotomic(self, p: ArrayLike, k: float = 2.0) -> Floats:
+        """The k-orthotomic surface of a point: singular where the Gaussian curvature is 0."""
+        return self._core.orthotomic(_vector(p), k)
+
+    def fields(self) -> dict[str, Floats]:
+        """The curvatures by name, as files for viewers have them."""
+        largest, smallest = self.principal
+        return {
+            "gaussian_curvature": self.gaussian,
+            "mean_curvature": self.mean,
+            "largest_curvature": largest,
+            "smallest_curvature": smallest,
+            "zebra": self.zebra(),
+            "normal": self.normals,
+        }
+
+
+class SplineSurface:
+    """A tensor-product spline surface.
+
+    Parameters
+    ----------
+    control_points
+        ``(m, n, 3)``, at least degree + 2 in each direction.
+    degree
+        The polynomial degree, or two of them.
+    knots
+        Two knot vectors; without them they are uniform.
+    weights
+        Positive weights ``(m, n)`` of a rational surface.
+    closed
+        Whether it is closed along u and v.
+    clamped
+        Whether uniform knots are clamped.
+    """
+
+    def __init__(
+        self,
+        control_points: ArrayLike,
+        *,
+        degree: int | tuple[int, int] = 3,
+        knots: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
+        weights: ArrayLike | None = None,
+        closed: tuple[bool, bool] = (False, False),
+        clamped: bool = True,
+    ) -> None:
+        points, _ = points_of(control_points, 3)
+        degrees = (degree, degree) if isinstance(degree, int) else degree
+        forms = tuple("closed" if c else ("clamped" if clamped else "floating") for c in closed)
+        ku, kv = (None if k is None else np.asarray(k, np.float64) for k in knots)
+        w = None if weights is None else np.asarray(weights, np.float64).ravel()
+        self._core = _core.Net(
+            points.reshape(-1, 3), degrees, points.shape[:2], forms, (ku, kv), (None, None), w
+        )
+
+    @classmethod
+    def _of(cls, core: _core.Net) -> SplineSurface:
+        surface = cls.__new__(cls)
+        surface._core = core
+        return surface
+
+    @classmethod
+    def interpolate(
+        cls,
+        points: ArrayLike,
+        *,
+        degree: int = 3,
+        breaks: tuple[Sequence[int], Sequence[int]] = ((), ()),
+    ) -> SplineSurface:
+        """The surface through a grid of points ``(m, n, 3)`` at uniform parameters.
+
+        ``breaks`` are rows of points along u and along v, from 0, at which it may have edges.
+        """
+        return cls._interpolated(points, degree, breaks)[0]
+
+    @classmethod
+    def _interpolated(
+        cls, points: ArrayLike, degree: int, breaks: tuple[Sequence[int], Sequence[int]]
+    ) -> tuple[SplineSurface, tuple[Floats, Floats], tuple[list[int], list[int]]]:
+        net, _ = points_of(points, 3)
+        knots, params, marks = [], [], []
+        for axis in (0, 1):
+            lines = np.moveaxis(net, axis, 0)
+            fitted = [
+                _core.Spline.interpolate(
+                    np.ascontiguousarray(lines[:, k]), degree, "uniform", False, list(breaks[axis])
+                )
+                for k in range(lines.shape[1])
+            ]
+            net = np.moveaxis(np.stack([f[0].control_points for f in fitted], axis=1), 0, axis)
+            knots.append(fitted[0][0].knots)
+            params.append(fitted[0][1])
+            marks.append(fitted[0][2])
+        surface = cls(net, degree=degree, knots=(knots[0], knots[1]))
+        return surface, (params[0], params[1]), (marks[0], marks[1])
+
+    @property
+    def control_points(self) -> Floats:
+        """The net, ``(m, n, 3)``."""
+        return self._core.control_points.reshape(*self._core.shape, 3)
+
+    @property
+    def degrees(self) -> tuple[int, int]:
+        """The degrees along u and v."""
+        return self._core.degrees
+
+    @property
+    def closed(self) -> tuple[bool, bool]:
+        """Whether it is closed along u and v."""
+        return self._core.closed
+
+    @property
+    def knots(self) -> tuple[Floats, Floats]:
+        """The knots along u and v."""
+        return self._core.knots()
+
+    def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
+        """The surface at a grid of parameters in [0, 1], or at so many even ones each way."""
+        return Look(self._core.look(_parameters(u), _parameters(v)))
+
+    def grid(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Floats:
+        """Positions on a grid of parameters, ``(m, n, 3)``."""
+        return self.look(u, v).points
+
+    def measure(self, name: str) -> tuple[float, float]:
+        """A measure over the curves of the net along u, and over those along v."""
+        return self._core.measure(name)
+
+    def __repr__(self) -> str:
+        m, n = self._core.shape
+        return f"<spline surface, net {m} x {n}>"
+
+
+def _parameters(given: ArrayLike) -> Floats:
+    if np.ndim(given) == 0:
+        count = int(np.asarray(given))
+        if count < 2:
+            raise FairingError(f"error: expected 2 parameters or more, found {count}")
+        return np.linspace(0, 1, count)
+    return np.ascontiguousarray(given, np.float64)
+
+
+@dataclass(frozen=True)
+class SurfaceFairing:
+    """A faired surface and all that is to be said about it."""
+
+    points: Floats
+    """The faired grid, ``(m, n, 3)``: the net, or where the surface has the parameters of the
+    points."""
+    surface: SplineSurface
+    """The faired surface."""
+    original: SplineSurface
+    """The surface before."""
+    data: Floats
+    """The grid that was given."""
+    tol: float | None
+    """The largest tolerance; ``None`` for no limit."""
+    as_: str
+    """What the points were: ``"control"`` or ``"fit"``."""
+    mode: str
+    """How it was done."""
+    measure: str
+    """What there was to be little of."""
+    measure_before: float
+    """The measure over all curves of the net before."""
+    measure_after: float
+    """The measure of the result."""
+    jumps_before: float
+    """Sum of squared jumps over all curves of the net before."""
+    jumps_after: float
+    """Sum of squared jumps of the result."""
+    jumps_along: tuple[tuple[float, float], tuple[float, float]]
+    """The same over the curves along u and along v: before, after."""
+    deviation_certified: float
+    """No point of the surface is farther from its original than this."""
+    deviation_sampled: float
+    """The largest distance found by sampling."""
+    extent: float
+    """The diagonal of the box round the data."""
+    value: float
+    """The measure of the result, as the certificate has it."""
+    gap: float
+    """No surface within the tolerance measures less than ``value - gap``."""
+    passes: int | None
+    """Passes of the faithful mode."""
+    seconds: float
+    """Time of the fairing."""
+
+    @property
+    def gap_relative(self) -> float:
+        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        size = max(self.value, 1e-12 * self.measure_before)
+        return self.gap / size if size > 0 else 0.0
+
+    @property
+    def deviation_percent(self) -> float:
+        """The certified deviation in percent of the extent."""
+        return 100.0 * self.deviation_certified / self.extent if self.extent > 0 else 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """The report as plain data: what ``moldloft fair --json`` prints."""
+        (bu, au), (bv, av) = self.jumps_along
+        return {
+            "points": list(self.data.shape[:2]),
+            "degree": list(self.surface.degrees),
+            "closed": list(self.surface.closed),
+            "as": self.as_,
+            "mode": self.mode,
+            "measure": self.measure,
+            "tolerance": self.tol,
+            "passes": self.passes,
+            "deviation_certified": self.deviation_certified,
+            "deviation_sampled": self.deviation_sampled,
+            "deviation_percent": self.deviation_percent,
+            "extent": self.extent,
+            "measure_before": self.measure_before,
+            "measure_after": self.measure_after,
+            "jumps_before": self.jumps_before,
+            "jumps_after": self.jumps_after,
+            "jumps_u_before": bu,
+            "jumps_u_after": au,
+            "jumps_v_before": bv,
+            "jumps_v_after": av,
+            "value": self.value,
+            "gap": self.gap,
+            "gap_relative": self.gap_relative,
+            "seconds": self.seconds,
+        }
+
+    def __str__(self) -> str:
+        (bu, au), (bv, av) = self.jumps_along
+        rows = [
+            (self.measure, f"{self.measure_before:.6e}", f"{self.measure_after:.6e}"),
+            ("squared jumps", f"{self.jumps_before:.6e}", f"{self.jumps_after:.6e}"),
+            ("  along u", f"{bu:.6e}", f"{au:.6e}"),
+            ("  along v", f"{bv:.6e}", f"{av:.6e}"),
+        ]
+        left = f"at most {self.gap_relative:.1e} of it left to gain"
+        if not np.isfinite(self.gap):
+            left = "without a tolerance nothing bounds what is left to gain"
+        tail = [
+            (
+                "deviation",
+                f"certified {self.deviation_certified:.6e}, sampled {self.deviation_sampled:.6e}, "
+                f"{self.deviation_percent:.4g} % of the extent",
+            ),
+            ("certificate", f"{self.value:.9e}, {left}"),
+            ("time", f"{1e3 * self.seconds:.3g} ms"),
+        ]
+        if self.passes is not None:
+            tail.insert(2, ("passes", str(self.passes)))
+        return lines_of(rows, tail)
+
+    def plot(self, path: str | PathLike[str]) -> None:
+        """Draw the surface, its curvature, zebra, jumps and displacement into a file.
+
+        PNG or SVG by the name's end. Needs Matplotlib: ``pip install 'moldloft[plot]'``.
+        """
+        from moldloft.fairing.plot import plot_surface
+
+        plot_surface(self, path)
+
+    def write_vtk(self, path: str | PathLike[str], u: ArrayLike = 81, v: ArrayLike = 41) -> None:
+        """Write the faired surface for viewers as a structured grid (``.vts``).
+
+        Its arrays are the curvatures, zebra stripes and normals, those of the original with
+        ``_before`` at their names, and ``displacement``.
+        """
+        from moldloft.fairing.files import write_vts
+
+        before, after = self.original.look(u, v), self.surface.look(u, v)
+        fields = after.fields()
+        fields.update({f"{name}_before": value for name, value in before.fields().items()})
+        fields["displacement"] = after.points - before.points
+        write_vts(path, after.points, fields)
+
+
+def fair_surface(
+    points: ArrayLike | SplineSurface,
+    tol: ArrayLike | None,
+    *,
+    as_: str = "control",
+    degree: int | tuple[int, int] = 3,
+    closed: tuple[bool, bool] = (False, False),
+    measure: str = "second",
+    mode: str = "optimum",
+    bound: str = "points",
+    breaks: tuple[Sequence[int], Sequence[int]] = ((), ()),
+    fixed: Sequence[tuple[int, int]] = (),
+    ends: Any = 2,
+    motion: Any = "ball",
+    keep: Sequence[str] = (),
+    passes: int = 1,
+    steps: int | None = None,
+    order: str = "vu",
+) -> SurfaceFairing:
+    """Fair a surface within a tolerance.
+
+    Parameters
+    ----------
+    points
+        A grid ``(m, n, 3)`` or a :class:`SplineSurface`.
+    tol
+        How far each point of the net may move; ``None`` for no limit.
+    as_
+        ``"control"``: the grid is the control net; ``"fit"``: the surface passes through it before
+        it is faired.
+    degree, closed
+        Of the surface of a grid that is a net.
+    measure
+        As for curves: the sum over all curves of the net in both directions.
+    mode
+        ``"optimum"``: all curves at once, with a certificate. ``"faithful"``: curve after curve by
+        local steps, those of constant v first, then those of constant u, ``passes`` times.
+        ``"sweeps"``: all points in order, for nets too large for the optimum.
+    bound
+        ``"points"``: each control point is within the tolerance; ``"curve"``: the surface is, which
+        leaves the control points more room.
+    breaks
+        Rows of points along u and along v, from 0, that are knuckle lines: their points do not move
+        by a bit and nothing is smoothed across them.
+    fixed
+        Points (i, j) of the net that do not move.
+    ends
+        What curves keep at open ends in the faithful mode; see curves. The optimum keeps the four
+        corners, two by two points.
+    motion
+        As for curves.
+    keep
+        ``("volume",)``: the volume between the surfaces is zero to first order, so that a hull
+        keeps its displacement.
+    passes
+        Passes of the faithful mode; the tolerance is from the original across all of them.
+    steps
+        Local steps per point of each curve (3), or sweeps (50).
+    order
+        Which curves come first in a pass: ``"vu"``, those of constant v, or ``"uv"``.
+
+    Raises
+    ------
+    FairingError
+        When there is too little to fair or something is wrong.
+    """
+    if as_ not in ("control", "fit"):
+        raise FairingError(f"error: points of a surface are `control` or `fit`, not `{as_}`")
+    if mode not in ("optimum", "faithful", "sweeps"):
+        raise FairingError(
+            f"error: there is no mode `{mode}` of surfaces; there are: optimum, faithful, sweeps"
+        )
+    if set(keep) - {"volume"}:
+        raise FairingError("error: of a surface there is only the volume to keep")
+    started = time.perf_counter()
+    marks = (list(breaks[0]), list(breaks[1]))
+    at: tuple[Floats, Floats] | None = None
+    if isinstance(points, SplineSurface):
+        surface, data = points, points.control_points
+    else:
+        data, _ = points_of(points, 3)
+        least = min(degree) if isinstance(degree, tuple) else degree
+        for axis, name in ((0, "u"), (1, "v")):
+            few = (2 * least if closed[axis] else least) + 2
+            if data.shape[axis] < few:
+                raise FairingError(
+                    f"error: expected at least {few} points along {name}, found {data.shape[axis]}"
+                )
+        if as_ == "fit":
+            if not isinstance(degree, int) or any(closed):
+                raise FairingError("error: a fitted surface is open and has one degree")
+            surface, at, marks = SplineSurface._interpolated(data, degree, marks)
+        else:
+            surface = SplineSurface(data, degree=degree, closed=closed, clamped=False)
+    m, n = surface._core.shape
+    if tol is not None and np.ndim(tol) == 2 and np.shape(tol) != (m, n):
+        raise FairingError(f"error: expected tolerances {(m, n)}, found {np.shape(tol)}")
+    word, way = direction(motion)
+    pair = ends if isinstance(ends, (tuple, list)) else (ends, ends)
+    chosen = {
+        "tolerance": radii(tol, m * n),
+        "motion": word,
+        "direction": way,
+        "ends": tuple(f"points:{e}" if isinstance(e, int) else str(e) for e in pair),
+        "marks": marks,
+        "fixed": [int(i) * n + int(j) for i, j in fixed],
+        "measure": measure,
+        "mode": mode,
+        "bound": bound,
+        "passes": passes,
+        "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
+        "order": order,
+        "volume": "volume" in keep,
+    }
+    core, told = surface._core.fair(chosen)
+    faired = SplineSurface._of(core)
+    seconds = time.perf_counter() - started
+    jumps_before, jumps_after = surface.measure("jumps"), faired.measure("jumps")
+    return SurfaceFairing(
+        points=faired.control_points if at is None else faired.grid(*at),
+        surface=faired,
+        original=surface,
+        data=data,
+        tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
+        as_=as_,
+        mode=mode,
+        measure=measure,
+        measure_before=told["measure_before"],
+        measure_after=told["measure_after"],
+        jumps_before=told["jumps_before"],
+        jumps_after=told["jumps_after"],
+        jumps_along=((jumps_before[0], jumps_after[0]), (jumps_before[1], jumps_after[1])),
+        deviation_certified=told["certified"],
+        deviation_sampled=told["sampled"],
+        extent=float(np.linalg.norm(np.ptp(data.reshape(-1, 3), axis=0))),
+        value=told["certificate"]["value"],
+        gap=told["certificate"]["gap"],
+        passes=passes if mode == "faithful" else None,
+        seconds=seconds,
+    )
