@@ -320,7 +320,7 @@ def _around(samples: Samples, i: int, j: int) -> Floats:
     angle = angle + outward * (np.pi / 2 - 0.5)
     way = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     far = 0.1 * float(np.ptp(points, axis=0).max()) * np.linspace(0, 1, 11)
-    return points[:, None, :] + far[None, :, None] * way[:, None, :]
+    return np.asarray(points[:, None, :] + far[None, :, None] * way[:, None, :])
 
 
 def _metric(ax: Any, fairing: Fairing, before: Samples, after: Samples) -> None:
