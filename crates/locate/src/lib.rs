@@ -14,6 +14,7 @@
 //! Invariant: this crate knows no entity, no registry and no file.
 
 pub mod implicit;
+pub mod march;
 mod nearest;
 mod newton;
 pub mod pieces;

@@ -121,6 +121,7 @@ pub fn rows() -> Vec<Row> {
         snake::CopySnake,
         curve::PolySnake,
         search::ProjSnake,
+        search::IntSnake,
         curve::SubSnake,
         curve::BSubSnake,
         surface::RuledSurf,

@@ -5,6 +5,7 @@
 mod arguments;
 mod beads;
 mod equations;
+mod intersect_snake;
 mod magnets;
 mod outcome;
 mod points;
@@ -12,6 +13,7 @@ mod project_snake;
 
 pub use arguments::Onto;
 pub use beads::{IntBead, IntRing, ProjBead, ProjRing, ProxBead, ProxRing, XYZBead, XYZRing};
+pub use intersect_snake::IntSnake;
 pub use magnets::{IntMagnet, ProjMagnet, ProxMagnet, TanMagnet, XYZMagnet};
 pub use points::ProjPoint;
 pub use project_snake::{ProjCurve, ProjSnake};

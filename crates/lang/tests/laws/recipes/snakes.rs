@@ -68,6 +68,27 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let last = p.object("LineSnake", &format!("{b}, {c}"));
             format!("{{{first}, {last}}}")
         }
+        "IntSnake" => {
+            let sheet = p.sheet();
+            match p.random.below(2) {
+                0 => {
+                    let at = p.number(1.0, 3.0);
+                    let plane = p.object("XPlane", &format!("{at}*w"));
+                    format!("{sheet}, {plane}")
+                }
+                _ => {
+                    let [a, b, c, d] =
+                        [(1.3, 0.0, -1), (1.6, 2.0, -1), (2.2, 0.0, 1), (1.9, 2.0, 1)]
+                            .map(|(x, y, z)| p.object("AbsPoint", &format!("{x}*w, {y}, {z}")));
+                    let (l, m) = (
+                        p.object("Line", &format!("{a}, {b}")),
+                        p.object("Line", &format!("{c}, {d}")),
+                    );
+                    let wall = p.object("RuledSurf", &format!("{l}, {m}, visible = 0"));
+                    format!("{sheet}, {wall}")
+                }
+            }
+        }
         "ProjSnake" => {
             let (sheet, strand) = (p.sheet(), p.strand());
             match p.random.below(3) {

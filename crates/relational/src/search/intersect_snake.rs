@@ -1,0 +1,789 @@
+//! Snakes along which a surface meets a plane or another surface.
+
+use super::arguments::{Onto, Target};
+use super::outcome::no_intersection;
+use crate::arguments::Magnet;
+use moldloft_locate::implicit::{Implicit, jets, refined, solve};
+use moldloft_locate::march::{Branch, Crossing, End, Other, Unknowns};
+use moldloft_locate::{PlainSurface, Report, Status};
+use moldloft_num::trace::Trace;
+use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, solve_dense};
+use moldloft_registry::{
+    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
+};
+
+/// The curve along which a surface meets a plane or another surface, as a snake of the first; its
+/// parameter is the share of its length.
+///
+/// From a magnet the branch through the place nearest to it is taken; from a bare surface the one
+/// that comes nearest to its middle, and others are reported. The snake runs along n1 x n2, the
+/// product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
+/// lie on the intersection and give it their identity there, so that patches join. A closed branch
+/// begins at the place nearest to the magnet. Each point of it is solved for by itself, so it lies
+/// on both.
+#[derive(Kind)]
+#[kind(
+    class = Snake,
+    columns = "relabel surface target start end",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); ZPlane z(0.5); IntSnake w(S, z); \
+               AbsPoint E(2, -1, -2); AbsPoint F(2, 4, -2); AbsPoint G(3, -1, 4); AbsPoint H(2, 4, 4); \
+               Line n(E, F); Line o(G, H); RuledSurf T(n, o); IntSnake x(S, T); \
+               IntRing r(x, \"y=0\", {0, 1, 0}); AbsMagnet near(S, 0.5, 0.5); IntSnake y(near, T, start = r);"
+)]
+pub struct IntSnake<T: Real> {
+    /// The surface that the snake lies on, or a magnet of it near the branch that is meant.
+    surface: Onto<T>,
+    /// The plane, or the other surface (or a magnet of it).
+    target: Target<T>,
+    /// Where it begins: a magnet or ring of the intersection.
+    start: Option<Magnet<T>>,
+    /// Where it ends.
+    end: Option<Magnet<T>>,
+    /// For a plane: the parallel plane through this point is meant.
+    point: Option<Point<T>>,
+}
+
+impl<T: Real> Build<T> for IntSnake<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { surface, target, start, end, point } = self;
+        let (other, second_start) = match target {
+            Target::Plane(plane) => {
+                let point = point.map_or(plane.point, |p| p.xyz);
+                (Second::Plane(Plane { point, normal: plane.normal }), None)
+            }
+            Target::Surface(onto) => {
+                let start = onto.from();
+                (Second::Surface(onto.surface), start)
+            }
+            Target::Curve(_) | Target::Point(_) => {
+                return Err(Fault::new("wrong-class", "a surface is cut by a plane or a surface")
+                    .expected("a plane, a surface or a magnet")
+                    .found("a curve or a point")
+                    .in_field(1));
+            }
+        };
+        for (field, magnet) in [(2, &start), (3, &end)] {
+            if let Some(magnet) = magnet {
+                let named = magnet.surface.key.is_some() || surface.surface.key.is_some();
+                let same = if named {
+                    magnet.surface.key == surface.surface.key
+                } else {
+                    magnet.surface.same(&surface.surface)
+                };
+                if !same {
+                    return Err(Fault::new("wrong-surface", "the end lies on another surface")
+                        .expected("a magnet or ring of the surface that is cut")
+                        .found("one of another surface")
+                        .related(magnet.key, "lies on another surface")
+                        .related(magnet.surface.key, "is its surface")
+                        .in_field(field));
+                }
+            }
+        }
+        let keys = [start.as_ref().and_then(|m| m.key), end.as_ref().and_then(|m| m.key)];
+        let (shape, found) = traced(&surface, other, second_start, [start, end], context)?;
+        let closed = shape.closed;
+        let trace = match (keys, closed) {
+            // A closed snake ends where it begins.
+            ([Some(k), None], true) => Trace::Own([Some(k); 2]),
+            _ => Trace::Own(keys),
+        };
+        let shape = Cut { trace, ..shape };
+        let nesting = context.nesting;
+        Ok(Value::Curve(CurveRef::snake(shape, surface.surface, nesting).with_found(found)))
+    }
+}
+
+/// What the surface is cut by.
+#[derive(Clone)]
+enum Second<T: Real> {
+    Plane(Plane<T>),
+    Surface(SurfaceRef<T>),
+}
+
+/// Points of a piece that its polynomial goes through.
+const NODES: usize = 7;
+
+/// A stretch of the intersection with a polynomial near it: the place is the point of the
+/// intersection across from the polynomial's.
+#[derive(Clone, Debug)]
+struct Piece<T> {
+    /// Length along the snake at which it begins, and its own length.
+    begin: T,
+    length: T,
+    /// Powers of 2 x - 1, with x the share of the piece.
+    powers: Vec<Vec3<T>>,
+    /// The unknowns at the nodes, where iterations begin.
+    places: [Unknowns; NODES],
+}
+
+/// X(t) = S(w(t)) on both shapes.
+struct Cut<T: Real> {
+    trace: Trace<T>,
+    first: SurfaceRef<T>,
+    second: Second<T>,
+    pieces: Vec<Piece<T>>,
+    total: T,
+    size: f64,
+    closed: bool,
+}
+
+/// Nodes on [0, 1]: both ends, denser towards them (Chebyshev and Lobatto).
+fn node(k: usize) -> f64 {
+    0.5 - 0.5 * Real::cos(k as f64 * std::f64::consts::PI / (NODES - 1) as f64)
+}
+
+/// The matrix from values at the nodes to powers of 2 x - 1.
+fn to_powers() -> [[f64; NODES]; NODES] {
+    std::array::from_fn(|column| {
+        let mut matrix: Vec<f64> = (0..NODES)
+            .flat_map(|k| (0..NODES).map(move |p| (2.0 * node(k) - 1.0).powi(p as i32)))
+            .collect();
+        let mut unit: [f64; NODES] = std::array::from_fn(|k| f64::from(u8::from(k == column)));
+        solve_dense(&mut matrix, &mut unit).expect("the nodes are different");
+        unit
+    })
+}
+
+fn powers_of<T: Real>(matrix: &[[f64; NODES]; NODES], values: &[Vec3<T>; NODES]) -> Vec<Vec3<T>> {
+    let power =
+        |p: usize| (0..NODES).fold(Vec3::zero(), |sum, k| sum + values[k] * T::from(matrix[k][p]));
+    (0..NODES).map(power).collect()
+}
+
+/// Value and derivative by x of a polynomial in powers of 2 x - 1.
+fn polynomial<T: Real, J: Jet<T>>(powers: &[Vec3<T>], x: J) -> [Vec3<J>; 2] {
+    let y = x * 2.0 - 1.0;
+    let (mut value, mut slope) = (Vec3::<J>::zero(), Vec3::<J>::zero());
+    for p in powers.iter().rev() {
+        slope = slope * y + value;
+        value = value * y + p.map(J::fixed);
+    }
+    [value, slope * J::from(2.0)]
+}
+
+/// A point of both shapes across from a polynomial's.
+struct Across<'a, T: Real> {
+    first: &'a SurfaceRef<T>,
+    powers: &'a [Vec3<T>],
+}
+
+impl<T: Real> Across<'_, T> {
+    fn level<J: Jet<T>>(&self, point: Vec3<J>, x: J) -> J {
+        let [c, d] = polynomial(self.powers, x);
+        d.dot(point - c)
+    }
+    fn gradient(&self, j: &moldloft_num::SurfJet<T>, x: T) -> [T; 2] {
+        let [_, d] = polynomial::<T, T>(self.powers, x);
+        [d.dot(j.u), d.dot(j.v)]
+    }
+}
+
+struct AcrossPlane<'a, T: Real>(Across<'a, T>, &'a Plane<T>);
+
+impl<T: Real> Implicit<T, 2> for AcrossPlane<'_, T> {
+    fn at<J: Jet<T>>(&self, [u, v]: [J; 2], x: J) -> [J; 2] {
+        let p = self.0.first.at(u, v);
+        let fixed = |a: Vec3<T>| a.map(J::fixed);
+        [fixed(self.1.normal).dot(p - fixed(self.1.point)), self.0.level(p, x)]
+    }
+    fn jacobian(&self, [u, v]: [T; 2], x: T) -> [[T; 2]; 2] {
+        let j = self.0.first.jet(u, v, Order::First);
+        [[self.1.normal.dot(j.u), self.1.normal.dot(j.v)], self.0.gradient(&j, x)]
+    }
+}
+
+struct AcrossSurface<'a, T: Real>(Across<'a, T>, &'a SurfaceRef<T>);
+
+impl<T: Real> Implicit<T, 4> for AcrossSurface<'_, T> {
+    fn at<J: Jet<T>>(&self, [u, v, p, r]: [J; 4], x: J) -> [J; 4] {
+        let point = self.0.first.at(u, v);
+        let gap = point - self.1.at(p, r);
+        [gap.x, gap.y, gap.z, self.0.level(point, x)]
+    }
+    fn jacobian(&self, [u, v, p, r]: [T; 4], x: T) -> [[T; 4]; 4] {
+        let j = self.0.first.jet(u, v, Order::First);
+        let k = self.1.jet(p, r, Order::First);
+        let c = [j.u, j.v, -k.u, -k.v].map(Vec3::to_array);
+        let row = |a: usize| [c[0][a], c[1][a], c[2][a], c[3][a]];
+        let [gu, gv] = self.0.gradient(&j, x);
+        [row(0), row(1), row(2), [gu, gv, T::zero(), T::zero()]]
+    }
+}
+
+/// Unknowns with their derivatives by the parameter of a polynomial.
+fn derived<T: Real>(
+    first: &SurfaceRef<T>,
+    second: &Second<T>,
+    powers: &[Vec3<T>],
+    q: Unknowns,
+    x: T,
+    order: Order,
+) -> Option<[[T; 2]; 3]> {
+    let across = Across { first, powers };
+    match second {
+        Second::Plane(plane) => jets(&AcrossPlane(across, plane), [q[0], q[1]], x, order),
+        Second::Surface(surface) => {
+            let all = jets(&AcrossSurface(across, surface), q, x, order)?;
+            Some(all.map(|[u, v, ..]| [u, v]))
+        }
+    }
+}
+
+/// The end of a branch at an edge: unknown `k` stays, the others follow.
+struct AtEdge<'a, T: Real> {
+    first: &'a SurfaceRef<T>,
+    second: &'a SurfaceRef<T>,
+    unknown: usize,
+    value: f64,
+}
+
+impl<T: Real> Implicit<T, 4> for AtEdge<'_, T> {
+    fn at<J: Jet<T>>(&self, q: [J; 4], _: J) -> [J; 4] {
+        let gap = self.first.at(q[0], q[1]) - self.second.at(q[2], q[3]);
+        [gap.x, gap.y, gap.z, q[self.unknown] - self.value]
+    }
+    fn jacobian(&self, q: [T; 4], _: T) -> [[T; 4]; 4] {
+        let j = self.first.jet(q[0], q[1], Order::First);
+        let k = self.second.jet(q[2], q[3], Order::First);
+        let c = [j.u, j.v, -k.u, -k.v].map(Vec3::to_array);
+        let row = |a: usize| [c[0][a], c[1][a], c[2][a], c[3][a]];
+        let mut last = [T::zero(); 4];
+        last[self.unknown] = T::one();
+        [row(0), row(1), row(2), last]
+    }
+}
+
+/// Where a branch ends at an edge, with derivatives.
+fn edge_point<T: Real>(
+    first: &SurfaceRef<T>,
+    second: &Second<T>,
+    q: Unknowns,
+    unknown: usize,
+    value: f64,
+) -> Option<Vec3<T>> {
+    match second {
+        Second::Plane(plane) => {
+            // One unknown is left.
+            let [u, v] = [T::from(q[0]), T::from(q[1])];
+            let j = first.jet(u, v, Order::First);
+            let rest = plane.distance(j.p);
+            let along = if unknown == 0 { j.v } else { j.u };
+            let slope = plane.normal.re().dot(along.re());
+            let [step] = solve(&[[T::from(slope)]], [rest - rest.re()])?;
+            Some(j.p - along.map(|x| T::from(x.re())) * step)
+        }
+        Second::Surface(surface) => {
+            let system = AtEdge { first, second: surface, unknown, value };
+            let [u, v, ..] = refined(&system, q, T::zero())?;
+            Some(first.jet(u, v, Order::Zero).p)
+        }
+    }
+}
+
+fn lost(why: &str) -> Fault {
+    Fault::new("tangent-contact", "the intersection cannot be followed: the shapes touch there")
+        .expected("shapes that cross at an angle all along")
+        .found(why.to_owned())
+        .help("move one of them, or give `start` and `end` before the place of contact")
+}
+
+/// Follows the intersection and sets up the snake.
+fn traced<T: Real>(
+    onto: &Onto<T>,
+    second: Second<T>,
+    second_start: Option<[f64; 2]>,
+    ends: [Option<Magnet<T>>; 2],
+    context: &Context,
+) -> Result<(Cut<T>, Found), Fault> {
+    let first = &onto.surface;
+    let plain = PlainSurface(&**first);
+    let plain_second = match &second {
+        Second::Surface(surface) => Some(PlainSurface(&**surface)),
+        Second::Plane(_) => None,
+    };
+    let crossing = match (&second, &plain_second) {
+        (Second::Plane(plane), _) => Crossing::with_plane(
+            &plain,
+            Plane { point: plane.point.re(), normal: plane.normal.re() },
+        ),
+        (_, Some(surface)) => Crossing::with_surface(&plain, surface),
+        _ => unreachable!("a second surface has its plain twin"),
+    };
+    let given = onto.from().or_else(|| ends[0].as_ref().map(|m| m.uv.map(|x| x.re())));
+    let seed = given.and_then(|uv| crossing.near(uv, second_start));
+    let mut status = FoundStatus::Ok;
+    let mut alternatives = Vec::new();
+    let branch = match seed.and_then(|q| crossing.branch(q)) {
+        Some(branch) => branch,
+        None => {
+            let mut all = crossing.branches();
+            let from = given.unwrap_or([0.5, 0.5]);
+            let away = |b: &Branch| {
+                let d = |q: &Unknowns| (q[0] - from[0]).powi(2) + (q[1] - from[1]).powi(2);
+                b.stations.iter().map(|s| d(&s.q)).fold(f64::INFINITY, f64::min)
+            };
+            let chosen = (0..all.len()).min_by(|&a, &b| away(&all[a]).total_cmp(&away(&all[b])));
+            let Some(chosen) = chosen else {
+                let x = plain.jet(from[0], from[1], Order::Zero).p;
+                let residual = match crossing.other {
+                    Other::Plane(plane) => plane.distance(x).abs(),
+                    Other::Surface(s) => {
+                        let [p, r] = moldloft_locate::nearest_on_surface(s, x, None).at;
+                        s.jet(p, r, Order::Zero).p.distance(x)
+                    }
+                };
+                let report = Report {
+                    status: Status::NoSolution,
+                    residual,
+                    iterations: 0,
+                    start: from.into_iter().collect(),
+                    last: from.into_iter().collect(),
+                    alternatives: Vec::new(),
+                };
+                let other = if plain_second.is_some() { "other surface" } else { "plane" };
+                return Err(no_intersection(&report, "surface", other).in_field(1));
+            };
+            if given.is_some() {
+                status = FoundStatus::Fallback;
+            } else if all.len() > 1 {
+                let middle = |b: &Branch| b.stations[b.stations.len() / 2];
+                let own = all[chosen].stations.clone();
+                let next = all.iter().enumerate().filter(|(k, _)| *k != chosen);
+                let next = next
+                    .flat_map(|(_, b)| &b.stations)
+                    .map(|s| own.iter().map(|o| o.x.distance(s.x)).fold(f64::INFINITY, f64::min))
+                    .fold(f64::INFINITY, f64::min);
+                status = FoundStatus::Multiple { count: all.len(), chosen, next };
+                for (k, b) in all.iter().enumerate().filter(|(k, _)| *k != chosen) {
+                    let _ = k;
+                    let s = middle(b);
+                    alternatives.push((s.q[..2].to_vec(), s.x));
+                }
+            }
+            all.swap_remove(chosen)
+        }
+    };
+    let begin = branch.stations[0].q;
+    let shape = set_up(first, second.clone(), &crossing, branch, onto, &ends, context)?;
+    let found = Found {
+        status,
+        residual: 0.0,
+        iterations: shape.pieces.len() as u32,
+        start: given.map_or_else(|| vec![0.5, 0.5], |uv| uv.to_vec()),
+        last: vec![begin[0], begin[1]],
+        alternatives,
+        advice: "to choose another branch, give a magnet near it instead of the surface",
+    };
+    Ok((shape, found))
+}
+
+/// Cuts the branch to its ends, gives it its length as parameter, with derivatives.
+fn set_up<T: Real>(
+    first: &SurfaceRef<T>,
+    second: Second<T>,
+    crossing: &Crossing<'_>,
+    mut branch: Branch,
+    onto: &Onto<T>,
+    ends: &[Option<Magnet<T>>; 2],
+    context: &Context,
+) -> Result<Cut<T>, Fault> {
+    // Stations of the given ends.
+    let mut places = [None, None];
+    for (k, magnet) in ends.iter().enumerate() {
+        let Some(magnet) = magnet else { continue };
+        let uv = magnet.uv.map(|x| x.re());
+        let x = first.jet(T::from(uv[0]), T::from(uv[1]), Order::Zero).p.re();
+        let at = (0..branch.stations.len().saturating_sub(1))
+            .filter_map(|i| {
+                let (a, b) = (&branch.stations[i], &branch.stations[i + 1]);
+                let chord = b.x - a.x;
+                let share = ((x - a.x).dot(chord) / chord.norm_sq()).clamp(0.0, 1.0);
+                let guess = std::array::from_fn(|k| a.q[k] + share * (b.q[k] - a.q[k]));
+                let away = (a.x + chord * share).distance(x);
+                (away <= 0.3 * chord.norm() + context.tolerance).then_some((away, i, guess))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let station = at.and_then(|(_, i, guess)| {
+            let q = crossing.across(guess, x, branch.stations[i].tangent)?;
+            let station = crossing.station(q)?;
+            (station.x.distance(x) <= context.tolerance).then_some((i, station))
+        });
+        match station {
+            Some(place) => places[k] = Some(place),
+            None => {
+                let which = ["start", "end"][k];
+                return Err(Fault::new(
+                    "open-end",
+                    format!("the {which} is not on the intersection"),
+                )
+                .expected(format!("a magnet within {:e} of it", context.tolerance))
+                .found("a magnet away from it")
+                .help("make it by IntRing, IntMagnet or IntBead with the same surface or plane")
+                .related(magnet.key, "is the magnet")
+                .in_field(2 + k));
+            }
+        }
+    }
+    let closed = branch.closed();
+    if closed && places[0].is_none() && places[1].is_some() {
+        return Err(Fault::new("missing-argument", "a closed branch with an end needs a start")
+            .expected("a magnet or ring where it starts")
+            .found("an end only")
+            .in_field(2));
+    }
+    let mut reversed = false;
+    let whole = closed && places[1].is_none();
+    if closed {
+        branch.stations.pop();
+        if let Some((i, station)) = places[0] {
+            let count = branch.stations.len();
+            branch.stations.rotate_left((i + 1) % count);
+            branch.stations.insert(0, station);
+        }
+        let begin = branch.stations[0];
+        branch.stations.push(begin);
+        if let Some((_, station)) = places[1] {
+            cut_after(&mut branch, &station);
+        }
+    } else {
+        let order = |k: usize| {
+            places[k]
+                .as_ref()
+                .map(|(i, s)| (*i, (s.x - branch.stations[*i].x).dot(branch.stations[*i].tangent)))
+        };
+        if let (Some(a), Some(b)) = (order(0), order(1)) {
+            reversed = b.0 < a.0 || a.0 == b.0 && b.1 < a.1;
+        } else if places[1].is_none() && places[0].is_some() {
+            // From the start to the farther end.
+            let (i, _) = places[0].expect("just seen");
+            reversed = i * 2 > branch.stations.len();
+        } else if let Some((i, _)) = places[1] {
+            reversed = i * 2 < branch.stations.len();
+        }
+        if reversed {
+            branch.stations.reverse();
+            branch.ends.swap(0, 1);
+            for s in &mut branch.stations {
+                s.tangent = -s.tangent;
+                s.rate = s.rate.map(|r| -r);
+            }
+        }
+        let turned = |station: moldloft_locate::march::Station| {
+            let mut s = station;
+            if reversed {
+                s.tangent = -s.tangent;
+                s.rate = s.rate.map(|r| -r);
+            }
+            s
+        };
+        if let Some((_, station)) = places[1] {
+            cut_after(&mut branch, &turned(station));
+        }
+        if let Some((_, station)) = places[0] {
+            cut_before(&mut branch, &turned(station));
+        }
+    }
+    for (k, end) in branch.ends.iter().enumerate() {
+        let given = places[k].is_some();
+        if !given && matches!(end, End::Tangent | End::Lost) {
+            return Err(lost("a place where they are tangent").in_field(1));
+        }
+    }
+    // Breaks of the surfaces between stations become stations, so that pieces are smooth.
+    let lines: Vec<(usize, f64)> = {
+        let mut lines = Vec::new();
+        let mut add = |at: usize, [us, vs]: [Vec<f64>; 2]| {
+            lines.extend(us.into_iter().map(|x| (at, x)));
+            lines.extend(vs.into_iter().map(|x| (at + 1, x)));
+        };
+        add(0, first.breaks());
+        if let Second::Surface(surface) = &second {
+            add(2, surface.breaks());
+        }
+        lines
+    };
+    let mut stations = vec![branch.stations[0]];
+    for pair in branch.stations.windows(2) {
+        let (a, b) = (&pair[0], &pair[1]);
+        let mut between: Vec<(f64, usize, f64)> = lines
+            .iter()
+            .filter(|(k, x)| (a.q[*k] - x) * (b.q[*k] - x) < 0.0)
+            .map(|&(k, x)| ((x - a.q[k]) / (b.q[k] - a.q[k]), k, x))
+            .collect();
+        between.sort_by(|p, q| p.0.total_cmp(&q.0));
+        for (share, k, x) in between {
+            let guess = std::array::from_fn(|i| a.q[i] + share * (b.q[i] - a.q[i]));
+            let station = crossing.at_line(guess, k, x).and_then(|q| crossing.station(q));
+            let last = stations.last().expect("it begins with one").x;
+            if let Some(mut s) = station {
+                if s.tangent.dot(a.tangent) < 0.0 {
+                    s.tangent = -s.tangent;
+                    s.rate = s.rate.map(|r| -r);
+                }
+                let reach = 1e-3 * a.x.distance(b.x);
+                let ordered =
+                    (s.x - last).dot(a.tangent) > reach && (b.x - s.x).dot(a.tangent) > reach;
+                if ordered {
+                    stations.push(s);
+                }
+            }
+        }
+        stations.push(*b);
+    }
+    // The ends, with derivatives.
+    let end_place = |k: usize| -> Option<Vec3<T>> {
+        let station = if k == 0 { stations.first() } else { stations.last() }?;
+        if let Some(magnet) = &ends[k] {
+            return Some(first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p);
+        }
+        if whole {
+            return None;
+        }
+        match branch.ends[k] {
+            End::Edge { unknown, value } => edge_point(first, &second, station.q, unknown, value),
+            _ => Some(Vec3::lifted(station.x)),
+        }
+    };
+    let places = [end_place(0), end_place(1)];
+    // A closed branch begins in the plane through the magnet across its own direction.
+    let shift = match (whole, &ends[0], onto.start) {
+        (true, None, Some(uv)) => closed_start(first, &second, uv, &stations[0]),
+        (true, Some(magnet), _) => {
+            let x = first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p;
+            Some((x, Vec3::lifted(stations[0].tangent)))
+        }
+        _ => None,
+    };
+    let matrix = to_powers();
+    let mut pieces = Vec::with_capacity(stations.len() - 1);
+    let mut sum = T::zero();
+    let mut offsets = [T::zero(); 2];
+    let count = stations.len() - 1;
+    for (i, pair) in stations.windows(2).enumerate() {
+        let (a, b) = (&pair[0], &pair[1]);
+        let chord = a.x.distance(b.x);
+        // The cubic of both ends' places and tangents, as plain powers of 2 s - 1.
+        let hermite = |s: f64| {
+            let r = 1.0 - s;
+            a.x * (r * r * (1.0 + 2.0 * s))
+                + a.tangent * (chord * r * r * s)
+                + b.x * (s * s * (3.0 - 2.0 * s))
+                - b.tangent * (chord * s * s * r)
+        };
+        let values: [Vec3<T>; NODES] = std::array::from_fn(|k| Vec3::lifted(hermite(node(k))));
+        let guide = powers_of(&matrix, &values);
+        let at = |s: f64, order: Order| -> Option<([CurveJet<T>; 2], Unknowns)> {
+            let [c, d] = polynomial::<T, T>(&guide, T::from(s)).map(Vec3::re);
+            let guess = std::array::from_fn(|k| a.q[k] + s * (b.q[k] - a.q[k]));
+            let q = crossing.across(guess, c, d.normalized()?)?;
+            let w = derived(first, &second, &guide, q, T::from(s), order)?;
+            let w = w.map(|[u, v]| Vec3::new(u, v, T::zero()));
+            Some(([super::on_surface_jet(first, w, order), w], q))
+        };
+        let failed = || lost("a place where they are nearly tangent").in_field(1);
+        // Length as a function of s, from the speed at the nodes.
+        let mut speeds = [Vec3::zero(); NODES];
+        let mut end_jets = [[Vec3::zero(); 3]; 2];
+        for k in 0..NODES {
+            let ([x, _], _) = at(node(k), Order::First).ok_or_else(failed)?;
+            speeds[k] = Vec3::new(x[1].norm(), T::zero(), T::zero());
+            if k == 0 {
+                end_jets[0] = x;
+            } else if k == NODES - 1 {
+                end_jets[1] = x;
+            }
+        }
+        let speed = powers_of(&matrix, &speeds);
+        let integral = |s: f64| {
+            let y = 2.0 * s - 1.0;
+            speed.iter().enumerate().fold(T::zero(), |sum, (p, c)| {
+                let p = p as i32 + 1;
+                sum + c.x * (0.5 * (y.powi(p) - (-1f64).powi(p)) / f64::from(p))
+            })
+        };
+        let length = integral(1.0);
+        let mut nodes = [Vec3::zero(); NODES];
+        let mut at_nodes = [[0.0; 4]; NODES];
+        for k in 0..NODES {
+            let goal = length * node(k);
+            let mut s = node(k);
+            for _ in 0..4 {
+                let rate = polynomial::<T, T>(&speed, T::from(s))[0].x.re();
+                s = (s - (integral(s) - goal).re() / rate).clamp(0.0, 1.0);
+            }
+            let ([x, _], q) = at(s, Order::First).ok_or_else(failed)?;
+            let rest = integral(s) - goal;
+            let step = (rest - rest.re()) / x[1].norm().re();
+            nodes[k] = x[0] - x[1].map(|d| T::from(d.re())) * step;
+            at_nodes[k] = q;
+        }
+        for (k, (index, place)) in
+            [(0, &places[0]), (count - 1, &places[1])].into_iter().enumerate()
+        {
+            if i == index
+                && let Some(place) = place
+            {
+                let tangent = end_jets[k][1].re().normalized().ok_or_else(failed)?;
+                let along = Vec3::lifted(tangent).dot(*place - end_jets[k][0]);
+                offsets[k] = along - along.re();
+            }
+        }
+        if i == 0
+            && let Some((x, d)) = shift
+        {
+            // The branch begins where it crosses the plane d . (X - x) = 0.
+            let level = d.dot(end_jets[0][0] - x);
+            let slope = d.re().dot(stations[0].tangent);
+            offsets[0] = (level - level.re()) * (-1.0 / slope);
+            offsets[1] = offsets[0];
+        }
+        pieces.push(Piece {
+            begin: sum,
+            length,
+            powers: powers_of(&matrix, &nodes),
+            places: at_nodes,
+        });
+        sum += length;
+    }
+    for piece in &mut pieces {
+        piece.begin -= offsets[0];
+    }
+    let total = sum + offsets[1] - offsets[0];
+    Ok(Cut {
+        trace: Trace::own(),
+        first: first.clone(),
+        second,
+        pieces,
+        total,
+        size: crossing.size,
+        closed: whole,
+    })
+}
+
+/// The plane in which a closed branch begins: through the magnet, across n1 x n2 there.
+fn closed_start<T: Real>(
+    first: &SurfaceRef<T>,
+    second: &Second<T>,
+    [u, v]: [T; 2],
+    station: &moldloft_locate::march::Station,
+) -> Option<(Vec3<T>, Vec3<T>)> {
+    let j = first.jet(u, v, Order::First);
+    let normal = match second {
+        Second::Plane(plane) => plane.normal,
+        Second::Surface(surface) => {
+            let onto = Onto { surface: surface.clone(), start: None, key: None };
+            let ([p, r], _) = super::magnets::foot(&onto, j.p, true).ok()?;
+            surface.jet(p, r, Order::First).normal()
+        }
+    };
+    let d = j.normal().cross(normal).normalized()?;
+    let d = if d.re().dot(station.tangent) < 0.0 { -d } else { d };
+    Some((j.p, d))
+}
+
+fn cut_after(branch: &mut Branch, station: &moldloft_locate::march::Station) {
+    let at = position(branch, station);
+    branch.stations.truncate(at + 1);
+    push_apart(branch, *station);
+}
+
+fn cut_before(branch: &mut Branch, station: &moldloft_locate::march::Station) {
+    let at = position(branch, station);
+    branch.stations.drain(..=at);
+    let near = branch.stations.first().is_some_and(|s| {
+        let next = branch.stations.get(1).map_or(f64::INFINITY, |n| n.x.distance(s.x));
+        s.x.distance(station.x) < 1e-6 * next
+    });
+    if near {
+        branch.stations[0] = *station;
+    } else {
+        branch.stations.insert(0, *station);
+    }
+}
+
+/// The last station before the given one.
+fn position(branch: &Branch, station: &moldloft_locate::march::Station) -> usize {
+    let away = |i: &usize| {
+        let (a, b) = (&branch.stations[*i], &branch.stations[*i + 1]);
+        let chord = b.x - a.x;
+        let share = ((station.x - a.x).dot(chord) / chord.norm_sq()).clamp(0.0, 1.0);
+        (a.x + chord * share).distance(station.x)
+    };
+    let last = branch.stations.len().saturating_sub(1);
+    (0..last).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
+}
+
+fn push_apart(branch: &mut Branch, station: moldloft_locate::march::Station) {
+    let count = branch.stations.len();
+    let last = branch.stations[count - 1];
+    let before =
+        if count > 1 { branch.stations[count - 2].x.distance(last.x) } else { f64::INFINITY };
+    if count > 1 && last.x.distance(station.x) < 1e-6 * before {
+        branch.stations[count - 1] = station;
+    } else {
+        branch.stations.push(station);
+    }
+}
+
+impl<T: Real> Cut<T> {
+    fn place(&self, t: T, order: Order) -> CurveJet<T> {
+        let s = self.total * t;
+        let k = self.pieces.partition_point(|p| p.begin.re() <= s.re()).saturating_sub(1);
+        let piece = &self.pieces[k];
+        let x = (s - piece.begin) / piece.length;
+        let plain = x.re();
+        let [c, d] = polynomial::<T, T>(&piece.powers, T::from(plain)).map(Vec3::re);
+        let near = (0..NODES)
+            .min_by(|&a, &b| (node(a) - plain).abs().total_cmp(&(node(b) - plain).abs()))
+            .expect("there are nodes");
+        let guess = guess(&piece.places, near, plain);
+        let first = PlainSurface(&*self.first);
+        let second = match &self.second {
+            Second::Surface(surface) => Some(PlainSurface(&**surface)),
+            Second::Plane(_) => None,
+        };
+        let other = match (&self.second, &second) {
+            (Second::Plane(plane), _) => {
+                Other::Plane(Plane { point: plane.point.re(), normal: plane.normal.re() })
+            }
+            (_, Some(surface)) => Other::Surface(surface),
+            _ => unreachable!("a second surface has its plain twin"),
+        };
+        let crossing = Crossing { first: &first, other, size: self.size };
+        let q = crossing.across(guess, c, d / d.norm()).unwrap_or(guess);
+        let all = derived(&self.first, &self.second, &piece.powers, q, x, order);
+        let [w, dw, ddw] =
+            all.unwrap_or([[T::from(q[0]), T::from(q[1])], [T::zero(); 2], [T::zero(); 2]]);
+        let rate = self.total / piece.length;
+        let flat = |[u, v]: [T; 2], by: T| Vec3::new(u * by, v * by, T::zero());
+        [flat(w, T::one()), flat(dw, rate), flat(ddw, rate * rate)]
+    }
+}
+
+/// The unknowns between two nodes, linearly.
+fn guess(places: &[Unknowns; NODES], near: usize, x: f64) -> Unknowns {
+    let other = if x > node(near) && near + 1 < NODES || near == 0 { near + 1 } else { near - 1 };
+    let share = (x - node(near)) / (node(other) - node(near));
+    std::array::from_fn(|k| places[near][k] + share * (places[other][k] - places[near][k]))
+}
+
+impl<T: Real> Curve<T> for Cut<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        super::on_surface_jet(&self.first, self.place(t, order), order)
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        let share = |p: &Piece<T>| p.begin.re() / self.total.re();
+        self.pieces[1..].iter().map(share).collect()
+    }
+
+    fn trace(&self) -> Trace<T> {
+        self.trace.clone()
+    }
+
+    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
+        Some(self.place(t, order))
+    }
+}
