@@ -18,6 +18,7 @@ __all__ = ["FORMATS", "SOLVERS", "Output", "commit", "file_name", "format_named"
 
 FORMATS = {
     "gdf": "WAMIT low-order panels",
+    "gdf-high": "WAMIT high-order B-spline patches (.high.gdf)",
     "nemoh": "Nemoh panels (.mar)",
     "hydrostar": "HydroStar panels (.hst)",
     "hams": "HAMS panels (.pnl)",
@@ -29,6 +30,8 @@ FORMATS = {
     "vtp": "VTK polygons",
     "vts": "VTK structured grids, one per patch",
     "p3d": "Plot3D surface grids",
+    "cgns": "CGNS structured surface zones with interfaces (needs h5py)",
+    "offsets": "stations, waterlines and half-breadths (.csv)",
     "svg": "body plan, waterlines and buttocks, each with its scale",
     "png": "a picture",
     "sdl": "the model as a program",
@@ -45,12 +48,20 @@ _ALIASES = {
     "hst": "hydrostar",
     "pnl": "hams",
     "gltf": "glb",
+    "csv": "offsets",
 }
 
 SOLVERS = ("gdf", "nemoh", "hydrostar", "hams", "aqwa")
 """The formats of panel codes."""
 
-_SUFFIXES = {"nemoh": "mar", "hydrostar": "hst", "hams": "pnl", "aqwa": "dat"}
+_SUFFIXES = {
+    "gdf-high": "high.gdf",
+    "nemoh": "mar",
+    "hydrostar": "hst",
+    "hams": "pnl",
+    "aqwa": "dat",
+    "offsets": "csv",
+}
 """Endings of file names where they are not the format's name."""
 
 
@@ -98,16 +109,36 @@ def produce(
     lids: bool = False,
     immersed: bool = False,
     tags: Sequence[str] = (),
+    tolerance: float | None = None,
 ) -> list[Output]:
     """The files of a model in one format; ``path`` gives their names.
 
     ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
-    names the patches to write.
+    names the patches to write, ``tolerance`` is how far fitted patches may be off.
     """
     wanted = format_named(format)
+    if tolerance is not None and wanted != "gdf-high":
+        raise Error("error: a tolerance is for fitted patches, gdf-high")
+    if wanted == "gdf-high" and not immersed and not tags:
+        from moldloft import high_order
+
+        return [
+            Output(path.name, high_order.write(model, path.stem, tolerance=tolerance, lids=lids))
+        ]
+    if wanted in ("gdf-high", "cgns", "offsets") and (immersed or tags):
+        named = "immersed" if immersed else "tags"
+        raise Error(f"error: `{named}` is not for {wanted}, which takes whole surfaces")
     if (lids or immersed) and wanted not in SOLVERS:
         named = "lids" if lids else "immersed"
         raise Error(f"error: `{named}` is for the files of panel codes, {', '.join(SOLVERS)}")
+    if wanted == "cgns":
+        from moldloft import cgns
+
+        return [Output(path.name, cgns.write(model, path.stem))]
+    if wanted == "offsets":
+        from moldloft import offsets
+
+        return [Output(path.name, offsets.even(model).csv().encode())]
     if wanted in ("sdl", "ms2"):
         return [Output(path.name, model.convert(wanted).encode())]
     files = model._document.write(wanted, path.stem, lids, immersed, list(tags))

@@ -527,6 +527,7 @@ class Model:
         lids: bool = False,
         immersed: bool = False,
         tags: str | Sequence[str] = (),
+        tolerance: float | None = None,
     ) -> list[Path]:
         """Write the panels to a file, whole or not at all.
 
@@ -544,6 +545,9 @@ class Model:
             always cut.
         tags
             Only the patches that carry one of these tags; by default all.
+        tolerance
+            For ``gdf-high``: how far the fitted patches may be off, by default 1e-5 of the model's
+            diagonal. Surfaces that are B-splines are exact.
 
         Returns
         -------
@@ -555,7 +559,9 @@ class Model:
         path = Path(path)
         wanted = format or path.suffix.lstrip(".")
         names = [tags] if isinstance(tags, str) else list(tags)
-        files = produce(self, wanted, path, lids=lids, immersed=immersed, tags=names)
+        files = produce(
+            self, wanted, path, lids=lids, immersed=immersed, tolerance=tolerance, tags=names
+        )
         return commit(path.parent, files)
 
     def convert(self, to: str) -> str:

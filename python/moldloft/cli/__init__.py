@@ -18,7 +18,7 @@ COMMANDS = {
     "eval": "the value of expressions in a model's names",
     "new": "a model to start from",
     "fmt": "canonical text",
-    "convert": "between programs and model files",
+    "convert": "between programs, model files, tables of offsets and all other formats",
     "graph": "the dependency digraph as SVG",
     "render": "a picture without a display",
     "sketch": "a sketch file, or the sketch language line by line",

@@ -150,10 +150,9 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             progress.stage(f"writing {name}")
             path = folder / file_name(stem, name)
             solver = name in SOLVERS
-            lids, immersed = options.lids and solver, options.immersed and solver
-            outputs += produce(
-                model, name, path, lids=lids, immersed=immersed, tags=options.tag
-            )
+            lids = options.lids and (solver or name == "gdf-high")
+            immersed = options.immersed and solver
+            outputs += produce(model, name, path, lids=lids, immersed=immersed, tags=options.tag)
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)

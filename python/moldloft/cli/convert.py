@@ -1,4 +1,4 @@
-"""``moldloft convert``: between programs and model files."""
+"""``moldloft convert``: between programs, model files, offsets, and into every other format."""
 
 from __future__ import annotations
 
@@ -7,34 +7,76 @@ import sys
 from pathlib import Path
 
 from moldloft.cli.console import add_model, open_model, report
+from moldloft.errors import Error
 
 __all__ = ["add", "run"]
+
+TEXTS = ("gdf", "gdf-high", "nemoh", "hydrostar", "aqwa", "offsets", "obj")
+"""Formats that are one text, besides programs and model files."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
+    from moldloft.files import FORMATS
+
     add_model(parser)
     parser.add_argument(
-        "--to", choices=["sdl", "ms2"], help="the form; by default that of -o, else the other one"
+        "--to",
+        metavar="FORMAT",
+        help="by default that of -o, else the other one of sdl and ms2: "
+        + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
     )
-    parser.add_argument("-o", "--output", metavar="FILE", help="by default standard output")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="by default standard output, for text"
+    )
+    parser.add_argument(
+        "--curves",
+        choices=["CCurve", "BCurve"],
+        default="CCurve",
+        help="stations of a table of offsets: through the points (the default) or drawn by them",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Converts the text; what the other form cannot hold is an error or a remark."""
-    from moldloft.files import Output, commit
+    """Converts; what the other form cannot hold is an error or a remark."""
+    from moldloft.files import commit, format_named, produce
 
+    target = Path(options.output) if options.output else None
+    ending = target.suffix.lstrip(".").lower() if target else ""
+    if options.model.lower().endswith(".csv"):
+        return _from_offsets(options, target, format_named(options.to or ending or "sdl"))
     model = open_model(options)
     report(model.diagnostics)
     if model._document.has_errors():
         return 1
-    target = Path(options.output) if options.output else None
-    form = options.to or (target.suffix.lstrip(".").lower() if target else "")
-    if form not in ("sdl", "ms2"):
-        form = "ms2" if options.model.lower().endswith(".sdl") else "sdl"
-    text = model.convert(form)
-    if target is None:
-        sys.stdout.write(text)
+    other = "ms2" if options.model.lower().endswith(".sdl") else "sdl"
+    form = format_named(options.to or ending or other)
+    if target is not None:
+        commit(target.parent, produce(model, form, target))
+    elif form in ("sdl", "ms2"):
+        sys.stdout.write(model.convert(form))
+    elif form in TEXTS:
+        (output,) = produce(model, form, Path(f"{Path(options.model).stem}.{form}"))
+        sys.stdout.write(output.data.decode())
     else:
-        commit(target.parent, [Output(target.name, text.encode())])
+        raise Error(f"error: {form} is no text for a terminal: name the file with -o")
+    return 0
+
+
+def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -> int:
+    from moldloft import offsets
+    from moldloft.files import Output, commit, produce
+    from moldloft.models import loads
+
+    text = offsets.read(options.model).program(curves=options.curves)
+    if form == "sdl":
+        if target is None:
+            sys.stdout.write(text)
+        else:
+            commit(target.parent, [Output(target.name, text.encode())])
+        return 0
+    model = loads(text, name=f"{Path(options.model).stem}.sdl")
+    if target is None:
+        raise Error(f"error: name the {form} file with -o")
+    commit(target.parent, produce(model, form, target))
     return 0

@@ -1,0 +1,322 @@
+"""CGNS files of structured patches, with their interfaces and named boundaries.
+
+The nodes are those of the CGNS Standard Interface Data Structures 3.3 in the HDF5 mapping
+("SIDS-to-HDF5", cgns.github.io), written by h5py (``pip install 'moldloft[grids]'``).
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import Error
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from moldloft.models import Model
+
+__all__ = ["Interface", "Zone", "interfaces", "write", "zones"]
+
+_LONGEST = 32
+"""Characters of a node's name."""
+
+EDGES = ("v0", "u1", "v1", "u0")
+"""The edges of a patch, as the model numbers them."""
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A structured patch."""
+
+    name: str
+    """Its node, unique in the file."""
+    family: str
+    """The surface's name."""
+    tag: str
+    """Its role."""
+    vertices: NDArray[np.uint32]
+    """Vertices, ``(nu, nv)``; patches that meet share numbers."""
+
+    def edge(self, side: int) -> NDArray[np.uint32]:
+        """The vertices of edge 0 (v = 0), 1 (u = 1), 2 (v = 1) or 3 (u = 0)."""
+        line: NDArray[np.uint32] = (
+            self.vertices[:, 0],
+            self.vertices[-1],
+            self.vertices[:, -1],
+            self.vertices[0],
+        )[side]
+        return line
+
+    def place(self, side: int, at: int) -> tuple[int, int]:
+        """The indices (i, j), from 1, of the vertex ``at`` of an edge."""
+        nu, nv = self.vertices.shape
+        return ((at + 1, 1), (nu, at + 1), (at + 1, nv), (1, at + 1))[side]
+
+
+@dataclass(frozen=True)
+class Interface:
+    """A run of an edge that is a run of another, vertex by vertex."""
+
+    zone: int
+    side: int
+    first: int
+    last: int
+    donor: int
+    donor_side: int
+    donor_first: int
+    """The donor's vertex that is ``first``."""
+    donor_last: int
+
+    @property
+    def transform(self) -> tuple[int, int]:
+        """For each index of the zone, the donor's index that runs along it, negative if against."""
+        along, across = self.side % 2, 1 - self.side % 2
+        donor_along, donor_across = self.donor_side % 2, 1 - self.donor_side % 2
+        steps = [0, 0]
+        rising = (self.donor_last > self.donor_first) == (self.last > self.first)
+        steps[along] = (donor_along + 1) * (1 if rising else -1)
+        # Out of this zone at its high side means into the donor at its low side.
+        high, donor_high = self.side in (1, 2), self.donor_side in (1, 2)
+        steps[across] = (donor_across + 1) * (1 if high != donor_high else -1)
+        return steps[0], steps[1]
+
+
+def zones(model: Model) -> list[Zone]:
+    """The structured patches of a model."""
+    mesh = model.mesh()
+    blocks = mesh._core.blocks()
+    have = {k for k, *_ in blocks}
+    lost = [patch.name for k, patch in enumerate(mesh.patches) if k not in have]
+    if lost or not blocks:
+        names = "`, `".join(lost)
+        what = f"no structured grid in patch `{names}`" if lost else "there is no structured grid"
+        raise Error(f"error: cannot write cgns: {what}")
+    out: list[Zone] = []
+    taken: set[str] = set()
+    for _, name, tag, _, vertices in blocks:
+        out.append(Zone(_unique(name, taken), name, tag, vertices))
+    return out
+
+
+def _unique(name: str, taken: set[str]) -> str:
+    """A node's name: at most 32 characters, no slash, none twice."""
+    base = "".join("_" if c in "/\\" or not c.isprintable() else c for c in name) or "unnamed"
+    base = base.encode("ascii", "replace").decode().replace("?", "_")
+    short, k = base[:_LONGEST], 1
+    while short in taken or short in (".", ".."):
+        k += 1
+        end = f"~{k}"
+        short = base[: _LONGEST - len(end)] + end
+    taken.add(short)
+    return short
+
+
+def interfaces(zones: Sequence[Zone]) -> list[Interface]:
+    """All runs of edges that zones share, each seen from both sides.
+
+    Edges meet where they share vertices by identity, never because positions look alike.
+    """
+    places: dict[tuple[int, int], list[tuple[int, int, int]]] = {}
+    for z, zone in enumerate(zones):
+        for side in range(4):
+            edge = zone.edge(side).tolist()
+            for at, (a, b) in enumerate(pairwise(edge)):
+                if a != b:
+                    places.setdefault((min(a, b), max(a, b)), []).append((z, side, at))
+    found: list[Interface] = []
+    for z, zone in enumerate(zones):
+        for side in range(4):
+            found += _runs(zones, places, z, zone, side)
+    return found
+
+
+def _runs(
+    zones: Sequence[Zone],
+    places: dict[tuple[int, int], list[tuple[int, int, int]]],
+    z: int,
+    zone: Zone,
+    side: int,
+) -> list[Interface]:
+    edge = zone.edge(side).tolist()
+    runs: list[Interface] = []
+    at = 0
+    while at < len(edge) - 1:
+        a, b = edge[at], edge[at + 1]
+        here = (z, side, at)
+        others = [p for p in places.get((min(a, b), max(a, b)), []) if p != here and a != b]
+        # Where more than two edges meet there is no one-to-one interface.
+        if len(others) != 1:
+            at += 1
+            continue
+        donor, donor_side, start = others[0]
+        far = zones[donor].edge(donor_side).tolist()
+        step = 1 if far[start] == a else -1
+        begin = start if step == 1 else start + 1
+        end, there = at + 1, begin + step
+        while (
+            end + 1 < len(edge)
+            and 0 <= there + step < len(far)
+            and edge[end + 1] == far[there + step]
+            and edge[end + 1] != edge[end]
+        ):
+            end, there = end + 1, there + step
+        runs.append(Interface(z, side, at, end, donor, donor_side, begin, there))
+        at = end
+    return runs
+
+
+def write(model: Model, title: str) -> bytes:
+    """The file: surface zones with families, interfaces, and the free edges as boundaries.
+
+    Each zone belongs to the family of its surface's name. Edges that meet no other are boundaries
+    named ``u0``, ``u1``, ``v0``, ``v1``: symmetry planes where they lie in one of the model's, else
+    without a type. Interfaces are written from both sides.
+    """
+    try:
+        import h5py  # type: ignore[import-untyped]
+    except ImportError as error:
+        raise Error("error: CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
+    patches = zones(model)
+    positions = model.mesh().vertices
+    used = np.concatenate([zone.vertices.ravel() for zone in patches])
+    if not np.isfinite(positions[used]).all():
+        raise Error("error: cannot write cgns: a position is not a finite number")
+    joints = interfaces(patches)
+    memory = io.BytesIO()
+    with h5py.File(memory, "w", track_order=True) as file:
+        _root(file)
+        _node(file, "CGNSLibraryVersion", "CGNSLibraryVersion_t", np.array([3.3], dtype=np.float32))
+        base = _node(file, _unique(title, set()), "CGNSBase_t", np.array([2, 3], dtype=np.int32))
+        _families(base, patches)
+        for z, zone in enumerate(patches):
+            _zone(base, patches, z, zone, positions, joints, model.symmetry)
+    return memory.getvalue()
+
+
+def _root(file: Any) -> None:
+    for key, value, width in [
+        ("name", b"HDF5 MotherNode", 33),
+        ("label", b"Root Node of HDF5 File", 33),
+        ("type", b"MT", 3),
+    ]:
+        file.attrs.create(key, np.bytes_(value), dtype=f"S{width}")
+    file.create_dataset(" format", data=_chars("IEEE_LITTLE_32", 15))
+    file.create_dataset(" hdf5version", data=_chars("HDF5 Version 1.8.0", 33))
+
+
+def _chars(text: str, width: int | None = None) -> NDArray[np.int8]:
+    data = text.encode("ascii", "replace")
+    return np.frombuffer(data.ljust(width or len(data), b"\0"), dtype=np.int8)
+
+
+_TYPES = {"float32": "R4", "float64": "R8", "int32": "I4", "int8": "C1"}
+
+
+def _node(parent: Any, name: str, label: str, data: NDArray[Any] | str | None = None) -> Any:
+    group = parent.create_group(name, track_order=True)
+    values = _chars(data) if isinstance(data, str) else data
+    kind = "MT" if values is None else _TYPES[values.dtype.name]
+    for key, value, width in [("name", name, 33), ("label", label, 33), ("type", kind, 3)]:
+        group.attrs.create(key, np.bytes_(value.encode()), dtype=f"S{width}")
+    group.attrs.create("flags", np.array([1], dtype=np.int32))
+    if values is not None:
+        group.create_dataset(" data", data=values)
+    return group
+
+
+def _families(base: Any, patches: Sequence[Zone]) -> None:
+    names: set[str] = set()
+    for zone in patches:
+        if zone.family in names:
+            continue
+        names.add(zone.family)
+        family = _node(base, zone.name, "Family_t")
+        kind = "BCSymmetryPlane" if zone.tag == "symmetry" else "BCWall"
+        _node(family, "FamilyBC", "FamilyBC_t", kind)
+        _node(family, "Tag", "Descriptor_t", zone.tag)
+
+
+def _zone(
+    base: Any,
+    patches: Sequence[Zone],
+    z: int,
+    zone: Zone,
+    positions: NDArray[np.float64],
+    joints: Sequence[Interface],
+    symmetry: str,
+) -> None:
+    nu, nv = zone.vertices.shape
+    sizes = np.array([[nu, nv], [nu - 1, nv - 1], [0, 0]], dtype=np.int32)
+    # A zone and its family are children of one base and must differ in name.
+    node = _node(base, zone_node(zone), "Zone_t", sizes)
+    _node(node, "ZoneType", "ZoneType_t", "Structured")
+    _node(node, "FamilyName", "FamilyName_t", family_node(patches, zone))
+    grid = _node(node, "GridCoordinates", "GridCoordinates_t")
+    for axis, letter in enumerate("XYZ"):
+        # Fortran's order: i fastest, so the transpose of ours.
+        values = np.ascontiguousarray(positions[zone.vertices][..., axis].T) + 0.0
+        _node(grid, f"Coordinate{letter}", "DataArray_t", values)
+    own = [joint for joint in joints if joint.zone == z]
+    if own:
+        _connectivity(node, patches, zone, own)
+    _boundaries(node, zone, positions, own, symmetry)
+
+
+def zone_node(zone: Zone) -> str:
+    """The name of a zone's node."""
+    return ("Z_" + zone.name)[:_LONGEST]
+
+
+def family_node(patches: Sequence[Zone], zone: Zone) -> str:
+    """The name of the family of a zone: that of the first zone of its surface."""
+    return next(other.name for other in patches if other.family == zone.family)
+
+
+def _connectivity(node: Any, patches: Sequence[Zone], zone: Zone, own: Sequence[Interface]) -> None:
+    group = _node(node, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
+    for k, joint in enumerate(own, 1):
+        donor = patches[joint.donor]
+        one = _node(group, f"join{k}", "GridConnectivity1to1_t", zone_node(donor))
+        _range(one, "PointRange", zone, joint.side, joint.first, joint.last)
+        ends = joint.donor_side, joint.donor_first, joint.donor_last
+        _range(one, "PointRangeDonor", donor, *ends)
+        steps = np.array(joint.transform, dtype=np.int32)
+        _node(one, "Transform", '"int[IndexDimension]"', steps)
+
+
+def _range(parent: Any, name: str, zone: Zone, side: int, first: int, last: int) -> None:
+    ends = [zone.place(side, first), zone.place(side, last)]
+    _node(parent, name, "IndexRange_t", np.array(ends, dtype=np.int32))
+
+
+def _boundaries(
+    node: Any,
+    zone: Zone,
+    positions: NDArray[np.float64],
+    own: Sequence[Interface],
+    symmetry: str,
+) -> None:
+    free = []
+    for side in range(4):
+        edge = zone.edge(side)
+        if len(set(edge.tolist())) > 1 and not any(joint.side == side for joint in own):
+            free.append((side, positions[edge]))
+    if not free:
+        return
+    group = _node(node, "ZoneBC", "ZoneBC_t")
+    size = float(np.abs(positions).max(initial=1.0))
+    for side, points in free:
+        flat = [
+            letter
+            for axis, letter in enumerate("xy")
+            if letter in symmetry and np.abs(points[:, axis]).max() <= 1e-9 * size
+        ]
+        kind = "BCSymmetryPlane" if flat else "UserDefined"
+        one = _node(group, EDGES[side], "BC_t", kind)
+        _range(one, "PointRange", zone, side, 0, len(points) - 1)

@@ -1,0 +1,248 @@
+"""Tables of offsets: stations, waterlines and half-breadths, in and out.
+
+A table is comma-separated text with the columns ``station``, ``waterline`` and ``half_breadth``
+in any order, a row for each point: x, z and y >= 0 in the model's axes and unit. Other columns and
+lines that begin with ``#`` are skipped.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from moldloft.errors import Error, FileError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from moldloft.models import Model
+
+__all__ = ["Offsets", "even", "measure", "parse", "read"]
+
+_COLUMNS = ("station", "waterline", "half_breadth")
+_OTHER = {
+    "x": "station",
+    "z": "waterline",
+    "y": "half_breadth",
+    "halfbreadth": "half_breadth",
+    "half-breadth": "half_breadth",
+    "half breadth": "half_breadth",
+}
+
+
+@dataclass(frozen=True)
+class Offsets:
+    """A table of offsets.
+
+    Examples
+    --------
+    >>> table = Offsets({0.0: ((0.0, 0.0), (1.0, 2.0)), 4.0: ((0.0, 1.0), (1.0, 3.0))})
+    >>> print(table.csv(), end="")
+    station,waterline,half_breadth
+    0.0,0.0,0.0
+    0.0,1.0,2.0
+    4.0,0.0,1.0
+    4.0,1.0,3.0
+    >>> import moldloft
+    >>> hull = moldloft.loads(table.program())["hull"]
+    >>> hull(1, 1)
+    array([4., 3., 1.])
+    """
+
+    stations: dict[float, tuple[tuple[float, float], ...]]
+    """For each station x its points (waterline z, half-breadth y), from the keel up."""
+
+    def csv(self) -> str:
+        """The table as text, a row for each point."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(_COLUMNS)
+        for x, points in self.stations.items():
+            for z, y in points:
+                writer.writerow([repr(x), repr(z), repr(y)])
+        return text.getvalue()
+
+    def program(self, *, curves: str = "CCurve", units: str = "") -> str:
+        """A model of the half hull: a curve for each station and a loft through them.
+
+        Parameters
+        ----------
+        curves
+            ``"CCurve"`` passes through the points, ``"BCurve"`` has them as control points.
+        units
+            The unit of length, for the model's header.
+        """
+        if curves not in ("CCurve", "BCurve"):
+            raise Error(f"error: stations are CCurve or BCurve, not `{curves}`")
+        if len(self.stations) < 2:
+            raise Error("error: a hull needs at least two stations")
+        unit = f', units = "{units}"' if units else ""
+        lines = [
+            "# A half hull from a table of offsets; y = 0 is its plane of symmetry.",
+            f'Model info(symmetry = "y"{unit});',
+        ]
+        names = []
+        for k, (x, points) in enumerate(self.stations.items()):
+            own = []
+            for j, (z, y) in enumerate(points):
+                name = f"P{k}_{j}"
+                own.append(name)
+                lines.append(f"AbsPoint {name}({x!r}, {y!r}, {z!r});")
+            names.append(f"station_{k}")
+            lines.append(f"{curves} station_{k}({{{', '.join(own)}}});")
+        divisions = f"{{{max(8, 2 * len(max(self.stations.values(), key=len)))}, "
+        divisions += f"{max(8, 4 * (len(names) - 1))}}}"
+        lines.append(f"CLoftSurf hull({{{', '.join(names)}}}, divisions = {divisions});")
+        return "\n".join(lines) + "\n"
+
+
+def read(path: str | os.PathLike[str]) -> Offsets:
+    """The table of a file.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be read.
+    Error
+        When it is no table of offsets; the message names the line.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise FileError(f"error: cannot read `{os.fspath(path)}`: {reason.lower()}") from error
+    return parse(text, os.fspath(path))
+
+
+def parse(text: str, name: str = "offsets") -> Offsets:
+    """The table of a text; ``name`` is what messages call it."""
+
+    def fault(line: int, expected: str, found: str) -> Error:
+        return Error(f"error: {name}, line {line}: expected {expected}, found {found}")
+
+    lines = [(n, row) for n, row in enumerate(text.splitlines(), 1) if row.strip()]
+    rows = [(n, next(csv.reader([row]))) for n, row in lines if not row.lstrip().startswith("#")]
+    if not rows:
+        raise fault(1, "the columns " + ", ".join(_COLUMNS), "no table")
+    number, header = rows[0]
+    words = [word.strip().lower() for word in header]
+    words = [_OTHER.get(word, word) for word in words]
+    missing = [column for column in _COLUMNS if column not in words]
+    if missing:
+        raise fault(number, "a column " + " and ".join(missing), ", ".join(header))
+    places = [words.index(column) for column in _COLUMNS]
+    stations: dict[float, dict[float, float]] = {}
+    for number, row in rows[1:]:
+        values = []
+        for place, column in zip(places, _COLUMNS, strict=True):
+            word = row[place].strip() if place < len(row) else ""
+            try:
+                value = float(word)
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value):
+                raise fault(number, f"a number for {column}", f"`{word}`")
+            values.append(value + 0.0)
+        x, z, y = values
+        if y < 0:
+            raise fault(number, "a half-breadth of 0 or more", repr(y))
+        points = stations.setdefault(x, {})
+        if z in points:
+            raise fault(number, f"one half-breadth at station {x!r}, waterline {z!r}", "another")
+        points[z] = y
+    for x, points in stations.items():
+        if len(points) < 2:
+            raise Error(f"error: {name}: station {x!r} has one point; it needs two or more")
+    return Offsets({x: tuple(sorted(stations[x].items())) for x in sorted(stations)})
+
+
+def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]) -> Offsets:
+    """The half-breadths of a model's panels: the largest y >= 0 at each station and waterline.
+
+    Panels are cut as bilinear patches split along one diagonal; points where the station does not
+    meet the waterline are left out.
+
+    Parameters
+    ----------
+    model
+        The model; of one mirrored in y = 0 the modelled side counts, whichever it is.
+    stations
+        Coordinates x.
+    waterlines
+        Coordinates z.
+    """
+    import numpy as np
+
+    mesh = model.mesh()
+    points = mesh.vertices.copy()
+    faces = mesh.faces
+    skin = np.zeros(len(faces), dtype=bool)
+    for patch in mesh.patches:
+        skin[patch.start : patch.stop] = patch.tag not in ("lid", "waterline", "symmetry")
+    faces = faces[skin]
+    if "y" in model.symmetry and len(points) and -points[:, 1].min() > points[:, 1].max():
+        points[:, 1] *= -1
+    triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+    corners = points[triangles[triangles[:, 1] != triangles[:, 2]]]
+    levels = sorted({float(z) + 0.0 for z in waterlines})
+    found: dict[float, tuple[tuple[float, float], ...]] = {}
+    for x in sorted({float(x) + 0.0 for x in stations}):
+        cut = _cut(corners, x)
+        row = [(z, y) for z in levels if (y := _breadth(cut, z)) is not None]
+        if row:
+            found[x] = tuple(row)
+    if not found:
+        raise Error("error: no station meets a waterline within the model")
+    return Offsets(found)
+
+
+def even(model: Model, *, stations: int = 21, waterlines: int = 11) -> Offsets:
+    """The half-breadths at even stations and waterlines over the whole model."""
+    import numpy as np
+
+    low, high = model.mesh().vertices.min(axis=0), model.mesh().vertices.max(axis=0)
+    xs = np.linspace(low[0], high[0], stations)
+    zs = np.linspace(low[2], high[2], waterlines)
+    return measure(model, xs, zs)
+
+
+def _cut(corners: NDArray[np.float64], x: float) -> NDArray[np.float64]:
+    """The pieces (two ends, y and z) in which a station cuts triangles."""
+    import numpy as np
+
+    distance = corners[..., 0] - x
+    touched = corners[(distance.min(axis=1) <= 0) & (distance.max(axis=1) >= 0)]
+    pieces: list[Sequence[NDArray[np.float64]]] = []
+    for triangle in touched:
+        ends = []
+        for p, q in ((0, 1), (1, 2), (2, 0)):
+            a, b = triangle[p], triangle[q]
+            da, db = a[0] - x, b[0] - x
+            if da == 0 and db == 0:
+                pieces.append((a[1:], b[1:]))
+            elif (da <= 0 <= db) or (db <= 0 <= da):
+                share = da / (da - db)
+                ends.append((a + share * (b - a))[1:])
+        for p, q in pairwise(ends):
+            pieces.append((p, q))
+    return np.array(pieces, dtype=np.float64).reshape(-1, 2, 2)
+
+
+def _breadth(cut: NDArray[np.float64], z: float) -> float | None:
+    """The largest y >= 0 of the pieces at a height."""
+    best: float | None = None
+    for (ya, za), (yb, zb) in cut:
+        if min(za, zb) <= z <= max(za, zb):
+            share = 0.0 if za == zb else (z - za) / (zb - za)
+            here = max(ya, yb) if za == zb else ya + share * (yb - ya)
+            if here > -1e-12 and (best is None or here > best):
+                best = max(float(here), 0.0)
+    return best
