@@ -118,7 +118,7 @@ pub fn write(
 
 /// The container: a header of 12 bytes, then the chunks of text and data, each a multiple of four.
 fn container(mut text: Vec<u8>, data: Vec<u8>) -> Result<Vec<u8>, WriteError> {
-    while text.len() % 4 != 0 {
+    while !text.len().is_multiple_of(4) {
         text.push(b' ');
     }
     let chunk = |n: usize| if n == 0 { 0 } else { 8 + n };

@@ -181,7 +181,7 @@ mod tests {
         let dat = text(aqwa::write(&mesh, "a hull", half()));
         assert!(dat.lines().all(|line| line.len() <= 80), "{dat}");
         let node = dat.lines().find(|l| l.starts_with("     1    4")).unwrap();
-        assert_eq!(node[20..].as_bytes().chunks(10).count(), 3);
+        assert_eq!(node.as_bytes()[20..].chunks(10).count(), 3);
         let x: Vec<f64> = [20, 30, 40].map(|k| node[k..k + 10].trim().parse().unwrap()).into();
         assert!((x[1] - 1.0 / 3.0).abs() < 1e-7 && x[2] == -1.75, "{node:?}");
         assert!(dat.contains("      SYMX\n") && !dat.contains("SYMY"));
