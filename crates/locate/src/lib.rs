@@ -13,6 +13,7 @@
 //!
 //! Invariant: this crate knows no entity, no registry and no file.
 
+mod batch;
 pub mod implicit;
 pub mod march;
 mod nearest;
@@ -23,6 +24,7 @@ mod report;
 pub mod roots;
 mod tree;
 
+pub use batch::NearestSurface;
 pub use nearest::{nearest_in_curve, nearest_in_surface, nearest_on_curve, nearest_on_surface};
 pub use newton::{ACCURACY, LONGEST_STEP, MOST_STEPS, OUTSIDE, Range, Walk, newton};
 pub use plain::{PlainCurve, PlainSurface};

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{attempt, fault, run, scene};
-use moldloft_num::{Dual4, Order, Real, Vec3};
+use moldloft_num::{Dual4, Order, Vec3};
 use moldloft_registry::{FoundStatus, Point, Value};
 
 /// A quarter of a cylinder of radius 2 about the x axis, from x = 0 to 4: S(u, v).

@@ -2,7 +2,7 @@
 
 #![allow(dead_code)]
 
-use moldloft_num::{Curve, CurveFormula, Jet, Real, Surface, SurfaceFormula, Vec3};
+use moldloft_num::{Curve, CurveFormula, Jet, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineSurface, KnotVector};
 
 /// The sphere of radius r about c, without its poles' neighbourhood when `cap` is below 1.

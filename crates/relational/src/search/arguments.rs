@@ -1,6 +1,5 @@
 //! Arguments of searches: a shape, or a point on it that says where to begin.
 
-use moldloft_num::trace::Key;
 use moldloft_num::{Plane, Real, Vec3};
 use moldloft_registry::{Class, CurveRef, Fault, FromValue, SurfaceRef, Value};
 
@@ -58,8 +57,6 @@ pub struct Onto<T: Real> {
     pub surface: SurfaceRef<T>,
     /// The parameters of the magnet: where to begin.
     pub start: Option<[T; 2]>,
-    /// The magnet's object.
-    pub key: Option<Key>,
 }
 
 impl<T: Real> Onto<T> {
@@ -71,10 +68,10 @@ impl<T: Real> Onto<T> {
 
 fn onto<T: Real>(value: &Value<T>) -> Option<Onto<T>> {
     match value {
-        Value::Surface(surface) => Some(Onto { surface: surface.clone(), start: None, key: None }),
+        Value::Surface(surface) => Some(Onto { surface: surface.clone(), start: None }),
         Value::Point(p) => {
             let place = p.on_surface.as_ref()?;
-            Some(Onto { surface: place.0.clone(), start: Some(place.1), key: p.key })
+            Some(Onto { surface: place.0.clone(), start: Some(place.1) })
         }
         _ => None,
     }

@@ -673,7 +673,7 @@ fn closed_start<T: Real>(
     let normal = match second {
         Second::Plane(plane) => plane.normal,
         Second::Surface(surface) => {
-            let onto = Onto { surface: surface.clone(), start: None, key: None };
+            let onto = Onto { surface: surface.clone(), start: None };
             let ([p, r], _) = super::magnets::foot(&onto, j.p, true).ok()?;
             surface.jet(p, r, Order::First).normal()
         }

@@ -238,7 +238,7 @@ pub struct TanMagnet<T: Real> {
 
 impl<T: Real> Build<T> for TanMagnet<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let crate::arguments::Magnet { surface, uv: [u, v], key } = self.magnet;
+        let crate::arguments::Magnet { surface, uv: [u, v], .. } = self.magnet;
         let j = surface.jet(u, v, Order::First);
         let singular = || {
             Fault::new("singular-normal", "the surface has no tangent plane at the magnet")
@@ -249,7 +249,7 @@ impl<T: Real> Build<T> for TanMagnet<T> {
         let e1 = j.u.normalized().ok_or_else(singular)?;
         let e2 = (j.v - e1 * e1.dot(j.v)).normalized().ok_or_else(singular)?;
         let target = j.p + e1 * self.a + e2 * self.b;
-        let onto = Onto { surface, start: Some([u, v]), key };
+        let onto = Onto { surface, start: Some([u, v]) };
         let place = foot(&onto, target, false)?;
         magnet(onto, place)
     }
