@@ -396,6 +396,7 @@ fn tags_reach_the_patches() {
 #[test]
 fn panels_made_anew_are_those_made_step_by_step() {
     let mut random = Random::new(0xbeef);
+    let mut kept = 0;
     for round in 0..rounds(1000) {
         let text = bands(&mut random, 1 + round % 4, 20);
         let mut d = sound(&text);
@@ -413,12 +414,13 @@ fn panels_made_anew_are_those_made_step_by_step() {
             let fresh = panelled(&mut fresh);
             assert_eq!(after.mesh, fresh.mesh, "{name} = {value}\n{text}");
             assert_eq!(after.panelling.remarks(), fresh.panelling.remarks());
-            if name != "r0_1.t" {
-                let (a, b) = (before.panelling.topology(), after.panelling.topology());
-                assert!(Arc::ptr_eq(a, b), "nothing was joined anew");
-            }
+            // An edit may count pieces anew, by their lengths; mostly it does not.
+            let (a, b) = (before.panelling.topology(), after.panelling.topology());
+            assert_eq!(Arc::ptr_eq(a, b), a == b, "joined anew without need, or not with need");
+            kept += usize::from(Arc::ptr_eq(a, b));
         }
     }
+    assert!(kept > 0);
 }
 
 #[test]

@@ -15,6 +15,12 @@ const MOST: u32 = 1_000_000;
 /// count would be larger than itself).
 const PATIENCE: u32 = 2000;
 
+/// How many sums are looked at for one step of a repair.
+const REACH: usize = 20_000;
+
+/// How many steps of repairs are tried in all.
+const MOST_STEPS: usize = 2000;
+
 /// The number of a count to be found.
 pub(super) type Node = usize;
 
@@ -95,6 +101,7 @@ struct Class {
     high: u32,
     wish: Option<u32>,
     usual: Option<u32>,
+    stated: bool,
 }
 
 struct Solver<'d> {
@@ -125,12 +132,13 @@ impl Divider {
     pub fn solve(&self) -> Divided {
         let mut conflicts = Vec::new();
         let (class_of, count) = self.classes(&mut conflicts);
-        let free = Class { low: 1, high: MOST, wish: None, usual: None };
+        let free = Class { low: 1, high: MOST, wish: None, usual: None, stated: false };
         let mut classes = vec![free; count];
         for (node, &class) in class_of.iter().enumerate() {
             let class = &mut classes[class];
             if let Some(n) = self.stated[node] {
                 (class.low, class.high) = (n, n);
+                class.stated = true;
             }
             class.wish = class.wish.max(self.wished[node]);
             class.usual = class.usual.max(self.usual[node]);
@@ -157,6 +165,7 @@ impl Divider {
         };
         solver.spread();
         solver.choose();
+        solver.repair();
         let counts = solver.class_of.iter().map(|&c| solver.classes[c].low).collect();
         Divided { counts, conflicts: solver.conflicts }
     }
@@ -364,6 +373,141 @@ impl Solver<'_> {
         }
     }
 
+    /// Mends sums that did not come out because free counts were chosen one by one: a step of one
+    /// is passed on from sum to sum, along counts that are not stated, to where it changes nothing
+    /// else. (Counts of patches are a flow through them, and this its augmenting path: Ford and
+    /// Fulkerson 1956.)
+    fn repair(&mut self) {
+        let mut steps = 0;
+        for sum in 0..self.sums.len() {
+            if !self.broken[sum] {
+                continue;
+            }
+            while self.excess(sum) != 0 && steps < MOST_STEPS && self.step(sum) {
+                steps += 1;
+            }
+        }
+        let mended = |s: &Self, sum: usize| s.broken[sum] && s.excess(sum) == 0;
+        for sum in 0..self.sums.len() {
+            if mended(self, sum) {
+                self.broken[sum] = false;
+                self.conflicts.retain(|c| *c != Conflict::Sum(sum));
+            }
+        }
+    }
+
+    /// How much more a whole has than its parts.
+    fn excess(&self, sum: usize) -> i64 {
+        let value = |node: Node| i64::from(self.class(node).low);
+        let Sum { whole, parts } = &self.sums[sum];
+        value(*whole) - parts.iter().map(|p| value(p.0)).sum::<i64>()
+    }
+
+    /// How often a class counts in the excess of a sum: 1 as its whole, less than 0 as its part.
+    fn weight(&self, sum: usize, class: usize) -> i64 {
+        let Sum { whole, parts } = &self.sums[sum];
+        let parts = parts.iter().filter(|p| self.class_of[p.0] == class).count() as i64;
+        i64::from(self.class_of[*whole] == class) - parts
+    }
+
+    /// Brings the excess of a broken sum one nearer to zero without unsettling another; false when
+    /// there is no way.
+    fn step(&mut self, start: usize) -> bool {
+        /// The excess of a sum is to change by `by`; it came from another by way of a class.
+        struct Visit {
+            sum: usize,
+            by: i64,
+            from: usize,
+            class: usize,
+            delta: i64,
+        }
+        let by = -self.excess(start).signum();
+        let mut visits = vec![Visit { sum: start, by, from: NONE, class: NONE, delta: 0 }];
+        let mut seen = BTreeSet::from([(start, by)]);
+        let mut at = 0;
+        while at < visits.len() && visits.len() < REACH {
+            let Visit { sum, by, class: came_by, .. } = visits[at];
+            let Sum { whole, parts } = &self.sums[sum];
+            let nodes: Vec<Node> = parts.iter().map(|p| p.0).chain([*whole]).collect();
+            for node in nodes {
+                let class = self.class_of[node];
+                let weight = self.weight(sum, class);
+                let Class { low, stated, .. } = self.classes[class];
+                if class == came_by || stated || weight.abs() != 1 {
+                    continue;
+                }
+                let delta = by * weight;
+                if i64::from(low) + delta < 1 {
+                    continue;
+                }
+                let others: Vec<usize> =
+                    self.in_sums[class].iter().copied().filter(|&s| s != sum).collect();
+                // The sums that this step unsettles; a broken one may gain by it.
+                let unsettled: Vec<(usize, i64)> = others
+                    .into_iter()
+                    .map(|s| (s, self.weight(s, class) * delta))
+                    .filter(|&(s, change)| {
+                        let excess = self.excess(s);
+                        change != 0 && (excess + change).abs() >= excess.abs()
+                    })
+                    .collect();
+                match unsettled[..] {
+                    [] => {
+                        let mut changes = vec![(class, delta)];
+                        let mut back = at;
+                        while visits[back].from != NONE {
+                            changes.push((visits[back].class, visits[back].delta));
+                            back = visits[back].from;
+                        }
+                        return self.change(start, &changes);
+                    }
+                    [(next, change)] => {
+                        if seen.insert((next, -change)) {
+                            visits.push(Visit { sum: next, by: -change, from: at, class, delta });
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            at += 1;
+        }
+        false
+    }
+
+    /// Applies the changes unless a sum that came out no longer would, or a count would be none.
+    fn change(&mut self, start: usize, changes: &[(usize, i64)]) -> bool {
+        let before = self.excess(start).abs();
+        let mut touched: Vec<usize> =
+            changes.iter().flat_map(|&(class, _)| self.in_sums[class].iter().copied()).collect();
+        touched.sort_unstable();
+        touched.dedup();
+        let old: Vec<(usize, i64)> = touched.iter().map(|&s| (s, self.excess(s).abs())).collect();
+        let apply = |s: &mut Self, sign: i64| {
+            for &(class, delta) in changes {
+                let class = &mut s.classes[class];
+                let count = i64::from(class.low) + sign * delta;
+                (class.low, class.high) = (count as u32, count as u32);
+            }
+        };
+        let mut counts: Vec<(usize, i64)> = Vec::new();
+        for &(class, delta) in changes {
+            match counts.iter_mut().find(|c| c.0 == class) {
+                Some(count) => count.1 += delta,
+                None => counts.push((class, i64::from(self.classes[class].low) + delta)),
+            }
+        }
+        if counts.iter().any(|c| !(1..=i64::from(MOST)).contains(&c.1)) {
+            return false;
+        }
+        apply(self, 1);
+        let good = self.excess(start).abs() < before
+            && old.iter().all(|&(sum, was)| self.excess(sum).abs() <= was);
+        if !good {
+            apply(self, -1);
+        }
+        good
+    }
+
     /// Divides known wholes among their free parts by weight, one part after the other, so that
     /// other sums have their say in between.
     fn share(&mut self) {
@@ -459,6 +603,17 @@ mod tests {
         // Too few for three pieces.
         let d = divider(&[Some(2), None, None, None], &[], &[(0, &[1, 2, 3])]).solve();
         assert_eq!(d.conflicts, [Conflict::Sum(0)]);
+    }
+
+    #[test]
+    fn chosen_counts_are_mended() {
+        // Two bands of two patches each over a middle line cut in three: the counts of the lower
+        // two (0, 1) and of the upper two (2, 3) are chosen apart from each other, and 9 is stated.
+        let sums: [(Node, &[Node]); 4] = [(0, &[4, 5]), (1, &[6, 7]), (2, &[4]), (3, &[5, 6, 7])];
+        let d = divider(&[Some(9), Some(3), None, Some(4), None, None, None, None], &[], &sums);
+        let d = d.solve();
+        assert!(d.conflicts.is_empty(), "{d:?}");
+        assert_eq!((d.counts[4] + d.counts[5], d.counts[5] + d.counts[6] + d.counts[7]), (9, 4));
     }
 
     #[test]
