@@ -100,7 +100,11 @@ fn head_arguments(head: &Head, class: Class) -> Vec<String> {
     }
     // Said even when usual: an image without divisions takes its original's.
     if head.divided || head.divisions != usual.divisions {
-        named.push(format!("divisions = {}", pair(head.divisions)));
+        let [u, v, w] = head.blocks;
+        named.push(match class.dimension() {
+            Some(3) => format!("divisions = {{{u}, {v}, {w}}}"),
+            _ => format!("divisions = {}", pair(head.divisions)),
+        });
     }
     if head.subdivisions != usual.subdivisions {
         named.push(format!("subdivisions = {}", pair(head.subdivisions)));

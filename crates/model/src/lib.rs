@@ -8,12 +8,15 @@
 //!
 //! Invariant: this crate knows no particular kind, no syntax and no file.
 
+mod blocks;
+mod blocks_solve;
 mod contour;
 mod graph;
 mod memo;
 mod object;
 mod panel;
 
+pub use blocks::{BlockRemark, Blocking, MOST_CELLS, grid as solid_grid};
 pub use contour::{Polyline, Sectioned};
 pub use graph::{Applied, DEEPEST_NESTING, Declaration, Extent, Graph, Run};
 pub use object::{Failure, Object, State};

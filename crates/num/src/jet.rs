@@ -192,6 +192,21 @@ jet_type!(
     ]
 );
 
+jet_type!(
+    /// A value with its first derivatives by `u`, `v` and `w`.
+    Tri1, Order::First, [u, v, w],
+    chain = |x, d1, d2| [d1 * x.u, d1 * x.v, d1 * x.w],
+    times = |a, b| [a.u * b.f + a.f * b.u, a.v * b.f + a.f * b.v, a.w * b.f + a.f * b.w]
+);
+
+impl<T: Real> Tri1<T> {
+    /// The parameters of a solid themselves.
+    pub fn parameters(u: T, v: T, w: T) -> [Self; 3] {
+        let (z, one) = (Self::default(), T::one());
+        [Self { f: u, u: one, ..z }, Self { f: v, v: one, ..z }, Self { f: w, w: one, ..z }]
+    }
+}
+
 impl<T: Real> Uni1<T> {
     /// The curve parameter itself.
     pub fn parameter(t: T) -> Self {

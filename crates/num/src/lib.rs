@@ -21,13 +21,14 @@ mod quadrature;
 mod real;
 mod roots;
 mod shape;
+mod solid;
 pub mod trace;
 mod vec3;
 
 pub use boxes::Box3;
 pub use dual::{Dual, Dual4};
 pub use frame::{Axis, Frame, Plane};
-pub use jet::{Bi1, Bi2, Jet, Uni1, Uni2, lift_curve, lift_surface};
+pub use jet::{Bi1, Bi2, Jet, Tri1, Uni1, Uni2, lift_curve, lift_surface};
 pub use law::{Composed, Law, LawJet, inv_law, inv_law_in, lift_law};
 pub use linear::{Banded, SingularMatrix, solve_dense};
 pub use quadrature::{gauss_legendre, gauss_points, integrate};
@@ -36,4 +37,5 @@ pub use roots::{NoRoot, find_root};
 pub use shape::{
     Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula, line_crossings,
 };
+pub use solid::{Solid, SolidFormula, SolidJet};
 pub use vec3::{Vec2, Vec3};

@@ -136,6 +136,11 @@ pub trait Surface<T: Real>: Send + Sync {
     fn image_of(&self) -> Option<(Key, bool)> {
         None
     }
+
+    /// The solid object of which this is face 0..6, at equal parameters. For joins of blocks.
+    fn face_of(&self) -> Option<(Key, u8)> {
+        None
+    }
 }
 
 /// How many steps a smooth stretch of a path is searched in for crossings.

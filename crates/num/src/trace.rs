@@ -183,3 +183,137 @@ impl<T: Real> Edges<T> {
         self
     }
 }
+
+/// How the parameters (a, b) of a solid's face run on a surface: swapped or not, then each
+/// reversed or not. Its number has these as bits 0, 1 and 2.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Turn(pub u8);
+
+impl Turn {
+    /// The eight turns.
+    pub const ALL: [Turn; 8] =
+        [Turn(0), Turn(1), Turn(2), Turn(3), Turn(4), Turn(5), Turn(6), Turn(7)];
+
+    /// True when the surface's u runs along the face's b.
+    pub fn swaps(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// True when the surface's parameter 0 (u) or 1 (v) runs against the face's.
+    pub fn flips(self, parameter: usize) -> bool {
+        self.0 >> (1 + parameter) & 1 == 1
+    }
+
+    /// The surface's (u, v) at the face's (a, b), all from 0 to 1.
+    pub fn place<S: Real>(self, a: S, b: S) -> [S; 2] {
+        let p = if self.swaps() { [b, a] } else { [a, b] };
+        [0, 1].map(|k| if self.flips(k) { -p[k] + 1.0 } else { p[k] })
+    }
+
+    /// The surface's edge 0..4 along face edge 0..4, and whether it runs against it.
+    pub fn edge(self, k: usize) -> (usize, bool) {
+        // Face edges: 0 b = 0, 1 a = 1, 2 b = 1, 3 a = 0. On the surface, `across` is fixed.
+        let (along, high) = [(0, 0), (1, 1), (0, 1), (1, 0)][k];
+        let (along, across) = if self.swaps() { (1 - along, along) } else { (along, 1 - along) };
+        let high = (high == 1) != self.flips(across);
+        let edge = match (along, high) {
+            (0, false) => 0,
+            (1, true) => 1,
+            (0, true) => 2,
+            _ => 3,
+        };
+        (edge, self.flips(along))
+    }
+}
+
+/// One face of a solid.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Face<T> {
+    /// The solid's own face.
+    Own,
+    /// The whole of a surface, with what its edges run along.
+    On {
+        /// The surface object; without a name it joins nothing.
+        surface: Option<Key>,
+        /// The solid of which that surface is a face, if so.
+        face_of: Option<(Key, u8)>,
+        /// How the face's parameters run on it.
+        turn: Turn,
+        /// Its edges.
+        edges: Box<Edges<T>>,
+    },
+    /// The very same as face 0..6 (a closed solid), at equal parameters.
+    SameAs(u8),
+}
+
+/// How the points between the layers of a solid are made of theirs: solids whose layers meet and
+/// that follow the same law meet in between, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Law {
+    /// B-splines of this degree across the layers.
+    Blend(usize),
+    /// An interpolating spline with ends of this number.
+    Spline(usize),
+    /// The first layer moved along a curve object, without a name along nothing known; the number
+    /// tells how.
+    Along(Option<Key>, u8),
+}
+
+/// The surfaces that a solid's lines along w depend on, point by point at equal u and v.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layers<T> {
+    /// The surface objects with their edges, in order of w.
+    pub surfaces: Vec<(Option<Key>, Edges<T>)>,
+    /// What is made of them.
+    pub law: Law,
+}
+
+/// What the six faces of a solid run along: u = 0, u = 1, v = 0, v = 1, w = 0, w = 1; the parameters
+/// of a face are the other two, in order. And the point objects at its corners, where they are known
+/// by the solid alone: u, v, w are bits 0, 1 and 2 of a corner's number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Faces<T> {
+    /// The faces.
+    pub faces: [Face<T>; 6],
+    /// The corners.
+    pub corners: [Option<Key>; 8],
+    /// For solids that are made of surfaces along w.
+    pub layers: Option<Layers<T>>,
+}
+
+impl<T: Real> Faces<T> {
+    /// Six faces of the solid's own.
+    pub fn own() -> Self {
+        Faces {
+            faces: [Face::Own, Face::Own, Face::Own, Face::Own, Face::Own, Face::Own],
+            corners: [None; 8],
+            layers: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_know_their_edges() {
+        let ends = [
+            [[0., 0.], [1., 0.]],
+            [[1., 0.], [1., 1.]],
+            [[0., 1.], [1., 1.]],
+            [[0., 0.], [0., 1.]],
+        ];
+        for turn in Turn::ALL {
+            for (k, [from, to]) in ends.into_iter().enumerate() {
+                let (edge, against) = turn.edge(k);
+                let [mut start, mut end] = ends[edge];
+                if against {
+                    std::mem::swap(&mut start, &mut end);
+                }
+                assert_eq!(turn.place(from[0], from[1]), start, "{turn:?} {k}");
+                assert_eq!(turn.place(to[0], to[1]), end, "{turn:?} {k}");
+            }
+        }
+    }
+}

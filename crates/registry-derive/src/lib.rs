@@ -177,7 +177,13 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
             "Surface" => quote!(::moldloft_registry::Value::Surface(
                 ::moldloft_registry::SurfaceRef::new(self, context.nesting)
             )),
-            _ => return Err(syn::Error::new_spanned(&class, "`shape` is for Curve and Surface")),
+            "Solid" => quote!(::moldloft_registry::Value::Solid(
+                ::moldloft_registry::SolidRef::new(self, context.nesting)
+            )),
+            _ => {
+                let message = "`shape` is for Curve, Surface and Solid";
+                return Err(syn::Error::new_spanned(&class, message));
+            }
         };
         quote!(
             impl<T: ::moldloft_registry::export::Real> ::moldloft_registry::Build<T> for #ident<T> {

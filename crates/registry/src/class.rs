@@ -32,6 +32,8 @@ pub enum Class {
     Snake,
     /// A parametric surface.
     Surface,
+    /// A parametric solid.
+    Solid,
     /// A plane.
     Plane,
     /// What things are mirrored in or projected to: a plane, line, point or "x=0", "y=0", "z=0".
@@ -78,6 +80,7 @@ impl Class {
         Class::Curve,
         Class::Snake,
         Class::Surface,
+        Class::Solid,
         Class::Plane,
         Class::Mirror,
         Class::Side,
@@ -110,6 +113,7 @@ impl Class {
             Class::Curve => "curve",
             Class::Snake => "snake",
             Class::Surface => "surface",
+            Class::Solid => "solid",
             Class::Plane => "plane",
             Class::Mirror => "mirror",
             Class::Side => "side",
@@ -143,6 +147,7 @@ impl Class {
             Class::Curve => "a curve",
             Class::Snake => "a snake (a curve on a surface)",
             Class::Surface => "a surface",
+            Class::Solid => "a solid",
             Class::Plane => "a plane",
             Class::Mirror => "a plane, line or point to mirror in",
             Class::Side => "a snake or a magnet",
@@ -198,6 +203,7 @@ impl Class {
             Class::Point | Class::Bead | Class::Magnet | Class::Ring => Some(0),
             Class::Curve | Class::Snake => Some(1),
             Class::Surface => Some(2),
+            Class::Solid => Some(3),
             _ => None,
         }
     }

@@ -112,6 +112,9 @@ pub struct Head {
     pub orientation: i32,
     /// Attributes of a model file, such as `A:Note(port side)`, kept as they are.
     pub attributes: Option<Arc<str>>,
+    /// Divisions of a solid in u, v and w; 0 in a direction in which its neighbours, or the default,
+    /// decide.
+    pub blocks: [u32; 3],
     /// True when divisions were given: an image without any is divided like its original.
     pub divided: bool,
     /// What is said of the panels besides their number.
@@ -142,7 +145,8 @@ pub const HEAD: [Field; 10] = [
     head("layer", "Layer, 0 to 255.", DefaultValue::Number(0.0)),
     head(
         "divisions",
-        "Panels along the curve, or {along u, along v}; 0 or \"auto\": as the neighbours have.",
+        "Panels along the curve, or {along u, along v}, or cells {u, v, w} of a solid; 0 or \"auto\": as the \
+         neighbours have.",
         DefaultValue::Unset,
     ),
     head("subdivisions", "Steps in each division, or {in u, in v}.", DefaultValue::Unset),
@@ -192,6 +196,7 @@ impl Head {
             subdivisions,
             orientation: 0,
             attributes: None,
+            blocks: [0; 3],
             divided: false,
             panels: None,
         }
@@ -238,6 +243,32 @@ impl Head {
             "visible" => self.visible = whole(-65536.0, 65535.0, value)? as i32,
             "layer" => self.layer = whole(0.0, 255.0, value)? as i32,
             "divisions" => {
+                let count = |v: &Value<T>| match v {
+                    Value::Text(_) => Ok(0),
+                    v => whole(0.0, MOST_DIVISIONS, v).map(|x| x as u32),
+                };
+                let given: &[Value<T>] = match value {
+                    Value::List(items) => items,
+                    single => std::slice::from_ref(single),
+                };
+                // {a, b, c} of three numbers reads as a vector.
+                let three = match value {
+                    Value::Vector(v) => Some(v.to_array().map(Value::Number)),
+                    Value::List(items) if items.len() == 3 => {
+                        Some(std::array::from_fn(|k| items[k].clone()))
+                    }
+                    _ => None,
+                };
+                self.blocks = match (&three, given) {
+                    (Some([u, v, w]), _) => [count(u)?, count(v)?, count(w)?],
+                    (None, [n]) => [count(n)?; 3],
+                    (None, [u, v]) => [count(u)?, count(v)?, 0],
+                    _ => [0; 3],
+                };
+                if three.is_some() {
+                    self.divided = true;
+                    return Ok(true);
+                }
                 self.divisions = pair(value, 0.0, self.divisions)?;
                 self.divided = true;
             }

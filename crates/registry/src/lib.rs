@@ -29,7 +29,7 @@ pub use found::{Found, FoundStatus};
 pub use head::{HEAD, Head, Panels, Spacing};
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};
-pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SurfaceRef};
+pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SolidRef, SurfaceRef};
 pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value};

@@ -1,4 +1,6 @@
-use crate::{Class, CurveRef, Facets, Fault, FieldRef, Point, RelabelRef, SurfaceRef, Value};
+use crate::{
+    Class, CurveRef, Facets, Fault, FieldRef, Point, RelabelRef, SolidRef, SurfaceRef, Value,
+};
 use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
 
@@ -137,6 +139,16 @@ impl<T: Real> FromValue<T> for SurfaceRef<T> {
         match value {
             Value::Surface(s) => Ok(s.clone()),
             other => wrong(Class::Surface, other),
+        }
+    }
+}
+
+impl<T: Real> FromValue<T> for SolidRef<T> {
+    const CLASS: Class = Class::Solid;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Solid(s) => Ok(s.clone()),
+            other => wrong(Class::Solid, other),
         }
     }
 }

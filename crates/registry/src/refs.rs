@@ -1,8 +1,8 @@
 use crate::Found;
 use moldloft_num::trace::{Key, Piece, Root, Trace};
 use moldloft_num::{
-    Curve, CurveJet, Field, Jet, Law, LawJet, Order, Real, Surface, Vec3, lift_curve, lift_law,
-    lift_surface,
+    Curve, CurveJet, Field, Jet, Law, LawJet, Order, Real, Solid, Surface, Vec3, lift_curve,
+    lift_law, lift_surface,
 };
 use smallvec::SmallVec;
 use std::ops::Deref;
@@ -137,6 +137,16 @@ pub struct RelabelRef<T: Real> {
     pub depth: u32,
 }
 
+/// A solid with the identity of its object.
+#[derive(Clone)]
+pub struct SolidRef<T: Real> {
+    shape: Arc<dyn Solid<T>>,
+    /// The object, once it has a name.
+    pub key: Option<Key>,
+    /// How deep shapes are nested in it, itself included.
+    pub depth: u32,
+}
+
 macro_rules! shape_ref {
     ($name:ident, $shape:ident) => {
         impl<T: Real> Deref for $name<T> {
@@ -164,6 +174,7 @@ shape_ref!(CurveRef, Curve);
 shape_ref!(SurfaceRef, Surface);
 shape_ref!(FieldRef, Field);
 shape_ref!(RelabelRef, Law);
+shape_ref!(SolidRef, Solid);
 
 impl<T: Real> CurveRef<T> {
     /// A curve that holds on to shapes nested `nesting` deep (0 when it holds on to none).
@@ -233,6 +244,13 @@ impl<T: Real> SurfaceRef<T> {
     #[inline(always)]
     pub fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
         lift_surface(&self.shape.jet(u.value(), v.value(), J::ORDER), u, v)
+    }
+}
+
+impl<T: Real> SolidRef<T> {
+    /// A solid that holds on to shapes nested `nesting` deep (0 when it holds on to none).
+    pub fn new(shape: impl Solid<T> + 'static, nesting: u32) -> Self {
+        Self { shape: Arc::new(shape), key: None, depth: nesting + 1 }
     }
 }
 

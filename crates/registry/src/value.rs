@@ -1,4 +1,4 @@
-use crate::{Class, CurveRef, Facets, FieldRef, Found, Point, RelabelRef, SurfaceRef};
+use crate::{Class, CurveRef, Facets, FieldRef, Found, Point, RelabelRef, SolidRef, SurfaceRef};
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
@@ -146,6 +146,8 @@ pub enum Value<T: Real> {
     Curve(CurveRef<T>),
     /// A surface.
     Surface(SurfaceRef<T>),
+    /// A solid.
+    Solid(SolidRef<T>),
     /// A plane.
     Plane(Arc<Plane<T>>),
     /// A frame.
@@ -190,6 +192,7 @@ impl<T: Real> Value<T> {
             Value::Curve(c) if c.surface.is_some() => Class::Snake,
             Value::Curve(_) => Class::Curve,
             Value::Surface(_) => Class::Surface,
+            Value::Solid(_) => Class::Solid,
             Value::Plane(_) => Class::Plane,
             Value::Frame(_) => Class::Frame,
             Value::Contours(_) => Class::Contours,
@@ -223,6 +226,7 @@ impl<T: Real> Value<T> {
             (Value::Point(a), Value::Point(b)) => a.same(b),
             (Value::Curve(a), Value::Curve(b)) => a.same(b),
             (Value::Surface(a), Value::Surface(b)) => a.same(b),
+            (Value::Solid(a), Value::Solid(b)) => a.same(b),
             (Value::Plane(a), Value::Plane(b)) => {
                 a.point.bits_eq(b.point) && a.normal.bits_eq(b.normal)
             }
@@ -260,6 +264,7 @@ impl<T: Real> Value<T> {
             Value::Curve(c) => c.depth,
             Value::Surface(s) => s.depth,
             Value::Relabel(r) => r.depth,
+            Value::Solid(s) => s.depth,
             Value::List(items) => items.iter().map(Value::depth).max().unwrap_or(0),
             _ => 0,
         }
@@ -273,6 +278,7 @@ impl<T: Real> Value<T> {
             Value::Curve(c) => c.key = Some(key),
             Value::Surface(s) => s.key = Some(key),
             Value::Relabel(r) => r.key = Some(key),
+            Value::Solid(s) => s.key = Some(key),
             _ => {}
         }
         self

@@ -1,4 +1,4 @@
-//! The relational kinds: points, curves, snakes, surfaces, planes and contours that are made from
+//! The relational kinds: points, curves, snakes, surfaces, solids, planes and contours that are made from
 //! one another, and the first functions on rows of numbers.
 //!
 //! Each kind is a documented struct whose fields are its arguments; the derive macro makes a row of
@@ -21,6 +21,7 @@ mod field;
 mod foil;
 mod frame;
 mod intrinsics;
+mod lifted;
 mod lists;
 mod normal;
 mod plane;
@@ -28,6 +29,7 @@ mod point;
 mod relabel;
 mod search;
 mod snake;
+mod solid;
 mod surface;
 
 use moldloft_registry::Row;
@@ -127,11 +129,30 @@ pub fn rows() -> Vec<Row> {
         surface::RuledSurf,
         surface::BLoftSurf,
         surface::CLoftSurf,
+        surface::XLoftSurf,
+        surface::ArcLoftSurf,
         surface::BSurf,
+        surface::NURBSurf,
         surface::RevSurf,
         surface::TranSurf,
+        surface::SweepSurf,
+        surface::BlendSurf,
+        surface::BlendCenter,
+        surface::FilletSurf,
         surface::SubSurf,
         surface::MirrSurf,
+        surface::RotatSurf,
+        surface::CopySurf,
+        surface::ProjSurf,
+        surface::RelSurf,
+        solid::FaceSurf,
+        solid::RuledSolid,
+        solid::BLoftSolid,
+        solid::CLoftSolid,
+        solid::BSolid,
+        solid::BlendSolid,
+        solid::TranSolid,
+        solid::SweepSolid,
         relabel::Relabel,
         relabel::CosRelabel,
         relabel::GeoRelabel,

@@ -119,6 +119,15 @@ fn jets_equal_central_differences() {
                         assert!(exact.x > 0.0, "{name} stands still at {t}");
                     }
                 }
+                Value::Solid(s) => {
+                    for (u, v, w) in [(0.13, 0.41, 0.87), (0.41, 0.87, 0.13), (0.87, 0.87, 0.41)] {
+                        let jet = s.jet(u, v, w);
+                        assert!(jet.p.distance(s.eval(u, v, w)) < 1e-13, "{name}");
+                        close(name, jet.u, |h| s.eval(u + h, v, w), 1e-8);
+                        close(name, jet.v, |h| s.eval(u, v + h, w), 1e-8);
+                        close(name, jet.w, |h| s.eval(u, v, w + h), 1e-8);
+                    }
+                }
                 Value::Field(f) => {
                     let p = Vec3::of(0.3, -1.2, 0.8);
                     let (value, gradient) = f.value_and_gradient(p);
@@ -155,6 +164,13 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
             points.extend(normals);
             let jet = s.jet(T::from(0.3), T::from(0.8), Order::Second);
             points.extend([jet.p, jet.u, jet.v, jet.uu, jet.uv, jet.vv]);
+            points
+        }
+        Value::Solid(s) => {
+            let mut points = vec![Vec3::zero(); TS.len() * 9];
+            s.grid(&TS, &[0.0, 0.3, 1.0], &[0.0, 0.7, 1.0], &mut points);
+            let jet = s.jet(T::from(0.3), T::from(0.8), T::from(0.6));
+            points.extend([jet.p, jet.u, jet.v, jet.w]);
             points
         }
         Value::Plane(p) => vec![p.point, p.normal],

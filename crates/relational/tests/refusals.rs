@@ -30,7 +30,7 @@ fn each_fault_has_its_id_and_its_place() {
         ("CCurve c({A, B, C}, end = {1, 0, 0});", "unused-argument", 4, None),
         ("CCurve c({A, B, D, C}, ends = \"periodic\");", "not-closed", 2, None),
         ("CLoftSurf c({l, l, m});", "coincident-points", 0, Some(1)),
-        ("CLoftSurf c({l, m}, ends = \"clamped\");", "unknown-ends", 2, None),
+        ("CLoftSurf c({l, m}, ends = \"clamped\");", "missing-argument", 3, None),
         ("CLoftSurf c({l, S});", "wrong-class", 0, Some(1)),
         ("Arc c(A, B, C, 6);", "collinear-points", 0, None),
         ("Arc c(A, A, C, 2);", "coincident-points", 0, None),

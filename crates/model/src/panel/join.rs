@@ -190,12 +190,12 @@ impl<'s> Joiner<'s> {
 
 /// Sets of vertices that are one; the smallest number stands for the set.
 #[derive(Debug)]
-pub(super) struct UnionFind {
+pub(crate) struct UnionFind {
     parent: Vec<u32>,
 }
 
 impl UnionFind {
-    fn new(n: usize) -> Self {
+    pub fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect() }
     }
 

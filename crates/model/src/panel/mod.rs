@@ -18,6 +18,7 @@ mod roots;
 mod skeleton;
 mod spread;
 
+pub(crate) use join::UnionFind;
 pub use remark::{ChainStep, Remark};
 
 use crate::{Graph, Object};

@@ -1,7 +1,8 @@
+use super::free_knots::{FreeKnots, FreeNet};
 use crate::faults;
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, Fault, Kind, Point, Scalar, SurfaceRef, Value};
 use moldloft_spline::{BSplineSurface, KnotVector};
 
 /// A B-spline surface of a net of points: S(u, v) = sum N_i(u) N_j(v) P_ij, with clamped uniform
@@ -37,25 +38,96 @@ pub struct BSurf<T: Real> {
 impl<T: Real> Build<T> for BSurf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { points, nu, nv, degree_u, degree_v } = self;
-        if nu.checked_mul(nv) != Some(points.len()) || nu < 2 || nv < 2 {
-            return Err(Fault::new(
-                "wrong-length",
-                format!("a net of {nu} x {nv} points is not {} points", points.len()),
-            )
-            .expected(format!("{nu} x {nv} points"))
-            .found(points.len().to_string())
-            .in_field(0));
+        let net = Net::new(points, [nu, nv], [degree_u, degree_v], [None, None], None)?;
+        Ok(Value::Surface(SurfaceRef::new(net, 0)))
+    }
+}
+
+/// A rational B-spline surface (NURBS) of a net of points: S(u, v) = sum w_ij N_i(u) N_j(v) P_ij /
+/// sum w_ij N_i(u) N_j(v) (Piegl and Tiller 1997, equation 4.11).
+///
+/// Knot vectors list every knot, end knots included: nu + degree_u + 1 of them, ascending; they are
+/// scaled to run from 0 to 1. Without them they are clamped and uniform, without weights all are 1.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "degree_u degree_v nu nv knots_u knots_v points weights",
+    example = "AbsPoint A(1, 0, 0); AbsPoint B(1, 1, 0); AbsPoint C(0, 1, 0.2); AbsPoint D(2, 0, 1); \
+               AbsPoint E(2, 2, 1.5); AbsPoint F(0, 2, 1); AbsPoint G(1, 0, 3); AbsPoint H(1, 1, 2); \
+               AbsPoint I(0, 1, 3); \
+               NURBSurf S({A, B, C, D, E, F}, nu = 2, nv = 3, degree_u = 1, degree_v = 2, \
+               weights = {1, 0.7071, 1, 1, 0.7071, 1}); \
+               NURBSurf T({A, B, C, D, E, F, G, H, I}, nu = 3, nv = 3, degree_u = 1, degree_v = 2, \
+               knots_u = {0, 0, 0.25, 1, 1}, knots_v = {0, 0, 0, 2, 2, 2});"
+)]
+pub struct NURBSurf<T: Real> {
+    /// Net of points, v running fastest: nu rows of nv points.
+    #[field(min_items = 4)]
+    points: Vec<Point<T>>,
+    /// Points along u.
+    #[field(min = 2)]
+    nu: usize,
+    /// Points along v.
+    #[field(min = 2)]
+    nv: usize,
+    /// Polynomial degree in u.
+    #[field(default = 3, min = 1, max = 25)]
+    degree_u: usize,
+    /// Polynomial degree in v.
+    #[field(default = 3, min = 1, max = 25)]
+    degree_v: usize,
+    /// Positive weights in the order of the points; all 1 if not given.
+    weights: Option<Vec<T>>,
+    /// Knots in u: nu + degree_u + 1 ascending numbers; uniform if not given.
+    knots_u: Option<Vec<T>>,
+    /// Knots in v: nv + degree_v + 1 ascending numbers; uniform if not given.
+    knots_v: Option<Vec<T>>,
+}
+
+impl<T: Scalar> Build<T> for NURBSurf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { points, nu, nv, degree_u, degree_v, weights, knots_u, knots_v } = self;
+        if let Some(weights) = &weights {
+            if weights.len() != points.len() {
+                return Err(Fault::new("wrong-length", "there must be a weight for each point")
+                    .expected(format!("{} weights", points.len()))
+                    .found(weights.len().to_string())
+                    .in_field(5));
+            }
+            if let Some(k) = weights.iter().position(|w| w.re() <= 0.0) {
+                let found = weights[k].re();
+                return Err(Fault::new("out-of-range", format!("weight {} is {found}", k + 1))
+                    .expected("positive weights")
+                    .found(found.to_string())
+                    .in_item(k)
+                    .in_field(5));
+            }
         }
-        let knots = |degree: usize, n: usize, field: usize| {
-            KnotVector::clamped_uniform(degree.min(n - 1), n)
-                .map_err(|error| faults::of_spline(error.into(), 0, field))
+        let plain = |knots: &Option<Vec<T>>| {
+            knots.as_ref().map(|k| k.iter().map(|x| x.re()).collect::<Vec<f64>>())
         };
-        let corners = [0, (nu - 1) * nv, nu * nv - 1, nv - 1].map(|k| points[k].key);
-        let net = points.iter().map(|p| p.xyz).collect();
-        let surface =
-            BSplineSurface::new(knots(degree_u, nu, 3)?, knots(degree_v, nv, 4)?, net, None)
-                .map_err(|error| faults::of_spline(error, 0, 3))?;
-        Ok(Value::Surface(SurfaceRef::new(Net { surface, corners }, 0)))
+        let knots = [plain(&knots_u), plain(&knots_v)];
+        let net = Net::new(points, [nu, nv], [degree_u, degree_v], knots, weights)?;
+        if knots_u.is_none() && knots_v.is_none() {
+            return Ok(Value::Surface(SurfaceRef::new(net, 0)));
+        }
+        // The same bits with and without derivatives by the knots.
+        let Net { surface, corners } = net;
+        let free = |given: Option<Vec<T>>, knots: &KnotVector| match given {
+            Some(given) => FreeKnots::normalized(knots.degree(), &given),
+            None => {
+                let knots_t: Vec<T> = knots.as_slice().iter().map(|&k| T::from(k)).collect();
+                FreeKnots { degree: knots.degree(), knots: knots_t }
+            }
+        };
+        let [u, v] = surface.knots();
+        let free = FreeNet {
+            knots: [free(knots_u, u), free(knots_v, v)],
+            points: surface.control_points().to_vec(),
+            weights: surface.weights().map(<[T]>::to_vec),
+            corners,
+        };
+        Ok(Value::Surface(SurfaceRef::new(free, 0)))
     }
 }
 
@@ -90,5 +162,63 @@ impl<T: Real> Surface<T> for Net<T> {
 
     fn edges(&self) -> Edges<T> {
         Edges { corners: self.corners, ..Edges::own() }
+    }
+}
+
+impl<T: Real> Net<T> {
+    /// The fields of the net, its extents, degrees and knots are 0; 1, 2; 3, 4; 6, 7.
+    fn new(
+        points: Vec<Point<T>>,
+        [nu, nv]: [usize; 2],
+        [degree_u, degree_v]: [usize; 2],
+        [knots_u, knots_v]: [Option<Vec<f64>>; 2],
+        weights: Option<Vec<T>>,
+    ) -> Result<Self, Fault> {
+        if nu.checked_mul(nv) != Some(points.len()) || nu < 2 || nv < 2 {
+            return Err(Fault::new(
+                "wrong-length",
+                format!("a net of {nu} x {nv} points is not {} points", points.len()),
+            )
+            .expected(format!("{nu} x {nv} points"))
+            .found(points.len().to_string())
+            .in_field(0));
+        }
+        let knots = |given: Option<Vec<f64>>, degree: usize, n: usize, [d, k]: [usize; 2]| {
+            let Some(given) = given else {
+                return KnotVector::clamped_uniform(degree.min(n - 1), n)
+                    .map_err(|error| faults::of_spline(error.into(), 0, d));
+            };
+            let found = given.len();
+            if found != n + degree + 1 {
+                return Err(Fault::new(
+                    "wrong-length",
+                    format!("{found} knots do not serve {n} points of degree {degree}"),
+                )
+                .expected(format!("{} knots, end knots included", n + degree + 1))
+                .found(found.to_string())
+                .in_field(k));
+            }
+            let knots = KnotVector::new(degree, given);
+            Ok(knots.map_err(|error| faults::of_spline(error.into(), k, d))?.normalized())
+        };
+        let u = knots(knots_u, degree_u, nu, [3, 6])?;
+        let v = knots(knots_v, degree_v, nv, [4, 7])?;
+        // The corners are interpolated where the knots are clamped.
+        let clamped = |k: &KnotVector| {
+            let (low, high) = k.domain();
+            [low, high].map(|end| k.multiplicity(end) > k.degree())
+        };
+        let ([west, east], [south, north]) = (clamped(&u), clamped(&v));
+        let corner = |there: bool, k: usize| if there { points[k].key } else { None };
+        let corners = [
+            corner(west && south, 0),
+            corner(east && south, (nu - 1) * nv),
+            corner(east && north, nu * nv - 1),
+            corner(west && north, nv - 1),
+        ];
+        let net = points.iter().map(|p| p.xyz).collect();
+        let surface = BSplineSurface::new(u, v, net, weights)
+            .map_err(|error| faults::of_spline(error, 0, 3))?;
+        Ok(Self { surface, corners })
     }
 }

@@ -5,7 +5,7 @@ use crate::faults;
 use moldloft_num::trace::Edges;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
-use moldloft_spline::{Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
+use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
 
 /// A surface that passes through its master curves: S(u, v) is the interpolating spline through
 /// the points C_1(u) ... C_N(u), evaluated at v; its knots are their chord lengths at that u.
@@ -28,7 +28,37 @@ pub struct CLoftSurf<T: Real> {
     /// 3 for cubic splines across the masters, 1 for polylines.
     #[field(default = 3, min = 1, max = 3)]
     degree: usize,
-    /// End conditions: "notaknot", "natural", "bessel", "quadratic" or "periodic".
+    /// End conditions: "notaknot", "natural", "bessel", "quadratic", "clamped" or "periodic".
+    #[field(default = "notaknot")]
+    ends: EndRule,
+    /// Slope dX/dv at the first master, the same all along it, for clamped ends.
+    start: Option<Vec3<T>>,
+    /// Slope dX/dv at the last master, the same all along it, for clamped ends.
+    end: Option<Vec3<T>>,
+}
+
+/// A surface that passes through its master curves, as an explicit spline at each u: one coordinate
+/// is the independent variable and linear in v, the others are cubic splines of it.
+///
+/// Unlike those of a C-loft its knots are that coordinate of the masters, which must increase or
+/// decrease from master to master at every u.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "relabel axis curves",
+    example = "AbsPoint A(0, 0, 2); AbsPoint B(1, 0, -1); AbsPoint C(4, 2, 2); AbsPoint D(4, 1.5, -1); \
+               AbsPoint E(4, 0, -1.5); AbsPoint F(8, 1.5, 2); AbsPoint G(8, 0, -0.5); AbsPoint H(9, 1, 2); \
+               AbsPoint I(9.5, 0, 0); Line a(A, B); BCurve b({C, D, E}); Line c(F, G); Line d(H, I); \
+               XLoftSurf hull(1, {a, b, c, d}); XLoftSurf N(1, {d, c, a}, ends = \"natural\");"
+)]
+pub struct XLoftSurf<T: Real> {
+    /// The independent coordinate: 1 for x, 2 for y, 3 for z.
+    #[field(default = 1, min = 1, max = 3)]
+    axis: usize,
+    /// Master curves, two or more, in order of v.
+    #[field(min_items = 2)]
+    curves: Vec<CurveRef<T>>,
+    /// End conditions: "notaknot", "natural", "bessel" or "quadratic".
     #[field(default = "notaknot")]
     ends: EndRule,
 }
@@ -38,22 +68,17 @@ const TRIALS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0]
 
 impl<T: Real> Build<T> for CLoftSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let Self { curves, degree, ends } = self;
+        let Self { curves, degree, ends, start, end } = self;
         let count = curves.len();
-        if ends == EndRule::Clamped {
-            return Err(Fault::new("unknown-ends", "a loft cannot be clamped")
-                .expected("\"notaknot\", \"natural\", \"bessel\", \"quadratic\" or \"periodic\"")
-                .found("\"clamped\"")
-                .in_field(2));
-        }
         if degree == 2 && count > 3 {
             let error = InterpolationError::Type { actual: degree };
             return Err(faults::of_interpolation(error, "curve", [0, 1, 2]));
         }
-        let loft = Loft { masters: Masters::new(curves, 0)?, polyline: degree == 1, ends };
+        let slopes = slopes(ends, start, end)?;
+        let knots = if degree == 1 { Knots::Polyline } else { Knots::Chords };
+        let loft = Loft { masters: Masters::new(curves, 0)?, knots, ends, slopes };
         for u in TRIALS {
-            let points: Points<f64> =
-                loft.masters.at(T::from(u)).into_iter().map(|p| p.re()).collect();
+            let points: Points<T> = loft.masters.at(T::from(u));
             if let Err(error) = loft.spline(&points)
                 && !is_one_point(&points)
             {
@@ -65,33 +90,118 @@ impl<T: Real> Build<T> for CLoftSurf<T> {
     }
 }
 
+/// The end slopes of a clamped loft.
+fn slopes<T: Real>(
+    ends: EndRule,
+    start: Option<Vec3<T>>,
+    end: Option<Vec3<T>>,
+) -> Result<Option<[Vec3<T>; 2]>, Fault> {
+    match (ends, start, end) {
+        (EndRule::Clamped, Some(start), Some(end)) => Ok(Some([start, end])),
+        (EndRule::Clamped, start, _) => {
+            Err(Fault::new("missing-argument", "clamped ends need the slopes `start` and `end`")
+                .expected("start = {x, y, z}, end = {x, y, z}")
+                .in_field(if start.is_none() { 3 } else { 4 }))
+        }
+        (_, None, None) => Ok(None),
+        (_, start, _) => Err(Fault::new("unused-argument", "slopes are for clamped ends only")
+            .help("add ends = \"clamped\", or leave the slopes out")
+            .in_field(if start.is_some() { 3 } else { 4 })),
+    }
+}
+
+impl<T: Real> Build<T> for XLoftSurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { axis, curves, ends } = self;
+        if matches!(ends, EndRule::Clamped | EndRule::Periodic) {
+            let found = if ends == EndRule::Clamped { "\"clamped\"" } else { "\"periodic\"" };
+            let message = format!("an explicit loft has no {found} ends");
+            return Err(Fault::new("unknown-ends", message)
+                .expected("\"notaknot\", \"natural\", \"bessel\" or \"quadratic\"")
+                .found(found)
+                .in_field(2));
+        }
+        let masters = Masters::new(curves, 1)?;
+        let loft = Loft { masters, knots: Knots::Axis(axis - 1), ends, slopes: None };
+        for u in TRIALS {
+            let points: Points<T> = loft.masters.at(T::from(u));
+            let Err(error) = loft.spline(&points) else { continue };
+            let name = ["x", "y", "z"][axis - 1];
+            let InterpolationError::Coincident { second, .. } = error else {
+                return Err(faults::of_interpolation(error, "curve", [1, 1, 2]));
+            };
+            let values: Vec<String> = points.iter().map(|p| p[axis - 1].re().to_string()).collect();
+            let message = format!("{name} does not go one way from curve to curve at u = {u}");
+            return Err(Fault::new("not-monotone", message)
+                .expected(format!(
+                    "{name} increasing, or decreasing, from the first curve to the last"
+                ))
+                .found(format!("{name} = {}", values.join(", ")))
+                .help("take another axis, or a CLoftSurf")
+                .in_item(second)
+                .in_field(1));
+        }
+        Ok(Value::Surface(SurfaceRef::new(loft, context.nesting)))
+    }
+}
+
 /// True when all points are one, to rounding.
-fn is_one_point(points: &[Vec3<f64>]) -> bool {
-    let near = |p: &Vec3<f64>| p.distance(points[0]) <= 8.0 * f64::EPSILON * p.norm();
-    points.iter().all(near)
+fn is_one_point<T: Real>(points: &[Vec3<T>]) -> bool {
+    let first = points[0].re();
+    let near = |p: Vec3<f64>| p.distance(first) <= 8.0 * f64::EPSILON * p.norm();
+    points.iter().all(|p| near(p.re()))
+}
+
+/// Where the knots of a loft are.
+#[derive(Clone, Copy)]
+enum Knots {
+    /// At chord lengths.
+    Chords,
+    /// At chord lengths, with straight pieces.
+    Polyline,
+    /// At this coordinate of the points.
+    Axis(usize),
 }
 
 struct Loft<T: Real> {
     masters: Masters<T>,
-    polyline: bool,
+    knots: Knots,
     ends: EndRule,
+    /// Of clamped ends.
+    slopes: Option<[Vec3<T>; 2]>,
 }
 
 impl<T: Real> Loft<T> {
-    fn spline<S: Real>(
+    fn spline<S: Jet<T>>(
         &self,
         points: &[Vec3<S>],
     ) -> Result<InterpolatingSpline<S>, InterpolationError> {
-        if self.polyline {
-            return InterpolatingSpline::polyline(points);
+        let ends = match self.slopes {
+            Some([start, end]) => {
+                let clamped = |v: Vec3<T>| End::Clamped(v.map(S::fixed));
+                Ends::Open(clamped(start), clamped(end))
+            }
+            None => self.ends.ends().unwrap_or_default(),
+        };
+        match self.knots {
+            Knots::Polyline => InterpolatingSpline::polyline(points),
+            Knots::Chords => InterpolatingSpline::with_ends(points, ends),
+            Knots::Axis(axis) => {
+                let (first, last) = (points[0][axis], points[points.len() - 1][axis]);
+                let share = |p: &Vec3<S>| (p[axis] - first) / (last - first);
+                let mut knots: Vec<S> = points.iter().map(share).collect();
+                if first.re() == last.re() {
+                    // Which two masters are wrong is told by the knots.
+                    knots = points.iter().map(|p| p[axis] - first).collect();
+                }
+                InterpolatingSpline::with_knots(&knots, points, ends)
+            }
         }
-        let ends = self.ends.ends().unwrap_or_default();
-        InterpolatingSpline::with_ends(points, ends)
     }
 
     /// The spline of one column. Where masters meet, which only a column that is one point was let
     /// pass with, its knots are uniform; where a master is not finite there is none.
-    fn column<S: Real>(&self, points: &[Vec3<S>]) -> Option<InterpolatingSpline<S>> {
+    fn column<S: Jet<T>>(&self, points: &[Vec3<S>]) -> Option<InterpolatingSpline<S>> {
         let spline = self.spline(points).or_else(|_| {
             let last = (points.len() - 1) as f64;
             let knots: Vec<S> = (0..points.len()).map(|k| S::from(k as f64 / last)).collect();

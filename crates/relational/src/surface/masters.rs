@@ -75,7 +75,7 @@ impl<T: Real> Masters<T> {
 
     /// The edges of a surface that begins with the first master at v = 0 and ends with the last at
     /// v = 1: those two run along the masters. Where all masters meet in one point object, the
-    /// edge is that point.
+    /// edge is that point; where each begins and ends in one, the surface closes.
     pub fn edges(&self) -> Edges<T> {
         let (first, last) = (&self.0[0], &self.0[self.0.len() - 1]);
         let ends: Vec<[Option<Key>; 2]> = self.0.iter().map(|c| c.end_points()).collect();
@@ -85,8 +85,18 @@ impl<T: Real> Masters<T> {
             if meet { Edge::Pole(point) } else { Edge::Own }
         };
         let ([a, b], [d, c]) = (ends[0], ends[ends.len() - 1]);
-        Edges { edges: [along(first), across(1), along(last), across(0)], corners: [a, b, c, d] }
+        let closed = ends.iter().all(|&e| is_closed(e));
+        let east = match across(1) {
+            Edge::Own if closed => Edge::SameAs(3),
+            edge => edge,
+        };
+        Edges { edges: [along(first), east, along(last), across(0)], corners: [a, b, c, d] }
     }
+}
+
+/// True when a curve with these end points begins and ends in one point object.
+pub fn is_closed([start, end]: [Option<Key>; 2]) -> bool {
+    start.is_some() && start == end
 }
 
 /// The edge that runs along the whole of a curve.

@@ -1,4 +1,4 @@
-use super::masters::along;
+use super::masters::{along, is_closed};
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Axis, Jet, Order, Real, SurfaceFormula, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
@@ -57,7 +57,7 @@ struct Revolved<T: Real> {
 }
 
 /// Cosine and sine, exact at multiples of a right angle.
-fn cos_sin<J: Real>(angle: J) -> (J, J) {
+pub fn cos_sin<J: Real>(angle: J) -> (J, J) {
     let quarters = (angle.re() / FRAC_PI_2).round();
     let rest = angle - quarters * FRAC_PI_2;
     let (c, s) = (rest.cos(), rest.sin());
@@ -95,6 +95,9 @@ impl<T: Real> SurfaceFormula for Revolved<T> {
         if self.full {
             edges = edges.with(2, Edge::SameAs(0));
             (edges.corners[3], edges.corners[2]) = (edges.corners[0], edges.corners[1]);
+        }
+        if is_closed(ends) {
+            edges = edges.with(1, Edge::SameAs(3));
         }
         for (end, k) in [(0, 3), (1, 1)] {
             if self.on_axis[end] {

@@ -1,7 +1,8 @@
+use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
 use moldloft_num::trace::{Edge, Edges, Key};
-use moldloft_num::{Jet, Real, SurfaceFormula, Vec3, lift_curve, line_crossings};
+use moldloft_num::{Bi1, Jet, Real, SurfaceFormula, Vec3, lift_curve, line_crossings};
 use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
@@ -11,7 +12,8 @@ use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
 /// v = 0, u = 1, v = 1, u = 0, in this order and each in increasing parameter, so the third and the
 /// fourth run against a walk round the patch; w is the bilinear Coons patch (Coons 1967). Three are
 /// the same with the edge u = 0 a single point, where the first and the third begin. A magnet is a
-/// side without length. Sides that do not meet are refused, never turned round.
+/// side without length. Sides that do not meet are refused, never turned round, and so are patches
+/// that are folded.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -57,11 +59,11 @@ impl<T: Real> Build<T> for SubSurf<T> {
         let shape = match <[Side<T>; 2]>::try_from(sides) {
             Ok(ends) => Patch { surface, layout: Layout::Between(ends) },
             Err(sides) => {
-                let layout = Layout::Round(sides);
-                check_corners(&layout)?;
-                Patch { surface, layout }
+                check_corners(&sides)?;
+                Patch { surface, layout: Layout::Round(sides) }
             }
         };
+        shape.check_folds()?;
         Ok(Value::Surface(SurfaceRef::new(shape, context.nesting)))
     }
 }
@@ -94,57 +96,16 @@ fn end<T: Real>(side: &Side<T>, t: f64) -> Vec3<T> {
     place(side, T::from(t))
 }
 
-/// The corners (side, end) that must be one place, with the names of the ends.
-const CORNERS: [[(usize, f64); 2]; 4] =
-    [[(0, 1.0), (1, 0.0)], [(1, 1.0), (2, 1.0)], [(2, 0.0), (3, 1.0)], [(3, 0.0), (0, 0.0)]];
-
-fn check_corners<T: Real>(layout: &Layout<T>) -> Result<(), Fault> {
-    let Layout::Round(sides) = layout else { return Ok(()) };
-    let apart = |[(a, s), (b, t)]: [(usize, f64); 2]| {
-        let d = (end(&sides[a], s) - end(&sides[b], t)).re();
-        (d.x.abs().max(d.y.abs()) > MEETING).then_some((a, s, b, t))
-    };
-    let corners = match sides.len() {
-        3 => vec![CORNERS[0], CORNERS[1], [(2, 0.0), (0, 0.0)]],
-        _ => CORNERS.to_vec(),
-    };
-    let Some((a, s, b, t)) = corners.into_iter().find_map(apart) else { return Ok(()) };
-    let says = |side: usize, at: f64| {
-        let p = end(&sides[side], at).re();
-        let which = if at == 0.0 { "begins" } else { "ends" };
-        format!("side {} {which} at (u, v) = ({}, {})", side + 1, p.x, p.y)
-    };
-    let fault = Fault::new("open-corner", format!("sides {} and {} do not meet", a + 1, b + 1))
-        .expected("the edges v = 0, u = 1, v = 1, u = 0, each in increasing parameter")
-        .found(format!("{}, but {}", says(a, s), says(b, t)))
-        .in_item(b)
-        .in_field(0);
-    Err(match turned_round(sides) {
-        Some(turned) if !turned.is_empty() => {
-            let list = turned.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ");
-            fault.help(format!("they do when these sides run the other way: {list}"))
-        }
-        _ => fault.help("let neighbouring sides end in common magnets"),
-    })
+fn check_corners<T: Real>(sides: &[Side<T>]) -> Result<(), Fault> {
+    let ends: Vec<[Vec3<f64>; 2]> =
+        sides.iter().map(|side| [0.0, 1.0].map(|t| end(side, t).re())).collect();
+    let apart = |p: Vec3<f64>, q: Vec3<f64>| (p.x - q.x).abs().max((p.y - q.y).abs());
+    let says = |p: Vec3<f64>| format!("(u, v) = ({}, {})", p.x, p.y);
+    corners::check(&ends, MEETING, apart, says, 0)
 }
 
-/// The sides that must run backwards for all corners to meet, when that helps.
-fn turned_round<T: Real>(sides: &[Side<T>]) -> Option<Vec<usize>> {
-    let count = sides.len();
-    let meets = |mask: u32, [(a, s), (b, t)]: [(usize, f64); 2]| {
-        let at = |side: usize, t: f64| {
-            end(&sides[side], if mask >> side & 1 == 1 { 1.0 - t } else { t }).re()
-        };
-        let d = at(a, s) - at(b, t);
-        d.x.abs().max(d.y.abs()) <= MEETING
-    };
-    let corners = match count {
-        3 => vec![CORNERS[0], CORNERS[1], [(2, 0.0), (0, 0.0)]],
-        _ => CORNERS.to_vec(),
-    };
-    let mask = (1..1u32 << count).find(|&mask| corners.iter().all(|&c| meets(mask, c)))?;
-    Some((0..count).filter(|k| mask >> k & 1 == 1).collect())
-}
+/// How many steps the patch is tried with in each direction.
+const TRIALS: usize = 8;
 
 impl<T: Real> Patch<T> {
     /// The place on the surface.
@@ -166,6 +127,42 @@ impl<T: Real> Patch<T> {
         let low = corner(south, 0.0) * a + corner(south, 1.0) * u;
         let high = corner(north, 0.0) * a + corner(north, 1.0) * u;
         across + along - (low * b + high * v)
+    }
+}
+
+impl<T: Real> Patch<T> {
+    /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
+    fn check_folds(&self) -> Result<(), Fault> {
+        let mut all = Vec::with_capacity((TRIALS + 1) * (TRIALS + 1));
+        for (i, j) in (0..=TRIALS).flat_map(|i| (0..=TRIALS).map(move |j| (i, j))) {
+            let (u, v) = (i as f64 / TRIALS as f64, j as f64 / TRIALS as f64);
+            let (s, t) = Bi1::parameters(T::from(u), T::from(v));
+            let w = self.inside(s, t);
+            let det = w.x.u.re() * w.y.v.re() - w.x.v.re() * w.y.u.re();
+            all.push((det, u, v));
+        }
+        let by_size = |a: &&(f64, f64, f64), b: &&(f64, f64, f64)| a.0.total_cmp(&b.0);
+        let (Some(low), Some(high)) = (all.iter().min_by(by_size), all.iter().max_by(by_size))
+        else {
+            return Ok(());
+        };
+        // Turned against the run of the surface is no fold: then all signs are negative.
+        let sum: f64 = all.iter().map(|x| x.0).sum();
+        let (worst, best) = if sum < 0.0 { (high, -low.0) } else { (low, high.0) };
+        let against = if sum < 0.0 { -worst.0 } else { worst.0 };
+        if against >= -1e-6 * best {
+            return Ok(());
+        }
+        let (u, v) = (worst.1, worst.2);
+        let at = self.inside(T::from(u), T::from(v)).re();
+        Err(Fault::new("folded-patch", format!("the sub-surface is folded at u = {u}, v = {v}"))
+            .expected("sides that run round an area without crossing each other")
+            .found(format!(
+                "a Jacobian of {against:.3e} there, at (u, v) = ({}, {}) of the surface, and up to {best:.3e} elsewhere",
+                at.x, at.y
+            ))
+            .help("let opposite sides run the same way, and none cross another")
+            .in_field(0))
     }
 }
 
@@ -224,19 +221,11 @@ impl<T: Real> SurfaceFormula for Patch<T> {
                 }
             }
             Layout::Round(sides) => {
-                let point = |[(a, s), (b, t)]: [(usize, f64); 2]| {
-                    let of = |side: usize, t: f64| {
-                        sides.get(side).and_then(|side| ends(side)[t as usize])
-                    };
-                    of(a, s).or(of(b, t))
-                };
-                let [b, c, d, a] = match sides.len() {
-                    3 => {
-                        let pole = point([(0, 0.0), (2, 0.0)]);
-                        [point(CORNERS[0]), point(CORNERS[1]), pole, pole]
-                    }
-                    _ => CORNERS.map(point),
-                };
+                let known: Vec<Option<Key>> = corners::of(sides.len())
+                    .iter()
+                    .map(|&[(a, s), (b, t)]| ends(&sides[a])[s].or(ends(&sides[b])[t]))
+                    .collect();
+                let [b, c, d, a] = [known[0], known[1], known[2], known[known.len() - 1]];
                 let west = sides.get(3).map_or(Edge::Pole(a), edge);
                 Edges {
                     edges: [edge(&sides[0]), edge(&sides[1]), edge(&sides[2]), west],

@@ -1,4 +1,4 @@
-use super::masters::along;
+use super::masters::{along, is_closed};
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
 use moldloft_registry::{CurveRef, Kind};
@@ -31,7 +31,7 @@ impl<T: Real> SurfaceFormula for TranSurf<T> {
     }
 
     /// Edge v = 0 runs along the first curve; where both curves begin in one point object, edge
-    /// u = 0 runs along the second.
+    /// u = 0 runs along the second. A closed first curve closes the surface.
     fn edges(&self) -> Edges<T> {
         let (a, b) = (self.c1.end_points(), self.c2.end_points());
         let mut edges = Edges::own().with(0, along(&self.c1));
@@ -42,6 +42,9 @@ impl<T: Real> SurfaceFormula for TranSurf<T> {
                 edges = edges.with(3, second);
             }
             edges.corners[3] = b[1];
+        }
+        if is_closed(a) {
+            edges = edges.with(1, Edge::SameAs(3));
         }
         edges
     }

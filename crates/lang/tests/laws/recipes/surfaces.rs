@@ -53,7 +53,11 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         }
         "SubSurf" => {
             let s = p.surface();
-            let m: [String; 4] = std::array::from_fn(|_| p.magnet(&s));
+            // Round an area, so that the patch is not folded.
+            let m = [(0.2, 0.2), (0.8, 0.2), (0.8, 0.8), (0.2, 0.8)].map(|(u, v)| {
+                let (u, v) = (p.number(u - 0.15, u + 0.15), p.number(v - 0.15, v + 0.15));
+                p.object("AbsMagnet", &format!("{s}, {u}, {v}"))
+            });
             let mut side =
                 |a: usize, b: usize| p.object("LineSnake", &format!("{}, {}", m[a], m[b]));
             let sides = [side(0, 1), side(1, 2), side(3, 2), side(0, 3)];
@@ -63,6 +67,68 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
                 _ => format!("{{{}}}, {divisions}", sides.join(", ")),
             }
         }
+        "XLoftSurf" => {
+            let masters = stations(p).join(", ");
+            format!("1, {{{masters}}}, ends = \"bessel\", {divisions}")
+        }
+        "ArcLoftSurf" => {
+            let kind = 1 + p.random.below(6);
+            format!("{}, type = {kind}, {divisions}", stations(p).join(", "))
+        }
+        "NURBSurf" => {
+            let net = p.points::<6>().join(", ");
+            let knot = p.number(0.2, 0.8);
+            format!(
+                "{{{net}}}, nu = 3, nv = 2, degree_u = 1, degree_v = 1, weights = {{1, w, 2, h, 1, 1.5}}, \
+                 knots_u = {{0, 0, {knot}, 1, 1}}, {divisions}"
+            )
+        }
+        "SweepSurf" => {
+            let profile = p.curve();
+            let [path, ..] = stations(p);
+            match p.random.below(3) {
+                0 => format!("{profile}, {path}, {divisions}"),
+                1 => format!("{profile}, {path}, \"up\", up = {{0, 0.1, w}}, {divisions}"),
+                _ => format!("{profile}, {path}, twist = {{0, h}}, scale = {{1, w}}, {divisions}"),
+            }
+        }
+        "BlendSurf" | "BlendCenter" => {
+            let [a, b, c, d] = p.points();
+            let mut side = |a: &str, b: &str| {
+                let (x, y, z) = (p.number(-1.0, 1.0), p.number(-1.0, 1.0), p.number(-1.0, 1.0));
+                let middle = p.object("AbsPoint", &format!("{x}, {y}, {z}"));
+                p.object("BCurve", &format!("{{{a}, {middle}, {b}}}, 2"))
+            };
+            let sides = [side(&a, &b), side(&b, &c), side(&d, &c), side(&a, &d)].join(", ");
+            if kind == "BlendSurf" {
+                format!("{{{sides}}}, {divisions}")
+            } else {
+                format!("{{{sides}}}, {}, {divisions}", p.point())
+            }
+        }
+        "FilletSurf" => {
+            let low = flat_patch(p, 0.0);
+            let high = flat_patch(p, 5.0);
+            let (a, b) = (p.number(0.3, 0.7), p.number(0.3, 0.7));
+            let first = p.object("UVSnake", &format!("{low}, \"v\", {a}"));
+            let second = p.object("UVSnake", &format!("{high}, \"v\", {b}"));
+            let continuity = 1 + p.random.below(2);
+            format!("{first}, {second}, w, h, continuity = {continuity}, {divisions}")
+        }
+        "RotatSurf" => {
+            let [a, b] = p.points();
+            let line = p.object("Line", &format!("{a}, {b}"));
+            format!("{}, {line}, h, {divisions}", p.surface())
+        }
+        "CopySurf" => {
+            let [a, b] = p.points();
+            format!("{}, {a}, {b}, w, 1.2, {t}, {divisions}", p.surface())
+        }
+        "ProjSurf" => {
+            let plane = p.random.pick(&p.planes).clone();
+            format!("{}, {plane}, {divisions}", p.surface())
+        }
+        "RelSurf" => format!("{}, {}, {divisions}", p.surface(), p.points::<4>().join(", ")),
         "MirrSurf" => format!("{}, {}, {divisions}", p.surface(), p.mirror()),
         "FairSurf" => {
             let grid = p.name("g");
@@ -80,4 +146,37 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         }
         _ => return None,
     })
+}
+
+/// Three curves apart from one another: at y = 0, 2 and 4 more or less, and away from one line.
+fn stations(p: &mut Program) -> [String; 3] {
+    std::array::from_fn(|k| {
+        let points: Vec<String> = (0..3)
+            .map(|j| {
+                let (x, y, z) = (p.number(-0.3, 0.3), p.number(-0.3, 0.3), p.number(-0.3, 0.3));
+                let bow = [0.0, 1.5, 0.0][k];
+                p.object("AbsPoint", &format!("{}*w + {x}, {bow} + {y}, 2*{j} + {z}", 2 * k))
+            })
+            .collect();
+        p.object("BCurve", &format!("{{{}}}, degree = 2, visible = 0", points.join(", ")))
+    })
+}
+
+/// A patch that is nearly flat, at the height `z`.
+fn flat_patch(p: &mut Program, z: f64) -> String {
+    let sides: Vec<String> = [0.0, 3.0]
+        .map(|y| {
+            let points: Vec<String> = (0..3)
+                .map(|j| {
+                    let (a, b) = (p.number(-0.3, 0.3), p.number(-0.3, 0.3));
+                    p.object(
+                        "AbsPoint",
+                        &format!("2*{j} + {a}, {y} + {z} + {b}, {z}*0.6 + 0.2*{b}"),
+                    )
+                })
+                .collect();
+            p.object("BCurve", &format!("{{{}}}, degree = 2, visible = 0", points.join(", ")))
+        })
+        .into();
+    p.object("RuledSurf", &format!("{}, visible = 0", sides.join(", ")))
 }

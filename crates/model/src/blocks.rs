@@ -1,0 +1,588 @@
+//! From solids to volume meshes: blocks of hexahedra from their own parameters, joined by identity.
+//!
+//! Vertices of different blocks become one when they lie at the same place of the same surface
+//! object, of the same root curve between the same ends, at the same point object, or on lines
+//! along w that follow one law between vertices that are one. Divisions are solved through all
+//! blocks: a number given for one block holds for every block that shares the edge, and so on.
+
+use crate::blocks_solve::{Classes, Solved};
+use crate::panel::UnionFind;
+use crate::{Graph, Object};
+use moldloft_mesh::{BlockFace, Blocks, HexBlock};
+use moldloft_num::trace::{Edge, Edges, Face, Faces, Key, Law, Mark, Piece, Root, Turn};
+use moldloft_num::{Box3, Real, Vec3};
+use moldloft_registry::{Fault, Scalar, SolidRef, Value};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+/// The most cells of a model.
+pub const MOST_CELLS: u64 = 20_000_000;
+
+/// Blocks whose shared vertices disagree by more than this share of the model's size are reported.
+const JOIN_ACCURACY: f64 = 1e-9;
+
+/// Something about the joins of blocks that the user may want to know.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BlockRemark {
+    /// The cells of one block along a part of another's edge do not fit, so they are not joined.
+    Divisions {
+        /// The block whose edge has several parts, and the one along a part of it.
+        blocks: [String; 2],
+        /// Cells along the edge, and along the part.
+        divisions: [usize; 2],
+        /// The share of the edge that the part is.
+        share: f64,
+    },
+    /// A shared vertex is not in the same place in both blocks.
+    Apart {
+        /// The blocks.
+        blocks: [String; 2],
+        /// How far apart the two positions are.
+        distance: f64,
+        /// Where.
+        at: Vec3,
+    },
+}
+
+impl BlockRemark {
+    /// A stable word for its kind.
+    pub fn id(&self) -> &'static str {
+        match self {
+            BlockRemark::Divisions { .. } => "divisions-contradict",
+            BlockRemark::Apart { .. } => "faces-apart",
+        }
+    }
+}
+
+impl std::fmt::Display for BlockRemark {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            BlockRemark::Divisions { blocks: [a, b], divisions: [n, m], share } => write!(
+                f,
+                "`{a}` has {n} cells along an edge of which `{b}` has {m} along a share of {share}, \
+                 so their cells do not join"
+            ),
+            BlockRemark::Apart { blocks: [a, b], distance, at } => write!(
+                f,
+                "`{a}` and `{b}` share a face or edge but lie {distance:.3e} apart at ({}, {}, {})",
+                at.x, at.y, at.z
+            ),
+        }
+    }
+}
+
+/// Which vertices of volume blocks there are and who computes them; independent of the scalar.
+#[derive(Clone, Debug)]
+pub struct Blocking {
+    plans: Vec<Plan>,
+    vertices: usize,
+    remarks: Vec<BlockRemark>,
+}
+
+#[derive(Clone, Debug)]
+struct Plan {
+    name: Arc<str>,
+    divisions: [usize; 3],
+    /// Vertex of (i, j, k) at `[(i * (nv + 1) + j) * (nw + 1) + k]`.
+    vertices: Vec<u32>,
+    faces: [BlockFace; 6],
+}
+
+impl Blocking {
+    /// The blocks of all shown solids that have a value.
+    ///
+    /// # Errors
+    /// A [`Fault`] when divisions contradict each other or there would be too many cells.
+    pub fn new(graph: &Graph<f64>) -> Result<Self, Fault> {
+        let drafts: Vec<Draft> = graph
+            .objects()
+            .filter(|o| o.head.shown())
+            .filter_map(|object| {
+                let solid = solid_of(object)?;
+                Some(Draft { object, solid, faces: solid.faces() })
+            })
+            .collect();
+        // Who meets whom is found on undivided blocks first: then the divisions follow.
+        let rough = vec![[1; 3]; drafts.len()];
+        let mut joiner = Joiner::new(&drafts, &rough);
+        joiner.join_all();
+        let Solved { divisions, mut remarks } = joiner.classes()?;
+        let cells = divisions.iter().map(|d| d.iter().map(|&n| n as u64).product::<u64>());
+        let cells = cells.fold(0u64, u64::saturating_add);
+        if cells > MOST_CELLS {
+            return Err(Fault::new("too-many-cells", format!("{cells} cells are too many"))
+                .expected(format!("at most {MOST_CELLS}"))
+                .found(cells.to_string())
+                .help("lower the divisions of the solids"));
+        }
+        let mut joiner = Joiner::new(&drafts, &divisions);
+        joiner.join_all();
+        remarks.extend(joiner.apart());
+        let mut number: HashMap<u32, u32> = HashMap::new();
+        let mut plans = Vec::with_capacity(drafts.len());
+        for (b, draft) in drafts.iter().enumerate() {
+            let [nu, nv, nw] = divisions[b];
+            let count = ((nu + 1) * (nv + 1) * (nw + 1)) as u32;
+            let vertices = (joiner.first[b]..joiner.first[b] + count).map(|v| {
+                let next = number.len() as u32;
+                *number.entry(joiner.joined.find(v)).or_insert(next)
+            });
+            plans.push(Plan {
+                name: draft.object.name.clone(),
+                divisions: divisions[b],
+                vertices: vertices.collect(),
+                faces: draft.face_names(graph),
+            });
+        }
+        Ok(Self { plans, vertices: number.len(), remarks })
+    }
+
+    /// What was noticed at the joins.
+    pub fn remarks(&self) -> &[BlockRemark] {
+        &self.remarks
+    }
+
+    /// True when there are no solids.
+    pub fn is_empty(&self) -> bool {
+        self.plans.is_empty()
+    }
+
+    /// The positions of all vertices, evaluated with the scalar of `graph`; `None` when a solid has
+    /// no value there.
+    pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
+        let mut positions = vec![Vec3::zero(); self.vertices];
+        // Backwards, so that the first block has the last word.
+        for plan in self.plans.iter().rev() {
+            let solid = solid_of(graph.get(graph.find(&plan.name)?)?)?;
+            for (&vertex, p) in plan.vertices.iter().zip(grid(solid, plan.divisions)) {
+                positions[vertex as usize] = p;
+            }
+        }
+        Some(positions)
+    }
+
+    /// The volume mesh, evaluated with the scalar of `graph`.
+    pub fn blocks<T: Scalar>(&self, graph: &Graph<T>) -> Option<Blocks<T>> {
+        let blocks = self.plans.iter().map(|plan| HexBlock {
+            name: plan.name.to_string(),
+            size: plan.divisions.map(|n| n + 1),
+            vertices: plan.vertices.clone(),
+            faces: plan.faces.clone(),
+        });
+        Blocks::new(self.positions(graph)?, blocks.collect()).ok()
+    }
+}
+
+fn solid_of<T: Scalar>(object: &Object<T>) -> Option<&SolidRef<T>> {
+    match object.value()? {
+        Value::Solid(solid) => Some(solid),
+        _ => None,
+    }
+}
+
+/// The grid of a solid with so many cells.
+pub fn grid<T: Real>(solid: &SolidRef<T>, divisions: [usize; 3]) -> Vec<Vec3<T>> {
+    let [us, vs, ws] =
+        divisions.map(|n| (0..=n).map(|i| i as f64 / n as f64).collect::<Vec<f64>>());
+    let mut points = vec![Vec3::zero(); us.len() * vs.len() * ws.len()];
+    solid.grid(&us, &vs, &ws, &mut points);
+    points
+}
+
+pub(crate) struct Draft<'g> {
+    pub object: &'g Object<f64>,
+    solid: &'g SolidRef<f64>,
+    pub faces: Faces<f64>,
+}
+
+impl Draft<'_> {
+    /// The names of the surfaces that the faces are, or of the solid and the face.
+    fn face_names(&self, graph: &Graph<f64>) -> [BlockFace; 6] {
+        std::array::from_fn(|f| {
+            let surface = match &self.faces.faces[f] {
+                Face::On { surface: Some(key), .. } => graph.get(*key),
+                _ => None,
+            };
+            let side = format!("{}.{}{}", self.object.name, ["u", "v", "w"][f / 2], f % 2);
+            BlockFace { name: surface.map_or(side, |s| s.name.to_string()) }
+        })
+    }
+}
+
+/// The identity of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum FaceId {
+    Surface(Key),
+    Solid(Key, u8),
+}
+
+/// The identity of a mark on a root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MarkId {
+    Point(Key),
+    At(u64),
+}
+
+pub(crate) fn mark_id(mark: &Mark<f64>) -> MarkId {
+    mark.point.map_or(MarkId::At(mark.t.to_bits()), MarkId::Point)
+}
+
+/// A stretch of a root, from its lower to its higher end; and whether the piece runs against it.
+pub(crate) type Stretch = (Root, MarkId, MarkId);
+
+pub(crate) fn stretch(piece: &Piece<f64>) -> (Stretch, bool) {
+    let backwards = piece.from.t > piece.to.t;
+    let (low, high) = if backwards { (piece.to, piece.from) } else { (piece.from, piece.to) };
+    ((piece.root, mark_id(&low), mark_id(&high)), backwards)
+}
+
+/// Where a vertex is, by identity.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum Spot {
+    Point(Key),
+    OnRoot(Root, u64),
+    Division(Stretch, u32, u32),
+    /// Place (i, j) of a face divided m x n times, in the surface's own parameters.
+    OnFace(FaceId, [u32; 2], [u32; 2]),
+    /// Division `at` of `of` of a line along w between vertices that are one.
+    OnLine(Vec<u32>, Law, u32, u32),
+}
+
+/// The axes of the parameters of face 0..6.
+pub(crate) fn face_axes(face: usize) -> [usize; 2] {
+    let [a, b, _] = HexBlock::face_axes(face);
+    [a, b]
+}
+
+/// Vertices of a surface's grid in its own parameters.
+struct Sheet {
+    /// Divisions along u and v.
+    size: [usize; 2],
+    /// At `[i * (size[1] + 1) + j]`.
+    vertices: Vec<u32>,
+}
+
+impl Sheet {
+    fn at(&self, i: usize, j: usize) -> u32 {
+        self.vertices[i * (self.size[1] + 1) + j]
+    }
+
+    fn edge(&self, k: usize) -> Vec<u32> {
+        let [nu, nv] = self.size;
+        match k {
+            0 => (0..=nu).map(|i| self.at(i, 0)).collect(),
+            1 => (0..=nv).map(|j| self.at(nu, j)).collect(),
+            2 => (0..=nu).map(|i| self.at(i, nv)).collect(),
+            _ => (0..=nv).map(|j| self.at(0, j)).collect(),
+        }
+    }
+}
+
+pub(crate) struct Joiner<'a, 'g> {
+    pub drafts: &'a [Draft<'g>],
+    divisions: &'a [[usize; 3]],
+    /// The first vertex of each block.
+    first: Vec<u32>,
+    /// The first vertex of each inner layer of each block: layers 1, 2, ... of a loft.
+    layers: Vec<Vec<u32>>,
+    pub joined: UnionFind,
+    spots: HashMap<Spot, u32>,
+    /// Faces of solids that are surfaces elsewhere.
+    named_faces: HashSet<(Key, u8)>,
+}
+
+impl<'a, 'g> Joiner<'a, 'g> {
+    fn new(drafts: &'a [Draft<'g>], divisions: &'a [[usize; 3]]) -> Self {
+        let (mut first, mut layers) = (Vec::new(), Vec::new());
+        let mut next = 0u32;
+        for (draft, [nu, nv, nw]) in drafts.iter().zip(divisions) {
+            first.push(next);
+            next += ((nu + 1) * (nv + 1) * (nw + 1)) as u32;
+            let inner =
+                draft.faces.layers.as_ref().map_or(0, |l| l.surfaces.len().saturating_sub(2));
+            let sheet = ((nu + 1) * (nv + 1)) as u32;
+            layers.push((0..inner as u32).map(|l| next + l * sheet).collect());
+            next += inner as u32 * sheet;
+        }
+        let all = drafts.iter().flat_map(|d| &d.faces.faces);
+        let named_faces = all.filter_map(|face| match face {
+            Face::On { face_of, .. } => *face_of,
+            _ => None,
+        });
+        Self {
+            drafts,
+            divisions,
+            first,
+            layers,
+            joined: UnionFind::new(next as usize),
+            spots: HashMap::new(),
+            named_faces: named_faces.collect(),
+        }
+    }
+
+    pub fn vertex(&self, b: usize, [i, j, k]: [usize; 3]) -> u32 {
+        let [_, nv, nw] = self.divisions[b];
+        self.first[b] + ((i * (nv + 1) + j) * (nw + 1) + k) as u32
+    }
+
+    /// The vertex at a corner, u, v, w being bits 0, 1 and 2 of its number.
+    pub fn corner(&self, b: usize, c: usize) -> u32 {
+        let n = self.divisions[b];
+        self.vertex(b, [0, 1, 2].map(|axis| if c >> axis & 1 == 1 { n[axis] } else { 0 }))
+    }
+
+    /// The vertices of face 0..6 of a block in the parameters of a surface turned so.
+    fn sheet(&self, b: usize, face: usize, turn: Turn) -> Sheet {
+        let n = self.divisions[b];
+        let [p, q] = face_axes(face);
+        let size = if turn.swaps() { [n[q], n[p]] } else { [n[p], n[q]] };
+        let mut vertices = Vec::with_capacity((size[0] + 1) * (size[1] + 1));
+        for i in 0..=size[0] {
+            for j in 0..=size[1] {
+                let i = if turn.flips(0) { size[0] - i } else { i };
+                let j = if turn.flips(1) { size[1] - j } else { j };
+                let (a, c) = if turn.swaps() { (j, i) } else { (i, j) };
+                let mut place = [0; 3];
+                (place[p], place[q]) = (a, c);
+                place[face / 2] = if face % 2 == 1 { n[face / 2] } else { 0 };
+                vertices.push(self.vertex(b, place));
+            }
+        }
+        Sheet { size, vertices }
+    }
+
+    /// The vertices of layer `l` of a block: of its faces w = 0 and w = 1, or of an inner one.
+    fn layer(&self, b: usize, l: usize, count: usize) -> Sheet {
+        if l == 0 {
+            return self.sheet(b, 4, Turn::default());
+        }
+        if l + 1 == count {
+            return self.sheet(b, 5, Turn::default());
+        }
+        let [nu, nv, _] = self.divisions[b];
+        let first = self.layers[b][l - 1];
+        let vertices = (first..first + ((nu + 1) * (nv + 1)) as u32).collect();
+        Sheet { size: [nu, nv], vertices }
+    }
+
+    fn settle(&mut self, vertex: u32, spot: Spot) {
+        let known = *self.spots.entry(spot).or_insert(vertex);
+        self.joined.join(known, vertex);
+    }
+
+    fn join_all(&mut self) {
+        let drafts = self.drafts;
+        for (b, draft) in drafts.iter().enumerate() {
+            for (c, point) in draft.faces.corners.iter().enumerate() {
+                if let Some(point) = point {
+                    self.settle(self.corner(b, c), Spot::Point(*point));
+                }
+            }
+            for (f, face) in draft.faces.faces.iter().enumerate() {
+                self.join_face(b, f, face);
+            }
+            if let Some(layers) = &draft.faces.layers {
+                let count = layers.surfaces.len();
+                for (l, (_, edges)) in layers.surfaces.iter().enumerate() {
+                    // The outer ones of a loft are faces; the one of a moved surface, too.
+                    if l > 0 && l + 1 < count {
+                        let sheet = self.layer(b, l, count);
+                        self.join_edges(&sheet, edges);
+                    }
+                }
+            }
+        }
+        for b in 0..drafts.len() {
+            self.join_lines(b);
+        }
+    }
+
+    fn join_face(&mut self, b: usize, f: usize, face: &Face<f64>) {
+        let own = self.drafts[b].object.key;
+        match face {
+            Face::Own => {
+                if self.named_faces.contains(&(own, f as u8)) {
+                    let sheet = self.sheet(b, f, Turn::default());
+                    self.join_places(&sheet, FaceId::Solid(own, f as u8));
+                }
+            }
+            Face::On { surface, face_of, turn, edges } => {
+                let sheet = self.sheet(b, f, *turn);
+                self.join_edges(&sheet, edges);
+                if let Some(id) = face_id(*surface, *face_of) {
+                    self.join_places(&sheet, id);
+                }
+                if self.named_faces.contains(&(own, f as u8)) {
+                    let sheet = self.sheet(b, f, Turn::default());
+                    self.join_places(&sheet, FaceId::Solid(own, f as u8));
+                }
+            }
+            Face::SameAs(other) => {
+                let (a, c) = (
+                    self.sheet(b, f, Turn::default()),
+                    self.sheet(b, usize::from(*other), Turn::default()),
+                );
+                for (v, w) in a.vertices.into_iter().zip(c.vertices) {
+                    self.joined.join(v, w);
+                }
+            }
+        }
+    }
+
+    /// Joins the vertices of a whole face with those of the same face elsewhere.
+    fn join_places(&mut self, sheet: &Sheet, id: FaceId) {
+        let [nu, nv] = sheet.size;
+        let size = sheet.size.map(|n| n as u32);
+        for i in 0..=nu {
+            for j in 0..=nv {
+                self.settle(sheet.at(i, j), Spot::OnFace(id, [i as u32, j as u32], size));
+            }
+        }
+    }
+
+    fn join_edges(&mut self, sheet: &Sheet, edges: &Edges<f64>) {
+        let [nu, nv] = sheet.size;
+        for ((i, j), point) in [(0, 0), (nu, 0), (nu, nv), (0, nv)].into_iter().zip(edges.corners) {
+            if let Some(point) = point {
+                self.settle(sheet.at(i, j), Spot::Point(point));
+            }
+        }
+        for (k, edge) in edges.edges.iter().enumerate() {
+            let vertices = sheet.edge(k);
+            match edge {
+                Edge::Own => {}
+                Edge::Pieces(pieces) => self.join_chain(&vertices, pieces),
+                Edge::SameAs(other) => {
+                    let others = sheet.edge(usize::from(*other));
+                    if others.len() == vertices.len() {
+                        for (a, b) in vertices.into_iter().zip(others) {
+                            self.joined.join(a, b);
+                        }
+                    }
+                }
+                Edge::Pole(point) => {
+                    for &vertex in &vertices {
+                        self.joined.join(vertices[0], vertex);
+                    }
+                    if let Some(point) = point {
+                        self.settle(vertices[0], Spot::Point(*point));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Joins an edge along a chain of pieces, as far as divisions fall on the pieces' ends.
+    fn join_chain(&mut self, vertices: &[u32], pieces: &[Piece<f64>]) {
+        let n = (vertices.len() - 1) as f64;
+        let mut begin = 0.0;
+        for piece in pieces {
+            let (low, high) = (begin * n, piece.until * n);
+            begin = piece.until;
+            let (first, last) = (low.round(), high.round());
+            if (low - first).abs() > 1e-9 || (high - last).abs() > 1e-9 || last <= first {
+                continue;
+            }
+            let part = &vertices[first as usize..=last as usize];
+            let (id, backwards) = stretch(piece);
+            let (from, to) =
+                if backwards { (&piece.to, &piece.from) } else { (&piece.from, &piece.to) };
+            let count = part.len() - 1;
+            for (m, &vertex) in part.iter().enumerate() {
+                let m = if backwards { count - m } else { m };
+                let end = |mark: &Mark<f64>| match mark.point {
+                    Some(point) => Spot::Point(point),
+                    None => Spot::OnRoot(piece.root, mark.t.to_bits()),
+                };
+                let spot = match m {
+                    0 => end(from),
+                    m if m == count => end(to),
+                    m => Spot::Division(id, m as u32, count as u32),
+                };
+                self.settle(vertex, spot);
+            }
+        }
+    }
+
+    /// The vertices of all layers at (i, j), as those that stand for them.
+    pub fn roots(&mut self, b: usize, [i, j]: [usize; 2]) -> Vec<u32> {
+        let count = self.drafts[b].faces.layers.as_ref().map_or(0, |l| l.surfaces.len());
+        let [_, nv, nw] = self.divisions[b];
+        (0..count)
+            .map(|l| {
+                let vertex = match l {
+                    0 => self.vertex(b, [i, j, 0]),
+                    l if l + 1 == count => self.vertex(b, [i, j, nw]),
+                    l => self.layers[b][l - 1] + (i * (nv + 1) + j) as u32,
+                };
+                self.joined.find(vertex)
+            })
+            .collect()
+    }
+
+    /// Joins the lines along w at the rim of the layers.
+    fn join_lines(&mut self, b: usize) {
+        let Some(law) = self.drafts[b].faces.layers.as_ref().map(|l| l.law) else { return };
+        if matches!(law, Law::Along(None, _)) {
+            return;
+        }
+        let [nu, nv, nw] = self.divisions[b];
+        // A moved surface has no layer at w = 1; a loft has.
+        let last = if matches!(law, Law::Along(..)) { nw } else { nw - 1 };
+        for i in 0..=nu {
+            for j in 0..=nv {
+                if i > 0 && i < nu && j > 0 && j < nv {
+                    continue;
+                }
+                let roots = self.roots(b, [i, j]);
+                for k in 1..=last {
+                    let spot = Spot::OnLine(roots.clone(), law, k as u32, nw as u32);
+                    self.settle(self.vertex(b, [i, j, k]), spot);
+                }
+            }
+        }
+    }
+
+    fn classes(&mut self) -> Result<Solved, Fault> {
+        Classes::of(self).solved(self.drafts)
+    }
+
+    /// Shared vertices that are not in one place.
+    fn apart(&mut self) -> Vec<BlockRemark> {
+        let mut owner: HashMap<u32, (usize, Vec3)> = HashMap::new();
+        let mut worst: HashMap<(usize, usize), (f64, Vec3)> = HashMap::new();
+        let grids: Vec<Vec<Vec3>> =
+            self.drafts.iter().zip(self.divisions).map(|(d, &n)| grid(d.solid, n)).collect();
+        let size = Box3::around(grids.iter().flatten().copied()).diagonal();
+        for (b, points) in grids.iter().enumerate() {
+            for (v, &p) in points.iter().enumerate() {
+                let root = self.joined.find(self.first[b] + v as u32);
+                let (first, q) = *owner.entry(root).or_insert((b, p));
+                let distance = p.distance(q);
+                if distance > JOIN_ACCURACY * size {
+                    let entry = worst.entry((first, b)).or_insert((0.0, p));
+                    if distance > entry.0 {
+                        *entry = (distance, p);
+                    }
+                }
+            }
+        }
+        let mut worst: Vec<_> = worst.into_iter().collect();
+        worst.sort_by_key(|(pair, _)| *pair);
+        let name = |b: usize| self.drafts[b].object.name.to_string();
+        let remark = |((a, b), (distance, at))| BlockRemark::Apart {
+            blocks: [name(a), name(b)],
+            distance,
+            at,
+        };
+        worst.into_iter().map(remark).collect()
+    }
+}
+
+/// The identity of a face that is a surface: that of the solid's face, if it is one.
+pub(crate) fn face_id(surface: Option<Key>, face_of: Option<(Key, u8)>) -> Option<FaceId> {
+    match face_of {
+        Some((solid, face)) => Some(FaceId::Solid(solid, face)),
+        None => surface.map(FaceId::Surface),
+    }
+}

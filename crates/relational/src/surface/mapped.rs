@@ -1,0 +1,304 @@
+//! Images of surfaces, point by point, under maps of space.
+
+use moldloft_num::trace::Key;
+use moldloft_num::{Axis, Order, Real, SurfJet, Surface, Vec3};
+use moldloft_registry::{Build, Context, Fault, Kind, Mirror, Point, SurfaceRef, Value};
+
+/// An affine map: p goes to `to` + A (p - `from`).
+#[derive(Clone, Copy)]
+enum Linear<T: Real> {
+    /// A turn about an axis, with the cosine and sine of its angle.
+    Turn(Axis<T>, T, T),
+    /// A shift and a stretch along the three axes.
+    Stretch { from: Vec3<T>, to: Vec3<T>, factors: Vec3<T> },
+}
+
+impl<T: Real> Linear<T> {
+    fn point(&self, p: Vec3<T>) -> Vec3<T> {
+        match self {
+            Linear::Turn(axis, c, s) => axis.turned(p, *c, *s),
+            Linear::Stretch { from, to, .. } => *to + self.direction(p - *from),
+        }
+    }
+
+    fn direction(&self, d: Vec3<T>) -> Vec3<T> {
+        match self {
+            Linear::Turn(axis, c, s) => {
+                Axis { point: Vec3::zero(), direction: axis.direction }.turned(d, *c, *s)
+            }
+            Linear::Stretch { factors: f, .. } => Vec3::new(d.x * f.x, d.y * f.y, d.z * f.z),
+        }
+    }
+
+    /// True when the map turns the natural normal round.
+    fn reverses(&self) -> bool {
+        match self {
+            Linear::Turn(..) => false,
+            Linear::Stretch { factors: f, .. } => f.x.re() * f.y.re() * f.z.re() < 0.0,
+        }
+    }
+}
+
+struct Image<T: Real> {
+    surface: SurfaceRef<T>,
+    map: Linear<T>,
+}
+
+impl<T: Real> Surface<T> for Image<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        let jet = self.surface.jet(u, v, order);
+        let turned = |d| self.map.direction(d);
+        SurfJet {
+            p: self.map.point(jet.p),
+            u: turned(jet.u),
+            v: turned(jet.v),
+            uu: turned(jet.uu),
+            uv: turned(jet.uv),
+            vv: turned(jet.vv),
+        }
+    }
+
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        mut normals: Option<&mut [Vec3<T>]>,
+    ) {
+        self.surface.grid(us, vs, points, normals.as_deref_mut());
+        for p in points {
+            *p = self.map.point(*p);
+        }
+        for n in normals.into_iter().flatten() {
+            *n = match self.map {
+                Linear::Turn(..) => self.map.direction(*n),
+                // A n x A m = det(A) A^-T (n x m), here with a diagonal A.
+                Linear::Stretch { factors: f, .. } => {
+                    let m = Vec3::new(n.x * f.y * f.z, n.y * f.z * f.x, n.z * f.x * f.y);
+                    m.normalized().unwrap_or_default()
+                }
+            };
+        }
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        self.surface.breaks()
+    }
+
+    fn image_of(&self) -> Option<(Key, bool)> {
+        Some((self.surface.key?, self.map.reverses()))
+    }
+}
+
+/// A surface turned about a line, right-handed about the direction from the line's start to its end
+/// (Rodrigues). Images of joined surfaces under the same turn are joined.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "surface line angle",
+    example = "AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
+               AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
+               AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0.2); Line axis(O, X); \
+               RotatSurf blade(S, axis, 1.25);"
+)]
+pub struct RotatSurf<T: Real> {
+    /// The surface to turn.
+    surface: SurfaceRef<T>,
+    /// The line about which it is turned.
+    line: Axis<T>,
+    /// The angle, in radians (degrees in model files).
+    #[field(angle)]
+    angle: T,
+}
+
+impl<T: Real> Build<T> for RotatSurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let (c, s) = super::revolved::cos_sin(self.angle);
+        let image = Image { surface: self.surface, map: Linear::Turn(self.line, c, s) };
+        Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
+    }
+}
+
+/// A copy of a surface, shifted and stretched: p goes to `to` + diag(sx, sy, sz) (p - `from`).
+///
+/// A negative product of the three factors turns the natural normal round; panels keep the side of
+/// the original's all the same.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "surface from to sx sy sz",
+    example = "AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
+               AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
+               AbsPoint P(1, 8, 0.5); CopySurf beside(S, A, P); CopySurf small(S, A, P, 0.5, -0.25, 0.4);"
+)]
+pub struct CopySurf<T: Real> {
+    /// The surface to copy.
+    surface: SurfaceRef<T>,
+    /// The point that goes to `to`.
+    from: Point<T>,
+    /// Where it goes.
+    to: Point<T>,
+    /// Stretch along x.
+    #[field(default = 1)]
+    sx: T,
+    /// Stretch along y.
+    #[field(default = 1)]
+    sy: T,
+    /// Stretch along z.
+    #[field(default = 1)]
+    sz: T,
+}
+
+impl<T: Real> Build<T> for CopySurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { surface, from, to, sx, sy, sz } = self;
+        let factors = Vec3::new(sx, sy, sz);
+        let zeros = factors.re().to_array().iter().filter(|f| **f == 0.0).count();
+        if zeros > 1 {
+            return Err(Fault::new("no-area", "two factors of 0 leave no surface")
+                .expected("at most one factor of 0")
+                .found(format!("{zeros} factors of 0"))
+                .in_field(3));
+        }
+        let map = Linear::Stretch { from: from.xyz, to: to.xyz, factors };
+        let image = Image { surface, map };
+        Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
+    }
+}
+
+/// A surface projected to a plane, along its normal: each point goes to its foot.
+///
+/// The image of a surface that stands on the plane is folded flat; where it does, panels overlap.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "surface mirror",
+    example = "AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
+               AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
+               YPlane p(2.5); ProjSurf shadow(S, p); ProjSurf flat(S, \"y=0\");"
+)]
+pub struct ProjSurf<T: Real> {
+    /// The surface to project.
+    surface: SurfaceRef<T>,
+    /// The plane to project it to.
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Build<T> for ProjSurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { surface, mirror } = self;
+        if !matches!(mirror, Mirror::Plane(_)) {
+            return Err(Fault::new(
+                "no-area",
+                "a surface projected to a line or point has no area",
+            )
+            .expected("a plane")
+            .found("a line or point")
+            .in_field(1));
+        }
+        Ok(Value::Surface(SurfaceRef::new(Foot { surface, mirror }, context.nesting)))
+    }
+}
+
+struct Foot<T: Real> {
+    surface: SurfaceRef<T>,
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Surface<T> for Foot<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        let jet = self.surface.jet(u, v, order);
+        let flat = |d| self.mirror.direction(d, true);
+        SurfJet {
+            p: self.mirror.foot(jet.p),
+            u: flat(jet.u),
+            v: flat(jet.v),
+            uu: flat(jet.uu),
+            uv: flat(jet.uv),
+            vv: flat(jet.vv),
+        }
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        self.surface.breaks()
+    }
+
+    fn image_of(&self) -> Option<(Key, bool)> {
+        Some((self.surface.key?, false))
+    }
+}
+
+/// A surface whose four corners are moved to given points: S plus the bilinear blend of the corners'
+/// displacements. Between the corners each edge keeps its shape but for a linear change.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "surface p00 p10 p11 p01",
+    example = "AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
+               AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
+               AbsPoint P(0, 2, 0); AbsPoint Q(4.5, 2, 0.5); AbsPoint R(4, 2, 3); AbsPoint T(0, 1.5, 2); \
+               RelSurf moved(S, P, Q, R, T);"
+)]
+pub struct RelSurf<T: Real> {
+    /// The surface it follows.
+    surface: SurfaceRef<T>,
+    /// The corner (u, v) = (0, 0).
+    p00: Point<T>,
+    /// The corner (1, 0).
+    p10: Point<T>,
+    /// The corner (1, 1).
+    p11: Point<T>,
+    /// The corner (0, 1).
+    p01: Point<T>,
+}
+
+impl<T: Real> Build<T> for RelSurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { surface, p00, p10, p11, p01 } = self;
+        let places = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let points = [p00, p10, p11, p01];
+        let shift = |k: usize| {
+            let (u, v) = places[k];
+            points[k].xyz - surface.jet(T::from(u), T::from(v), Order::Zero).p
+        };
+        let shifts = [shift(0), shift(1), shift(2), shift(3)];
+        let corners = [0, 1, 2, 3].map(|k| points[k].key);
+        Ok(Value::Surface(SurfaceRef::new(Moved { surface, shifts, corners }, context.nesting)))
+    }
+}
+
+struct Moved<T: Real> {
+    surface: SurfaceRef<T>,
+    shifts: [Vec3<T>; 4],
+    corners: [Option<Key>; 4],
+}
+
+impl<T: Real> Moved<T> {
+    fn added(&self, mut jet: SurfJet<T>, u: T, v: T, order: Order) -> SurfJet<T> {
+        let [a, b, c, d] = self.shifts;
+        let (p, q) = (-u + 1.0, -v + 1.0);
+        jet.p += (a * p + b * u) * q + (d * p + c * u) * v;
+        if order >= Order::First {
+            jet.u += (b - a) * q + (c - d) * v;
+            jet.v += (d - a) * p + (c - b) * u;
+        }
+        if order == Order::Second {
+            jet.uv += a - b + c - d;
+        }
+        jet
+    }
+}
+
+impl<T: Real> Surface<T> for Moved<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        self.added(self.surface.jet(u, v, order), u, v, order)
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        self.surface.breaks()
+    }
+
+    fn edges(&self) -> moldloft_num::trace::Edges<T> {
+        moldloft_num::trace::Edges { corners: self.corners, ..moldloft_num::trace::Edges::own() }
+    }
+}
