@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic, __version__
+    from moldloft.blocks import Block, Blocks
     from moldloft.builder import Builder, model, param
     from moldloft.errors import Error, FairingError, FileError, ModelError, UnknownNameError
     from moldloft.fairing import fair
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from moldloft.sketches import Sketch, SketchError
 
 __all__ = [
+    "Block",
+    "Blocks",
     "Builder",
     "Diagnostic",
     "Error",
@@ -57,6 +60,8 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Block": "moldloft.blocks",
+    "Blocks": "moldloft.blocks",
     "Builder": "moldloft.builder",
     "Diagnostic": "moldloft._core",
     "__version__": "moldloft._core",

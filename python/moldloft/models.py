@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from moldloft.blocks import Blocks
     from moldloft.mesh import Mesh
 
 __all__ = ["Model", "Param", "load", "loads"]
@@ -286,6 +287,28 @@ class Model:
     def junctions(self) -> list[_core.Diagnostic]:
         """Corners of patches that lie on edges of other patches and are not joined to them."""
         return self._document.junctions()
+
+    def blocks(self) -> Blocks:
+        """Hexahedra of all shown solids, as the model stands now.
+
+        Raises
+        ------
+        ModelError
+            When there is no solid, divisions contradict each other, or there are too many cells.
+        """
+        from moldloft.blocks import Blocks
+
+        return Blocks(self._document.blocks())
+
+    def block_jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
+        """Exact derivatives of every vertex of :meth:`blocks`, ``(n, 3, len(by))``.
+
+        Parameters
+        ----------
+        by
+            Parameters, or literals such as ``"P21.x"``.
+        """
+        return self._document.block_jacobian(list(by))
 
     def hydrostatics(
         self,

@@ -31,6 +31,7 @@ pub struct Document {
     pub(crate) plain: Evaluation<f64>,
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
     panelled: Option<(u64, Arc<Panelled>)>,
+    pub(crate) blocked: Option<(u64, Arc<crate::volume::Blocked>)>,
     /// The counts of divisions at the text's own values, and the version of the text.
     nominal: Option<(u64, Nominal)>,
     pub(crate) applied: Applied,
@@ -98,6 +99,7 @@ impl Document {
             plain: Evaluation::default(),
             dual: None,
             panelled: None,
+            blocked: None,
             nominal: None,
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
             solved: Vec::new(),

@@ -668,6 +668,26 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
             })
         }
         (Value::Relabel(_), _) => Err(count("one parameter t, as in r(0.5)")),
+        (Value::Solid(solid), [u, v, w]) => {
+            let (us, vs, ws) = (parameters(u)?, parameters(v)?, parameters(w)?);
+            let rows = [&us, &vs, &ws];
+            let lengths: Vec<usize> = rows.iter().filter_map(|r| Some(r.as_ref()?.len())).collect();
+            let Some(&n) = lengths.first() else {
+                return Ok(Value::Vector(solid.eval(one(u), one(v), one(w))));
+            };
+            if lengths.iter().any(|&m| m != n) {
+                let found = lengths.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+                return Err(
+                    Diagnostic::error("shapes-differ", "u, v and w differ in length").found(found)
+                );
+            }
+            let pick = |all: &Option<Vec<T>>, single: &Value<T>, k: usize| {
+                all.as_ref().map_or_else(|| one(single), |all| all[k])
+            };
+            let at = |k: usize| solid.eval(pick(&us, u, k), pick(&vs, v, k), pick(&ws, w, k));
+            Ok(row((0..n).map(at).collect()))
+        }
+        (Value::Solid(_), _) => Err(count("three parameters u, v and w, as in s(0.5, 0.25, 0.75)")),
         (Value::Field(field), [p]) => {
             let value = |f: &FieldRef<T>, p: Vec3<T>| f.value(p);
             match p {

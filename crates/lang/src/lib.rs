@@ -46,6 +46,7 @@ mod sketch_file;
 mod sketches;
 mod solve;
 mod variables;
+mod volume;
 mod world;
 
 pub use convert::Format;
@@ -56,6 +57,7 @@ pub use hydro::{Options as FloatOptions, named as named_hydrostatics};
 pub use interpreter::MOST_STEPS;
 pub use sections::Section;
 pub use solve::{SolveStatus, Solved};
+pub use volume::Blocked;
 pub use world::{NoFiles, ReadError, ReadText, World};
 
 use moldloft_registry::Registry;

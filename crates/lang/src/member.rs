@@ -1,10 +1,12 @@
 //! What values own: `.x`, `.t`, `.length`, `.area` and the like.
 
 use moldloft_diag::Diagnostic;
-use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
-use moldloft_model::{Graph, MOST_PANELS, Object, divisions, too_many_panels};
+use moldloft_mesh::{Blocks, HexBlock, Mesh, PatchInfo, TopologyBuilder, measure};
+use moldloft_model::{
+    Graph, MOST_CELLS, MOST_PANELS, Object, divisions, solid_grid, too_many_panels,
+};
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
-use moldloft_registry::{Array, ArrayShape, Scalar, Value};
+use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value};
 use std::sync::Arc;
 
 /// The member called `name`, if the value has one.
@@ -106,16 +108,20 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Curve(_) => vec!["length"],
         Value::Surface(_) => vec!["area"],
         Value::Mesh(_) => vec!["volume", "area", "centroid"],
+        Value::Solid(_) => vec!["volume"],
         _ => Vec::new(),
     }
 }
 
-/// The area of a surface object, measured on its panels.
+/// The area of a surface object, measured on its panels, or the volume of a solid, on its cells.
 pub(crate) fn of_patch<T: Scalar>(
     graph: &Graph<T>,
     object: &Object<T>,
     name: &str,
 ) -> Option<Result<T, Diagnostic>> {
+    if let Value::Solid(solid) = object.value()? {
+        return (name == "volume").then(|| solid_volume(solid, object));
+    }
     let Value::Surface(surface) = object.value()? else { return None };
     if name != "area" {
         return None;
@@ -132,4 +138,30 @@ pub(crate) fn of_patch<T: Scalar>(
     let vertices = builder.add_vertices(points.len()).ok()?;
     builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), false).ok()?;
     Some(Ok(measure(&Mesh::new(builder.build().into(), points).ok()?).area))
+}
+
+/// Cells along a direction of which the solid itself says nothing.
+const USUAL_CELLS: usize = 8;
+
+/// The volume of a solid, measured on its own cells; negative when it is left-handed.
+fn solid_volume<T: Scalar>(solid: &SolidRef<T>, object: &Object<T>) -> Result<T, Diagnostic> {
+    let cells = object.head.blocks.map(|n| if n == 0 { USUAL_CELLS } else { n as usize });
+    let count = cells.iter().map(|&n| n as u64).product::<u64>();
+    if count > MOST_CELLS {
+        let message = format!("{count} cells are too many");
+        return Err(Diagnostic::error("too-many-cells", message)
+            .expected(format!("at most {MOST_CELLS}"))
+            .help("lower the divisions of the solid"));
+    }
+    let points = solid_grid(solid, cells);
+    let block = HexBlock {
+        name: object.name.to_string(),
+        size: cells.map(|n| n + 1),
+        vertices: (0..points.len() as u32).collect(),
+        faces: Default::default(),
+    };
+    match Blocks::new(points, vec![block]) {
+        Ok(blocks) => Ok(blocks.volume()),
+        Err(error) => Err(Diagnostic::error("no-mesh", error.to_string())),
+    }
 }

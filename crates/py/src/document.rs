@@ -1,6 +1,7 @@
 //! A model with its text.
 
 use crate::arrays;
+use crate::blocks::PyBlocks;
 use crate::diagnostics::Diagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
@@ -394,26 +395,34 @@ impl PyDocument {
         Ok(found.iter().map(|d| d.to_data(sources).into()).collect())
     }
 
+    /// The volume mesh of the shown solids.
+    fn blocks(&self, py: Python<'_>) -> PyResult<PyBlocks> {
+        let (blocked, problems) = self.long_checked(py, |d| {
+            let blocked = d.blocked().map_err(|e| vec![e])?;
+            let sources = d.sources();
+            let problems = blocked.diagnostics();
+            let problems = problems.iter().map(|p| p.to_data(sources).into()).collect();
+            Ok((blocked, problems))
+        })?;
+        Ok(PyBlocks::new(blocked, problems))
+    }
+
+    fn block_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        by: Vec<String>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let columns = self.long_checked(py, move |d| d.block_jacobian(&by))?;
+        Ok(derivatives(py, &columns))
+    }
+
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
         by: Vec<String>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let columns = self.long_checked(py, move |d| d.jacobian(&by))?;
-        let vertices = columns.first().map_or(0, Vec::len);
-        let array = PyArray3::<f64>::zeros(py, [vertices, 3, columns.len()], false);
-        {
-            let mut access = numpy::PyArrayMethods::readwrite(&array);
-            let mut out = access.as_array_mut();
-            for (k, column) in columns.iter().enumerate() {
-                for (i, v) in column.iter().enumerate() {
-                    for (axis, x) in v.to_array().into_iter().enumerate() {
-                        out[[i, axis, k]] = x;
-                    }
-                }
-            }
-        }
-        Ok(array)
+        Ok(derivatives(py, &columns))
     }
 
     /// The model afloat: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
@@ -571,4 +580,22 @@ fn parameters(nu: usize, nv: usize) -> PyResult<[Vec<f64>; 2]> {
         return Err(plain_error(format!("{nu} x {nv} are more than {MOST_POINTS} points")));
     }
     Ok([nu, nv].map(|n| (0..n).map(|i| i as f64 / (n - 1) as f64).collect()))
+}
+
+/// Derivatives `[by][vertex]` as an array (vertices, 3, by).
+fn derivatives<'py>(py: Python<'py>, columns: &[Vec<Vec3>]) -> Bound<'py, PyArray3<f64>> {
+    let vertices = columns.first().map_or(0, Vec::len);
+    let array = PyArray3::<f64>::zeros(py, [vertices, 3, columns.len()], false);
+    {
+        let mut access = numpy::PyArrayMethods::readwrite(&array);
+        let mut out = access.as_array_mut();
+        for (k, column) in columns.iter().enumerate() {
+            for (i, v) in column.iter().enumerate() {
+                for (axis, x) in v.to_array().into_iter().enumerate() {
+                    out[[i, axis, k]] = x;
+                }
+            }
+        }
+    }
+    array
 }

@@ -7,6 +7,7 @@
 //! those for reading only: inside the model's folder and the library path.
 
 mod arrays;
+mod blocks;
 mod diagnostics;
 mod document;
 mod error;
@@ -30,6 +31,8 @@ mod _core {
     #[allow(non_upper_case_globals)]
     const __version__: &str = env!("CARGO_PKG_VERSION");
 
+    #[pymodule_export]
+    use crate::blocks::PyBlocks;
     #[pymodule_export]
     use crate::diagnostics::{Diagnostic, Label};
     #[pymodule_export]

@@ -65,7 +65,7 @@ pub enum Class {
 
 impl Class {
     /// All classes, in the order of the reference.
-    pub const ALL: [Class; 27] = [
+    pub const ALL: [Class; 28] = [
         Class::Any,
         Class::Number,
         Class::Integer,

@@ -23,7 +23,7 @@ const WEIGHTS: [[f64; 5]; 5] = [
 ];
 
 /// The derivative of `f` at `t` by differences within the smooth stretch around it.
-fn slope<T: Real, const N: usize>(
+pub fn slope<T: Real, const N: usize>(
     f: impl Fn(T) -> [Vec3<T>; N],
     t: T,
     breaks: &[f64],

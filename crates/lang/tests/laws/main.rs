@@ -42,6 +42,12 @@ fn expressions(document: &Document) -> (Vec<String>, Vec<String>) {
                     .push(format!("{name}({{0, 0.29, 0.5, 0.83, 1}}, {{0, 0.23, 0.5, 0.71, 1}})"));
                 numbers.push(format!("{name}.area"));
             }
+            Some(Value::Solid(_)) => {
+                positions.push(format!(
+                    "{name}({{0, 0.29, 0.5, 0.83, 1}}, {{0, 0.23, 0.5, 0.71, 1}}, {{1, 0.4, 0.5, 0.2, 0}})"
+                ));
+                numbers.push(format!("{name}.volume"));
+            }
             _ => {}
         }
     }
@@ -83,6 +89,11 @@ fn sample(document: &mut Document, numbers: &[String]) -> Option<Sample> {
             Some(Value::Surface(s)) => {
                 let at = |(&u, &v): (&f64, &f64)| s.jet(u, v, Order::Zero).p;
                 close(&mut sample, xyz(TS.iter().zip(&US).map(at).collect()));
+            }
+            Some(Value::Solid(s)) => {
+                let at = |((&u, &v), w): ((&f64, &f64), f64)| s.eval(u, v, w);
+                let places = TS.iter().zip(&US).zip([1.0, 0.4, 0.5, 0.2, 0.0]);
+                close(&mut sample, xyz(places.map(at).collect()));
             }
             Some(_) => {}
             None => return None,

@@ -1,3 +1,4 @@
+use crate::lifted::slope;
 use moldloft_num::trace::{Edges, Face, Key};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{Build, Context, Fault, Kind, SolidRef, SurfaceRef, Value};
@@ -5,8 +6,7 @@ use moldloft_registry::{Build, Context, Fault, Kind, SolidRef, SurfaceRef, Value
 /// A face of a solid as a surface: 1 is u = 0, 2 is u = 1, 3 is v = 0, 4 is v = 1, 5 is w = 0, 6 is
 /// w = 1. Its parameters are the solid's other two, in order.
 ///
-/// A solid that has it as a face shares the vertices of the first solid there. Its second derivatives
-/// are zero: solids tell first ones only.
+/// A solid that has it as a face shares the vertices of the first solid there.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -48,12 +48,9 @@ impl<T: Real> OfSolid<T> {
     }
 }
 
-impl<T: Real> Surface<T> for OfSolid<T> {
-    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+impl<T: Real> OfSolid<T> {
+    fn first(&self, u: T, v: T) -> SurfJet<T> {
         let [a, b, c] = self.place(u, v);
-        if order == Order::Zero {
-            return SurfJet { p: self.solid.eval(a, b, c), ..SurfJet::default() };
-        }
         let jet = self.solid.jet(a, b, c);
         let (along, across) = match self.face / 2 {
             0 => (jet.v, jet.w),
@@ -61,6 +58,30 @@ impl<T: Real> Surface<T> for OfSolid<T> {
             _ => (jet.u, jet.v),
         };
         SurfJet { p: jet.p, u: along, v: across, ..SurfJet::default() }
+    }
+}
+
+impl<T: Real> Surface<T> for OfSolid<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        let [a, b, c] = self.place(u, v);
+        if order == Order::Zero {
+            return SurfJet { p: self.solid.eval(a, b, c), ..SurfJet::default() };
+        }
+        let first = self.first(u, v);
+        if order == Order::First {
+            return first;
+        }
+        // Solids tell first derivatives only: second ones are their differences.
+        let [uu, uv] = slope(
+            |u| {
+                let j = self.first(u, v);
+                [j.u, j.v]
+            },
+            u,
+            &[],
+        );
+        let [vv] = slope(|v| [self.first(u, v).v], v, &[]);
+        SurfJet { uu, uv, vv, ..first }
     }
 
     fn grid(

@@ -85,6 +85,10 @@ impl<T: Real> Surface<T> for Image<T> {
         self.surface.breaks()
     }
 
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        self.surface.crossings(path, spans)
+    }
+
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, self.map.reverses()))
     }
@@ -223,6 +227,10 @@ impl<T: Real> Surface<T> for Foot<T> {
         self.surface.breaks()
     }
 
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        self.surface.crossings(path, spans)
+    }
+
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, false))
     }
@@ -296,6 +304,10 @@ impl<T: Real> Surface<T> for Moved<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         self.surface.breaks()
+    }
+
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        self.surface.crossings(path, spans)
     }
 
     fn edges(&self) -> moldloft_num::trace::Edges<T> {

@@ -129,6 +129,34 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             format!("{}, {plane}, {divisions}", p.surface())
         }
         "RelSurf" => format!("{}, {}, {divisions}", p.surface(), p.points::<4>().join(", ")),
+        "FaceSurf" => {
+            let solid = block(p);
+            format!("{}, {solid}, {divisions}", 1 + p.random.below(6))
+        }
+        "RuledSolid" => {
+            let [a, b] = [flat_patch(p, 0.0), flat_patch(p, 4.0)];
+            format!("{a}, {b}, divisions = {{2, 2, 3}}")
+        }
+        "BLoftSolid" | "CLoftSolid" => {
+            let layers = [0.0, 3.0, 7.0].map(|z| flat_patch(p, z)).join(", ");
+            format!("{{{layers}}}, divisions = {{2, 3, 2}}")
+        }
+        "BSolid" => {
+            let points = p.points::<8>().join(", ");
+            format!("{{{points}}}, 2, 2, 2, divisions = 2")
+        }
+        "TranSolid" | "SweepSolid" => {
+            let patch = flat_patch(p, 0.0);
+            let [path, ..] = stations(p);
+            format!("{patch}, {path}, divisions = {{2, 2, 3}}")
+        }
+        "BlendSolid" => {
+            let solid = block(p);
+            let faces: Vec<String> = (1..=6)
+                .map(|f| p.object("FaceSurf", &format!("{f}, {solid}, visible = 0")))
+                .collect();
+            format!("{{{}}}, divisions = {{2, 3, 4}}", faces.join(", "))
+        }
         "MirrSurf" => format!("{}, {}, {divisions}", p.surface(), p.mirror()),
         "FairSurf" => {
             let grid = p.name("g");
@@ -179,4 +207,10 @@ fn flat_patch(p: &mut Program, z: f64) -> String {
         })
         .into();
     p.object("RuledSurf", &format!("{}, visible = 0", sides.join(", ")))
+}
+
+/// A solid between two patches.
+fn block(p: &mut Program) -> String {
+    let [a, b] = [flat_patch(p, 0.0), flat_patch(p, 4.0)];
+    p.object("RuledSolid", &format!("{a}, {b}, visible = 0"))
 }

@@ -1,0 +1,109 @@
+//! Volume meshes: arrays, their report, and the files they are written as.
+
+use crate::arrays;
+use crate::diagnostics::Diagnostic;
+use moldloft_io::{plot3d, vtk};
+use moldloft_lang::Blocked;
+use numpy::{PyArray2, PyArray3, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::sync::Arc;
+
+/// Volume blocks at one state of a model.
+#[pyclass(frozen, name = "Blocks", module = "moldloft._core")]
+pub struct PyBlocks {
+    blocked: Arc<Blocked>,
+    problems: Vec<Diagnostic>,
+}
+
+impl PyBlocks {
+    pub fn new(blocked: Arc<Blocked>, problems: Vec<Diagnostic>) -> Self {
+        Self { blocked, problems }
+    }
+}
+
+#[pymethods]
+impl PyBlocks {
+    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        let positions = self.blocked.blocks.positions();
+        arrays::filled(py, [positions.len(), 3], |out| out.copy_from_slice(positions)).0
+    }
+
+    fn indices<'py>(&self, py: Python<'py>, block: usize) -> PyResult<Bound<'py, PyArray3<u32>>> {
+        let block = &self.blocked.blocks.blocks()[block];
+        let array = PyArray3::<u32>::zeros(py, block.size, false);
+        array.readwrite().as_slice_mut()?.copy_from_slice(&block.vertices);
+        Ok(array)
+    }
+
+    fn problems(&self) -> Vec<Diagnostic> {
+        self.problems.clone()
+    }
+
+    /// Counts and the volume of the whole.
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let report = &self.blocked.report;
+        let dict = PyDict::new(py);
+        dict.set_item("cells", report.cells)?;
+        dict.set_item("vertices", report.vertices)?;
+        dict.set_item("interfaces", report.interfaces)?;
+        dict.set_item("volume", report.volume)?;
+        dict.set_item("positive", report.positive())?;
+        Ok(dict)
+    }
+
+    /// Each block's name, divisions, face names and quality.
+    fn blocks<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let both = self.blocked.blocks.blocks().iter().zip(&self.blocked.report.blocks);
+        both.map(|(block, quality)| {
+            let dict = PyDict::new(py);
+            dict.set_item("name", &block.name)?;
+            let [nu, nv, nw] = block.divisions();
+            dict.set_item("divisions", (nu, nv, nw))?;
+            let faces: Vec<&str> = block.faces.iter().map(|f| f.name.as_str()).collect();
+            dict.set_item("faces", faces)?;
+            dict.set_item("cells", quality.cells)?;
+            dict.set_item("volume", quality.volume)?;
+            dict.set_item("folded", quality.folded)?;
+            dict.set_item("scaled_jacobian", quality.worst.scaled_jacobian)?;
+            dict.set_item("mean_scaled_jacobian", quality.mean_scaled_jacobian)?;
+            dict.set_item("worst_cell", quality.worst.cell.to_vec())?;
+            dict.set_item("worst_at", quality.worst.at.to_vec())?;
+            dict.set_item("aspect", quality.largest_aspect)?;
+            Ok(dict)
+        })
+        .collect()
+    }
+
+    /// Pairs of joined faces: (block, face, block, face), faces from 0.
+    fn interfaces(&self) -> Vec<(usize, usize, usize, usize)> {
+        let all = self.blocked.blocks.interfaces();
+        all.iter().map(|i| (i.sides[0].0, i.sides[0].1, i.sides[1].0, i.sides[1].1)).collect()
+    }
+
+    /// The files of a format: names and contents.
+    fn write<'py>(
+        &self,
+        py: Python<'py>,
+        format: &str,
+        stem: &str,
+    ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+        let blocks = &self.blocked.blocks;
+        let one = |bytes: Vec<u8>| vec![vtk::NamedFile { name: format!("{stem}.{format}"), bytes }];
+        let files = py.detach(|| match format {
+            "p3d" => Some(plot3d::write_blocks(blocks, plot3d::Layout::Stream).map(one)),
+            "vts" => Some(vtk::block_files(blocks, stem)),
+            "vtu" => Some(vtk::unstructured(blocks).map(one)),
+            _ => None,
+        });
+        let Some(files) = files else {
+            let message = format!("error: there is no volume format `{format}`");
+            return Err(PyValueError::new_err(message));
+        };
+        let files = files.map_err(|error| {
+            PyValueError::new_err(format!("error: cannot write {format}: {error}"))
+        })?;
+        Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
+    }
+}
