@@ -90,6 +90,7 @@ macro_rules! row {
             fields: Cow::Owned($fields),
             kind: false,
             columns: None,
+            sweep: None,
             example: Cow::Borrowed($example),
             body: Body::Native { plain: $body::<f64>, dual: $body::<moldloft_num::Dual4> },
         }

@@ -48,6 +48,8 @@ pub struct Graph<T: Scalar> {
     remarked: usize,
     any_read: bool,
     memo: Memo<T>,
+    /// Objects that sweep a point; some may have gone, some stand twice.
+    sweeps: Vec<Key>,
     context: Context,
 }
 
@@ -140,7 +142,12 @@ impl<T: Scalar> Graph<T> {
         self.objects.get(key.0 as usize)?.as_ref()
     }
 
-    fn object(&self, key: Key) -> &Object<T> {
+    /// What calls may know besides their arguments.
+    pub(crate) fn context(&self) -> Context {
+        self.context
+    }
+
+    pub(crate) fn object(&self, key: Key) -> &Object<T> {
         self.get(key).expect("the key of a living object")
     }
 
@@ -267,6 +274,29 @@ impl<T: Scalar> Graph<T> {
     /// Evaluates all that is pending, rank by rank: objects of one rank do not depend on each
     /// other, so they may be evaluated at once, in any order, with the same bits.
     fn evaluate_pending(&mut self) {
+        self.evaluate_ranks();
+        // What a sweep goes through may have changed without its point having changed.
+        let mut sweeps = std::mem::take(&mut self.sweeps);
+        sweeps.retain(|&key| self.get(key).is_some_and(|o| o.row.sweep.is_some()));
+        sweeps.sort_unstable_by_key(|&key| (self.object(key).rank, key));
+        sweeps.dedup();
+        self.sweeps.extend_from_slice(&sweeps);
+        for key in sweeps {
+            if self.sweep_is_stale(key) {
+                self.mark_pending(key);
+                self.evaluate_ranks();
+            }
+        }
+    }
+
+    /// True when something that a sweep depends on has changed since it was evaluated.
+    fn sweep_is_stale(&self, key: Key) -> bool {
+        let object = self.object(key);
+        object.row.sweep.is_some()
+            && self.ancestors(key).iter().any(|&k| self.object(k).changed_at > object.swept_at)
+    }
+
+    fn evaluate_ranks(&mut self) {
         self.rank_all();
         let mut batch = Vec::new();
         while let Some(&Reverse((rank, _))) = self.pending.peek() {
@@ -312,7 +342,7 @@ impl<T: Scalar> Graph<T> {
         // Parents have a lower rank, so this order meets each after all that may change it.
         wanted.sort_unstable_by_key(|&k| (self.object(k).rank, k));
         for key in wanted {
-            if self.object(key).pending {
+            if self.object(key).pending || self.sweep_is_stale(key) {
                 let state = self.evaluated_state(key);
                 self.store(key, state);
             }
@@ -328,6 +358,19 @@ impl<T: Scalar> Graph<T> {
             match self.resolved(arg) {
                 Ok(arg) => args.push(arg),
                 Err(by) => return State::Failed(Failure::Blocked { by }),
+            }
+        }
+        if let Some([bead, point]) = object.row.sweep {
+            let named = |k: usize| match object.args[k] {
+                Value::Object(key) => Ok(key),
+                _ => Err(Fault::new("constant-point", "a sweep needs names")
+                    .expected("a bead and a point of the model, by their names")
+                    .in_field(k)),
+            };
+            let locus = named(bead).and_then(|bead| self.locus(bead, named(point)?));
+            match locus {
+                Ok(locus) => args[point] = Value::Locus(locus),
+                Err(fault) => return State::Failed(Failure::Fault(fault)),
             }
         }
         let call = || T::call(&object.row, &args, &self.context);
@@ -382,6 +425,11 @@ impl<T: Scalar> Graph<T> {
         let object = self.object_mut(key);
         object.pending = false;
         object.verified_at = clock;
+        object.swept_at = clock;
+        if object.row.sweep.is_some() {
+            self.sweeps.push(key);
+        }
+        let object = self.object_mut(key);
         if object.state.same(&state) {
             return;
         }

@@ -15,6 +15,7 @@ mod graph;
 mod memo;
 mod object;
 mod panel;
+mod sweep;
 
 pub use blocks::{BlockRemark, Blocking, MOST_CELLS, grid as solid_grid};
 pub use contour::{Polyline, Sectioned};

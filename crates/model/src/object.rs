@@ -86,6 +86,8 @@ pub struct Object<T: Scalar> {
     pub read_by_program: bool,
     pub(crate) declared_at: u64,
     pub(crate) verified_at: u64,
+    /// The clock of its last evaluation.
+    pub(crate) swept_at: u64,
     pub(crate) rank: u32,
     pub(crate) pending: bool,
 }
@@ -116,6 +118,7 @@ impl<T: Scalar> Object<T> {
             read_by_program: false,
             declared_at: clock,
             verified_at: 0,
+            swept_at: 0,
             // Below any real rank, so that the first ranking always counts as a change.
             rank: 0,
             pending: false,

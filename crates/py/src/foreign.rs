@@ -38,6 +38,7 @@ pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny
         fields: fields.into(),
         kind: false,
         columns: None,
+        sweep: None,
         example: "".into(),
         body: Body::Foreign(Arc::new(PythonFunction { name, function })),
     }

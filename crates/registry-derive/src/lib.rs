@@ -17,7 +17,8 @@
 //! struct's), `shape` (the struct is itself the curve or surface: no `Build` is written), `relabel`
 //! (a surface whose v-law can be redistributed). Kinds of curves and snakes, and surfaces with
 //! `relabel` or with columns that begin with it, take a last argument `relabel`, which acts on what
-//! they build; see `moldloft_registry::relabelled`.
+//! they build; see `moldloft_registry::relabelled`. `sweep = [bead, point]`: the fields of a bead and of a
+//! point that the model is to move; see `moldloft_registry::Row::sweep`.
 //! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`.
 
 use proc_macro::TokenStream;
@@ -45,6 +46,7 @@ struct KindOptions {
     function: bool,
     shape: bool,
     relabel: bool,
+    sweep: Option<Expr>,
 }
 
 #[derive(Default)]
@@ -85,6 +87,10 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
             let text = LitStr::new(&ident.to_string(), ident.span());
             quote!(#text)
         }
+    };
+    let sweep = match &options.sweep {
+        Some(sweep) => quote!(Some(#sweep)),
+        None => quote!(None),
     };
     let is_kind = !options.function;
     let has_own = fields.named.iter().any(|f| f.ident.as_ref().is_some_and(|i| i == "relabel"));
@@ -223,6 +229,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                     kind: #is_kind,
                     columns: #columns,
                     example: #example.into(),
+                    sweep: #sweep,
                     body: ::moldloft_registry::Body::Native {
                         plain: #ident::<f64>::call,
                         dual: #ident::<::moldloft_registry::export::Dual4>::call,
@@ -268,6 +275,9 @@ fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
                 }
                 Meta::NameValue(nv) if nv.path.is_ident("example") => {
                     options.example = Some(nv.value.clone());
+                }
+                Meta::NameValue(nv) if nv.path.is_ident("sweep") => {
+                    options.sweep = Some(nv.value.clone());
                 }
                 Meta::NameValue(nv) if nv.path.is_ident("name") => {
                     options.name = Some(nv.value.clone());

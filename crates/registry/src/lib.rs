@@ -19,6 +19,7 @@ mod read;
 mod refs;
 mod relabelled;
 mod row;
+mod sweep;
 mod value;
 
 pub use args::{Given, arrange, check_evaluated};
@@ -32,6 +33,7 @@ pub use read::{FromValue, Mirror, many};
 pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SolidRef, SurfaceRef};
 pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
+pub use sweep::{LocusRef, Sweep};
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value};
 
 /// What the derive macro's output refers to.

@@ -1,4 +1,6 @@
-use crate::{Class, CurveRef, Facets, FieldRef, Found, Point, RelabelRef, SolidRef, SurfaceRef};
+use crate::{
+    Class, CurveRef, Facets, FieldRef, Found, LocusRef, Point, RelabelRef, SolidRef, SurfaceRef,
+};
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
@@ -160,6 +162,8 @@ pub enum Value<T: Real> {
     Field(FieldRef<T>),
     /// A body of triangles.
     Mesh(Arc<Facets<T>>),
+    /// Where a point is when a bead moves, for kinds that sweep one.
+    Locus(LocusRef<T>),
 }
 
 impl<T: Real> Value<T> {
@@ -199,6 +203,7 @@ impl<T: Real> Value<T> {
             Value::Relabel(_) => Class::Relabel,
             Value::Field(_) => Class::Field,
             Value::Mesh(_) => Class::Mesh,
+            Value::Locus(_) => Class::Point,
         }
     }
 

@@ -106,6 +106,7 @@ pub fn rows() -> Vec<Row> {
         curve::CopyCurve,
         curve::RotatCurve,
         curve::OffsetCurve,
+        curve::ProcCurve,
         curve::BFitCurve,
         curve::NUBFitCurve,
         curve::MirrCurve,

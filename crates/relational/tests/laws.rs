@@ -9,7 +9,8 @@ use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{Class, Row, Scalar, SurfaceRef, Value};
 
 fn rows() -> Vec<Row> {
-    moldloft_relational::rows()
+    // Those that sweep a point need a model: they have their tests in `lang`.
+    moldloft_relational::rows().into_iter().filter(|row| row.sweep.is_none()).collect()
 }
 
 /// The objects of the row's kind in its own example.

@@ -271,7 +271,7 @@ mod tests {
         let gap = |n: usize| {
             let samples: Vec<_> = (0..=400)
                 .map(|k| f64::from(k) / 400.0)
-                .map(|t| (t, Vec3::of(libm::sin(3.0 * t), libm::cos(3.0 * t), t)))
+                .map(|t| (t, Vec3::of(Real::sin(3.0 * t), Real::cos(3.0 * t), t)))
                 .collect();
             let fit = MovingSpline::fitted(3, None, n, &samples).unwrap();
             let far = |(t, p): &(f64, Vec3)| fit.jet(*t, Order::Zero)[0].distance(*p);

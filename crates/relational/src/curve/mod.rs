@@ -16,6 +16,7 @@ mod offset;
 mod poly;
 mod relative;
 mod sub;
+mod swept;
 
 pub use arc::Arc;
 pub use bcurve::BCurve;
@@ -33,3 +34,4 @@ pub use offset::OffsetCurve;
 pub use poly::{PolyCurve, PolySnake};
 pub use relative::{CopyCurve, Moved, RelCurve, RotatCurve};
 pub use sub::{BSubCurve, BSubSnake, SubCurve, SubSnake};
+pub use swept::ProcCurve;

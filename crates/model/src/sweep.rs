@@ -1,0 +1,115 @@
+//! Parts of the graph evaluated anew with a bead moved, for curves that a point describes.
+
+use crate::Graph;
+use moldloft_num::Vec3;
+use moldloft_num::trace::Key;
+use moldloft_registry::{Context, CurveRef, Fault, LocusRef, Point, Row, Scalar, Sweep, Value};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+impl<T: Scalar> Graph<T> {
+    /// Where `point` is when `bead` is moved along its curve.
+    ///
+    /// # Errors
+    /// `constant-point` when the one does not depend on the other.
+    pub(crate) fn locus(&self, bead: Key, point: Key) -> Result<LocusRef<T>, Fault> {
+        let unrelated = || {
+            Fault::new("constant-point", "the point does not depend on the bead")
+                .expected("a point that moves when the bead does")
+                .found("one that stays")
+                .related(Some(bead), "is the bead")
+                .related(Some(point), "is the point")
+                .in_field(1)
+        };
+        let after: HashSet<Key> = self.dependents(bead).into_iter().collect();
+        if !after.contains(&point) {
+            return Err(unrelated());
+        }
+        let mut between = self.ancestors(point);
+        between.retain(|key| after.contains(key));
+        between.push(point);
+        // Parents have a lower rank.
+        between.sort_unstable_by_key(|&key| (self.object(key).rank, key));
+        let inside: HashSet<Key> = between.iter().copied().collect();
+        let mut steps = Vec::with_capacity(between.len());
+        for key in between {
+            let object = self.object(key);
+            if object.row.sweep.is_some() {
+                return Err(Fault::new("nested-sweep", "a swept point is swept again")
+                    .expected("a point that depends on no curve of a swept point")
+                    .related(Some(key), "sweeps a point itself")
+                    .in_field(1));
+            }
+            let moves = |key: Key| key == bead || inside.contains(&key);
+            let args = object.args.iter().map(|arg| self.resolved_but(arg, &moves));
+            steps.push(Step { key, row: object.row.clone(), args: args.collect() });
+        }
+        let Some(Value::Point(at)) = self.object(bead).value() else { return Err(unrelated()) };
+        let Some(place) = &at.on_curve else { return Err(unrelated()) };
+        let curve = place.0.clone();
+        Ok(LocusRef::new(Swept { bead, curve, steps, context: self.context() }))
+    }
+
+    /// The argument with the objects that stay replaced by their values.
+    fn resolved_but(&self, arg: &Value<T>, moves: &impl Fn(Key) -> bool) -> Value<T> {
+        match arg {
+            Value::Object(key) if !moves(*key) => {
+                self.object(*key).value().cloned().unwrap_or(Value::Unset)
+            }
+            Value::List(items) => {
+                Value::list(items.iter().map(|item| self.resolved_but(item, moves)))
+            }
+            other => other.clone(),
+        }
+    }
+}
+
+/// One object to evaluate anew.
+struct Step<T: Scalar> {
+    key: Key,
+    row: Arc<Row>,
+    /// Those that move stand as objects.
+    args: Vec<Value<T>>,
+}
+
+struct Swept<T: Scalar> {
+    bead: Key,
+    curve: CurveRef<T>,
+    steps: Vec<Step<T>>,
+    context: Context,
+}
+
+fn filled<T: Scalar>(arg: &Value<T>, values: &HashMap<Key, Value<T>>) -> Value<T> {
+    match arg {
+        Value::Object(key) => values.get(key).cloned().unwrap_or(Value::Unset),
+        Value::List(items) => Value::list(items.iter().map(|item| filled(item, values))),
+        other => other.clone(),
+    }
+}
+
+impl<T: Scalar> Sweep<T> for Swept<T> {
+    fn at(&self, t: T) -> Result<Vec3<T>, Fault> {
+        let bead = Value::Point(Box::new(Point::on_curve(self.curve.clone(), t)));
+        let mut values = HashMap::from([(self.bead, bead.named(self.bead))]);
+        let mut last = Vec3::zero();
+        for Step { key, row, args } in &self.steps {
+            let args: Vec<_> = args.iter().map(|arg| filled(arg, &values)).collect();
+            let call = || T::call(row, &args, &self.context);
+            // As for any object: a kind that panics must not take the model with it.
+            let called = std::panic::catch_unwind(std::panic::AssertUnwindSafe(call));
+            let value = called.unwrap_or_else(|_| {
+                Err(Fault::new("internal-error", format!("{} failed unexpectedly", row.name)))
+            });
+            let value = value.map_err(|fault| fault.related(Some(*key), "has no value there"))?;
+            if !value.is_finite() {
+                return Err(Fault::new("not-finite", "the result is not a finite number")
+                    .related(Some(*key), "has no finite value there"));
+            }
+            if let Value::Point(p) = &value {
+                last = p.xyz;
+            }
+            values.insert(*key, value.named(*key));
+        }
+        Ok(last)
+    }
+}
