@@ -54,6 +54,17 @@ fn a_change_that_the_point_does_not_see_reaches_the_curve() {
 }
 
 #[test]
+fn fits_report_how_near_they_come_and_blends_their_weights() {
+    let mut document = open(
+        "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); AbsPoint D(4, 0, 1); \
+         CCurve c({A, B, C, D}); BFitCurve f(c, 2, 4); BFitCurve g(c, 2, 12); BlendPoint p({A, B}, {1, 1});",
+    );
+    let (rough, fine) = (number(&mut document, "f.residual"), number(&mut document, "g.residual"));
+    assert!(rough > 1e-3 && fine > 0.0 && fine < 0.1 * rough, "{rough} {fine}");
+    assert_eq!(common::ids(&document), ["weight-sum"]);
+}
+
+#[test]
 fn a_point_that_stays_or_has_no_place_is_refused() {
     for (text, id) in [
         ("AbsPoint P(1, 1, 1); ProcCurve k(b, P);", "constant-point"),

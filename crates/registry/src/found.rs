@@ -1,8 +1,8 @@
 use moldloft_num::Vec3;
 use std::fmt;
 
-/// How an iterative construction (a projection, an intersection, a nearest point) came to its
-/// result. Carried by the point or curve; every word of it depends on the model only.
+/// How a construction that may go more or less well (a projection, an intersection, a fit) came to
+/// its result. Carried by the point or curve; every word of it depends on the model only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// How the search ended.
@@ -32,6 +32,11 @@ pub enum FoundStatus {
     EdgeClamped,
     /// The shapes touch: the solution is not well determined.
     Tangent,
+    /// A weighted sum whose weights do not add up to 1.
+    Unbalanced {
+        /// What they add up to.
+        sum: f64,
+    },
     /// One of several, without a start that would say which.
     Multiple {
         /// How many there are.
@@ -51,6 +56,7 @@ impl FoundStatus {
             FoundStatus::Fallback => "fallback",
             FoundStatus::EdgeClamped => "edge-clamped",
             FoundStatus::Tangent => "tangent",
+            FoundStatus::Unbalanced { .. } => "unbalanced",
             FoundStatus::Multiple { .. } => "multiple",
         }
     }
@@ -89,6 +95,10 @@ impl Found {
             FoundStatus::Tangent => (
                 "tangent-contact",
                 format!("the shapes touch at {at}; a small change may part them"),
+            ),
+            FoundStatus::Unbalanced { sum } => (
+                "weight-sum",
+                format!("the weights add up to {sum}: the point depends on where the origin is"),
             ),
             FoundStatus::Multiple { count, chosen, next } => {
                 let others: Vec<String> =

@@ -310,7 +310,7 @@ pub struct Start<T: Real> {
 }
 
 impl<T: Real> FromValue<T> for Start<T> {
-    const CLASS: Class = Class::Any;
+    const CLASS: Class = Class::Along;
     fn from_value(value: &Value<T>) -> Result<Self, Fault> {
         match value {
             Value::Curve(curve) => Ok(Self { curve: curve.clone(), t: T::zero() }),

@@ -1,12 +1,13 @@
 use super::Ended;
 use moldloft_num::{Curve, Order, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Value};
 use moldloft_spline::{MovingSpline, SplineError};
 
 /// A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
 /// curve, and the least sum of squared distances at equal parameters.
 ///
-/// The number of control points decides how near it comes; with `accuracy` it is refused when it
+/// The number of control points decides how near it comes: its member `residual` is the greatest
+/// distance between the two at equal parameters. With `accuracy` it is refused when it
 /// comes no nearer than that.
 #[derive(Kind)]
 #[kind(
@@ -103,11 +104,13 @@ fn fit<T: Real>(
         }
         .in_field(2)
     })?;
-    if let Some(accuracy) = accuracy {
+    let residual = {
         let gap = |(t, p): &(f64, moldloft_num::Vec3<T>)| {
             spline.jet(T::from(*t), Order::Zero)[0].re().distance(p.re())
         };
-        let residual = samples.iter().map(gap).fold(0.0, f64::max);
+        samples.iter().map(gap).fold(0.0, f64::max)
+    };
+    if let Some(accuracy) = accuracy {
         // Written so that NaN is refused.
         if !(residual <= accuracy.re()) {
             return Err(Fault::new("no-fit", "the fit does not come near enough to the curve")
@@ -119,5 +122,14 @@ fn fit<T: Real>(
         }
     }
     let ends = curve.end_points();
-    Ok(Value::Curve(CurveRef::new(Ended { curve: spline, ends }, 0)))
+    let fitted = CurveRef::new(Ended { curve: spline, ends }, 0).with_found(Found {
+        status: FoundStatus::Ok,
+        residual,
+        iterations: 1,
+        start: Vec::new(),
+        last: Vec::new(),
+        alternatives: Vec::new(),
+        advice: "",
+    });
+    Ok(Value::Curve(fitted))
 }

@@ -2,7 +2,9 @@ use crate::affine::Affine;
 use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
 use moldloft_num::{Axis, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
+};
 use moldloft_spline::{arclen, curve_integral};
 
 fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
@@ -131,7 +133,7 @@ impl<T: Real> Build<T> for CopyPoint<T> {
 
 /// The weighted sum of points: X = sum w_i P_i.
 ///
-/// Weights that add up to 1 make it a blend that moves with its points; the weights 1, -1, 1 give
+/// There is a warning when the weights do not add up to 1. Weights that do make it a blend that moves with its points; the weights 1, -1, 1 give
 /// the fourth corner of a parallelogram. Equal weights when none are given.
 #[derive(Kind)]
 #[kind(
@@ -159,11 +161,24 @@ impl<T: Real> Build<T> for BlendPoint<T> {
                 .found(weights.len().to_string())
                 .in_field(1));
         }
-        let mut sum = Vec3::zero();
+        let (mut sum, mut whole) = (Vec3::zero(), 0.0);
         for (point, weight) in points.iter().zip(weights) {
             sum += point.xyz * weight;
+            whole += weight.re();
         }
-        free(sum)
+        let mut blend = Point::free(sum);
+        if (whole - 1.0).abs() > 1e-9 {
+            blend = blend.with_found(Found {
+                status: FoundStatus::Unbalanced { sum: whole },
+                residual: (whole - 1.0).abs(),
+                iterations: 0,
+                start: Vec::new(),
+                last: Vec::new(),
+                alternatives: Vec::new(),
+                advice: "let the weights add up to 1",
+            });
+        }
+        Ok(Value::Point(Box::new(blend)))
     }
 }
 
