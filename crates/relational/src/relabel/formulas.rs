@@ -164,7 +164,7 @@ impl<T: Real> Build<T> for TanhRelabel<T> {
 #[kind(
     class = Relabel,
     columns = "parameters values",
-    example = "TableRelabel r({0, 0.25, 0.5, 1}, {0, 0.1, 0.4, 1});"
+    example = "TableRelabel r({0, 0.25, 0.5, 1}, {0, 0.15, 0.4, 1});"
 )]
 pub struct TableRelabel<T: Real> {
     /// Parameters t from 0 to 1.
