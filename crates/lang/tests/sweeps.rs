@@ -77,7 +77,7 @@ fn a_point_that_stays_or_has_no_place_is_refused() {
         ),
     ] {
         let document = open(&format!("{TRAMMEL} {text}"));
-        let found: Vec<&str> = document.diagnostics().iter().map(|d| &*d.id).collect();
+        let found = common::ids(&document);
         let lines: Vec<String> =
             document.diagnostics().iter().map(|d| line(&document, d)).collect();
         assert_eq!(found, [id], "{text}: {lines:?}");
