@@ -106,7 +106,6 @@ pub fn rows() -> Vec<Row> {
         curve::CopyCurve,
         curve::RotatCurve,
         curve::OffsetCurve,
-        curve::ProcCurve,
         curve::BFitCurve,
         curve::NUBFitCurve,
         curve::MirrCurve,

@@ -16,7 +16,6 @@ mod offset;
 mod poly;
 mod relative;
 mod sub;
-mod swept;
 
 pub use arc::Arc;
 pub use bcurve::BCurve;
@@ -34,4 +33,3 @@ pub use offset::OffsetCurve;
 pub use poly::{PolyCurve, PolySnake};
 pub use relative::{CopyCurve, Moved, RelCurve, RotatCurve};
 pub use sub::{BSubCurve, BSubSnake, SubCurve, SubSnake};
-pub use swept::ProcCurve;
