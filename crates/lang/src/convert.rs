@@ -8,7 +8,7 @@
 use crate::document::{Document, Source};
 use crate::header;
 use crate::model_file::{
-    ModelFileSource, Sorted, identifier, is_layer, plain_name, spelled, system_name,
+    ModelFileSource, Sorted, bare, identifier, is_layer, is_real, plain_name, spelled, system_name,
 };
 use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
@@ -22,6 +22,9 @@ const VERBATIM: &str = "#ms2 ";
 
 /// The relabel of the object that follows.
 const RELABEL: &str = "#ms2-relabel ";
+
+/// How many radians a degree has, as the language spells it.
+const RADIANS: &str = "0.017453292519943295";
 
 /// The version of model files made from programs that do not come from one.
 const VERSION: &str = "1.44";
@@ -275,6 +278,9 @@ impl ToProgram<'_> {
     fn object(&self, line: &Line, at: usize, sorted: &Sorted) -> Option<String> {
         let model = self.source.model();
         let name = model.slice(line.name);
+        if is_real(model.slice(line.entity)) {
+            return self.real(name, sorted);
+        }
         let graph = self.document.graph();
         let object = graph.get(graph.find(name)?).filter(|o| o.origin == at as u32)?;
         let row = sorted.row.as_ref()?;
@@ -297,10 +303,36 @@ impl ToProgram<'_> {
         Some(out)
     }
 
+    /// A variable as a parameter, a formula as a variable of the language.
+    fn real(&self, name: &str, sorted: &Sorted) -> Option<String> {
+        let model = self.source.model();
+        let env = &self.document.plain.env;
+        env.numbers.get(name)?;
+        if let Some(param) = env.params.iter().find(|p| p.name == name) {
+            let value = number::plain(param.default);
+            let name = identifier(name);
+            return Some(match param.range {
+                Some((low, high)) => {
+                    let (low, high) = (number::plain(low), number::plain(high));
+                    format!("param float {name} = {value} in [{low}, {high}];\n")
+                }
+                None => format!("param float {name} = {value};\n"),
+            });
+        }
+        let formula = sorted.head.iter().find(|f| f.kind == FieldKind::Formula)?;
+        let text = bare(model.slice(formula.span));
+        Some(format!("float {} = {text};\n", identifier(name)))
+    }
+
     fn value(&self, field: &Field, written: &Written) -> String {
         let model = self.source.model();
         let text = model.slice(written.span);
+        let angle = field.unit == Unit::Angle;
+        let real = self.document.plain.env.numbers.contains_key(text);
         match written.kind {
+            FieldKind::Formula if angle => format!("({})*{RADIANS}", bare(text)),
+            FieldKind::Formula => bare(text).to_string(),
+            FieldKind::Word if angle && real => format!("{}*{RADIANS}", identifier(text)),
             FieldKind::Number(id) if field.unit == Unit::Angle => {
                 number::plain(model[id].value.to_radians())
             }

@@ -182,22 +182,20 @@ impl Document {
         let mut found = Vec::new();
         let inputs =
             Inputs { overrides: &self.overrides, seed, seeded_objects, cancelled: &self.cancelled };
+        let sketch = match &self.source {
+            Source::Sketch(sketch) => Some(sketch.clone()),
+            _ => None,
+        };
+        let program = Program {
+            modules: &mut self.modules,
+            world: &*self.world,
+            registry: &self.registry,
+            sources: &mut self.sources,
+            sketch,
+        };
         let applied = match &self.source {
-            Source::Program | Source::Sketch(_) => {
-                let sketch = match &self.source {
-                    Source::Sketch(sketch) => Some(sketch.clone()),
-                    _ => None,
-                };
-                let program = Program {
-                    modules: &mut self.modules,
-                    world: &*self.world,
-                    registry: &self.registry,
-                    sources: &mut self.sources,
-                    sketch,
-                };
-                program.run(evaluation, inputs, &mut found)
-            }
-            Source::ModelFile(source) => source.run(&self.registry, evaluation, inputs, &mut found),
+            Source::Program | Source::Sketch(_) => program.run(evaluation, inputs, &mut found),
+            Source::ModelFile(source) => source.run(program, evaluation, inputs, &mut found),
             Source::None => evaluation.graph.apply(Extent::Whole, |_| ()).1,
         };
         if report {

@@ -120,6 +120,8 @@ pub(crate) struct Environment<T: Scalar> {
     /// Objects made in loops and subroutines, by the name without its last index.
     pub families: IndexMap<Arc<str>, Vec<Key>>,
     pub origins: Vec<Origin>,
+    /// Variables and formulas of a model file.
+    pub numbers: IndexMap<String, T>,
     pub solves: Vec<Solve<T>>,
     /// Steps and status of the solve sets, once they are solved.
     pub solved: IndexMap<String, (usize, SolveStatus)>,
@@ -141,6 +143,7 @@ impl<T: Scalar> Default for Environment<T> {
             param_values: Vec::new(),
             families: IndexMap::new(),
             origins: Vec::new(),
+            numbers: IndexMap::new(),
             solves: Vec::new(),
             solved: IndexMap::new(),
             printed: Vec::new(),

@@ -169,6 +169,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let text = m.program.name(symbol);
         let diagnostic =
             Diagnostic::error("unknown-name", format!("there is no `{text}` here")).at(span);
+        if !self.components.is_empty() {
+            return diagnostic.help(format!(
+                "a component sees what it is given: Component name(\"file\", {text} = ...)"
+            ));
+        }
         if !self.hints() {
             return diagnostic;
         }
@@ -251,6 +256,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let members = &self.env.sketch_members;
         if let Some(value) = members.get(text).or_else(|| members.get(&text.to_ascii_lowercase())) {
             return Some(value.clone());
+        }
+        if let Some(number) = self.env.params.iter().position(|p| p.name == text) {
+            return Some(Value::Number(self.env.param_values[number]));
         }
         self.env.families.contains_key(text).then(|| self.family(text))
     }

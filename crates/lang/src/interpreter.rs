@@ -48,6 +48,14 @@ pub(crate) struct Inputs<'a, T: Scalar> {
     pub cancelled: &'a AtomicBool,
 }
 
+impl<'a, T: Scalar> Inputs<'a, T> {
+    /// The same once more.
+    pub fn again(&self) -> Inputs<'a, T> {
+        let &Inputs { overrides, seed, seeded_objects, cancelled } = self;
+        Inputs { overrides, seed, seeded_objects, cancelled }
+    }
+}
+
 /// Gives the number of that name its derivatives.
 pub(crate) type Seed<'a, T> = &'a (dyn Fn(&str, T) -> T + Sync);
 
@@ -74,11 +82,14 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     errors: usize,
     /// Elements of the declared arrays.
     pub held: usize,
+    /// The components under way, by module, and the names that the innermost was given.
+    pub components: Vec<usize>,
+    pub given: HashSet<Name>,
     /// What was told already: a statement that is executed often tells each fault once.
     told: HashSet<(Cow<'static, str>, Span)>,
     /// Failed objects that the program was told of when it read them.
     pub blocked: HashSet<Key>,
-    executed: HashSet<usize>,
+    pub executed: HashSet<usize>,
     /// Sketch files that were brought in.
     pub sketches_done: HashSet<String>,
     /// Names that are declared somewhere in the main file: for hints at what comes later.
@@ -110,6 +121,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             turns: 0,
             errors: 0,
             held: 0,
+            components: Vec::new(),
+            given: HashSet::new(),
             told: HashSet::new(),
             blocked: HashSet::new(),
             executed: HashSet::new(),
@@ -318,12 +331,16 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             StmtKind::Block(list) => return Ok(self.statements(m, list)),
             StmtKind::Declare { global, ty, items } => {
                 for item in &m.program[items] {
+                    if self.is_given(m.names[item.name.symbol.0 as usize]) {
+                        continue;
+                    }
                     if let Err(diagnostic) = self.declare(m, global, ty.0, ty.1, item) {
                         self.report(diagnostic.or_at(item.name.span));
                         self.poison(m, item.name);
                     }
                 }
             }
+            StmtKind::Param { name, .. } if self.is_given(m.names[name.symbol.0 as usize]) => {}
             StmtKind::Param { ty, name, value, range } => {
                 if let Err(diagnostic) = self.param(m, ty, name, value, range) {
                     self.poison(m, name);
@@ -695,7 +712,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 );
             }
         };
-        let text = self.modules.text(m.names[name.symbol.0 as usize]).to_string();
+        let text = self.modules.text(m.names[name.symbol.0 as usize]);
+        let text = format!("{}{text}", self.frames.last().map_or("", |f| &*f.prefix));
         let name_id = m.names[name.symbol.0 as usize];
         self.check_free(name_id, name.span, false)?;
         let default = self.number(m, value)?;

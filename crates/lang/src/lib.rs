@@ -20,6 +20,7 @@
 //!
 //! Invariant: this crate opens no file; what it reads comes from the host's [`World`].
 
+mod component;
 mod convert;
 mod document;
 mod env;

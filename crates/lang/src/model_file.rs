@@ -4,11 +4,11 @@
 //! field of the line is which argument. Parents may stand below their children in the file: the
 //! objects are declared in an order in which they do not.
 
-use crate::env::{Binding, Bound, Environment, Evaluation};
+use crate::env::{Binding, Bound, Environment, Evaluation, Param};
 use crate::interpreter::Inputs;
 use crate::module::{Module, Modules};
 use crate::place::{self, NumberPath};
-use crate::program::NotLiteral;
+use crate::program::{NotLiteral, Program};
 use moldloft_diag::{Diagnostic, FileId, Span};
 use moldloft_model::{Applied, Declaration, Extent, Graph, Object, Run};
 use moldloft_num::trace::Key;
@@ -63,8 +63,10 @@ pub(crate) struct Sorted {
 
 /// What became of an object in a run.
 #[derive(Clone, Copy)]
-enum Outcome {
+pub(crate) enum Outcome {
     Built(Key),
+    /// A `Variable` or `Formula`: a number without an object.
+    Real,
     /// Not declared, because of this [`Root`].
     Missing(usize),
 }
@@ -118,13 +120,14 @@ impl ModelFileSource {
     /// Declares the objects in a graph.
     pub fn run<T: Scalar>(
         &self,
-        registry: &Registry,
+        host: Program<'_>,
         evaluation: &mut Evaluation<T>,
         inputs: Inputs<'_, T>,
         found: &mut Vec<Diagnostic>,
     ) -> Applied {
         evaluation.env = Environment::default();
         let Evaluation { graph, env } = evaluation;
+        let registry = host.registry;
         let sorted: Vec<Sorted> =
             self.lines.iter().map(|line| self.sorted(registry, line)).collect();
         let (order, cycles) = self.order(&sorted);
@@ -132,6 +135,9 @@ impl ModelFileSource {
             let mut producer = Producer {
                 source: self,
                 registry,
+                host,
+                env: &mut *env,
+                reals: HashMap::new(),
                 inputs,
                 run,
                 outcomes: vec![None; self.lines.len()],
@@ -147,7 +153,7 @@ impl ModelFileSource {
             }
             for (k, &at) in order.iter().enumerate() {
                 if k % 1024 == 0 && producer.inputs.cancelled.load(Ordering::Relaxed) {
-                    env.stopped = true;
+                    producer.env.stopped = true;
                     producer.root(vec![Diagnostic::error("cancelled", "the run was cancelled")]);
                     break;
                 }
@@ -205,7 +211,12 @@ impl ModelFileSource {
             slots: Vec::new(),
             extra: None,
         };
-        let Some(row) = &sorted.row else { return sorted };
+        let Some(row) = &sorted.row else {
+            if is_real(entity) {
+                sorted.head = fields;
+            }
+            return sorted;
+        };
         let slash = fields.iter().position(|field| field.kind == FieldKind::Slash);
         let (head, data) = match slash {
             Some(at) => (&fields[..at], &fields[at + 1..]),
@@ -306,7 +317,11 @@ impl ModelFileSource {
     /// The objects that the arguments name.
     fn parents(&self, sorted: &Sorted) -> Vec<usize> {
         let mut parents = Vec::new();
-        let Some(row) = &sorted.row else { return parents };
+        let Some(row) = &sorted.row else {
+            // Of a variable or formula.
+            sorted.head.iter().for_each(|field| self.names_in(field, &mut parents));
+            return parents;
+        };
         for (at, field) in &sorted.slots {
             if row.fields[*at].class != Class::Text {
                 self.names_in(field, &mut parents);
@@ -318,11 +333,57 @@ impl ModelFileSource {
     fn names_in(&self, field: &Written, found: &mut Vec<usize>) {
         match field.kind {
             FieldKind::Word => found.extend(self.names.get(self.written(field))),
+            FieldKind::Formula => {
+                found.extend(words(self.written(field)).filter_map(|(_, w)| self.names.get(w)));
+            }
             FieldKind::List(items) | FieldKind::Tuple(items) => {
                 self.model[items].iter().for_each(|item| self.names_in(item, found));
             }
             _ => {}
         }
+    }
+
+    /// Where other objects mention this one, by object and place. Of an entity that nobody knows,
+    /// every word may be a name.
+    pub fn mentions(&self, registry: &Registry, name: &str) -> Vec<(usize, Span)> {
+        let mut found = Vec::new();
+        for (at, line) in self.lines.iter().enumerate() {
+            let sorted = self.sorted(registry, line);
+            let texts: Vec<Span> = match &sorted.row {
+                Some(row) => {
+                    let text = |(k, _): &&(usize, Written)| row.fields[*k].class == Class::Text;
+                    sorted.slots.iter().filter(text).map(|(_, w)| w.span).collect()
+                }
+                None => Vec::new(),
+            };
+            let mut stack: Vec<Written> = self.model[line.fields].to_vec();
+            while let Some(field) = stack.pop() {
+                match field.kind {
+                    FieldKind::Word if self.written(&field) == name => {
+                        if !texts.contains(&field.span) {
+                            found.push((at, field.span));
+                        }
+                    }
+                    FieldKind::Formula => {
+                        let places = words(self.written(&field)).filter(|(_, w)| *w == name);
+                        found.extend(places.map(|(begin, w)| {
+                            let start = field.span.start + begin as u32;
+                            (at, Span { start, end: start + w.len() as u32, ..field.span })
+                        }));
+                    }
+                    FieldKind::List(items) | FieldKind::Tuple(items) => {
+                        stack.extend(&self.model[items]);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        found
+    }
+
+    /// The object of that name.
+    pub fn line(&self, name: &str) -> Option<&Line> {
+        self.names.get(name).map(|&at| &self.lines[at])
     }
 
     /// How an object is drawn and divided; what is wrong with that is pushed.
@@ -444,7 +505,7 @@ impl ModelFileSource {
                 Ok(ModelNumber { id, angle: object.row.fields[at].unit == Unit::Angle })
             }
             FieldKind::Formula => {
-                let names = vec![self.written(&field).trim_start_matches('=').to_string()];
+                let names = words(self.written(&field)).map(|(_, w)| w.to_string()).collect();
                 Err(NotLiteral::Expression { span: field.span, names })
             }
             _ => Err(NotLiteral::Default),
@@ -471,6 +532,10 @@ impl ModelFileSource {
 struct Producer<'a, 'g, T: Scalar> {
     source: &'a ModelFileSource,
     registry: &'a Registry,
+    host: Program<'a>,
+    env: &'a mut Environment<T>,
+    /// The numbers of variables and formulas, by their place in the file.
+    reals: HashMap<usize, T>,
     inputs: Inputs<'a, T>,
     run: &'a mut Run<'g, T>,
     /// By the place of the object in the file.
@@ -527,6 +592,23 @@ impl<T: Scalar> Producer<'_, '_, T> {
         }
         let Some(row) = &sorted.row else {
             let entity = source.model.slice(line.entity);
+            if is_real(entity) {
+                self.outcomes[at] = Some(match self.real(line, sorted) {
+                    Ok(value) => {
+                        self.reals.insert(at, value);
+                        self.env.numbers.insert(name.to_string(), value);
+                        Outcome::Real
+                    }
+                    Err(Trouble::Wrong(diagnostic)) => self.root(vec![diagnostic.object(name)]),
+                    Err(Trouble::Blocked { root, span }) => {
+                        let first = &mut self.roots[root];
+                        first.blocked.push(name.to_string());
+                        first.first_use.get_or_insert_with(|| (span, name.to_string()));
+                        Outcome::Missing(root)
+                    }
+                });
+                return;
+            }
             let kinds = self.registry.rows().filter(|r| r.kind && r.columns.is_some());
             let diagnostic =
                 Diagnostic::warning("unknown-entity", format!("there is no entity `{entity}`"))
@@ -633,6 +715,143 @@ impl<T: Scalar> Producer<'_, '_, T> {
         (args, blocked)
     }
 
+    /// The number of a variable or formula.
+    fn real(&mut self, line: &Line, sorted: &Sorted) -> Result<T, Trouble> {
+        let source = self.source;
+        let (entity, name) = (source.model.slice(line.entity), source.model.slice(line.name));
+        let fields = &sorted.head;
+        let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
+        if entity == "Formula" {
+            let Some(written) = fields.iter().find(|f| f.kind == FieldKind::Formula) else {
+                return Err(wrong(
+                    Diagnostic::error("missing-field", format!("`{name}` needs an expression"))
+                        .at(end)
+                        .expected("an expression in brackets: Formula area [length*beam];"),
+                ));
+            };
+            return self.formula(written);
+        }
+        let slash = fields.iter().position(|f| f.kind == FieldKind::Slash);
+        let numbers = |fields: &[Written]| -> Vec<f64> {
+            let number = |f: &Written| match f.kind {
+                FieldKind::Number(id) => Some(source.model[id].value),
+                _ => None,
+            };
+            fields.iter().filter_map(number).collect()
+        };
+        let mut data = numbers(slash.map_or(&fields[..], |at| &fields[at + 1..]));
+        // Without a slash, colour and visibility may stand in front.
+        if slash.is_none() && data.len() == 5 {
+            data.drain(..2);
+        }
+        let (default, range) = match data[..] {
+            [value] => (value, None),
+            [value, low, high] if low <= high => (value, Some((low, high))),
+            _ => {
+                return Err(wrong(
+                    Diagnostic::error("missing-field", format!("`{name}` needs a value"))
+                        .at(end)
+                        .expected("a value, or a value and its range: Variable beam 5 3 7;")
+                        .found(format!("{} numbers", data.len())),
+                ));
+            }
+        };
+        let x = self.inputs.overrides.get(name).copied().unwrap_or(default);
+        if let Some((low, high)) = range
+            && !(low..=high).contains(&x)
+        {
+            return Err(wrong(
+                Diagnostic::error("out-of-range", format!("`{name}` = {x} is out of its range"))
+                    .at(line.name)
+                    .expected(format!("a number from {low} to {high}"))
+                    .found(x.to_string()),
+            ));
+        }
+        let value = (self.inputs.seed)(name, T::from(x));
+        self.env.params.push(Param {
+            name: name.to_string(),
+            value: value.re(),
+            default,
+            range,
+            is_int: false,
+            span: line.name,
+        });
+        self.env.param_values.push(value);
+        Ok(value)
+    }
+
+    /// The value of `=name` or `[expression]`, in the names of the file.
+    fn formula(&mut self, written: &Written) -> Result<T, Trouble> {
+        let source = self.source;
+        let spelled = source.written(written);
+        for (_, word) in words(spelled) {
+            let outcome = source.names.get(word).and_then(|&at| self.outcomes[at]);
+            if let Some(Outcome::Missing(root)) = outcome {
+                return Err(Trouble::Blocked { root, span: written.span });
+            }
+        }
+        let bad = |message: String| {
+            wrong(
+                Diagnostic::error("bad-formula", format!("the formula `{spelled}`: {message}"))
+                    .at(written.span)
+                    .expected("a number computed from variables, formulas and objects above it"),
+            )
+        };
+        let (program, expr, found) =
+            moldloft_syntax::sdl::parse_expr(bare(spelled).to_string(), source.model.file());
+        if let Some(first) = found.iter().find(|d| d.is_error()) {
+            return Err(bad(first.message.clone()));
+        }
+        let modules = &mut *self.host.modules;
+        let at = modules.add_expression(program, self.registry);
+        let module = modules.get(at).clone();
+        self.env.globals.clear();
+        self.env.globals.resize_with(modules.name_count(), || None);
+        for &name in &module.names {
+            let Some(&line) = source.names.get(&**modules.text(name)) else { continue };
+            let what = match self.outcomes[line] {
+                Some(Outcome::Built(key)) => Binding::Object(key),
+                Some(Outcome::Real) => Binding::Variable {
+                    ty: moldloft_syntax::sdl::Type::Float,
+                    value: Value::Number(self.reals[&line]),
+                    fixed: false,
+                },
+                _ => continue,
+            };
+            self.env.globals[name.0 as usize] = Some(Bound { span: Span::UNKNOWN, what });
+        }
+        let mut told = Vec::new();
+        let loader = crate::module::Loader {
+            world: self.host.world,
+            registry: self.registry,
+            sources: &mut *self.host.sources,
+            diagnostics: &mut told,
+        };
+        let mut interpreter = crate::interpreter::Interpreter::new(
+            modules,
+            loader,
+            &mut *self.run,
+            &mut *self.env,
+            self.inputs.again(),
+        );
+        interpreter.current = at;
+        // Only what nests deep needs a stack of its own.
+        let nests = spelled.bytes().filter(|b| b"([{^-!".contains(b)).count() > 8;
+        let mut evaluate = || interpreter.operand(&module, expr);
+        let value = if nests { crate::program::with_stack(evaluate) } else { evaluate() };
+        drop(module);
+        self.host.modules.remove_expression(at);
+        self.env.globals.clear();
+        match value {
+            Ok(Value::Number(x)) if x.is_finite() => Ok(x),
+            Ok(other) => Err(bad(format!("it is {}, not a finite number", other.class().a()))),
+            Err(diagnostic) if diagnostic.id == crate::interpreter::SILENT => {
+                Err(bad("it depends on something that failed".into()))
+            }
+            Err(diagnostic) => Err(bad(diagnostic.message.clone())),
+        }
+    }
+
     /// The value of a column.
     fn value(&mut self, field: &Field, written: &Written) -> Result<Value<T>, Trouble> {
         if !field.many {
@@ -694,17 +913,21 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 Some(plane) if field.class.accepts(Class::Text) => Ok(Value::text(&plane)),
                 Some(_) => Err(wrong(unexpected(
                     "wrong-class",
-                    format!("expected {}, found a plane", field.class.a()),
+                    format!("`{}`: expected {}, found a plane", field.name, field.class.a()),
                 ))),
                 None => Err(wrong(
                     unexpected("unknown-object", format!("there is no `{text}`"))
                         .help("the system knows *X=0, *Y=0 and *Z=0"),
                 )),
             },
-            FieldKind::Formula => Err(wrong(
-                unexpected("unsupported-formula", format!("the formula `{text}` is not computed"))
-                    .help("write its value, or convert the model to .sdl and use a parameter"),
-            )),
+            FieldKind::Formula if field.class.accepts(Class::Number) => {
+                let x = self.formula(written)?;
+                Ok(Value::Number(if field.unit == Unit::Angle { radians(x) } else { x }))
+            }
+            FieldKind::Formula => Err(wrong(unexpected(
+                "wrong-class",
+                format!("`{}`: expected {}, found a number", field.name, field.class.a()),
+            ))),
             FieldKind::List(items) => self.list(field, items),
             FieldKind::Tuple(_)
             | FieldKind::Pair(..)
@@ -724,6 +947,20 @@ impl<T: Scalar> Producer<'_, '_, T> {
         if let Some(&at) = source.names.get(text) {
             return match self.outcomes[at] {
                 Some(Outcome::Built(key)) => Ok(Value::Object(key)),
+                Some(Outcome::Real) if field.class.accepts(Class::Number) => {
+                    let x = self.reals[&at];
+                    Ok(Value::Number(if field.unit == Unit::Angle { radians(x) } else { x }))
+                }
+                Some(Outcome::Real) => Err(wrong(
+                    Diagnostic::error(
+                        "wrong-class",
+                        format!("`{}`: expected {}, found a number", field.name, field.class.a()),
+                    )
+                    .at(written.span)
+                    .expected(field.class.a())
+                    .found("a number")
+                    .note_at(source.lines[at].name, format!("`{text}` is defined here")),
+                )),
                 Some(Outcome::Missing(root)) => Err(Trouble::Blocked { root, span: written.span }),
                 None => unreachable!("parents come before their children"),
             };
@@ -756,7 +993,13 @@ impl<T: Scalar> Producer<'_, '_, T> {
     fn misfit(&self, line: &Line, sorted: &Sorted, fault: &Fault) -> Diagnostic {
         let source = self.source;
         let at = fault.place.and_then(|p| source.place(sorted, p.field, p.item));
-        let diagnostic = place::unplaced(fault).at(at.unwrap_or(line.entity.to(line.name)));
+        let mut diagnostic = place::unplaced(fault).at(at.unwrap_or(line.entity.to(line.name)));
+        if fault.id == "wrong-class"
+            && let (Some(place), Some(row)) = (fault.place, &sorted.row)
+            && let Some(field) = row.fields.get(place.field)
+        {
+            diagnostic.message = format!("`{}`: {}", field.name, diagnostic.message);
+        }
         let parent = at.and_then(|span| source.names.get(source.model.slice(span)));
         match parent {
             Some(&parent) if fault.id == "wrong-class" => {
@@ -795,6 +1038,37 @@ impl Root {
         );
         diagnostics
     }
+}
+
+/// True for the words of numbers without objects.
+pub(crate) fn is_real(entity: &str) -> bool {
+    matches!(entity, "Variable" | "Formula")
+}
+
+/// A formula without its `=` or brackets.
+pub(crate) fn bare(formula: &str) -> &str {
+    let inside = formula.strip_prefix('[').map(|f| f.strip_suffix(']').unwrap_or(f));
+    inside.unwrap_or_else(|| formula.trim_start_matches('=')).trim()
+}
+
+/// The words of a formula that may be names, with where they begin; not what follows a point.
+pub(crate) fn words(formula: &str) -> impl Iterator<Item = (usize, &str)> {
+    let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let begin = at + formula[at..].find(word)?;
+        let length = formula[begin..].find(|c| !word(c)).unwrap_or(formula.len() - begin);
+        at = begin + length;
+        Some((begin, &formula[begin..at]))
+    })
+    .filter(move |(begin, word)| {
+        let member = formula[..*begin].ends_with('.');
+        !member && word.starts_with(|c: char| !c.is_ascii_digit())
+    })
+}
+
+fn radians<T: Scalar>(degrees: T) -> T {
+    degrees * (std::f64::consts::PI / 180.0)
 }
 
 /// A part of a head: its name, its numbers and where they stand.
@@ -948,6 +1222,12 @@ pub(crate) fn bind_objects<T: Scalar>(
             && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
         {
             *known = Some(Bound { span: Span::UNKNOWN, what: Binding::Object(key) });
+        } else if known.is_none()
+            && let Some(&x) = env.numbers.get(&**text)
+        {
+            let ty = moldloft_syntax::sdl::Type::Float;
+            let what = Binding::Variable { ty, value: Value::Number(x), fixed: false };
+            *known = Some(Bound { span: Span::UNKNOWN, what });
         }
     }
 }

@@ -212,6 +212,12 @@ impl Modules {
             return Ok(at);
         }
         let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
+        let text = if read.name.to_ascii_lowercase().ends_with(".ms2") {
+            converted(&read.name, text, loader.registry).map_err(|d| d.at(span))?
+        } else {
+            text.to_string()
+        };
+        let text = text.as_str();
         let file = loader.sources.add(read.name.clone(), text);
         let (program, found) = sdl::parse(text, file);
         let at = self.add(&read.name, program, loader.registry, None);
@@ -226,4 +232,15 @@ pub(crate) struct Loader<'a> {
     pub registry: &'a Registry,
     pub sources: &'a mut Sources,
     pub diagnostics: &'a mut Vec<Diagnostic>,
+}
+
+/// A model file as a program.
+fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, Diagnostic> {
+    let world = Box::new(crate::NoFiles);
+    let document = crate::Document::from_text(registry.clone(), world, name, text);
+    document.convert(crate::Format::Sdl).map_err(|found| {
+        let first = found.first().map(|d| d.message.clone()).unwrap_or_default();
+        Diagnostic::error("cannot-read", format!("`{name}` is not sound: {first}"))
+            .help("open the model file by itself to see all that is wrong with it")
+    })
 }

@@ -20,6 +20,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         args: List<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
+        if self.is_given(m.names[name.symbol.0 as usize]) {
+            return Ok(());
+        }
         let outcome = self.object_of(m, id, kind, name, args, span);
         if outcome.is_err() {
             self.poison(m, name);
@@ -39,6 +42,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let name_id = m.names[name.symbol.0 as usize];
         let word = m.program.name(kind.symbol);
         let row = match &m.rows[kind.symbol.0 as usize] {
+            // A file says of itself what does not concern whoever inserts it.
+            Some(row) if row.name == crate::header::KIND && !self.components.is_empty() => {
+                return Ok(());
+            }
             Some(row) if row.kind => row,
             None if word == "Sketch"
                 && !self.env.routines.contains_key(&m.names[kind.symbol.0 as usize]) =>
@@ -48,6 +55,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             other => {
                 if let Some(&routine) = self.env.routines.get(&m.names[kind.symbol.0 as usize]) {
                     return self.instance(m, routine, name, args, span);
+                }
+                if word == crate::component::WORD {
+                    return self.component(m, name, args, span);
                 }
                 if other.is_some() {
                     return Err(Diagnostic::error(
@@ -139,7 +149,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The name of an object, when it differs from the one written: with the call it is made in
     /// and the values of the loop variables; and in loops the family and the turn.
     #[allow(clippy::type_complexity)]
-    fn full_name(
+    pub fn full_name(
         &mut self,
         m: &Module,
         name: Ident,

@@ -34,7 +34,7 @@ pub(crate) enum NotLiteral {
 }
 
 /// Runs `f` where a deeply nested program finds enough stack.
-fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+pub(crate) fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, f);
         match thread.expect("a thread can be started").join() {

@@ -13,11 +13,14 @@ impl Document {
     /// When there is no such object, something is built on it or reads it, or its statement makes
     /// others too.
     pub fn delete(&mut self, name: &str) -> Result<Applied, Diagnostic> {
+        if matches!(self.source, Source::ModelFile(_)) {
+            return self.delete_line(name);
+        }
         let (stmt, span) = self.sole_statement(name)?;
         let graph = self.graph();
-        let key = graph.find(name).expect("it has a statement");
-        let object = graph.get(key).expect("it was found");
-        if !object.children.is_empty() {
+        // A component or the call of a subroutine has a name, but is no object.
+        let object = graph.find(name).and_then(|key| graph.get(key));
+        if let Some(object) = object.filter(|o| !o.children.is_empty()) {
             let names: Vec<_> = object.children.iter().filter_map(|&c| graph.get(c)).collect();
             let mut shown: Vec<_> = names.iter().take(5).map(|o| o.name.to_string()).collect();
             if names.len() > shown.len() {
@@ -58,6 +61,9 @@ impl Document {
     /// When there is no such object, the new name is taken or no name, or the old one means
     /// something else as well.
     pub fn rename(&mut self, old: &str, new: &str) -> Result<Applied, Diagnostic> {
+        if matches!(self.source, Source::ModelFile(_)) {
+            return self.rename_line(old, new);
+        }
         let (_, span) = self.sole_statement(old)?;
         let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let head = new.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
@@ -99,10 +105,121 @@ impl Document {
         Ok(self.set_text(&text))
     }
 
+    /// Takes edited numbers into the text of a model file, so that places are those of the text.
+    fn settle_model_file(&mut self) {
+        if let Source::ModelFile(source) = &self.source
+            && source.model().is_edited()
+        {
+            let text = source.text();
+            self.set_text(&text);
+        }
+    }
+
+    fn delete_line(&mut self, name: &str) -> Result<Applied, Diagnostic> {
+        self.settle_model_file();
+        let Source::ModelFile(source) = &self.source else { return Ok(self.applied()) };
+        let Some(line) = source.line(name) else { return Err(self.no_object(name)) };
+        let mentions = source.mentions(&self.registry, name);
+        if !mentions.is_empty() {
+            let mut users: Vec<&str> = Vec::new();
+            for (at, _) in &mentions {
+                let user = source.model().slice(source.lines()[*at].name);
+                if users.last() != Some(&user) {
+                    users.push(user);
+                }
+            }
+            let more = users.len().saturating_sub(5);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            let shown = users[..users.len().min(5)].join(", ");
+            return Err(Diagnostic::error("has-dependents", format!("`{name}` cannot be deleted"))
+                .at(line.name)
+                .found(format!("built on it: {shown}{more}"))
+                .note_at(mentions[0].1, "it is used here")
+                .help("delete or rebuild those first"));
+        }
+        let mut text = source.model().text().to_string();
+        let mut end = line.span.end as usize;
+        let rest = &text[end..];
+        let blank = rest.len() - rest.trim_start_matches([' ', '\t', '\r']).len();
+        if rest[blank..].starts_with('\n') {
+            end += blank + 1;
+        }
+        text.replace_range(line.span.start as usize..end, "");
+        Ok(self.set_text(&text))
+    }
+
+    fn rename_line(&mut self, old: &str, new: &str) -> Result<Applied, Diagnostic> {
+        self.settle_model_file();
+        let Source::ModelFile(source) = &self.source else { return Ok(self.applied()) };
+        let Some(line) = source.line(old) else { return Err(self.no_object(old)) };
+        let word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
+        let reserved = ["rem", "beginmodel", "endmodel"].contains(&&*new.to_ascii_lowercase());
+        if reserved || !new.starts_with(|c: char| c.is_ascii_alphabetic()) || !new.chars().all(word)
+        {
+            return Err(Diagnostic::error("not-a-name", format!("`{new}` is no name"))
+                .at(line.name)
+                .expected("a letter, then letters, digits, _, - and ."));
+        }
+        if source.has(new) {
+            let diagnostic =
+                Diagnostic::error("duplicate-name", format!("`{new}` is used already"))
+                    .at(line.name);
+            return Err(diagnostic.help("choose another name"));
+        }
+        let mut places: Vec<Span> =
+            source.mentions(&self.registry, old).into_iter().map(|(_, span)| span).collect();
+        places.push(line.name);
+        places.sort_unstable_by_key(|s| s.start);
+        let mut text = source.model().text().to_string();
+        for place in places.into_iter().rev() {
+            text.replace_range(place.range(), new);
+        }
+        if let Some(value) = self.overrides.shift_remove(old) {
+            self.overrides.insert(new.to_string(), value);
+        }
+        Ok(self.set_text(&text))
+    }
+
+    fn no_object(&self, name: &str) -> Diagnostic {
+        let near = match &self.source {
+            Source::ModelFile(source) => {
+                let names = source.lines().iter().map(|l| source.model().slice(l.name));
+                moldloft_diag::nearest(name, names).map(str::to_string)
+            }
+            _ => None,
+        };
+        Diagnostic::error("unknown-name", format!("there is no object `{name}`"))
+            .maybe_help(near.map(|n| format!("did you mean `{n}`?")))
+    }
+
+    /// The statement of a component or of a named call of a subroutine, in the main file.
+    fn instance_statement(&self, name: &str) -> Option<(StmtId, Span)> {
+        if !matches!(self.source, Source::Program) {
+            return None;
+        }
+        let program = &self.modules.get(0).program;
+        let found = |id: &&StmtId| match program[**id].kind {
+            StmtKind::Object { kind, name: ident, .. } => {
+                let kind = program.name(kind.symbol);
+                program.name(ident.symbol) == name
+                    && self.registry.get(kind).is_none_or(|row| !row.kind)
+            }
+            _ => false,
+        };
+        let &stmt = program[program.body()].iter().find(found)?;
+        match program[stmt].kind {
+            StmtKind::Object { name, .. } => Some((stmt, name.span)),
+            _ => None,
+        }
+    }
+
     /// The statement of the main file that makes this object and no other, and where it is named.
     fn sole_statement(&self, name: &str) -> Result<(StmtId, Span), Diagnostic> {
         let graph = self.graph();
         let Some(object) = graph.find(name).and_then(|key| graph.get(key)) else {
+            if let Some(found) = self.instance_statement(name) {
+                return Ok(found);
+            }
             return Err(Diagnostic::error("unknown-name", format!("there is no object `{name}`"))
                 .maybe_help(graph.nearest_name(name).map(|n| format!("did you mean `{n}`?"))));
         };
@@ -112,7 +229,7 @@ impl Document {
                 .help("edit the text"))
         };
         if !matches!(self.source, Source::Program) {
-            return elsewhere("the model comes from a model file or a sketch");
+            return elsewhere("the model comes from a sketch");
         }
         let Some(origin) = self.plain.env.origins.get(object.origin as usize) else {
             return elsewhere("it has no statement");

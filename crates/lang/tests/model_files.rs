@@ -308,7 +308,7 @@ fn bad_files_are_told_apart() {
         ("BCurve c 11 1 4 * 2 A;", "not-a-list", "A", "list"),
         ("Line n 11 1 4 * A A2; Line n2 11 1 4 * A n;", "unknown-object", "A2", "want of it: n2"),
         ("Line n 11 1 4 bend A B;", "unsupported-relabel", "bend", "without its relabel"),
-        ("AbsBead b 14 1 l =half;", "unsupported-formula", "=half", "parameter"),
+        ("AbsBead b 14 1 l =half;", "bad-formula", "=half", "there is no `half`"),
         ("MirrPoint m 14 1 A *W=0;", "unknown-object", "*W=0", "*Y=0"),
         ("CCurve c 11 1 4 * 3 { A A B };", "coincident-points", "A", ""),
     ] {
@@ -443,4 +443,117 @@ fn the_given_table_2_is_ours() {
     let path = here.join("../../../shared/fixtures/table2.ms2");
     let Ok(text) = std::fs::read_to_string(path) else { return };
     assert_eq!(objects(&open(&text)), objects(&open(HULL)));
+}
+
+/// Variables and formulas, used as words, by `=` and in brackets, above and below their uses.
+const REALS: &str = "\
+MultiSurf 1.44
+BeginModel;
+AbsPoint A 14 1 / 0 =half [2*beam - 1];
+AbsPoint B 14 1 / beam A.z 0;
+AbsPoint C 14 1 / [A.z + B.x] 0 0;
+Line l 11 1 8x4 / * A B;
+Line m 11 1 8x4 / * A C;
+RevSurf s 10 1 8x1 8x1 0 / * l m 0 [10*beam];
+Formula half [beam/2];
+Variable beam 3 1 5;
+Variable depth 14 1 / 2 0 4;
+Formula area [l.length*depth];
+AbsPoint D 14 1 / area depth 0;
+EndModel;
+";
+
+#[test]
+fn variables_and_formulas_are_computed() {
+    let text = REALS.replace("beam A.z 0", "beam [A.z] 0");
+    let mut document = open(&text);
+    assert!(document.diagnostics().is_empty(), "{:?}", document.diagnostics());
+    let names: Vec<&str> = document.params().iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["beam", "depth"]);
+    assert_eq!(document.params()[0].range, Some((1.0, 5.0)));
+    for (text, value) in [("A.y", 1.5), ("A.z", 5.0), ("B.y", 5.0), ("C.x", 8.0), ("half", 1.5)] {
+        assert_eq!(number(&mut document, text), value, "{text}");
+    }
+    let length = (9.0_f64 + 3.5 * 3.5 + 25.0).sqrt();
+    assert!((number(&mut document, "area") - 2.0 * length).abs() < 1e-11);
+    assert!((number(&mut document, "s.a2") - PI / 6.0).abs() < 1e-15);
+    // Edits and derivatives.
+    let exact = document.derivatives(&["D.x".into(), "s.a2".into()], &["beam".into()]).unwrap();
+    document.set(&[("beam".into(), 4.0)]).unwrap();
+    assert_eq!((number(&mut document, "A.y"), number(&mut document, "C.x")), (2.0, 11.0));
+    let mut at = |x: f64| {
+        document.set(&[("beam".into(), x)]).unwrap();
+        number(&mut document, "D.x")
+    };
+    let Value::Number(d) = exact[0][0] else { panic!() };
+    assert!((d - (at(3.0 + 1e-5) - at(3.0 - 1e-5)) / 2e-5).abs() < 1e-8);
+    let Value::Number(d) = exact[1][0] else { panic!() };
+    assert!((d - PI / 18.0).abs() < 1e-15);
+    assert_eq!(document.set(&[("beam".into(), 6.0)]).unwrap_err()[0].id, "out-of-range");
+    let refused = document.set(&[("A.y".into(), 6.0)]).unwrap_err();
+    assert_eq!(refused[0].id, "not-a-literal");
+    // The other form says the same.
+    document.set(&[("beam".into(), 3.0)]).unwrap();
+    let program = document.convert(Format::Sdl).unwrap();
+    assert!(program.contains("param float beam = 3 in [1, 5];\n"), "{program}");
+    assert!(program.contains("float half = beam/2;\n"), "{program}");
+    let mut converted = open_sdl(&program);
+    assert!(converted.diagnostics().is_empty(), "{program}\n{:?}", converted.diagnostics());
+    for text in ["C.x", "D.x", "s(0.3, 0.8).z"] {
+        let (a, b) = (number(&mut document, text), number(&mut converted, text));
+        assert!((a - b).abs() < 1e-14, "{text}");
+    }
+    // Faults: a word in place of a number, a cycle, what is no number.
+    for (from, to, id) in [
+        ("[beam/2]", "[beam/]", "bad-formula"),
+        ("[beam/2]", "[A.z]", "cycle"),
+        ("[beam/2]", "[l]", "cycle"),
+        ("[beam/2]", "[beam/0]", "bad-formula"),
+        ("[beam/2]", "[lost*2]", "bad-formula"),
+        ("beam 3 1 5", "beam 7 1 5", "out-of-range"),
+        ("beam 3 1 5", "beam 7 1", "missing-field"),
+        ("[beam/2]", "", "missing-field"),
+        ("* A B", "* A beam", "wrong-class"),
+    ] {
+        let found = faults(&text.replace(from, to));
+        assert!(found[0].0 == id, "{to}: {found:?}");
+    }
+}
+
+#[test]
+fn objects_of_model_files_are_renamed_and_deleted() {
+    let text = REALS.replace("beam A.z 0", "beam [A.z] 0");
+    let mut document = open(&text);
+    let before = number(&mut document, "C.x");
+    document.set(&[("B.z".into(), 0.25)]).unwrap();
+    document.rename("A", "bow").unwrap();
+    document.rename("beam", "width").unwrap();
+    let renamed = document.text();
+    assert!(renamed.contains("AbsPoint bow 14 1 / 0 =half [2*width - 1];"), "{renamed}");
+    assert!(renamed.contains("AbsPoint B 14 1 / width [bow.z] 0.25;"), "{renamed}");
+    assert!(renamed.contains("/ * bow B;") && renamed.contains("Variable width 3 1 5;"));
+    assert!(document.diagnostics().is_empty(), "{:?}", document.diagnostics());
+    assert_eq!(number(&mut document, "C.x"), before);
+    for (old, new, id) in [
+        ("bow", "B", "duplicate-name"),
+        ("bow", "2", "not-a-name"),
+        ("bow", "a b", "not-a-name"),
+        ("bow", "Rem", "not-a-name"),
+        ("bew", "c", "unknown-name"),
+    ] {
+        assert_eq!(document.rename(old, new).unwrap_err().id, id);
+    }
+    let kept = document.delete("bow").unwrap_err();
+    assert!(
+        kept.id == "has-dependents"
+            && kept.found.as_deref().unwrap_or_default().contains("B, C, l")
+    );
+    assert_eq!(document.delete("depth").unwrap_err().id, "has-dependents");
+    assert_eq!(document.delete("nothing").unwrap_err().id, "unknown-name");
+    document.delete("D").unwrap();
+    document.delete("area").unwrap();
+    document.delete("depth").unwrap();
+    assert!(document.diagnostics().is_empty(), "{:?}", document.diagnostics());
+    assert!(!document.text().contains("area") && document.text().contains("EndModel;"));
+    assert_eq!(document.params().len(), 1);
 }
