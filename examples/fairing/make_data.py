@@ -20,6 +20,7 @@ class Random:
         self.u = seed
 
     def __call__(self) -> float:
+        """The next one."""
         self.u = (1103515245 * self.u + 12345) % 2**31
         return self.u / 2**31 - 0.5
 
@@ -100,11 +101,13 @@ def lines() -> list[np.ndarray]:
 
 
 def table(name: str, points: np.ndarray, head: str = "x, y") -> None:
+    """Writes points as CSV."""
     rows = [head, *(", ".join(repr(float(c)) for c in p) for p in points)]
     (HERE / name).write_text("\n".join(rows) + "\n")
 
 
 def main() -> None:
+    """Writes everything."""
     table("naca0012-4.csv", np.round(naca0012(), 4))
     table("naca0012-3.csv", np.round(naca0012(), 3))
     table("waisted-4.csv", np.round(waisted(), 4))

@@ -285,7 +285,7 @@ def _curve_options(options: argparse.Namespace, count: int) -> dict[str, Any]:
         "mode": options.mode,
         "bound": options.bound,
         "breaks": breaks,
-        "fixed": _places(options.fixed, None, "--fixed"),
+        "fixed": _places(options.fixed, count, "--fixed"),
         "ends": _ends(options),
         "motion": _motion(options),
         "through": options.through,
