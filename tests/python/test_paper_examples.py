@@ -54,3 +54,80 @@ def test_every_draw_builds_closed(name: str, path: str, draws: int, planes: str)
         for plane in planes:
             on_planes |= rim[:, "xyz".index(plane)] == 0.0
         assert on_planes.all(), f"{values}: open at {rim[~on_planes][:3]}"
+
+
+def _platform_volume(radius: float, pontoon: float, spacing: float, draft: float) -> float:
+    """Four legs and four pontoons between them, without the pieces inside the legs."""
+    from scipy.integrate import quad
+
+    def inside(angle: float) -> float:
+        # The pontoon's section is cut in strips at y = pontoon sin(angle); each ends on the leg.
+        y = pontoon * math.sin(angle)
+        length = spacing - 2 * math.sqrt(radius**2 - y**2)
+        return 2 * (pontoon * math.cos(angle)) ** 2 * length
+
+    strip, _ = quad(inside, -math.pi / 2, math.pi / 2, epsabs=1e-12, epsrel=1e-12)
+    return 4 * math.pi * radius**2 * draft + 4 * strip
+
+
+def test_platform_volume_is_its_integral() -> None:
+    model = moldloft.load(EXAMPLES / "platform/platform.sdl")
+    names = ("leg_radius", "pontoon_radius", "spacing", "draft")
+    variants = [{}] + [{name: model.params[name].high} for name in names]
+    start = {name: model.params[name].value for name in names}
+    for variant in variants:
+        values = {**start, **variant}
+        model.set(values)
+        exact = _platform_volume(*(values[name] for name in names))
+        ours = 4 * model.hydrostatics(sides="one").volume
+        assert abs(ours - exact) < 1e-2 * exact, (variant, ours, exact)
+
+
+def _unrolled(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x, the length along the circle from the top to starboard, and the radius."""
+    radius = np.hypot(points[..., 1], points[..., 2])
+    return points[..., 0], radius * np.arctan2(points[..., 1], points[..., 2]), radius
+
+
+def test_propeller_sections_are_those_of_the_data_sheet() -> None:
+    model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")
+    diameter = model["diameter"]
+    columns = [np.asarray(model.eval(name)) for name in ("r_R", "P_D", "c_D", "t_D", "f_D", "s_deg")]
+    limit = 1e-6 * diameter
+    for k in range(13):
+        at, pitch, chord, thickness, camber, skew = (float(column[k]) for column in columns)
+        foil = model["one.root.foil" if k == 0 else f"one.s[{k + 1}].foil"]
+        tail, nose = foil(0.0), foil(0.5)
+        x, y, radius = _unrolled(np.array([tail, nose]))
+        assert np.abs(radius - at * diameter / 2).max() < limit
+        along = np.array([x[0] - x[1], y[0] - y[1]])
+        length = float(np.hypot(*along))
+        assert abs(length - chord * diameter) < limit
+        slope = along[0] / -along[1]
+        assert abs(math.pi * at * slope - pitch) < 1e-6
+        middle = -(y[0] + y[1]) / 2 / radius[0]
+        assert abs(middle - math.radians(skew)) * radius[0] < limit
+        # Both sides at the same place along the chord: their middle is the mean line.
+        s = np.sqrt(np.array([0.45, 0.51533]))
+        back, face = foil((1 - s) / 2), foil((1 + s) / 2)
+        across = np.array([along[1], -along[0]]) / length
+        (bx, by, _), (fx, fy, _) = _unrolled(back), _unrolled(face)
+        thick = np.hypot(bx - fx, by - fy)
+        assert abs(thick[0] - thickness * diameter) < limit
+        mean = np.array([(bx + fx) / 2 - x[1], (by + fy) / 2 - y[1]])
+        assert abs(abs(across @ mean)[1] - camber * diameter) < limit
+
+
+def test_wing_corners_lie_where_the_laws_say() -> None:
+    model = moldloft.load(EXAMPLES / "wing/wing.sdl")
+    for spanwise in (0.0, 1.0):
+        for chordwise in (0.0, 1.0):
+            model.set({"spanwise": spanwise, "chordwise": chordwise})
+            grid = np.asarray(model["upper"].grid(21, 25))
+            v = np.linspace(0, 1, 25)
+            law = v + spanwise * ((1 - np.cos(np.pi * v)) / 2 - v)
+            half_span = model["half_span"]
+            assert np.abs(grid[:, :, 1] - half_span * law).max() < 1e-14 * half_span
+            t = np.linspace(0, 1, 21)
+            t = t + chordwise * (np.sin(np.pi * t / 2) - t)
+            assert np.abs(grid[:, 0, 0] - model["root_chord"] * t**2).max() < 1e-2
