@@ -11,6 +11,7 @@
 
 mod bodies;
 mod divide;
+mod facing;
 mod join;
 mod junction;
 mod remark;
@@ -23,6 +24,7 @@ pub use remark::{ChainStep, Remark};
 
 use crate::{Graph, Object};
 use bodies::Body;
+use facing::Facing;
 use join::Joiner;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_num::trace::{Edges, Key};
@@ -89,9 +91,14 @@ struct Joint {
     /// For each patch, which points of its boundary are their own images.
     fixed: Vec<Vec<bool>>,
     /// Panel edges with one panel: patch and the places of both ends in its grid.
-    rim: Vec<(u32, u32, u32)>,
-    inward: bool,
+    rim: Vec<RimEdge>,
+    facing: Facing,
+    /// For each patch, whether its panels run against its natural normal.
+    turned: Vec<bool>,
 }
+
+/// A panel edge with one panel: the patch and the places of both ends in its grid.
+type RimEdge = (u32, u32, u32);
 
 /// The counts of divisions of another state of a model, to be kept where they are free.
 #[derive(Clone, Debug, Default)]
@@ -156,9 +163,7 @@ impl Panelling {
         set_zeros(&skeleton, &zeros, &mut points);
         let fixed = fixed(&skeleton, &points);
         let joint = match before.filter(|b| b.joint.fixed == fixed) {
-            Some(before)
-                if before.joint.inward == before.joint.faces_inward(&skeleton, &points) =>
-            {
+            Some(before) if before.joint.turned == before.joint.facing(&skeleton, &points) => {
                 before.joint.clone()
             }
             _ => {
@@ -397,11 +402,13 @@ impl Joint {
         }
         let rim = rim(skeleton, &vertices);
         let topology = Arc::default();
-        let mut joint = Self { topology, vertices, count, fixed, rim, inward: false };
-        joint.inward = joint.faces_inward(skeleton, points);
+        let facing = Facing::new(skeleton, &vertices, &rim);
+        let turned = facing.turned(skeleton, points, &rim);
+        let mut joint = Self { topology, vertices, count, fixed, rim, facing, turned };
         let mut builder = TopologyBuilder::new();
         builder.add_vertices(used as usize)?;
-        for (vertices, frame) in joint.vertices.iter().zip(&skeleton.frames) {
+        for (patch, frame) in skeleton.frames.iter().enumerate() {
+            let vertices = &joint.vertices[patch];
             if !frame.meshed {
                 continue;
             }
@@ -413,11 +420,14 @@ impl Joint {
                 colour: Some((frame.colour & 15) as u8),
                 kind: frame.kind.to_string(),
             };
-            let reversed = frame.reversed != joint.inward;
-            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), reversed)?;
+            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), joint.turned[patch])?;
         }
         joint.topology = builder.build().into();
         Ok(joint)
+    }
+
+    fn facing(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>]) -> Vec<bool> {
+        self.facing.turned(skeleton, points, &self.rim)
     }
 
     /// The pairs of patches whose shared vertices are not in one place.
@@ -452,40 +462,11 @@ impl Joint {
             })
             .collect()
     }
-
-    /// True when the panels as a whole, turned as their surfaces say, face inward: then all of
-    /// them are turned round. A closed mesh has a negative volume then; of an open one, the cone
-    /// from the middle of its rim has. A flat one faces as its surface says.
-    fn faces_inward(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>]) -> bool {
-        let (mut centre, mut length) = (Vec3::zero(), 0.0);
-        for &(patch, a, b) in &self.rim {
-            let at = |k: u32| points[patch as usize][k as usize];
-            let step = at(a).distance(at(b));
-            centre += (at(a) + at(b)) * (0.5 * step);
-            length += step;
-        }
-        if length > 0.0 {
-            centre = centre / length;
-        }
-        let (mut volume, mut size) = (0.0, 0.0);
-        for (frame, points) in skeleton.frames.iter().zip(points).filter(|(f, _)| f.meshed) {
-            let [nu, nv] = frame.divisions;
-            let sign = if frame.reversed { -1.0 } else { 1.0 };
-            let at = |i: usize, j: usize| points[i * (nv + 1) + j] - centre;
-            for (i, j) in (0..nu).flat_map(|i| (0..nv).map(move |j| (i, j))) {
-                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-                let cone = (a + c).dot((c - a).cross(d - b));
-                volume += sign * cone;
-                size += cone.abs();
-            }
-        }
-        volume < -1e-6 * size
-    }
 }
 
 /// The panel edges at the rims of patches that have one panel, in the order of their vertices.
-fn rim(skeleton: &Skeleton, vertices: &[Vec<u32>]) -> Vec<(u32, u32, u32)> {
-    let mut all: Vec<((u32, u32), (u32, u32, u32))> = Vec::new();
+fn rim(skeleton: &Skeleton, vertices: &[Vec<u32>]) -> Vec<RimEdge> {
+    let mut all: Vec<((u32, u32), RimEdge)> = Vec::new();
     for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
         for k in 0..4 {
             let mut before: Option<usize> = None;

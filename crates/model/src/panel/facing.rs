@@ -1,0 +1,145 @@
+//! Which way the panels of each patch face: neighbours alike, and bodies outward.
+
+use super::skeleton::{Frame, Skeleton};
+use super::{RimEdge, indices};
+use moldloft_num::Vec3;
+use std::sync::Arc;
+
+/// How the patches of a mesh hang together.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Facing {
+    /// For each patch the first one of its body, and whether it is turned against that one.
+    sides: Vec<(usize, bool)>,
+    /// For the first patch of each body, whether it has no rim.
+    closed: Vec<bool>,
+}
+
+impl Facing {
+    /// From the vertices of the patches, and the panel edges with one panel.
+    pub fn new(skeleton: &Skeleton, vertices: &[Vec<u32>], rim: &[RimEdge]) -> Self {
+        let mut bodies = Bodies::new(skeleton.frames.len());
+        let mut all: Vec<((u32, u32), usize, bool)> = Vec::new();
+        for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+            for k in 0..4 {
+                // A walk round the patch runs along its edges 0 and 1, and against 2 and 3.
+                let walk: Vec<u32> =
+                    indices(frame.divisions, k).map(|at| vertices[patch][at]).collect();
+                for ends in walk.windows(2).filter(|ends| ends[0] != ends[1]) {
+                    let pair = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+                    all.push((pair, patch, (ends[0] < ends[1]) == (k < 2)));
+                }
+            }
+        }
+        all.sort_unstable();
+        for run in all.chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, p, forward), (_, q, again)] = *run
+                && p != q
+            {
+                // Neighbours that face alike run along a common edge in opposite directions.
+                bodies.join(p, q, forward == again);
+            }
+        }
+        let sides: Vec<(usize, bool)> =
+            (0..skeleton.frames.len()).map(|p| bodies.find(p)).collect();
+        let mut closed = vec![true; sides.len()];
+        for &(patch, _, _) in rim {
+            closed[sides[patch as usize].0] = false;
+        }
+        Self { sides, closed }
+    }
+
+    /// For each patch, whether its panels run against its natural normal.
+    ///
+    /// Neighbours face alike, as the first of them says; a closed body faces outward: its volume is
+    /// positive. Open ones keep their sides towards one another and face outward together: the cone
+    /// from the middle of their rims is positive. Flat ones face as their surfaces say.
+    pub fn turned(
+        &self,
+        skeleton: &Skeleton,
+        points: &[Arc<Vec<Vec3>>],
+        rim: &[RimEdge],
+    ) -> Vec<bool> {
+        let frames = &skeleton.frames;
+        let stated = |patch: usize| {
+            let (first, against) = self.sides[patch];
+            frames[first].reversed != against
+        };
+        let (mut centre, mut length) = (Vec3::zero(), 0.0);
+        for &(patch, a, b) in rim {
+            let at = |k: u32| points[patch as usize][k as usize];
+            let step = at(a).distance(at(b));
+            centre += (at(a) + at(b)) * (0.5 * step);
+            length += step;
+        }
+        if length > 0.0 {
+            centre = centre / length;
+        }
+        // The open bodies count as one, in the last place.
+        let mut cones = vec![(0.0, 0.0); frames.len() + 1];
+        for (patch, frame) in frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+            let sum = &mut cones[self.body(patch)];
+            let (volume, size) = cone(frame, &points[patch], centre);
+            sum.0 += if stated(patch) { -volume } else { volume };
+            sum.1 += size;
+        }
+        let inward = |patch: usize| {
+            let (volume, size) = cones[self.body(patch)];
+            volume < -1e-6 * size
+        };
+        (0..frames.len()).map(|patch| stated(patch) != inward(patch)).collect()
+    }
+
+    fn body(&self, patch: usize) -> usize {
+        let first = self.sides[patch].0;
+        if self.closed[first] { first } else { self.sides.len() }
+    }
+}
+
+/// Six times the signed and the absolute volume of the cones from `centre` to the panels.
+fn cone(frame: &Frame, points: &[Vec3], centre: Vec3) -> (f64, f64) {
+    let [nu, nv] = frame.divisions;
+    let at = |i: usize, j: usize| points[i * (nv + 1) + j] - centre;
+    let (mut volume, mut size) = (0.0, 0.0);
+    for (i, j) in (0..nu).flat_map(|i| (0..nv).map(move |j| (i, j))) {
+        let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        let cone = (a + c).dot((c - a).cross(d - b));
+        volume += cone;
+        size += cone.abs();
+    }
+    (volume, size)
+}
+
+/// Sets of patches that hang together; the smallest number stands for the set.
+struct Bodies {
+    /// Another patch of the set, and whether this one is turned against it.
+    above: Vec<(usize, bool)>,
+}
+
+impl Bodies {
+    fn new(n: usize) -> Self {
+        Self { above: (0..n).map(|patch| (patch, false)).collect() }
+    }
+
+    fn find(&mut self, patch: usize) -> (usize, bool) {
+        let mut chain = Vec::new();
+        let mut at = patch;
+        while self.above[at].0 != at {
+            chain.push(at);
+            at = self.above[at].0;
+        }
+        let mut against = false;
+        for &link in chain.iter().rev() {
+            against ^= self.above[link].1;
+            self.above[link] = (at, against);
+        }
+        (at, against)
+    }
+
+    /// Patches in one set already stay as they are: a band with a twist has no sides.
+    fn join(&mut self, p: usize, q: usize, against: bool) {
+        let ((a, turned_a), (b, turned_b)) = (self.find(p), self.find(q));
+        if a != b {
+            self.above[a.max(b)] = (a.min(b), turned_a ^ turned_b ^ against);
+        }
+    }
+}
