@@ -151,7 +151,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                 }
                 (false, n) => Space::floating(degree, n),
             };
-            let space = space.map_err(|e| fault(e, &places).in_item(k))?;
+            let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(0))?;
             if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
                 return Err(Fault::new("point-twice", "a curve passes twice through a point")
                     .expected("different points; only the first may come again, at the end")
@@ -190,7 +190,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             let points: Vec<Vec3<T>> = own.iter().map(|&i| moved[i]).collect();
             let sharp =
                 interpolate_sharp(degree, &points, Spacing::Uniform, *closed, &marks_of(own))
-                    .map_err(|e| fault(e, &places).in_item(k))?;
+                    .map_err(|e| fault(e, &places).in_item(k).in_field(0))?;
             let curve = shapes::curve(&sharp.fit.space, &sharp.points)
                 .map_err(|e| Fault::new("no-spline", e.to_string()).in_item(k).in_field(0))?;
             // Ends that may move are no longer their point objects.
