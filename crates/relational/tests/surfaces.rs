@@ -261,7 +261,7 @@ fn fillets_that_turn_back_are_refused() {
         ("FilletSurf S(low, high, direction1 = \"along\");", "unknown-direction", 5),
         ("FilletSurf S(low, high, closed = 1);", "not-closed", 7),
         (
-            "AbsMagnet p(wall, 1, 0.2); AbsMagnet q(wall, 0, 0.6); LineSnake x(p, q); FilletSurf S(x, low);",
+            "AbsMagnet p(wall, 1, 0.2); AbsMagnet q(wall, 0, 0.6); LineSnake x(p, q); FilletSurf S(x, low, direction1 = \"u\");",
             "fillet-turns-back",
             0,
         ),
