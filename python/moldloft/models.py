@@ -54,7 +54,7 @@ def load(
     Parameters
     ----------
     path
-        An ``.sdl`` program or an ``.ms2`` model file.
+        An ``.sdl`` program, an ``.ms2`` model file or a ``.skt`` sketch.
     library
         Folders, besides the model's own, from which it may load.
     functions

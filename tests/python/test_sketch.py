@@ -101,7 +101,7 @@ def test_a_pipe_talks_to_the_prompt(tmp_path, environment):
 
 def test_files_go_where_they_are_asked_for(tmp_path, environment):
     path = tmp_path / "slab.skt"
-    path.write_text(SLAB + "EXPORT STL\nEXPORT SVG part/slab.svg\nSAVE SLAB AS slab.json\n")
+    path.write_text(SLAB + "EXPORT STL\nEXPORT SVG \"part/slab.svg\"\nSAVE SLAB AS slab.json\n")
     done = command(path, "-o", tmp_path / "out", environment=environment)
     assert done.returncode == 0, done.stderr
     for name in ("SLAB.stl", "part/slab.svg", "slab.json"):
@@ -347,7 +347,7 @@ def test_a_dxf_drawing_becomes_a_sketch(tmp_path):
 def test_a_sketch_is_a_model(tmp_path):
     m = moldloft.load(EXAMPLES / "dam.skt")
     assert list(m.params) == ["dam.CREST", "dam.LENGTH1", "dam.HEIGHT", "dam.PARAPET"]
-    assert m.params["dam.CREST"].range == (10.0, 30.0)
+    assert (m.params["dam.CREST"].low, m.params["dam.CREST"].high) == (10.0, 30.0)
     assert m.mesh().summary["closed"] and m.mesh().summary["volume"] == pytest.approx(169_200.0)
     m["dam.CREST"] = 20
     assert m.eval("dam.volume") == pytest.approx(187_200.0)
@@ -398,6 +398,23 @@ def test_faults_of_a_sketch_point_into_it(tmp_path):
 
 
 # -- documentation ----------------------------------------------------------------------------
+
+
+def test_the_python_of_the_page_runs(tmp_path, monkeypatch):
+    import re
+    import shutil
+
+    page = (Path(__file__).parents[2] / "docs" / "sketch.md").read_text(encoding="utf-8")
+    shutil.copytree(EXAMPLES, tmp_path / "examples" / "sketch")
+    monkeypatch.chdir(tmp_path)
+    [block] = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    namespace: dict[str, object] = {}
+    exec(compile(block, "sketch.md", "exec"), namespace)
+    assert (tmp_path / "dam.3mf").exists() and (tmp_path / "dam.skt").exists()
+    program = page.split("```\nload ")[1].split("```")[0]
+    path = tmp_path / "examples" / "sketch" / "page.sdl"
+    path.write_text("load " + program)
+    assert moldloft.load(path)["gate"].z == pytest.approx(92.0)
 
 
 def test_the_pictures_are_those_of_the_scripts(tmp_path):

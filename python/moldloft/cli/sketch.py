@@ -120,19 +120,21 @@ class Host:
         """Runs a line, shows its replies and writes its files."""
         from moldloft.sketches import Reply
 
-        for severity, code, text, following, file in self.session.run_line(line):
+        answers = self.session.run_line(line)
+        # On the disk before it is answered: what was answered is never lost.
+        length = self.session.journal_length()
+        if self.journal is not None and length != self.recorded:
+            self.journal.append(self.session.journal(self.recorded))
+        self.recorded = length
+        for severity, code, text, following, file in answers:
             reply = Reply(severity, text, following, code, file)
             self.replies.append(reply)
             if file is not None:
                 reply = self._write(reply, file)
             self._show(reply, where)
-        length = self.session.journal_length()
         if self.journal is not None and self.rewritten:
             # The file holds everything now: running it and then the old journal would do it twice.
             self.journal.restart()
-        elif self.journal is not None and length != self.recorded:
-            self.journal.append(self.session.journal(self.recorded))
-        self.recorded = length
         self.rewritten = False
 
     def _write(self, reply: Reply, file: tuple[str, bytes]) -> Reply:
@@ -156,9 +158,9 @@ class Host:
         self.refused |= reply.is_error
         text = str(reply)
         if reply.severity != "note":
-            print(f"{where}: {text}" if where else text, file=sys.stderr)
+            print(f"{where}: {text}" if where else text, file=sys.stderr, flush=True)
         elif not self.options.json and not self.options.quiet:
-            print(text)
+            print(text, flush=True)
 
     # -- the prompt --------------------------------------------------------------------------
 
