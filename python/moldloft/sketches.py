@@ -122,11 +122,11 @@ class Sketch:
     (120.0, array([40.]))
     >>> s.sweep("H", [1, 2])[:, 0]
     array([40., 80.])
-    >>> s.run("SET H tall")
+    >>> s.run("SET H 9")
     Traceback (most recent call last):
       ...
-    moldloft.sketches.SketchError: error: H reads tall, which has no value
-      next: VARIABLE tall defines it
+    moldloft.sketches.SketchError: error: H = 9 is outside its range, 1 to 5
+      next: give a number in it, or another range: SET H 9 IN lo hi
     """
 
     def __init__(self, folder: str | os.PathLike[str] | None = None) -> None:
@@ -245,20 +245,20 @@ class Sketch:
     @property
     def volume(self) -> float | None:
         """Enclosed volume of the active object; ``None`` without faces."""
-        volume: float | None = self._data()["volume"]
-        return volume
+        volume = self._data()["volume"]
+        return None if volume is None else float(volume)
 
     @property
     def area(self) -> float | None:
         """Area of all faces of the active object; ``None`` without faces."""
-        area: float | None = self._data()["area"]
-        return area
+        area = self._data()["area"]
+        return None if area is None else float(area)
 
     @property
     def centroid(self) -> NDArray[np.float64] | None:
         """Centre of the volume, or of the area of a cross section, ``(3,)``."""
         centre = self._data()["centroid"]
-        return None if centre is None else np.array(centre)
+        return None if centre is None else np.array(centre, dtype=np.float64)
 
     @property
     def points(self) -> NDArray[np.float64]:

@@ -50,14 +50,22 @@ pub(crate) fn svg(objects: &[(&Object, &ObjectData)], picture: &Picture, page: [
             _ => sketch(object, data, picture, page, &mut items),
         }
     }
-    let bounds = if view.is_some() { around(&items).unwrap_or(page) } else { page };
+    // The page with the witness lines that leave it; of a view what is seen.
+    let bounds = match (&view, around(&items)) {
+        (Some(_), seen) => seen.unwrap_or(page),
+        (None, Some(s)) => {
+            [page[0].min(s[0]), page[1].min(s[1]), page[2].max(s[2]), page[3].max(s[3])]
+        }
+        (None, None) => page,
+    };
     let window = match picture.window {
         // ZOOM speaks of the page; of a view it shows the same share.
-        Some(w) => {
+        Some(w) if view.is_some() => {
             let share = |k: usize, x: f64| (x - page[k]) / (page[k + 2] - page[k]);
             let put = |k: usize, x: f64| bounds[k] + share(k, x) * (bounds[k + 2] - bounds[k]);
             [put(0, w[0]), put(1, w[1]), put(0, w[2]), put(1, w[3])]
         }
+        Some(w) => w,
         None => bounds,
     };
     paper(&items, window)
@@ -145,6 +153,8 @@ fn planes(object: &Object, data: &ObjectData, size: f64, items: &mut Vec<Item>) 
             items.push(Item::Text { at: to, shift: [2.0, 4.0], text, colour });
         }
     }
+    // Dimensions on several axes between the same points are told one below the other.
+    let mut told: BTreeMap<(crate::PointId, crate::PointId), f64> = BTreeMap::new();
     for (key, dimension) in &object.dimensions {
         let Measure::Along { axis, p, q } = dimension.measure else { continue };
         let (Some(a), Some(b)) = (d.points.get(&p), d.points.get(&q)) else { continue };
@@ -156,7 +166,9 @@ fn planes(object: &Object, data: &ObjectData, size: f64, items: &mut Vec<Item>) 
         items.push(Item::Stroke { from, to, colour, width: 0.8, dashed: true });
         let at = [(a.u + b.u) / 2.0, (a.v + b.v) / 2.0];
         let text = format!("{} {value}", dimension.name);
-        items.push(Item::Text { at, shift: [3.0, 3.0], text, colour });
+        let row = told.entry((p.min(q), p.max(q))).or_insert(0.0);
+        items.push(Item::Text { at, shift: [3.0, 3.0 + 15.0 * *row], text, colour });
+        *row += 1.0;
     }
 }
 
