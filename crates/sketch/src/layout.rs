@@ -460,7 +460,11 @@ fn evaluate<T: Real>(
             at = next;
         }
         if !stuck.contains_key(at) {
-            faults.push(DimensionFault::NoValue { name: name.into(), reads: at.into() });
+            // As the user wrote it; keys are folded.
+            let dimension = object.dimensions.get(name).map(|d| &d.name);
+            let written = dimension.or(object.variables.get(name).map(|v| &v.name));
+            let name = written.map_or_else(|| name.to_owned(), Clone::clone);
+            faults.push(DimensionFault::NoValue { name, reads: at.into() });
         }
     }
     faults.extend(cycles.into_iter().map(|names| DimensionFault::Cycle { names }));

@@ -72,8 +72,8 @@ fn a_dimension_of_a_thousand_points() {
     let made = fresh.objects().remove(0);
     assert_eq!(edited.solid, made.solid);
     assert_eq!(edited.volume.map(f64::to_bits), made.volume.map(f64::to_bits));
-    // 249 steps of 1 and one wider: the step of height 246 is wider by what was added.
-    let expected = 5.0 * (249.0 * 250.0 / 2.0 + 246.0 * (width - 1.0));
+    // 249 steps of 1; the fourth from below, of height 4, is wider by what was added.
+    let expected = 5.0 * (249.0 * 250.0 / 2.0 + 4.0 * (width - 1.0));
     assert!((made.volume.unwrap() - expected).abs() < 1e-6, "{:?} {expected}", made.volume);
 }
 
