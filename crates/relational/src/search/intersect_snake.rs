@@ -4,7 +4,7 @@ use super::arguments::{Onto, Target};
 use super::outcome::no_intersection;
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, jets, refined, solve};
-use moldloft_locate::march::{Branch, Crossing, End, Other, Unknowns};
+use moldloft_locate::march::{Branch, Crossing, End, Other, Station, Unknowns};
 use moldloft_locate::{PlainSurface, Report, Status};
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, solve_dense};
@@ -379,6 +379,80 @@ fn traced<T: Real>(
     Ok((shape, found))
 }
 
+/// The cubic of both ends' places and tangents, in powers of 2 s - 1.
+fn guide<T: Real>(matrix: &[[f64; NODES]; NODES], a: &Station, b: &Station) -> Vec<Vec3<T>> {
+    let chord = a.x.distance(b.x);
+    let hermite = |s: f64| {
+        let r = 1.0 - s;
+        a.x * (r * r * (1.0 + 2.0 * s))
+            + a.tangent * (chord * r * r * s)
+            + b.x * (s * s * (3.0 - 2.0 * s))
+            - b.tangent * (chord * s * s * r)
+    };
+    powers_of(matrix, &std::array::from_fn(|k| Vec3::lifted(hermite(node(k)))))
+}
+
+/// The speed along a piece may be off by this share of it: lengths are exact to rounding then, so
+/// that they do not depend on where the stations are.
+const SPEED_ACCURACY: f64 = 1e-12;
+
+/// A stretch between stations is halved this many times at most.
+const MOST_HALVINGS: u32 = 8;
+
+/// The stations with others between them, until the speed of each piece is a polynomial.
+fn refined_stations<T: Real>(
+    first: &SurfaceRef<T>,
+    second: &Second<T>,
+    crossing: &Crossing<'_>,
+    matrix: &[[f64; NODES]; NODES],
+    stations: Vec<Station>,
+) -> Vec<Station> {
+    let mut out = vec![stations[0]];
+    for pair in stations.windows(2) {
+        let mut open = vec![(pair[1], 0)];
+        while let Some((b, halvings)) = open.pop() {
+            let a = out[out.len() - 1];
+            let guide: Vec<Vec3<T>> = guide(matrix, &a, &b);
+            let place = |s: f64| {
+                let [c, d] = polynomial::<T, T>(&guide, T::from(s)).map(Vec3::re);
+                let guess = std::array::from_fn(|k| a.q[k] + s * (b.q[k] - a.q[k]));
+                crossing.across(guess, c, d.normalized()?)
+            };
+            let speed = |s: f64| {
+                let w = derived(first, second, &guide, place(s)?, T::from(s), Order::First)?;
+                let w = w.map(|[u, v]| Vec3::new(u, v, T::zero()));
+                Some(super::on_surface_jet(first, w, Order::First)[1].re().norm())
+            };
+            let fits = || {
+                let mut speeds = [Vec3::zero(); NODES];
+                for (k, value) in speeds.iter_mut().enumerate() {
+                    value.x = speed(node(k))?;
+                }
+                let fit: Vec<Vec3> = powers_of(matrix, &speeds);
+                let off = |s: f64| {
+                    let [p, _] = polynomial::<f64, f64>(&fit, s);
+                    Some((p.x - speed(s)?).abs() <= SPEED_ACCURACY * p.x.abs())
+                };
+                Some(off(0.06)? && off(0.37)? && off(0.94)?)
+            };
+            let middle = || {
+                let mut m = crossing.station(place(0.5)?)?;
+                if m.tangent.dot(a.tangent) < 0.0 {
+                    m.tangent = -m.tangent;
+                    m.rate = m.rate.map(|r| -r);
+                }
+                Some(m)
+            };
+            // Where it cannot be followed the caller finds out.
+            match (halvings < MOST_HALVINGS && fits() == Some(false)).then(middle).flatten() {
+                Some(m) => open.extend([(b, halvings + 1), (m, halvings + 1)]),
+                None => out.push(b),
+            }
+        }
+    }
+    out
+}
+
 /// Cuts the branch to its ends, gives it its length as parameter, with derivatives.
 fn set_up<T: Real>(
     first: &SurfaceRef<T>,
@@ -470,7 +544,7 @@ fn set_up<T: Real>(
                 s.rate = s.rate.map(|r| -r);
             }
         }
-        let turned = |station: moldloft_locate::march::Station| {
+        let turned = |station: Station| {
             let mut s = station;
             if reversed {
                 s.tangent = -s.tangent;
@@ -557,23 +631,14 @@ fn set_up<T: Real>(
         _ => None,
     };
     let matrix = to_powers();
+    let stations = refined_stations(first, &second, crossing, &matrix, stations);
     let mut pieces = Vec::with_capacity(stations.len() - 1);
     let mut sum = T::zero();
     let mut offsets = [T::zero(); 2];
     let count = stations.len() - 1;
     for (i, pair) in stations.windows(2).enumerate() {
         let (a, b) = (&pair[0], &pair[1]);
-        let chord = a.x.distance(b.x);
-        // The cubic of both ends' places and tangents, as plain powers of 2 s - 1.
-        let hermite = |s: f64| {
-            let r = 1.0 - s;
-            a.x * (r * r * (1.0 + 2.0 * s))
-                + a.tangent * (chord * r * r * s)
-                + b.x * (s * s * (3.0 - 2.0 * s))
-                - b.tangent * (chord * s * s * r)
-        };
-        let values: [Vec3<T>; NODES] = std::array::from_fn(|k| Vec3::lifted(hermite(node(k))));
-        let guide = powers_of(&matrix, &values);
+        let guide = guide(&matrix, a, b);
         let at = |s: f64, order: Order| -> Option<([CurveJet<T>; 2], Unknowns)> {
             let [c, d] = polynomial::<T, T>(&guide, T::from(s)).map(Vec3::re);
             let guess = std::array::from_fn(|k| a.q[k] + s * (b.q[k] - a.q[k]));
@@ -667,7 +732,7 @@ fn closed_start<T: Real>(
     first: &SurfaceRef<T>,
     second: &Second<T>,
     [u, v]: [T; 2],
-    station: &moldloft_locate::march::Station,
+    station: &Station,
 ) -> Option<(Vec3<T>, Vec3<T>)> {
     let j = first.jet(u, v, Order::First);
     let normal = match second {
@@ -683,13 +748,13 @@ fn closed_start<T: Real>(
     Some((j.p, d))
 }
 
-fn cut_after(branch: &mut Branch, station: &moldloft_locate::march::Station) {
+fn cut_after(branch: &mut Branch, station: &Station) {
     let at = position(branch, station);
     branch.stations.truncate(at + 1);
     push_apart(branch, *station);
 }
 
-fn cut_before(branch: &mut Branch, station: &moldloft_locate::march::Station) {
+fn cut_before(branch: &mut Branch, station: &Station) {
     let at = position(branch, station);
     branch.stations.drain(..=at);
     let near = branch.stations.first().is_some_and(|s| {
@@ -704,7 +769,7 @@ fn cut_before(branch: &mut Branch, station: &moldloft_locate::march::Station) {
 }
 
 /// The last station before the given one.
-fn position(branch: &Branch, station: &moldloft_locate::march::Station) -> usize {
+fn position(branch: &Branch, station: &Station) -> usize {
     let away = |i: &usize| {
         let (a, b) = (&branch.stations[*i], &branch.stations[*i + 1]);
         let chord = b.x - a.x;
@@ -715,7 +780,7 @@ fn position(branch: &Branch, station: &moldloft_locate::march::Station) -> usize
     (0..last).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
 }
 
-fn push_apart(branch: &mut Branch, station: moldloft_locate::march::Station) {
+fn push_apart(branch: &mut Branch, station: Station) {
     let count = branch.stations.len();
     let last = branch.stations[count - 1];
     let before =

@@ -102,7 +102,7 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "IntRing" | "XYZRing" | "ProjRing" | "ProxRing" => {
             let sheet = p.sheet();
             let held = p.number(0.3, 0.7);
-            let snake = p.object("UVSnake", &format!("{sheet}, \"v\", {held}"));
+            let snake = p.object("UVSnake", &format!("{sheet}, \"u\", {held}"));
             let ring = p.object("AbsRing", &format!("{snake}, 0.4"));
             let value = p.number(1.2, 1.8);
             match kind {
