@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -65,7 +67,11 @@ def test_both_files_are_the_same_model():
     assert a.symmetry == b.symmetry == "y"
     np.testing.assert_array_equal(a.mesh().vertices, b.mesh().vertices)
     np.testing.assert_array_equal(a.mesh().faces, b.mesh().faces)
-    assert a.hydrostatics() == b.hydrostatics()
+    ours, theirs = (dataclasses.asdict(m.hydrostatics()) for m in (a, b))
+    # Gravity goes by the unit of length, which the model file of 1995 does not state.
+    for name in ("weight", "tpc", "mtc"):
+        del ours[name], theirs[name]
+    assert ours == theirs
 
 
 def fine(nu: int, nv: int) -> moldloft.Model:

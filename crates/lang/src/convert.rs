@@ -578,8 +578,8 @@ impl<'a> ToModelFile<'a> {
 
     fn head(&self, head: &Head, class: Class) -> String {
         let mut out = format!(" {} {}", head.colour, head.visible);
-        // A model file has no word for counts that the neighbours determine.
-        let ([nu, nv], [mu, mv]) = (head.own_divisions(), head.subdivisions);
+        // 0 leaves a count to the neighbours.
+        let ([nu, nv], [mu, mv]) = (head.divisions, head.subdivisions);
         let _ = match class.dimension() {
             Some(1) if self.legacy && mu == Head::of(class).subdivisions[0] => {
                 write!(out, " {nu}")

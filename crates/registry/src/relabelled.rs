@@ -81,14 +81,18 @@ fn values<T: Real>(law: &RelabelRef<T>, ts: &[f64]) -> (Vec<T>, Option<Vec<f64>>
     (values, plain)
 }
 
+/// Straight lines between the same points, run by the same law, are one.
+fn governed<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallVec<[Piece<T>; 1]>> {
+    match pieces {
+        [piece] => Some(std::iter::once(piece.governed(law.key?)?).collect()),
+        _ => None,
+    }
+}
+
 /// The same pieces run by a law; `None` where their divisions are no one else's.
 fn pieces_by<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallVec<[Piece<T>; 1]>> {
     if !law.is_straight() {
-        // Straight lines between the same points, run by the same law, still are one.
-        return match pieces {
-            [piece] => Some(std::iter::once(piece.governed(law.key?)?).collect()),
-            _ => None,
-        };
+        return governed(law, pieces);
     }
     // Where the law turns, as values.
     let turns: Vec<T> =
@@ -244,7 +248,7 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
         let mut edges = self.surface.edges();
         for k in [1, 3] {
             if let Edge::Pieces(pieces) = &edges.edges[k] {
-                edges.edges[k] = match pieces_by(&self.law, pieces) {
+                edges.edges[k] = match governed(&self.law, pieces) {
                     Some(pieces) => Edge::Pieces(pieces),
                     None => Edge::Own,
                 };

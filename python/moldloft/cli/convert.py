@@ -23,6 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         metavar="FORMAT",
+        choices=[*FORMATS, "sdl", "ms2"],
         help="by default that of -o, else the other one of sdl and ms2: "
         + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
     )

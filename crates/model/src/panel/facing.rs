@@ -5,6 +5,9 @@ use super::{RimEdge, indices};
 use moldloft_num::Vec3;
 use std::sync::Arc;
 
+/// Cones that come to less than this share of their absolute volumes do not say where outside is.
+const NEARLY_FLAT: f64 = 0.05;
+
 /// How the patches of a mesh hang together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facing {
@@ -52,7 +55,8 @@ impl Facing {
     ///
     /// Neighbours face alike, as the first of them says; a closed body faces outward: its volume is
     /// positive. Open ones keep their sides towards one another and face outward together: the cone
-    /// from the middle of their rims is positive. Flat ones face as their surfaces say.
+    /// from the middle of their rims (in the planes that close them) is positive. Nearly flat ones face as their surfaces
+    /// say.
     pub fn turned(
         &self,
         skeleton: &Skeleton,
@@ -64,16 +68,7 @@ impl Facing {
             let (first, against) = self.sides[patch];
             frames[first].reversed != against
         };
-        let (mut centre, mut length) = (Vec3::zero(), 0.0);
-        for &(patch, a, b) in rim {
-            let at = |k: u32| points[patch as usize][k as usize];
-            let step = at(a).distance(at(b));
-            centre += (at(a) + at(b)) * (0.5 * step);
-            length += step;
-        }
-        if length > 0.0 {
-            centre = centre / length;
-        }
+        let centre = apex(points, rim);
         // The open bodies count as one, in the last place.
         let mut cones = vec![(0.0, 0.0); frames.len() + 1];
         for (patch, frame) in frames.iter().enumerate().filter(|(_, f)| f.meshed) {
@@ -84,7 +79,7 @@ impl Facing {
         }
         let inward = |patch: usize| {
             let (volume, size) = cones[self.body(patch)];
-            volume < -1e-6 * size
+            volume < -NEARLY_FLAT * size
         };
         (0..frames.len()).map(|patch| stated(patch) != inward(patch)).collect()
     }
@@ -93,6 +88,30 @@ impl Facing {
         let first = self.sides[patch].0;
         if self.closed[first] { first } else { self.sides.len() }
     }
+}
+
+/// The middle of the rims; where all of them lie in coordinate planes, in which mirrors or the water
+/// close the bodies, a point of these planes: from there the closing parts have no cone.
+fn apex(points: &[Arc<Vec<Vec3>>], rim: &[RimEdge]) -> Vec3 {
+    let (mut centre, mut length) = (Vec3::<f64>::zero(), 0.0);
+    let (mut used, mut closing) = ([false; 3], true);
+    for &(patch, a, b) in rim {
+        let [a, b] = [a, b].map(|k| points[patch as usize][k as usize]);
+        let step = a.distance(b);
+        centre += (a + b) * (0.5 * step);
+        length += step;
+        let plane = (0..3).find(|&axis| a[axis].abs().max(b[axis].abs()) <= 1e-9 * step);
+        match plane {
+            Some(axis) => used[axis] = true,
+            None => closing = false,
+        }
+    }
+    if length == 0.0 {
+        return Vec3::zero();
+    }
+    let c = (centre / length).to_array();
+    let [x, y, z] = [0, 1, 2].map(|axis| if closing && used[axis] { 0.0 } else { c[axis] });
+    Vec3::of(x, y, z)
 }
 
 /// Six times the signed and the absolute volume of the cones from `centre` to the panels.

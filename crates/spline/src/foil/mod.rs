@@ -153,7 +153,8 @@ impl<T: Real> Default for SectionSpec<'_, T> {
 /// # Example
 /// ```
 /// use moldloft_spline::foil::{Section, SectionSpec};
-/// let section = Section::<f64>::new(&SectionSpec::default()).unwrap();
+/// let open = SectionSpec { closed: false, ..SectionSpec::default() };
+/// let section = Section::<f64>::new(&open).unwrap();
 /// // NACA 0012 at x = 0.3, where it is thickest.
 /// assert!((0.06 * section.at(0.3f64.sqrt()).thickness - 0.06002).abs() < 1e-5);
 /// ```

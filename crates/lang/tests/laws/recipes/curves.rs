@@ -36,7 +36,9 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         }
         "BSubCurve" => {
             let curve = p.curve();
-            let beads: Vec<_> = (0..3).map(|_| p.bead(&curve)).collect();
+            // Ascending: where a curve turns back on itself its speed has a kink.
+            let at = [p.number(0.1, 0.3), p.number(0.35, 0.5), p.number(0.6, 0.9)];
+            let beads = at.map(|t| p.object("AbsBead", &format!("{curve}, {t}")));
             format!("{{{}}}, degree = 2", beads.join(", "))
         }
         "RelCurve" => format!("{}, {}", p.curve(), p.points::<2>().join(", ")),

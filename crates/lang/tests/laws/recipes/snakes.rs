@@ -48,7 +48,8 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "BSubSnake" => {
             let surface = p.surface();
             let snake = p.snake(&surface);
-            let rings: Vec<_> = (0..3).map(|_| p.ring(&snake)).collect();
+            let at = [p.number(0.1, 0.3), p.number(0.35, 0.5), p.number(0.6, 0.9)];
+            let rings = at.map(|t| p.object("AbsRing", &format!("{snake}, {t}")));
             format!("{{{}}}, degree = 2", rings.join(", "))
         }
         "FoilSnake" => {
