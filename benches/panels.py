@@ -12,6 +12,8 @@ import statistics
 import time
 from pathlib import Path
 
+import numpy as np
+
 import moldloft
 
 HULL = Path(__file__).parent.parent / "examples" / "sailboat" / "hull.sdl"
@@ -36,7 +38,7 @@ def patches(count: int = 30, nu: int = 33, nv: int = 20) -> str:
 
 def measure(name: str, model: moldloft.Model, param: str, values: list[float]) -> None:
     """Prints the median and the longest time of a change."""
-    model.mesh().vertices
+    np.asarray(model.mesh().vertices)
     turn = itertools.cycle(values)
     times = []
     gc.disable()

@@ -37,8 +37,8 @@ class Block:
     divisions: tuple[int, int, int]
     """Cells along u, v and w."""
     faces: tuple[str, ...]
-    """Names of its faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: of the surface that a face is, or
-    the solid's with the face's."""
+    """Names of its faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: of the surface that a face is,
+    or the solid's with the face's."""
     cells: int
     """How many cells it has."""
     volume: float

@@ -1,4 +1,4 @@
-"""The examples of the Relational Geometry paper: closed for every draw of their parameters, and known numbers."""
+"""The examples of the Relational Geometry paper: closed for every draw, and known numbers."""
 
 from __future__ import annotations
 
@@ -92,7 +92,9 @@ def _unrolled(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def test_propeller_sections_are_those_of_the_data_sheet() -> None:
     model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")
     diameter = model["diameter"]
-    columns = [np.asarray(model.eval(name)) for name in ("r_R", "P_D", "c_D", "t_D", "f_D", "s_deg")]
+    columns = [
+        np.asarray(model.eval(name)) for name in ("r_R", "P_D", "c_D", "t_D", "f_D", "s_deg")
+    ]
     limit = 1e-6 * diameter
     for k in range(13):
         at, pitch, chord, thickness, camber, skew = (float(column[k]) for column in columns)

@@ -99,7 +99,7 @@ impl State<'_> {
         let rho: Vec<f64> = own.iter().map(|o| o * STIFF).collect();
         let radius = |c: usize| p.bounds.radii[c / self.groups()] - margin;
         let least = (0..limits).map(radius).fold(f64::INFINITY, f64::min);
-        if !(least > 0.0) {
+        if least.is_nan() || least <= 0.0 {
             return false;
         }
         let mut reached: Vec<Option<f64>> = (0..limits)

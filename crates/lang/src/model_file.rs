@@ -359,10 +359,10 @@ impl ModelFileSource {
             let mut stack: Vec<Written> = self.model[line.fields].to_vec();
             while let Some(field) = stack.pop() {
                 match field.kind {
-                    FieldKind::Word if self.written(&field) == name => {
-                        if !texts.contains(&field.span) {
-                            found.push((at, field.span));
-                        }
+                    FieldKind::Word
+                        if self.written(&field) == name && !texts.contains(&field.span) =>
+                    {
+                        found.push((at, field.span));
                     }
                     FieldKind::Formula => {
                         let places = words(self.written(&field)).filter(|(_, w)| *w == name);

@@ -173,7 +173,7 @@ fn sizes_and_spacings() {
     let mut d = sound(&strips(["", cosine, ""]));
     let p = panelled(&mut d);
     let wanted: Vec<f64> =
-        (0..=4).map(|i| 2.0 * (1.0 - (i as f64 / 4.0 * 3.14159265358979).cos())).collect();
+        (0..=4).map(|i| 2.0 * (1.0 - (i as f64 / 4.0 * std::f64::consts::PI).cos())).collect();
     for (name, rows) in [("S0", 9), ("S1", 3), ("S2", 9)] {
         let patch = p.mesh.patches().iter().find(|p| p.info.name == name).unwrap();
         let block = patch.block.as_ref().unwrap();

@@ -13,6 +13,9 @@
 //!
 //! Invariant: this crate knows no entity, no registry and no file.
 
+// A report is what a failed search is asked for; it is made once a search.
+#![allow(clippy::result_large_err)]
+
 mod batch;
 pub mod implicit;
 pub mod march;

@@ -201,8 +201,8 @@ pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), F
     match value {
         Value::Number(x) => range(field, x.re()),
         Value::Numbers(a) => {
-            let each = a.items.iter().enumerate();
-            each.map(|(k, x)| range(field, x.re()).map_err(|f| f.in_item(k))).collect()
+            let mut each = a.items.iter().enumerate();
+            each.try_for_each(|(k, x)| range(field, x.re()).map_err(|f| f.in_item(k)))
         }
         _ => Ok(()),
     }

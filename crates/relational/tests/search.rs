@@ -212,7 +212,7 @@ fn check_derivatives(text: &str, names: &[&str], h: f64) {
     });
     for k in 0..count {
         let exact = values(&mut |i, x| if i == k { Dual4::seeded(x, 0) } else { x.into() });
-        let mut moved = |d: f64| values(&mut |i, x| Dual4::from(if i == k { x + d } else { x }));
+        let moved = |d: f64| values(&mut |i, x| Dual4::from(if i == k { x + d } else { x }));
         let (a, b) = (moved(h), moved(-h));
         for ((e, a), b) in exact.iter().zip(&a).zip(&b) {
             let d = (a.re() - b.re()) / (2.0 * h);

@@ -171,7 +171,7 @@ mod tests {
         let two = two_bricks(false);
         let mut positions = two.positions().to_vec();
         let vertex = two.blocks()[1].at([1, 1, 2]) as usize;
-        positions[vertex] = positions[vertex] + Vec3::of(0.0, -2.0, 0.0);
+        positions[vertex] += Vec3::of(0.0, -2.0, 0.0);
         let report = Blocks::new(positions, two.blocks().to_vec()).unwrap().report();
         assert!(!report.positive());
         let bad = &report.blocks[1];

@@ -461,10 +461,8 @@ impl Solver<'_> {
                         }
                         return self.change(start, &changes);
                     }
-                    [(next, change)] => {
-                        if seen.insert((next, -change)) {
-                            visits.push(Visit { sum: next, by: -change, from: at, class, delta });
-                        }
+                    [(next, change)] if seen.insert((next, -change)) => {
+                        visits.push(Visit { sum: next, by: -change, from: at, class, delta });
                     }
                     _ => {}
                 }

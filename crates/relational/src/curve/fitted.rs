@@ -112,7 +112,7 @@ fn fit<T: Real>(
     };
     if let Some(accuracy) = accuracy {
         // Written so that NaN is refused.
-        if !(residual <= accuracy.re()) {
+        if residual.is_nan() || residual > accuracy.re() {
             return Err(Fault::new("no-fit", "the fit does not come near enough to the curve")
                 .expected(format!("a distance of at most {}", accuracy.re()))
                 .found(format!("{residual}"))

@@ -105,7 +105,9 @@ fn ends<T: Real>(count: usize, breaks: Option<Vec<T>>) -> Result<Vec<T>, Fault> 
     ends.extend(breaks);
     ends.push(T::one());
     // Written so that NaN is refused.
-    let descends = |k: &usize| !(ends[*k].re() > ends[k - 1].re());
+    let descends = |k: &usize| {
+        ends[*k].re().partial_cmp(&ends[k - 1].re()) != Some(std::cmp::Ordering::Greater)
+    };
     if let Some(k) = (1..=count).find(descends) {
         let at = k.min(count - 1);
         return Err(Fault::new("not-ascending", "the breaks do not ascend between 0 and 1")
@@ -139,7 +141,7 @@ fn check_joint<T: Real>(
             .in_field(0)
     };
     // Written so that NaN is refused.
-    if !(gap <= tolerance) {
+    if gap.is_nan() || gap > tolerance {
         let text = format!("piece {} does not begin where piece {k} ends", k + 1);
         let found = format!("a gap of {gap}, with a tolerance of {tolerance}");
         let fault = fault(text, found);

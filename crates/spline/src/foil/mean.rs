@@ -143,6 +143,7 @@ impl<T: Real> Mean<T> {
 
     /// The five-digit line of a name: 210 to 250 with a straight tail, 221 to 251 reflexed (Jacobs
     /// and Pinkerton, NACA Report 537, 1935).
+    #[allow(clippy::approx_constant)] // 0.318 is a figure of the table, and has nothing to do with 1/pi
     pub fn cubic(name: &str) -> Option<Self> {
         let (at, r, reflexed) = match name {
             "210" => (0.05, 0.0580, false),
