@@ -115,8 +115,8 @@ class Mesh:
         ... RuledSurf plate(a, b, divisions = {4, 4}, spacing = {2, 1});
         ... ''')
         >>> jump = m.mesh().quality()["plate"]["jump"]
-        >>> round(jump["max"], 9), jump["place"]
-        (2.0, (0, 0))
+        >>> round(jump["max"], 9)
+        2.0
         """
         return {patch.name: patch.quality for patch in self.patches}
 
