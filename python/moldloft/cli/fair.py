@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import argparse
 import sys
 from pathlib import Path
@@ -251,13 +252,14 @@ def _ends(options: argparse.Namespace) -> Any:
     return ends[0] if len(ends) == 1 else tuple(ends)
 
 
-class _Source:
+class _Source(abc.ABC):
     """What is faired: where it came from, and how it goes back."""
 
     title = ""
 
+    @abc.abstractmethod
     def fair(self, options: argparse.Namespace) -> Result:
-        raise NotImplementedError
+        """The result by these options."""
 
     def facts(self) -> dict[str, Any]:
         return {"source": self.title}
@@ -265,8 +267,9 @@ class _Source:
     def notes(self) -> list[str]:
         return []
 
+    @abc.abstractmethod
     def write(self, result: Any, path: Path) -> Path:
-        raise NotImplementedError
+        """Writes the result; the path that it was written to."""
 
 
 def _curve_options(options: argparse.Namespace, count: int) -> dict[str, Any]:
