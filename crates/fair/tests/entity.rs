@@ -7,7 +7,8 @@ use fixtures::*;
 use moldloft_fair::rows;
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{
-    Array, Class, Context, CurveRef, Fault, Given, Registry, Scalar, SurfaceRef, Value, arrange,
+    Array, Class, Context, CurveRef, Fault, Given, Registry, Scalar, SurfaceRef, Value, Vectors,
+    arrange,
 };
 use std::sync::Arc;
 
@@ -193,7 +194,7 @@ fn surfaces_are_fair_and_have_derivatives() {
         .collect();
     for role in ["fit", "control"] {
         let make = |points: Vec<Vec3<f64>>| {
-            let grid = Value::Vectors(Arc::new(Array::grid(m, n, points)));
+            let grid = Value::Vectors(Arc::new(Vectors::grid(m, n, points)));
             let args = vec![grid, Value::Number(8e-4)];
             let value = call("FairSurf", args, vec![("as", Value::text(role))]).unwrap();
             let Value::Surface(s) = value else { panic!() };
@@ -203,7 +204,7 @@ fn surfaces_are_fair_and_have_derivatives() {
         let mut dual: Vec<Vec3<Dual4>> = points.iter().map(|&p| Vec3::lifted(p)).collect();
         dual[k].z = Dual4::seeded(points[k].z, 1);
         let args =
-            vec![Value::Vectors(Arc::new(Array::grid(m, n, dual))), Value::Number(8e-4.into())];
+            vec![Value::Vectors(Arc::new(Vectors::grid(m, n, dual))), Value::Number(8e-4.into())];
         let value = call("FairSurf", args, vec![("as", Value::text(role))]).unwrap();
         let Value::Surface(s) = value else { panic!() };
         let got = s.jet(Dual4::from(0.43), Dual4::from(0.61), Order::Zero).p;
@@ -230,7 +231,7 @@ fn functions_of_rows_and_curves() {
     near("largest jump", e.items.iter().copied().fold(0.0, f64::max), 1.291809e-3, 1e-6);
     let faired = call("fair", vec![list(&f.points), Value::Number(f.tolerance)], vec![]).unwrap();
     let Value::Vectors(q) = faired else { panic!() };
-    let second: f64 = q.items.windows(3).map(|w| (w[0] - w[1] * 2.0 + w[2]).norm_sq()).sum();
+    let second: f64 = q.points().windows(3).map(|w| (w[0] - w[1] * 2.0 + w[2]).norm_sq()).sum();
     near("optimum", second, 1.93909366e-6, 1e-6);
 
     let circle: Vec<_> = (0..40)
@@ -271,7 +272,7 @@ fn faults_name_their_argument() {
     assert_eq!(fault(&points, 0.1, vec![("mode", Value::text("x"))]), ("unknown-name", Some(6)));
     let low = vec![("degree", Value::Number(2.0)), ("measure", Value::text("third"))];
     assert_eq!(fault(&points, 0.1, low), ("out-of-range", Some(7)));
-    let row = Value::Vectors(Arc::new(Array::row(points)));
+    let row = Value::Vectors(Arc::new(Vectors::row(points)));
     let f = call::<f64>("FairSurf", vec![row, Value::Number(0.1)], vec![]).unwrap_err();
     assert_eq!(f.id, "wrong-shape");
 }

@@ -8,7 +8,7 @@ use moldloft_fair::rows;
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{
-    Array, Class, Context, CurveRef, Fault, Given, Point, Registry, Scalar, Value, arrange,
+    Class, Context, CurveRef, Fault, Given, Point, Registry, Scalar, Value, Vectors, arrange,
 };
 use std::sync::Arc;
 
@@ -158,12 +158,12 @@ fn derivatives_of_networks_and_of_passes() {
     // Passes of a surface: which knots are chosen stays, where they go follows.
     let named = || vec![("mode", Value::text("faithful")), ("passes", Value::Number(2.0))];
     let surface = |points: &[Vec3<f64>]| {
-        let grid = Value::Vectors(Arc::new(Array::grid(9, 7, points.to_vec())));
+        let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points.to_vec())));
         let value = call("FairSurf", vec![grid, number(2e-3)], named()).unwrap();
         let Value::Surface(s) = value else { panic!() };
         s.jet(0.43, 0.61, Order::Zero).p
     };
-    let grid = Value::Vectors(Arc::new(Array::grid(9, 7, dual)));
+    let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, dual)));
     let words = vec![("mode", Value::text("faithful")), ("passes", number(2.0))];
     let Value::Surface(s) = call("FairSurf", vec![grid, number(2e-3)], words).unwrap() else {
         panic!()
@@ -186,7 +186,7 @@ fn knuckle_lines_stay_and_are_sharp() {
     for (k, p) in points.iter_mut().enumerate() {
         p.z += 0.3 * (k as f64 / 7.0).floor().max(4.0);
     }
-    let grid = Value::Vectors(Arc::new(Array::grid(9, 7, points.clone())));
+    let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points.clone())));
     let named = vec![("breaks_u", Value::list([Value::Number(5.0)]))];
     let Value::Surface(s) = call("FairSurf", vec![grid, number(2e-3)], named).unwrap() else {
         panic!()
@@ -197,7 +197,7 @@ fn knuckle_lines_stay_and_are_sharp() {
     }
     let sides = [0.5 - 1e-9, 0.5 + 1e-9].map(|u| s.jet(u, 0.5, Order::First).u);
     assert!((sides[1] - sides[0]).norm() > 1.0, "{sides:?}");
-    let grid = Value::Vectors(Arc::new(Array::grid(9, 7, points)));
+    let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points)));
     let named = vec![("breaks_v", Value::list([Value::Number(8.0)]))];
     let fault = call::<f64>("FairSurf", vec![grid, number(2e-3)], named).unwrap_err();
     assert_eq!((fault.id, fault.place.map(|p| p.field)), ("out-of-range", Some(6)));

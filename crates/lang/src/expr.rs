@@ -10,7 +10,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Array, Class, CurveRef, FieldRef, Given, Scalar, SurfaceRef, Value, arrange, many,
+    Array, Class, CurveRef, FieldRef, Given, Scalar, SurfaceRef, Value, Vectors, arrange, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
@@ -640,7 +640,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
             .expected(expected.to_string())
             .found(format!("{} arguments", args.len()))
     };
-    let row = |points: Vec<Vec3<T>>| Value::Vectors(Arc::new(Array::row(points)));
+    let row = |points: Vec<Vec3<T>>| Value::Vectors(Arc::new(Vectors::row(points)));
     match (value, args) {
         (Value::Curve(curve), [t]) => {
             let at = |curve: &CurveRef<T>, t: T| curve.jet(t, Order::Zero)[0];

@@ -178,7 +178,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let of_array = |n: usize| n / if n > 100_000 { 4 } else { 16 };
         self.steps += match value {
             Value::Numbers(a) => of_array(a.items.len()),
-            Value::Vectors(a) => of_array(a.items.len()),
+            Value::Vectors(a) => of_array(a.len()),
             Value::List(items) => 4 * items.len(),
             _ => return Ok(()),
         } as u64;
@@ -565,7 +565,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let items: Vec<Value<T>> = match &value {
             Value::List(items) => items.to_vec(),
             Value::Numbers(a) => a.items.iter().map(|&x| Value::Number(x)).collect(),
-            Value::Vectors(a) => a.items.iter().map(|&v| Value::Vector(v)).collect(),
+            Value::Vectors(a) => a.iter().map(Value::Vector).collect(),
             other => {
                 return Err(Diagnostic::error("not-a-list", "foreach walks through a list")
                     .at(m.program[list].span)

@@ -206,7 +206,7 @@ pub(crate) fn no_mesh() -> Diagnostic {
 
 /// The derivative in direction `k`, in the shape of the value.
 fn derivative_part(value: &Value<Dual4>, k: usize) -> Option<Value<f64>> {
-    use moldloft_registry::Array;
+    use moldloft_registry::{Array, Vectors};
     use std::sync::Arc;
     let part = |x: Dual4| x.eps[k];
     Some(match value {
@@ -217,10 +217,10 @@ fn derivative_part(value: &Value<Dual4>, k: usize) -> Option<Value<f64>> {
             shape: a.shape,
             items: a.items.iter().map(|&x| part(x)).collect(),
         })),
-        Value::Vectors(a) => Value::Vectors(Arc::new(Array {
-            shape: a.shape,
-            items: a.items.iter().map(|v| v.map(part)).collect(),
-        })),
+        Value::Vectors(a) => {
+            let planes = a.planes.each_ref().map(|p| p.iter().map(|&x| part(x)).collect());
+            Value::Vectors(Arc::new(Vectors { shape: a.shape, planes }))
+        }
         Value::List(items) => {
             let parts: Option<Vec<_>> = items.iter().map(|v| derivative_part(v, k)).collect();
             Value::list(parts?)

@@ -23,7 +23,7 @@ pub(crate) fn of_value<T: Scalar>(
         (Value::Vector(v), Some(c)) => number(v[c]),
         (Value::Point(p), Some(c)) => number(p.xyz[c]),
         (Value::Vectors(a), Some(c)) => {
-            let items = a.items.iter().map(|v| v[c]).collect();
+            let items = a.planes[c].clone();
             Some(Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items }))))
         }
         (Value::Point(p), None) => match (name, &p.on_curve, &p.on_surface) {

@@ -2,7 +2,7 @@
 
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Array, ArrayShape, Value};
+use moldloft_registry::{Array, ArrayShape, Value, Vectors as Planes};
 use moldloft_syntax::sdl::BinaryOp;
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ enum Elements<'v, T: Real> {
     Number(T),
     Vector(Vec3<T>),
     Numbers(&'v Array<T>),
-    Vectors(&'v Array<Vec3<T>>),
+    Vectors(&'v Planes<T>),
 }
 
 fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T>, Diagnostic> {
@@ -39,20 +39,44 @@ fn shapes_differ(a: ArrayShape, b: ArrayShape) -> Diagnostic {
         .found(format!("{a} and {b}"))
 }
 
-fn zipped<A: Copy, B: Copy, C>(
-    a: &Array<A>,
-    b: &Array<B>,
-    mut f: impl FnMut(A, B) -> C,
-) -> Result<Array<C>, Diagnostic> {
-    if a.shape != b.shape {
-        return Err(shapes_differ(a.shape, b.shape));
-    }
-    let items = a.items.iter().zip(&b.items).map(|(&x, &y)| f(x, y)).collect();
-    Ok(Array { shape: a.shape, items })
+/// A row or grid whose elements come one by one.
+trait Elementwise<E> {
+    fn shape(&self) -> ArrayShape;
+    fn each(&self) -> impl Iterator<Item = E>;
 }
 
-fn mapped<A: Copy, C>(a: &Array<A>, f: impl FnMut(A) -> C) -> Array<C> {
-    Array { shape: a.shape, items: a.items.iter().copied().map(f).collect() }
+impl<E: Copy> Elementwise<E> for Array<E> {
+    fn shape(&self) -> ArrayShape {
+        self.shape
+    }
+    fn each(&self) -> impl Iterator<Item = E> {
+        self.items.iter().copied()
+    }
+}
+
+impl<T: Real> Elementwise<Vec3<T>> for Planes<T> {
+    fn shape(&self) -> ArrayShape {
+        self.shape
+    }
+    fn each(&self) -> impl Iterator<Item = Vec3<T>> {
+        self.iter()
+    }
+}
+
+fn zipped<A, B, C>(
+    a: &impl Elementwise<A>,
+    b: &impl Elementwise<B>,
+    mut f: impl FnMut(A, B) -> C,
+) -> Result<Array<C>, Diagnostic> {
+    if a.shape() != b.shape() {
+        return Err(shapes_differ(a.shape(), b.shape()));
+    }
+    let items = a.each().zip(b.each()).map(|(x, y)| f(x, y)).collect();
+    Ok(Array { shape: a.shape(), items })
+}
+
+fn mapped<A, C>(a: &impl Elementwise<A>, f: impl FnMut(A) -> C) -> Array<C> {
+    Array { shape: a.shape(), items: a.each().map(f).collect() }
 }
 
 fn numbers<T: Real>(array: Array<T>) -> Value<T> {
@@ -60,7 +84,7 @@ fn numbers<T: Real>(array: Array<T>) -> Value<T> {
 }
 
 fn vectors<T: Real>(array: Array<Vec3<T>>) -> Value<T> {
-    Value::Vectors(Arc::new(array))
+    Value::Vectors(Arc::new(Planes::new(array.shape, array.items)))
 }
 
 /// What the operator does to two numbers, a number and a vector, and so on; `None` where it is
@@ -238,8 +262,8 @@ pub(crate) fn braces<T: Real>(items: Vec<Value<T>>) -> Result<Value<T>, Diagnost
         return Ok(Value::Vector(Vec3::new(x, y, z)));
     }
     if let [Value::Numbers(x), Value::Numbers(y), Value::Numbers(z)] = &items[..] {
-        let xy = zipped(x, y, |x, y| (x, y))?;
-        return Ok(vectors(zipped(&xy, z, |(x, y), z| Vec3::new(x, y, z))?));
+        let xy = zipped(&**x, &**y, |x, y| (x, y))?;
+        return Ok(vectors(zipped(&xy, &**z, |(x, y), z| Vec3::new(x, y, z))?));
     }
     Ok(Value::list(items))
 }

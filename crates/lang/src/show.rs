@@ -17,7 +17,7 @@ pub fn plain<T: Real>(value: &Value<T>) -> String {
         Value::Vector(v) => vector(*v),
         Value::Point(p) => vector(p.xyz),
         Value::Numbers(a) => list(a.items.iter().map(|&x| number(x)).collect()),
-        Value::Vectors(a) => list(a.items.iter().map(|&v| vector(v)).collect()),
+        Value::Vectors(a) => list(a.iter().map(vector).collect()),
         Value::List(items) => list(items.iter().map(plain).collect()),
         Value::Plane(p) => {
             format!("plane through {} with normal {}", vector(p.point), vector(p.normal))

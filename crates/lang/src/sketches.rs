@@ -276,7 +276,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         });
         let corners: Vec<T> = corners.flatten().map(|v| T::from(f64::from(v + 1))).collect();
         let row = |n: Vec<T>| Value::Numbers(Arc::new(moldloft_registry::Array::row(n)));
-        let points = moldloft_registry::Array::row(mesh.positions().to_vec());
+        let points = moldloft_registry::Vectors::row(mesh.positions().to_vec());
         let args = vec![
             Value::Vectors(Arc::new(points)),
             row(corners),

@@ -3,7 +3,7 @@
 use crate::module::Name;
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Array, ArrayShape, Class, Value};
+use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
 use moldloft_syntax::sdl::Type;
 use std::sync::Arc;
 
@@ -119,7 +119,7 @@ pub(crate) fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, 
                 })
                 .collect();
             let Some(vectors) = vectors else { return Err(wrong(&Value::List(items))) };
-            Value::Vectors(Arc::new(Array::row(vectors)))
+            Value::Vectors(Arc::new(Vectors::row(vectors)))
         }
         (Type::Curve, Value::Vectors(a)) if matches!(a.shape, ArrayShape::Row(_)) => {
             Value::Vectors(a)
@@ -169,9 +169,11 @@ pub(crate) fn initial<T: Real>(
         (Type::Farray, [m, n]) => {
             Value::Numbers(Arc::new(Array::grid(*m, *n, vec![T::zero(); m * n])))
         }
-        (Type::Curve, [n]) => Value::Vectors(Arc::new(Array::row(vec![Vec3::zero(); *n]))),
+        (Type::Curve, [n]) => {
+            Value::Vectors(Arc::new(Vectors::filled(ArrayShape::Row(*n), Vec3::zero())))
+        }
         (Type::Surface, [m, n]) => {
-            Value::Vectors(Arc::new(Array::grid(*m, *n, vec![Vec3::zero(); m * n])))
+            Value::Vectors(Arc::new(Vectors::filled(ArrayShape::Grid(*m, *n), Vec3::zero())))
         }
         (_, []) => {
             return Ok(value.unwrap_or_else(|| match ty {
@@ -311,11 +313,17 @@ fn fill<T: Real>(
         }
         (Value::Vectors(array), None) => {
             let (at, shape) = positions(array.shape, section)?;
-            let items = &mut Arc::make_mut(array).items;
+            let planes = &mut Arc::make_mut(array).planes;
             match &value {
-                Value::Vector(v) => at.iter().for_each(|&k| items[k] = *v),
+                Value::Vector(v) => {
+                    for (plane, x) in planes.iter_mut().zip(v.to_array()) {
+                        at.iter().for_each(|&k| plane[k] = x);
+                    }
+                }
                 Value::Vectors(from) if Some(from.shape) == shape => {
-                    at.iter().zip(&from.items).for_each(|(&k, v)| items[k] = *v);
+                    for (plane, from) in planes.iter_mut().zip(&from.planes) {
+                        at.iter().zip(from).for_each(|(&k, x)| plane[k] = *x);
+                    }
                 }
                 Value::Vectors(from) => return Err(differ(shape, from.shape)),
                 other => return Err(wrong("a vector, or a row or grid of them", other)),
@@ -323,8 +331,8 @@ fn fill<T: Real>(
         }
         (Value::Vectors(array), Some(c)) => {
             let (at, shape) = positions(array.shape, section)?;
-            let items = &mut Arc::make_mut(array).items;
-            let mut put = |k: usize, x: T| *component_mut(&mut items[k], c) = x;
+            let plane = &mut Arc::make_mut(array).planes[c];
+            let mut put = |k: usize, x: T| plane[k] = x;
             match &value {
                 Value::Number(x) => at.iter().for_each(|&k| put(k, *x)),
                 Value::Numbers(from) if Some(from.shape) == shape => {
@@ -365,17 +373,22 @@ pub(crate) fn part<T: Real>(
     value: &Value<T>,
     section: &[Selection],
 ) -> Result<Value<T>, Diagnostic> {
-    fn pick<E: Copy>(array: &Array<E>, at: &[usize]) -> Vec<E> {
-        at.iter().map(|&k| array.items[k]).collect()
+    fn pick<E: Copy>(items: &[E], at: &[usize]) -> Vec<E> {
+        at.iter().map(|&k| items[k]).collect()
     }
     Ok(match value {
         Value::Numbers(array) => match positions(array.shape, Some(section))? {
             (at, None) => Value::Number(array.items[at[0]]),
-            (at, Some(shape)) => Value::Numbers(Arc::new(Array { shape, items: pick(array, &at) })),
+            (at, Some(shape)) => {
+                Value::Numbers(Arc::new(Array { shape, items: pick(&array.items, &at) }))
+            }
         },
         Value::Vectors(array) => match positions(array.shape, Some(section))? {
-            (at, None) => Value::Vector(array.items[at[0]]),
-            (at, Some(shape)) => Value::Vectors(Arc::new(Array { shape, items: pick(array, &at) })),
+            (at, None) => Value::Vector(array.at(at[0])),
+            (at, Some(shape)) => {
+                let planes = array.planes.each_ref().map(|plane| pick(plane, &at));
+                Value::Vectors(Arc::new(Vectors { shape, planes }))
+            }
         },
         Value::List(items) => match section {
             [one] if !one.keeps_dimension => items[one.positions[0]].clone(),

@@ -72,7 +72,7 @@ fn hash<T: Scalar>(value: &Value<T>, h: &mut DefaultHasher) {
         Value::Text(text) => text.hash(h),
         Value::Vector(v) => vector(*v, h),
         Value::Numbers(a) => a.items.iter().for_each(|&x| number(x, h)),
-        Value::Vectors(a) => a.items.iter().for_each(|&v| vector(v, h)),
+        Value::Vectors(a) => a.planes.iter().flatten().for_each(|&x| number(x, h)),
         Value::List(items) => items.iter().for_each(|item| hash(item, h)),
         Value::Object(key) => key.hash(h),
         Value::Point(p) => vector(p.xyz, h),

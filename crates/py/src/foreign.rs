@@ -1,7 +1,9 @@
 //! A user's Python function as a row of the registry.
 
 use moldloft_num::{Dual, Dual4, Real, Vec3};
-use moldloft_registry::{Array, Body, Class, Context, Fault, Field, Foreign, Row, Unit, Value};
+use moldloft_registry::{
+    Array, Body, Class, Context, Fault, Field, Foreign, Row, Unit, Value, Vectors,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::Arc;
@@ -147,7 +149,7 @@ fn encode<T: Number>(value: &Value<T>) -> Option<Encoded> {
         Value::Vectors(a) => {
             let mut shape = extents(a.shape);
             shape.push(3);
-            (None, shape, a.items.iter().flat_map(vector).collect())
+            (None, shape, a.iter().flat_map(|v| vector(&v)).collect())
         }
         _ => return None,
     })
@@ -160,9 +162,9 @@ fn decode<T: Number>(shape: &[usize], numbers: &[Vec<f64>]) -> Option<Value<T>> 
         [] => Value::Number(*all.first()?),
         [3] => Value::Vector(vectors()[0]),
         [_] => Value::Numbers(Arc::new(Array::row(all))),
-        [_, 3] => Value::Vectors(Arc::new(Array::row(vectors()))),
+        [_, 3] => Value::Vectors(Arc::new(Vectors::row(vectors()))),
         [m, n] => Value::Numbers(Arc::new(Array::grid(m, n, all))),
-        [m, n, 3] => Value::Vectors(Arc::new(Array::grid(m, n, vectors()))),
+        [m, n, 3] => Value::Vectors(Arc::new(Vectors::grid(m, n, vectors()))),
         _ => return None,
     })
 }

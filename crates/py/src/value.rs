@@ -2,7 +2,7 @@
 
 use crate::arrays;
 use moldloft_num::Vec3;
-use moldloft_registry::{Array, ArrayShape, Class, Value};
+use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
 use numpy::{PyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyList, PyString};
@@ -67,8 +67,8 @@ fn numbers<'py>(py: Python<'py>, a: &Array<f64>) -> PyResult<Bound<'py, PyAny>> 
     })
 }
 
-fn vectors<'py>(py: Python<'py>, a: &Array<Vec3>) -> Bound<'py, PyAny> {
-    let fill = |out: &mut [Vec3]| out.copy_from_slice(&a.items);
+fn vectors<'py>(py: Python<'py>, a: &Vectors<f64>) -> Bound<'py, PyAny> {
+    let fill = |out: &mut [Vec3]| out.iter_mut().zip(a.iter()).for_each(|(o, v)| *o = v);
     match a.shape {
         ArrayShape::Row(n) => arrays::filled(py, [n, 3], fill).0.into_any(),
         ArrayShape::Grid(m, n) => arrays::filled(py, [m, n, 3], fill).0.into_any(),

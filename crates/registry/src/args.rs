@@ -135,7 +135,7 @@ fn check<T: Real>(
         }
         Value::Vector(_) if matches!(field.class, Class::Number | Class::Integer) => 3,
         Value::Numbers(a) => a.items.len(),
-        Value::Vectors(a) => a.items.len(),
+        Value::Vectors(a) => a.len(),
         Value::Unset if field.default.is_some() => return Ok(()),
         Value::Unset => 0,
         other => {
@@ -190,7 +190,7 @@ pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), F
         let length = match value {
             Value::List(items) => items.len(),
             Value::Numbers(a) => a.items.len(),
-            Value::Vectors(a) => a.items.len(),
+            Value::Vectors(a) => a.len(),
             _ => return Ok(()),
         };
         enough(field, length)?;

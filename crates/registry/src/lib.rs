@@ -34,7 +34,7 @@ pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SolidRef, SurfaceRef};
 pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
 pub use sweep::{LocusRef, Sweep};
-pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value};
+pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};
 
 /// What the derive macro's output refers to.
 #[doc(hidden)]

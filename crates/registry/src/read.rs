@@ -318,7 +318,7 @@ pub fn many<T: Real, F: FromValue<T>>(value: &Value<T>) -> Result<Vec<F>, Fault>
             a.items.iter().enumerate().map(|(k, x)| item((k, &Value::Number(*x)))).collect()
         }
         Value::Vectors(a) => {
-            a.items.iter().enumerate().map(|(k, x)| item((k, &Value::Vector(*x)))).collect()
+            a.iter().enumerate().map(|(k, x)| item((k, &Value::Vector(x)))).collect()
         }
         Value::Unset => wrong(Class::List, value),
         other => Err(Fault::new(

@@ -5,7 +5,7 @@ use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
 
-/// A row `[n]` or a grid `[m, n]` of numbers or vectors; the first index runs fastest in meaning
+/// A row `[n]` or a grid `[m, n]` of numbers (or whatever); the first index runs fastest in meaning
 /// (i) and slowest in memory, as in NumPy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array<E> {
@@ -22,6 +22,95 @@ pub enum ArrayShape {
     Row(usize),
     /// `[m, n]`.
     Grid(usize, usize),
+}
+
+/// A row `[n]` or a grid `[m, n]` of vectors, kept as three planes of components: what works on
+/// all x, all y and all z one after the other runs at the speed of the memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vectors<T> {
+    /// The extents; one or two of them.
+    pub shape: ArrayShape,
+    /// All x, all y, all z, each in the order of [`Array::items`].
+    pub planes: [Vec<T>; 3],
+}
+
+impl<T: Copy> Vectors<T> {
+    /// An array of that shape.
+    ///
+    /// # Panics
+    /// When the number of points does not fit the shape.
+    pub fn new(shape: ArrayShape, points: impl IntoIterator<Item = Vec3<T>>) -> Self {
+        let points = points.into_iter();
+        let count = shape.count();
+        let mut planes = [(); 3].map(|()| Vec::with_capacity(count));
+        for p in points {
+            planes[0].push(p.x);
+            planes[1].push(p.y);
+            planes[2].push(p.z);
+        }
+        assert_eq!(planes[0].len(), count);
+        Self { shape, planes }
+    }
+
+    /// A row.
+    pub fn row(points: Vec<Vec3<T>>) -> Self {
+        Self::new(ArrayShape::Row(points.len()), points)
+    }
+
+    /// A grid of `m` by `n`.
+    ///
+    /// # Panics
+    /// When there are not `m * n` points.
+    pub fn grid(m: usize, n: usize, points: Vec<Vec3<T>>) -> Self {
+        Self::new(ArrayShape::Grid(m, n), points)
+    }
+
+    /// An array of one vector throughout.
+    pub fn filled(shape: ArrayShape, v: Vec3<T>) -> Self {
+        Self { shape, planes: [v.x, v.y, v.z].map(|x| vec![x; shape.count()]) }
+    }
+
+    /// The number of vectors.
+    pub fn len(&self) -> usize {
+        self.planes[0].len()
+    }
+
+    /// True when there are none.
+    pub fn is_empty(&self) -> bool {
+        self.planes[0].is_empty()
+    }
+
+    /// Vector `k`, counted from 0 in the order of memory.
+    pub fn at(&self, k: usize) -> Vec3<T> {
+        let [x, y, z] = &self.planes;
+        Vec3 { x: x[k], y: y[k], z: z[k] }
+    }
+
+    /// Replaces vector `k`.
+    pub fn set(&mut self, k: usize, v: Vec3<T>) {
+        let [x, y, z] = &mut self.planes;
+        (x[k], y[k], z[k]) = (v.x, v.y, v.z);
+    }
+
+    /// All vectors in the order of memory.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Vec3<T>> + DoubleEndedIterator + '_ {
+        (0..self.len()).map(|k| self.at(k))
+    }
+
+    /// All vectors in the order of memory.
+    pub fn points(&self) -> Vec<Vec3<T>> {
+        self.iter().collect()
+    }
+}
+
+impl ArrayShape {
+    /// The number of elements.
+    pub fn count(self) -> usize {
+        match self {
+            ArrayShape::Row(n) => n,
+            ArrayShape::Grid(m, n) => m * n,
+        }
+    }
 }
 
 impl<E> Array<E> {
@@ -137,7 +226,7 @@ pub enum Value<T: Real> {
     /// A row or grid of numbers.
     Numbers(Arc<Array<T>>),
     /// A row or grid of vectors.
-    Vectors(Arc<Array<Vec3<T>>>),
+    Vectors(Arc<Vectors<T>>),
     /// A list.
     List(Arc<[Value<T>]>),
     /// A declared object, not read yet.
@@ -220,9 +309,8 @@ impl<T: Real> Value<T> {
                         && a.items.iter().zip(&b.items).all(|(x, y)| x.bits_eq(*y))
             }
             (Value::Vectors(a), Value::Vectors(b)) => {
-                Arc::ptr_eq(a, b)
-                    || a.shape == b.shape
-                        && a.items.iter().zip(&b.items).all(|(x, y)| x.bits_eq(*y))
+                let bits = |(x, y): (&Vec<T>, &Vec<T>)| x.iter().zip(y).all(|(x, y)| x.bits_eq(*y));
+                Arc::ptr_eq(a, b) || a.shape == b.shape && a.planes.iter().zip(&b.planes).all(bits)
             }
             (Value::List(a), Value::List(b)) => {
                 a.len() == b.len() && a.iter().zip(b.iter()).all(|(x, y)| x.same(y))
@@ -304,7 +392,7 @@ impl<T: Real> Value<T> {
             Value::Number(a) => a.is_finite(),
             Value::Vector(v) => v.is_finite(),
             Value::Numbers(a) => a.items.iter().all(|x| x.is_finite()),
-            Value::Vectors(a) => a.items.iter().all(|x| x.is_finite()),
+            Value::Vectors(a) => a.planes.iter().flatten().all(|x| x.is_finite()),
             Value::List(items) => items.iter().all(Value::is_finite),
             Value::Point(p) => p.xyz.is_finite(),
             Value::Plane(p) => p.point.is_finite() && p.normal.is_finite(),

@@ -1,7 +1,7 @@
 //! Functions on rows of numbers and on curves.
 
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
-use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value};
+use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value, Vectors};
 use moldloft_spline::arclen;
 use moldloft_spline::distribution::{self, DistributionError};
 use std::sync::Arc;
@@ -128,7 +128,7 @@ impl<T: Real> Build<T> for Distc<T> {
         } else {
             parameters.iter().map(|&t| curve.jet(t, Order::Zero)[0]).collect()
         };
-        Ok(Value::Vectors(Arc::new(Array::row(points))))
+        Ok(Value::Vectors(Arc::new(Vectors::row(points))))
     }
 }
 

@@ -173,7 +173,7 @@ fn contours_and_rows_of_numbers() {
     let Value::Contours(c) = scene.value("stations") else { panic!("contours") };
     assert!(c.axis == 0 && c.values.len() == 11 && (c.values[10] - 29.15).abs() < 1e-14);
     let Value::Vectors(p) = scene.value("p") else { panic!("points") };
-    assert_eq!(p.items[3], Vec3::of(3.0, 0.0, 0.0));
+    assert_eq!(p.at(3), Vec3::of(3.0, 0.0, 0.0));
     let Value::Numbers(t) = scene.value("t") else { panic!("numbers") };
     assert!((t.items[1] - 0.0380602337).abs() < 1e-10);
     let Value::Numbers(d) = scene.value("d") else { panic!("numbers") };

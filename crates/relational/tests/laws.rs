@@ -181,7 +181,7 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
             TS.iter().chain(&outside).map(|t| Vec3::from(jet(t))).collect()
         }
         Value::Frame(f) => vec![f.origin, f.axes[0], f.axes[1], f.axes[2]],
-        Value::Vectors(a) => a.items.clone(),
+        Value::Vectors(a) => a.points(),
         Value::Field(f) => {
             let (value, gradient) = f.value_and_gradient(Vec3::of(0.5, -1.0, 0.25));
             vec![gradient, Vec3::new(value, T::zero(), T::zero())]

@@ -1,7 +1,7 @@
 use super::{Intent, Places, Role, faithful, fault, measure};
 use crate::{FairError, Space};
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value};
+use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value, Vectors};
 use std::sync::Arc;
 
 /// A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
@@ -48,7 +48,7 @@ impl<T: Real> Build<T> for Fair<T> {
         };
         let places = Places { points: 0, tolerance: 1, degree: 0, breaks: 0 };
         let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
-        Ok(Value::Vectors(Arc::new(Array::row(faired))))
+        Ok(Value::Vectors(Arc::new(Vectors::row(faired))))
     }
 }
 

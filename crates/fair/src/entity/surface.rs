@@ -2,13 +2,13 @@ use super::{ACCURACY, Places, Role, faithful, fault, indices, measure, role};
 use crate::{Bound, FairError, Limit, Network, Space, Spacing, interpolate_sharp};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Array, ArrayShape, Build, Class, Context, Fault, FromValue, Kind, SurfaceRef, Value,
+    ArrayShape, Build, Class, Context, Fault, FromValue, Kind, SurfaceRef, Value, Vectors,
 };
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
 
 /// A grid of points.
-struct Grid<T: Real>(Arc<Array<Vec3<T>>>);
+struct Grid<T: Real>(Arc<Vectors<T>>);
 
 impl<T: Real> FromValue<T> for Grid<T> {
     const CLASS: Class = Class::Vectors;
@@ -136,13 +136,13 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 }
             }
             let (spaces, net, marks) = if fitted_first {
-                let (u, net, mu) = fitted(degree, &grid.items, m, &marks_u)?;
+                let (u, net, mu) = fitted(degree, &grid.points(), m, &marks_u)?;
                 let (v, net, mv) = fitted(degree, &turned(&net, u.count()), n, &marks_v)?;
                 let net = turned(&net, v.count());
                 ([u, v], net, [mu, mv])
             } else {
                 let spaces = [Space::clamped(degree, m)?, Space::clamped(degree, n)?];
-                (spaces, grid.items.clone(), [marks_u, marks_v])
+                (spaces, grid.points(), [marks_u, marks_v])
             };
             let limit = Limit::ball(net.len(), self.tolerance.re())?;
             let plain = net.iter().map(|p| p.re()).collect();

@@ -64,7 +64,7 @@ fn flat(value: &Value<f64>, out: &mut Vec<f64>) {
         Value::Number(x) => out.push(*x),
         Value::Vector(v) => out.extend(v.to_array()),
         Value::Point(p) => out.extend(p.xyz.to_array()),
-        Value::Vectors(a) => a.items.iter().for_each(|v| out.extend(v.to_array())),
+        Value::Vectors(a) => a.iter().for_each(|v| out.extend(v.to_array())),
         other => panic!("{other:?}"),
     }
 }
