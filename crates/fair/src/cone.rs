@@ -1,39 +1,60 @@
 //! The second-order cone |u1| <= u0 with a scaling that maps slack and dual to one point.
 
-use crate::solver::{V, axpy, dot};
+/// A vector of the directions in use.
+pub(crate) type V<const D: usize> = [f64; D];
 
 /// A point of the cone's space: its axis part and the rest.
-pub(crate) type Pair = (f64, V);
+pub(crate) type Pair<const D: usize> = (f64, V<D>);
+
+#[inline(always)]
+pub(crate) fn dot<const D: usize>(a: V<D>, b: V<D>) -> f64 {
+    let mut sum = a[0] * b[0];
+    for c in 1..D {
+        sum += a[c] * b[c];
+    }
+    sum
+}
+
+#[inline(always)]
+pub(crate) fn axpy<const D: usize>(y: &mut V<D>, a: f64, x: V<D>) {
+    for c in 0..D {
+        y[c] += a * x[c];
+    }
+}
 
 /// Slack, dual and their scaling point (Nesterov and Todd 1997).
 #[derive(Clone, Debug)]
-pub(crate) struct Cone {
-    pub u: Pair,
-    pub y: Pair,
+pub(crate) struct Cone<const D: usize> {
+    pub u: Pair<D>,
+    pub y: Pair<D>,
     /// The scaling W = eta [w0, w1'; w1, I + w1 w1' / (1 + w0)].
-    w: Pair,
+    w: Pair<D>,
     eta: f64,
     /// W y = W^-1 u.
-    middle: Pair,
+    middle: Pair<D>,
+    /// How far inside slack and dual are, squared.
+    inside: [f64; 2],
 }
 
 /// u0^2 - |u1|^2 without cancellation.
-fn det(u: Pair) -> f64 {
+#[inline(always)]
+fn det<const D: usize>(u: Pair<D>) -> f64 {
     let length = dot(u.1, u.1).sqrt();
     (u.0 - length) * (u.0 + length)
 }
 
 /// The Jordan product.
-fn product(a: Pair, b: Pair) -> Pair {
-    let mut rest = [0.0; 3];
+#[inline(always)]
+fn product<const D: usize>(a: Pair<D>, b: Pair<D>) -> Pair<D> {
+    let mut rest = [0.0; D];
     axpy(&mut rest, a.0, b.1);
     axpy(&mut rest, b.0, a.1);
     (a.0 * b.0 + dot(a.1, b.1), rest)
 }
 
-impl Cone {
-    pub fn new(u: Pair, y: Pair) -> Self {
-        let mut cone = Self { u, y, w: (1.0, [0.0; 3]), eta: 1.0, middle: u };
+impl<const D: usize> Cone<D> {
+    pub fn new(u: Pair<D>, y: Pair<D>) -> Self {
+        let mut cone = Self { u, y, w: (1.0, [0.0; D]), eta: 1.0, middle: u, inside: [1.0; 2] };
         cone.scale();
         cone
     }
@@ -46,25 +67,30 @@ impl Cone {
     }
 
     /// Recomputes the scaling from slack and dual.
+    #[inline]
     pub fn scale(&mut self) {
         // Rounding may put a point on its cone's surface: a trace inside is enough.
-        let inner = |p: Pair| det(p).max(1e-30 * p.0 * p.0).max(f64::MIN_POSITIVE);
+        let inner = |p: Pair<D>| det(p).max(1e-30 * p.0 * p.0).max(f64::MIN_POSITIVE);
         let (du, dy) = (inner(self.u), inner(self.y));
         let (ru, ry) = (du.sqrt(), dy.sqrt());
-        let a = (self.u.0 / ru, self.u.1.map(|c| c / ru));
-        let b = (self.y.0 / ry, self.y.1.map(|c| c / ry));
+        let (per_u, per_y) = (1.0 / ru, 1.0 / ry);
+        let a = (self.u.0 * per_u, self.u.1.map(|c| c * per_u));
+        let b = (self.y.0 * per_y, self.y.1.map(|c| c * per_y));
         let gamma = ((1.0 + a.0 * b.0 + dot(a.1, b.1)) * 0.5).max(0.25).sqrt();
+        let half = 0.5 / gamma;
         let mut w1 = a.1;
         axpy(&mut w1, -1.0, b.1);
-        let w1 = w1.map(|c| c / (2.0 * gamma));
+        let w1 = w1.map(|c| c * half);
         // On the unit hyperbola by construction.
         self.w = ((1.0 + dot(w1, w1)).sqrt(), w1);
-        self.eta = (du / dy).sqrt().sqrt();
+        self.eta = (ru * per_y).sqrt();
+        self.inside = [du, dy];
         self.middle = self.map(self.y);
     }
 
     /// W p.
-    fn map(&self, p: Pair) -> Pair {
+    #[inline(always)]
+    fn map(&self, p: Pair<D>) -> Pair<D> {
         let along = dot(self.w.1, p.1);
         let mut rest = p.1;
         axpy(&mut rest, p.0 + along / (1.0 + self.w.0), self.w.1);
@@ -72,16 +98,19 @@ impl Cone {
     }
 
     /// W^-1 p.
-    fn unmap(&self, p: Pair) -> Pair {
+    #[inline(always)]
+    fn unmap(&self, p: Pair<D>) -> Pair<D> {
         let along = dot(self.w.1, p.1);
+        let per = 1.0 / self.eta;
         let mut rest = p.1;
         axpy(&mut rest, along / (1.0 + self.w.0) - p.0, self.w.1);
-        ((self.w.0 * p.0 - along) / self.eta, rest.map(|c| c / self.eta))
+        ((self.w.0 * p.0 - along) * per, rest.map(|c| c * per))
     }
 
     /// The block of W^-2 from u1 to y1 (with the axis part eliminated when `free`): how hard the
     /// cone resists.
-    pub fn stiffness(&self, free: bool) -> [V; 3] {
+    #[inline(always)]
+    pub fn stiffness(&self, free: bool) -> [V<D>; D] {
         let scale = 1.0 / (self.eta * self.eta);
         // W^-2 = (2 (Jw)(Jw)' - J) / eta^2: corner 2 w0^2 - 1, side -2 w0 w1, block 2 w1 w1' + I.
         let (w0, w1) = self.w;
@@ -92,9 +121,9 @@ impl Cone {
         } else {
             2.0
         };
-        let mut out = [[0.0; 3]; 3];
-        for r in 0..3 {
-            for c in 0..3 {
+        let mut out = [[0.0; D]; D];
+        for r in 0..D {
+            for c in 0..D {
                 let unit = f64::from(u8::from(r == c));
                 out[r][c] = scale * (unit + factor * w1[r] * w1[c]);
             }
@@ -103,32 +132,36 @@ impl Cone {
     }
 
     /// The side of W^-2 from u0 to y1: the force that a wider limit takes back, with its sign.
-    pub fn side(&self) -> V {
+    pub fn side(&self) -> V<D> {
         let scale = -2.0 * self.w.0 / (self.eta * self.eta);
         self.w.1.map(|c| c * scale)
     }
 
-    /// W^-1 (middle \ d), with d the goal of the scaled complementarity: the centre `mu`, less the
-    /// second-order term of an earlier direction.
-    pub fn goal(&self, mu: f64, before: Option<(&Pair, &Pair)>) -> Pair {
-        let mut d = product(self.middle, self.middle);
-        d = (mu - d.0, d.1.map(|c| -c));
-        if let Some((du, dy)) = before {
-            let second = product(self.unmap(*du), self.map(*dy));
-            d.0 -= second.0;
-            axpy(&mut d.1, -1.0, second.1);
-        }
+    /// W^-1 (middle \ d), with d the goal of the scaled complementarity: the centre `mu` less what
+    /// is there, and less the second-order term of an earlier direction. Without either it is the
+    /// whole dual taken back.
+    #[inline(always)]
+    pub fn goal(&self, towards: Option<(f64, &Pair<D>, &Pair<D>)>) -> Pair<D> {
+        let taken = (-self.y.0, self.y.1.map(|c| -c));
+        let Some((mu, du, dy)) = towards else { return taken };
+        let second = product(self.unmap(*du), self.map(*dy));
+        let (d0, d1) = (mu - second.0, second.1);
         let m = self.middle;
         let under = det(m).max(f64::MIN_POSITIVE);
-        let q0 = (m.0 * d.0 - dot(m.1, d.1)) / under;
-        let mut q1 = d.1;
-        axpy(&mut q1, -q0, m.1);
-        self.unmap((q0, q1.map(|c| c / m.0)))
+        let q0 = (m.0 * d0 + dot(m.1, d1)) / under;
+        let per = -1.0 / m.0;
+        let mut q1 = d1;
+        axpy(&mut q1, q0, m.1);
+        let mut goal = self.unmap((q0, q1.map(|c| c * per)));
+        goal.0 += taken.0;
+        axpy(&mut goal.1, 1.0, taken.1);
+        goal
     }
 
     /// The part of the dual's change that does not depend on x. `free`: the axis part of the slack
     /// may change and that of the dual may not.
-    pub fn fixed(&self, goal: &Pair, free: bool) -> V {
+    #[inline(always)]
+    pub fn fixed(&self, goal: &Pair<D>, free: bool) -> V<D> {
         let mut fixed = goal.1;
         if free {
             let (w0, w1) = self.w;
@@ -139,12 +172,17 @@ impl Cone {
     }
 
     /// The changes of slack and dual when the slack's rest changes by `de`.
-    pub fn change(&self, goal: &Pair, de: V, free: bool) -> (Pair, Pair) {
+    #[inline(always)]
+    pub fn change(&self, goal: &Pair<D>, de: V<D>, free: bool) -> (Pair<D>, Pair<D>) {
         let scale = 1.0 / (self.eta * self.eta);
         let (w0, w1) = self.w;
-        let corner = 2.0 * w0 * w0 - 1.0;
         let along = dot(w1, de);
-        let dt = if free { (goal.0 / scale + 2.0 * w0 * along) / corner } else { 0.0 };
+        let dt = if free {
+            let corner = 2.0 * w0 * w0 - 1.0;
+            (goal.0 / scale + 2.0 * w0 * along) / corner
+        } else {
+            0.0
+        };
         // y = goal - W^-2 (dt, de)
         let y0 = if free { 0.0 } else { goal.0 + scale * 2.0 * w0 * along };
         let mut y1 = goal.1;
@@ -152,10 +190,24 @@ impl Cone {
         axpy(&mut y1, scale * (2.0 * w0 * dt - 2.0 * along), w1);
         ((dt, de), (y0, y1))
     }
+
+    /// How far slack and dual can go along `du` and `dy` inside the cone, at most `step`.
+    #[inline(always)]
+    pub fn longest(&self, du: Pair<D>, dy: Pair<D>, mut step: f64) -> f64 {
+        for (p, d, inside) in [(self.u, du, self.inside[0]), (self.y, dy, self.inside[1])] {
+            // A cone is convex: where its end is inside, the step is.
+            let b = p.0 * d.0 - dot(p.1, d.1);
+            let a = d.0 * d.0 - dot(d.1, d.1);
+            if inside + step * (2.0 * b + step * a) <= 0.0 || p.0 + step * d.0 <= 0.0 {
+                step = step.min(farthest(p, d));
+            }
+        }
+        step
+    }
 }
 
 /// How far `u` can go along `du` inside the cone, at most 2.
-pub(crate) fn farthest(u: Pair, du: Pair) -> f64 {
+pub(crate) fn farthest<const D: usize>(u: Pair<D>, du: Pair<D>) -> f64 {
     // The first positive root of det(u + t du) = c + 2 b t + a t^2.
     let a = du.0 * du.0 - dot(du.1, du.1);
     let b = u.0 * du.0 - dot(u.1, du.1);
@@ -182,7 +234,7 @@ mod tests {
     use super::*;
     use crate::testing::Random;
 
-    fn some(random: &mut Random, inside: f64) -> Pair {
+    fn some(random: &mut Random, inside: f64) -> Pair<3> {
         let v = [random.unit(), random.unit(), random.unit()];
         (dot(v, v).sqrt() * (1.0 + inside), v)
     }
@@ -210,7 +262,8 @@ mod tests {
         let mut random = Random::new(2);
         for free in [false, true] {
             let cone = Cone::new(some(&mut random, 0.5), some(&mut random, 0.3));
-            let goal = cone.goal(0.01, None);
+            let before = (some(&mut random, -0.5), some(&mut random, 0.0));
+            let goal = cone.goal(Some((0.01, &before.0, &before.1)));
             let de = [0.3, -0.2, 0.1];
             let (du, dy) = cone.change(&goal, de, free);
             // W dy + W^-1 du = W goal

@@ -79,6 +79,7 @@ mod entity;
 mod error;
 mod fit;
 mod heap;
+mod interior;
 mod job;
 mod jump;
 mod levels;

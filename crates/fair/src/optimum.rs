@@ -415,7 +415,11 @@ impl<'a> Parts<'a> {
         // Gaps below the rounding of the measure are no gaps.
         let size = self.relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
         let noise = 4.0 * f64::EPSILON * size;
-        let floor = noise * noise * problem.measure.len() as f64;
+        let rows = problem.measure.len() as f64;
+        let floor = match self.norm {
+            Norm::Square => noise * noise * rows,
+            Norm::Length => noise * rows,
+        };
         // Positions round by half a unit in the last place of the largest coordinate, moves too.
         let margin = 4.0 * f64::EPSILON * self.points.iter().map(|p| p.norm()).fold(0.0, f64::max);
         let solution = solver::solve(problem, self.accuracy, floor, margin)?;

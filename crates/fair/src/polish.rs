@@ -8,30 +8,23 @@
 //! factor H / rho a step. What comes out is checked like any other result: forces push inwards,
 //! no other limit is passed, and the certificate has the last word.
 
+use crate::Rows;
 use crate::band::Band;
-use crate::solver::{Problem, Schur, State, V, axpy, dot};
-use crate::{FairError, Rows};
+use crate::cone::{V, axpy, dot};
+use crate::interior::{Schur, State, add_block, apply, spread};
+use crate::solver::Active;
 use moldloft_num::Real;
-
-/// The limits that are reached, and how hard they push.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Active {
-    /// Cones, ascending.
-    pub cones: Vec<u32>,
-    /// The force at each.
-    pub forces: Vec<f64>,
-}
 
 /// Stiffness along a reached limit, as a multiple of the measure's own.
 const STIFF: f64 = 1e5;
 
 const MOST_ROUNDS: usize = 14;
 
-/// The diagonal of P'P by points.
-fn diagonal(p: &Problem) -> Vec<f64> {
-    let mut h = vec![0.0; p.frozen.len()];
-    for k in 0..p.measure.len() {
-        let (columns, factors) = p.measure.row(k);
+/// The diagonal of P'P by unknowns.
+fn diagonal(measure: &Rows, unknowns: usize) -> Vec<f64> {
+    let mut h = vec![0.0; unknowns];
+    for k in 0..measure.len() {
+        let (columns, factors) = measure.row(k);
         for (&c, &a) in columns.iter().zip(factors) {
             h[c as usize] += a * a;
         }
@@ -48,24 +41,24 @@ fn own_stiffness(rows: &Rows, k: usize, h: &[f64]) -> f64 {
     near.map(of).fold(0.0, f64::max)
 }
 
-impl State<'_> {
+impl<const D: usize> State<'_, D> {
     /// What cone `c`'s row is, and its length.
-    fn limit(&self, c: usize, x: &[V]) -> (V, f64) {
+    fn limit(&self, c: usize, x: &[V<D>]) -> (V<D>, f64) {
         let (rows, k) = self.rows_of(c);
-        let s = self.part(c, Self::apply(rows, k, x));
+        let s = self.part(c, apply(rows, k, x));
         (s, dot(s, s).sqrt())
     }
 
     /// The unit normal of limit `c` at its place `s`.
-    fn normal(s: V, length: f64) -> V {
-        if length > 0.0 { s.map(|v| v / length) } else { [1.0, 0.0, 0.0] }
+    fn normal(s: V<D>, length: f64) -> V<D> {
+        let other = || std::array::from_fn(|c| f64::from(u8::from(c == 0)));
+        if length > 0.0 { s.map(|v| v / length) } else { other() }
     }
 
     /// The matrix of the reached limits: H, the limits' bend (force / r across the normal), and
     /// `rho` along the normal.
-    fn assemble_active(&self, band: &mut Band, active: &Active, x: &[V], rho: &[f64]) {
-        band.clear();
-        self.add_measure(band);
+    fn assemble_active(&self, band: &mut Band, active: &Active, x: &[V<D>], rho: &[f64]) {
+        self.begin(band);
         for (at, &c) in active.cones.iter().enumerate() {
             let (s, length) = self.limit(c as usize, x);
             let n = Self::normal(s, length);
@@ -74,15 +67,15 @@ impl State<'_> {
             } else {
                 active.forces[at].max(0.0) / length
             };
-            let mut w = [[0.0; 3]; 3];
-            for r in 0..3 {
-                for q in 0..3 {
+            let mut w = [[0.0; D]; D];
+            for r in 0..D {
+                for q in 0..D {
                     let unit = if r == q { bend } else { 0.0 };
                     w[r][q] = unit + (rho[c as usize] - bend) * n[r] * n[q];
                 }
             }
             let (rows, k) = self.rows_of(c as usize);
-            self.add_block(band, rows, k, &w);
+            add_block(band, rows, k, &w);
         }
         band.factor();
     }
@@ -92,9 +85,9 @@ impl State<'_> {
     pub(crate) fn polish(&mut self, band: &mut Band, margin: f64) -> bool {
         let p = self.p;
         let limits = self.limits();
-        let h = diagonal(p);
+        let h = diagonal(&self.measure, self.unknowns());
         let own: Vec<f64> = (0..limits)
-            .map(|c| own_stiffness(&p.bounds.rows, c / self.groups(), &h).max(f64::MIN_POSITIVE))
+            .map(|c| own_stiffness(&self.limit_rows, c / self.groups(), &h).max(f64::MIN_POSITIVE))
             .collect();
         let rho: Vec<f64> = own.iter().map(|o| o * STIFF).collect();
         let radius = |c: usize| p.bounds.radii[c / self.groups()] - margin;
@@ -122,11 +115,10 @@ impl State<'_> {
                 }
             }
             self.assemble_active(band, &active, &x, &rho);
-            let mut right = vec![[0.0; 3]; x.len()];
-            for k in 0..p.measure.len() {
-                let mut e = p.offsets[k];
-                axpy(&mut e, 1.0, Self::apply(&p.measure, k, &x));
-                Self::spread(&p.measure, k, e.map(|v| -v), &mut right);
+            let mut dx = vec![[0.0; D]; x.len()];
+            for k in 0..self.measure.len() {
+                let e = self.error_at(k, &x);
+                spread(&self.measure, k, e.map(|v| -v), &mut dx);
             }
             let mut normals = Vec::with_capacity(active.cones.len());
             for (at, &c) in active.cones.iter().enumerate() {
@@ -136,20 +128,18 @@ impl State<'_> {
                 let off = length - radius(c);
                 let push = active.forces[at] + rho[c] * off;
                 let (rows, k) = self.rows_of(c);
-                Self::spread(rows, k, n.map(|v| -push * v), &mut right);
+                spread(rows, k, n.map(|v| -push * v), &mut dx);
                 normals.push((n, off));
             }
-            let mut flat = self.flat(&right);
-            band.solve(&mut flat);
-            if !p.conditions.is_empty() {
-                nu = Schur::new(self, band).solve(p, &x, &mut flat);
+            band.solve(dx.as_flattened_mut());
+            if !self.conditions.is_empty() {
+                nu = Schur::new(self, band).solve(self, &x, dx.as_flattened_mut());
             }
-            let dx = self.unflat(&flat);
             for (at, &c) in active.cones.iter().enumerate() {
                 let c = c as usize;
                 let (rows, k) = self.rows_of(c);
                 let (n, off) = normals[at];
-                let moved = dot(n, self.part(c, Self::apply(rows, k, &dx)));
+                let moved = dot(n, self.part(c, apply(rows, k, &dx)));
                 reached[c] = Some(active.forces[at] + rho[c] * (off + moved));
             }
             let mut size = 0.0f64;
@@ -190,7 +180,7 @@ impl State<'_> {
     }
 
     /// Takes over a polished solution.
-    fn take(&mut self, x: Vec<V>, nu: Vec<f64>, reached: &[Option<f64>]) -> bool {
+    fn take(&mut self, x: Vec<V<D>>, nu: Vec<f64>, reached: &[Option<f64>]) -> bool {
         let within = (0..self.limits()).all(|c| {
             let radius = self.p.bounds.radii[c / self.groups()];
             self.limit(c, &x).1 <= radius
@@ -221,37 +211,37 @@ impl State<'_> {
         &self,
         band: &mut Band,
         active: &Active,
-        right: &[[T; 3]],
+        right: &[[T; D]],
         radii: &[T],
-    ) -> Result<Vec<[T; 3]>, FairError> {
+    ) -> Vec<[T; D]> {
         let p = self.p;
-        let h = diagonal(p);
-        let d = self.d;
+        let h = diagonal(&self.measure, self.unknowns());
         let mut rho = vec![0.0; self.limits()];
         for &c in &active.cones {
-            rho[c as usize] = STIFF * own_stiffness(&p.bounds.rows, c as usize / self.groups(), &h);
+            rho[c as usize] =
+                STIFF * own_stiffness(&self.limit_rows, c as usize / self.groups(), &h);
         }
         self.assemble_active(band, active, &self.x, &rho);
-        let zero = [T::zero(); 3];
-        let apply = |rows: &Rows, k: usize, x: &[[T; 3]]| {
+        let zero = [T::zero(); D];
+        let apply = |rows: &Rows, k: usize, x: &[[T; D]]| {
             let (columns, factors) = rows.row(k);
             let mut sum = zero;
             for (&c, &a) in columns.iter().zip(factors) {
-                for r in 0..d {
+                for r in 0..D {
                     sum[r] += x[c as usize][r] * a;
                 }
             }
             sum
         };
-        let spread = |rows: &Rows, k: usize, y: [T; 3], sum: &mut [[T; 3]]| {
+        let spread = |rows: &Rows, k: usize, y: [T; D], sum: &mut [[T; D]]| {
             let (columns, factors) = rows.row(k);
             for (&c, &a) in columns.iter().zip(factors) {
-                for r in 0..d {
+                for r in 0..D {
                     sum[c as usize][r] += y[r] * a;
                 }
             }
         };
-        let limits: Vec<(usize, V, f64)> = active
+        let limits: Vec<(usize, V<D>, f64)> = active
             .cones
             .iter()
             .zip(&active.forces)
@@ -261,15 +251,15 @@ impl State<'_> {
                 (c as usize, Self::normal(s, length), bend)
             })
             .collect();
-        let along = |n: &V, s: &[T; 3]| (0..d).fold(T::zero(), |t, r| t + s[r] * n[r]);
-        let mut x = vec![zero; p.frozen.len()];
+        let along = |n: &V<D>, s: &[T; D]| (0..D).fold(T::zero(), |t, r| t + s[r] * n[r]);
+        let mut x = vec![zero; self.unknowns()];
         let mut forces = vec![T::zero(); limits.len()];
         for _ in 0..5 {
             // What is still unbalanced.
-            let mut rest: Vec<[T; 3]> = right.to_vec();
-            for k in 0..p.measure.len() {
-                let e = apply(&p.measure, k, &x);
-                spread(&p.measure, k, e.map(|v| -v), &mut rest);
+            let mut rest: Vec<[T; D]> = right.to_vec();
+            for k in 0..self.measure.len() {
+                let e = apply(&self.measure, k, &x);
+                spread(&self.measure, k, e.map(|v| -v), &mut rest);
             }
             let mut short = Vec::with_capacity(limits.len());
             for ((c, n, bend), force) in limits.iter().zip(&forces) {
@@ -277,7 +267,7 @@ impl State<'_> {
                 let mut s = apply(rows, k, &x);
                 if p.bounds.separate {
                     for (r, v) in s.iter_mut().enumerate() {
-                        if r != c % d {
+                        if r != c % D {
                             *v = T::zero();
                         }
                     }
@@ -285,29 +275,26 @@ impl State<'_> {
                 let own = along(n, &s);
                 let left = radii[k] - own;
                 let mut push = zero;
-                for r in 0..d {
+                for r in 0..D {
                     let across = (s[r] - own * n[r]) * *bend;
                     push[r] = -across - *force * n[r] + left * (rho[*c] * n[r]);
                 }
                 spread(rows, k, push, &mut rest);
                 short.push(left);
             }
-            let mut flat = vec![T::zero(); self.unknowns * d];
-            self.each_place(|i, at| flat[at..at + d].copy_from_slice(&rest[i][..d]));
-            band.solve_any(&mut flat);
-            let mut step = vec![zero; x.len()];
-            self.each_place(|i, at| step[i][..d].copy_from_slice(&flat[at..at + d]));
+            band.solve_any(rest.as_flattened_mut());
+            let step = rest;
             for (((c, n, _), force), left) in limits.iter().zip(&mut forces).zip(short) {
                 let (rows, k) = self.rows_of(*c);
                 let moved = along(n, &apply(rows, k, &step));
                 *force += (moved - left) * rho[*c];
             }
             for (x, s) in x.iter_mut().zip(&step) {
-                for r in 0..d {
+                for r in 0..D {
                     x[r] += s[r];
                 }
             }
         }
-        Ok(x)
+        x
     }
 }

@@ -110,6 +110,24 @@ impl Rows {
         out
     }
 
+    /// The rows with other numbers for their columns, ascending in each row; entries of columns
+    /// whose number is `u32::MAX` are dropped.
+    pub(crate) fn renumbered(&self, number: &[u32]) -> Self {
+        let mut out = Self::new();
+        let mut entries: Vec<(u32, f64)> = Vec::new();
+        for k in 0..self.len() {
+            let (c, a) = self.row(k);
+            entries.clear();
+            entries.extend(c.iter().zip(a).map(|(&c, &a)| (number[c as usize], a)));
+            entries.retain(|e| e.0 != u32::MAX);
+            entries.sort_unstable_by_key(|e| e.0);
+            out.columns.extend(entries.iter().map(|e| e.0));
+            out.factors.extend(entries.iter().map(|e| e.1));
+            out.starts.push(out.columns.len());
+        }
+        out
+    }
+
     /// All rows of both.
     pub fn joined(mut self, other: &Rows) -> Self {
         for k in 0..other.len() {
