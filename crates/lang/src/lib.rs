@@ -66,6 +66,6 @@ use moldloft_registry::Registry;
 /// All rows of the project: every crate's list, joined.
 pub fn registry() -> Registry {
     let rows = moldloft_relational::rows().into_iter().chain(moldloft_fair::rows());
-    let rows = rows.chain(moldloft_sketch::entity::rows());
+    let rows = rows.chain(moldloft_sketch::entity::rows()).chain(moldloft_arrays::rows());
     Registry::new(rows.chain(intrinsics::rows()).chain(header::rows()))
 }

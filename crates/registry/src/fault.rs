@@ -49,9 +49,22 @@ impl Fault {
 
     /// A value of the wrong class.
     pub fn wrong_class(expected: Class, found: Class) -> Self {
-        Self::new("wrong-class", format!("expected {}, found {}", expected.a(), found.a()))
-            .expected(expected.a())
-            .found(found.a())
+        let fault =
+            Self::new("wrong-class", format!("expected {}, found {}", expected.a(), found.a()))
+                .expected(expected.a())
+                .found(found.a());
+        // Arrays of points and shapes with parameters are easily taken for each other.
+        match (expected, found) {
+            (Class::Curve | Class::Surface, Class::Vectors) => fault
+                .help("put a spline through the points first: makecc(c) or makelc(c), makecs(s)"),
+            (Class::Vectors, Class::Curve | Class::Snake) => {
+                fault.help("take points of it first: distc(curve, uniform(0, 1, 50))")
+            }
+            (Class::Vectors, Class::Surface) => fault.help(
+                "take points of it first: dists(surface, uniform(0, 1, 50), uniform(0, 1, 30))",
+            ),
+            _ => fault,
+        }
     }
 
     /// Says what was expected.

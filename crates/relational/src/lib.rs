@@ -1,5 +1,5 @@
 //! The relational kinds: points, curves, snakes, surfaces, solids, planes and contours that are made from
-//! one another, and the first functions on rows of numbers.
+//! one another.
 //!
 //! Each kind is a documented struct whose fields are its arguments; the derive macro makes a row of
 //! the registry of it. A new kind is one file and one line in [`rows`].
@@ -20,7 +20,6 @@ mod faults;
 mod field;
 mod foil;
 mod frame;
-mod intrinsics;
 mod lifted;
 mod lists;
 mod normal;
@@ -182,11 +181,6 @@ pub fn rows() -> Vec<Row> {
         lists::RealList,
         lists::KnotList,
         lists::EntityList,
-        intrinsics::Uniform,
-        intrinsics::Cosine,
-        intrinsics::DTanh,
-        intrinsics::Distc,
-        intrinsics::Length,
         field::Sphere,
     ]
 }

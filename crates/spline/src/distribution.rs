@@ -308,6 +308,78 @@ pub fn redist<T: Real>(given: &[T], n: usize) -> Result<T> {
     Ok((0..n).map(at).collect())
 }
 
+/// The largest ratio of neighbouring cells, whichever of the two is larger; 1 for fewer than two.
+///
+/// # Example
+/// ```
+/// assert_eq!(moldloft_spline::distribution::growth(&[1.0, 2.0, 1.5]), 2.0);
+/// ```
+pub fn growth<T: Real>(cells: &[T]) -> T {
+    let ratio = |c: &[T]| if c[0].re() < c[1].re() { c[1] / c[0] } else { c[0] / c[1] };
+    cells.windows(2).map(ratio).fold(T::one(), T::max)
+}
+
+/// The first cell of `n` numbers over `length` whose cells grow by the ratio `growth`.
+///
+/// # Example
+/// ```
+/// use moldloft_spline::distribution::first_for;
+/// assert_eq!((first_for(7.0, 2.0, 4), first_for(3.0, 1.0, 4)), (1.0, 1.0));
+/// ```
+pub fn first_for<T: Real>(length: T, growth: T, n: usize) -> T {
+    // Horner's rule is smooth through 1 and exact for small whole ratios; beyond it, closed form.
+    if n <= 64 {
+        let sum = (1..n - 1).fold(T::one(), |sum, _| sum * growth + 1.0);
+        return length / sum;
+    }
+    length / growth_sum(growth.ln(), n - 1)
+}
+
+/// The fewest numbers, `most_numbers` at most, with which the law of [`d_tanhx`] over `length` has
+/// these end cells (0: free) and grows by at most `growth` from cell to cell; `None` when no number
+/// does.
+///
+/// # Errors
+/// [`DistributionError`] for a length or spacings that are no lengths.
+pub fn count_for(
+    length: f64,
+    first: f64,
+    last: f64,
+    growth_limit: f64,
+    most_numbers: usize,
+) -> std::result::Result<Option<usize>, DistributionError> {
+    check(0.0, length, 4, 4)?;
+    distance(0.0, length)?;
+    spacing(first, 0.0)?;
+    spacing(last, 0.0)?;
+    if first == 0.0 && last == 0.0 {
+        return Ok(Some(2));
+    }
+    let good = |n: usize| {
+        let cells = |s: Vec<f64>| s.windows(2).map(|w| w[1] - w[0]).collect::<Vec<f64>>();
+        let law = d_tanhx(0.0, length, first, last, n).map(cells);
+        law.is_ok_and(|cells| growth(&cells) <= growth_limit)
+    };
+    // With more numbers the growth falls until the cells are even, and rises again beyond. Steps of
+    // an eighth come upon any stretch of good numbers that is wider than that; evenly divided ones
+    // are tried too.
+    let smallest = [first, last].into_iter().filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
+    let even = (length / smallest).min(most_numbers as f64) as usize;
+    let (mut bad, mut n) = (3, 4);
+    while !good(n) {
+        if n >= most_numbers || n > even + even / 2 + 16 {
+            return Ok(None);
+        }
+        bad = n;
+        n = (n + 1 + n / 8).min(most_numbers);
+    }
+    while n - bad > 1 {
+        let middle = bad + (n - bad) / 2;
+        if good(middle) { n = middle } else { bad = middle }
+    }
+    Ok(Some(n))
+}
+
 /// Beyond this ratio of uniform to asked spacing, sinh overflows.
 const LARGEST: f64 = 1e300;
 

@@ -1,4 +1,4 @@
-use crate::PiecewiseCubic;
+use crate::{KnotLaw, PiecewiseCubic};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use smallvec::{SmallVec, smallvec};
 use std::fmt;
@@ -139,7 +139,7 @@ impl<T: Real> InterpolatingSpline<T> {
     /// # Errors
     /// As [`InterpolatingSpline::through`]; [`InterpolationError::NotClosed`] for periodic ends.
     pub fn with_ends(points: &[Vec3<T>], ends: Ends<T>) -> Result<Self, InterpolationError> {
-        Self::with_knots(&chord_knots(points)?, points, ends)
+        Self::with_knots(&KnotLaw::Chord.knots(points)?, points, ends)
     }
 
     /// The spline of a C-curve's type: 1 the polyline, 3 the cubic with not-a-knot ends. A type
@@ -161,7 +161,7 @@ impl<T: Real> InterpolatingSpline<T> {
     /// # Errors
     /// As [`InterpolatingSpline::through`].
     pub fn polyline(points: &[Vec3<T>]) -> Result<Self, InterpolationError> {
-        let knots = chord_knots(points)?;
+        let knots = KnotLaw::Chord.knots(points)?;
         let pieces = knots
             .windows(2)
             .zip(points.windows(2))
@@ -252,35 +252,6 @@ impl<T: Real> Curve<T> for InterpolatingSpline<T> {
     fn breaks(&self) -> Vec<f64> {
         self.breaks.to_vec()
     }
-}
-
-/// The cumulative chord lengths divided by their total; the ends are exactly 0 and 1.
-fn chord_knots<T: Real>(points: &[Vec3<T>]) -> Result<Short<T>, InterpolationError> {
-    let n = points.len();
-    if n < 2 {
-        return Err(InterpolationError::TooFew { expected: 2, actual: n });
-    }
-    if let Some(index) = points.iter().position(|p| !p.is_finite()) {
-        return Err(InterpolationError::NotFinite { index });
-    }
-    let mut knots: Short<T> = smallvec![T::zero()];
-    let mut total = T::zero();
-    for k in 1..n {
-        let chord = points[k] - points[k - 1];
-        let size = points[k].re().norm_sq().max(points[k - 1].re().norm_sq());
-        // Points that differ by rounding only have no chord direction to speak of.
-        if chord.norm_sq().re() <= (4.0 * f64::EPSILON).powi(2) * size {
-            return Err(InterpolationError::Coincident { first: k - 1, second: k });
-        }
-        total += chord.norm();
-        knots.push(total);
-    }
-    let shrink = T::one() / total;
-    for knot in &mut knots[1..n - 1] {
-        *knot *= shrink;
-    }
-    knots[n - 1] = T::one();
-    Ok(knots)
 }
 
 fn parabolic<T>(end: End<T>) -> bool {

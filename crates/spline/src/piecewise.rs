@@ -29,6 +29,12 @@ impl<T: Real> PiecewiseCubic<T> {
         Self::closed_off(knots, coefficients, points[points.len() - 1])
     }
 
+    /// The curve of these polynomials, one per knot but the last, where it passes through `end`; see
+    /// the type. Nothing makes them meet at the knots.
+    pub fn of_pieces(knots: &[T], coefficients: &[[Vec3<T>; 4]], end: Vec3<T>) -> Self {
+        Self::closed_off(knots, SmallVec::from_slice(coefficients), end)
+    }
+
     /// The piecewise curve of these coefficients, one set per knot but the last, where it passes
     /// through `end`.
     pub(crate) fn closed_off(

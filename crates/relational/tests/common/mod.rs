@@ -44,7 +44,8 @@ pub fn run<T: Scalar>(
     text: &str,
     number: &mut dyn FnMut(usize, f64) -> T,
 ) -> Result<Scene<T>, Fault> {
-    let registry = Registry::new(moldloft_relational::rows());
+    let registry =
+        Registry::new(moldloft_relational::rows().into_iter().chain(moldloft_arrays::rows()));
     let tokens = tokens(text);
     let mut reader = Reader { tokens: &tokens, at: 0, literals: 0, number, scene: Scene(vec![]) };
     while reader.at < tokens.len() {

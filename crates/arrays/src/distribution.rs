@@ -1,0 +1,274 @@
+//! Distributions of numbers along a stretch.
+
+use crate::value::{Farray, farray};
+use moldloft_num::Real;
+use moldloft_registry::{Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_spline::distribution::{self, DistributionError};
+
+/// The longest row.
+pub const MOST_NUMBERS: u32 = 1_000_000;
+
+/// The fault of a distribution whose arguments are `start, end, [spacings,] n`.
+pub fn fault(error: DistributionError) -> Fault {
+    let fault = Fault::new("no-distribution", error.to_string());
+    match error {
+        DistributionError::TooFew { expected, actual } => {
+            fault.expected(format!("at least {expected} numbers")).found(actual.to_string())
+        }
+        DistributionError::Limits { start, end } => fault
+            .expected("two different finite limits")
+            .found(format!("{start} and {end}"))
+            .in_field(0),
+        DistributionError::Spacing { spacing } => fault
+            .expected("a positive spacing")
+            .found(spacing.to_string())
+            .help("spacings are lengths: positive whatever the direction")
+            .in_field(2),
+        DistributionError::TwoSided { .. } => {
+            fault.help("d_tanh, d_tanhx and geometric2 take a spacing at both ends").in_field(2)
+        }
+        DistributionError::Unreachable { spacings: [a, b], length, cells } => {
+            let mean = length / cells as f64;
+            fault
+                .expected(format!("spacings nearer to the mean, {mean}"))
+                .found(format!("{a} and {b}"))
+                .help("ask for another number of points: count_for(length, ds1, ds2, growth)")
+                .in_field(2)
+        }
+    }
+}
+
+fn row<T: Real>(row: Result<Vec<T>, DistributionError>) -> Result<Value<T>, Fault> {
+    row.map(farray).map_err(fault)
+}
+
+/// `n` numbers in equal steps from `start` to `end`, both included.
+#[derive(Kind)]
+#[kind(class = Numbers, function, name = "uniform", example = "farray s = uniform(0, 1, 11);")]
+pub struct Uniform<T: Real> {
+    /// First number.
+    start: T,
+    /// Last number.
+    end: T,
+    /// How many numbers.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Real> Build<T> for Uniform<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        row(distribution::uniform(self.start, self.end, self.n as usize))
+    }
+}
+
+/// `n` numbers from `start` to `end`, dense at both: start + (end - start) (1 - cos pi x) / 2 for
+/// uniform x.
+#[derive(Kind)]
+#[kind(class = Numbers, function, name = "cosine", example = "farray s = cosine(0, 1, 11);")]
+pub struct Cosine<T: Real> {
+    /// First number.
+    start: T,
+    /// Last number.
+    end: T,
+    /// How many numbers.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Real> Build<T> for Cosine<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        row(distribution::cosine(self.start, self.end, self.n as usize))
+    }
+}
+
+/// `n` numbers from `start` to `end` whose steps grow by one ratio, the first step being `ds1`.
+///
+/// The ratio solves ds1 (r^N - 1) / (r - 1) = |end - start| for N = n - 1 steps; it is below 1 where
+/// `ds1` is more than the mean step.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "geometric",
+    example = "farray s = geometric(0, 1, 0.01, 25); assert abs(s[2] - 0.01) < 1e-15;"
+)]
+pub struct Geometric<T: Real> {
+    /// First number.
+    start: T,
+    /// Last number.
+    end: T,
+    /// First step, a positive length.
+    ds1: T,
+    /// How many numbers.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Real> Build<T> for Geometric<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        row(distribution::geometric(self.start, self.end, self.ds1, self.n as usize))
+    }
+}
+
+/// `n` numbers from `start` to `end` whose steps grow by one ratio from both ends inward, the first
+/// step being `ds1` and the last `ds2`.
+///
+/// The step at which the two progressions meet is chosen so that they meet as evenly as whole
+/// numbers of steps allow.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "geometric2",
+    example = "farray s = geometric2(0, 1, 0.001, 0.02, 40);"
+)]
+pub struct Geometric2<T: Real> {
+    /// First number.
+    start: T,
+    /// Last number.
+    end: T,
+    /// First step, a positive length.
+    ds1: T,
+    /// Last step, a positive length.
+    ds2: T,
+    /// How many numbers, at least 4.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Real> Build<T> for Geometric2<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { start, end, ds1, ds2, n } = self;
+        row(distribution::geometric2(start, end, ds1, ds2, n as usize))
+    }
+}
+
+/// `n` numbers from `start` to `end` by the hyperbolic sine law with a given slope at one end
+/// (Thompson, Warsi and Mastin 1985): nearer to equal steps at that end than `d_tanh`, coarser at the
+/// other.
+///
+/// One of `ds1` and `ds2` must be 0; both 0 is uniform.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "d_sinh",
+    example = "farray s = d_sinh(0, 1, 0.01, 0, 25);"
+)]
+pub struct DSinh<T: Real> {
+    /// First number.
+    start: T,
+    /// Last number.
+    end: T,
+    /// Slope at the start, per index; 0 leaves it free.
+    #[field(min = 0)]
+    ds1: T,
+    /// Slope at the end, per index; 0 leaves it free.
+    #[field(min = 0)]
+    ds2: T,
+    /// How many numbers.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Real> Build<T> for DSinh<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { start, end, ds1, ds2, n } = self;
+        row(distribution::d_sinh(start, end, ds1, ds2, n as usize))
+    }
+}
+
+/// `n` numbers from `start` to `end` by the hyperbolic tangent law with given slopes at the ends
+/// (Vinokur, J. Comput. Phys. 50, 1983).
+///
+/// `ds1` and `ds2` are steps per index at the two ends; 0 leaves an end free, both 0 is uniform. The
+/// first and last cells differ from them by the curvature of the law; `d_tanhx` has exact cells.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "d_tanh",
+    example = "farray s = d_tanh(0, 1, 0.01, 0.05, 60);"
+)]
+pub struct DTanh<T: Real> {
+    /// First number.
+    start: T,
+    /// Last number.
+    end: T,
+    /// Slope at the start, per index; 0 leaves it free.
+    #[field(min = 0)]
+    ds1: T,
+    /// Slope at the end, per index; 0 leaves it free.
+    #[field(min = 0)]
+    ds2: T,
+    /// How many numbers.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Real> Build<T> for DTanh<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { start, end, ds1, ds2, n } = self;
+        row(distribution::d_tanh(start, end, ds1, ds2, n as usize))
+    }
+}
+
+/// `n` numbers from `start` to `end` by the hyperbolic tangent law whose first and last steps are
+/// `ds1` and `ds2` to the bit.
+///
+/// 0 leaves an end free, both 0 is uniform. On coarse rows `d_tanh`, whose spacings are slopes, misses
+/// the asked cells by a third; this one solves for the slopes that give them.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "d_tanhx",
+    example = "farray s = d_tanhx(0, 1, 0.07, 0.01, 60); assert s[2] == 0.07;"
+)]
+pub struct DTanhX<T: Real> {
+    /// First number.
+    start: T,
+    /// Last number.
+    end: T,
+    /// First step; 0 leaves it free.
+    #[field(min = 0)]
+    ds1: T,
+    /// Last step; 0 leaves it free.
+    #[field(min = 0)]
+    ds2: T,
+    /// How many numbers, at least 4.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Real> Build<T> for DTanhX<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { start, end, ds1, ds2, n } = self;
+        row(distribution::d_tanhx(start, end, ds1, ds2, n as usize))
+    }
+}
+
+/// `n` numbers with the law of a given row: its linear interpolation by index, ends to the bit.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "redist",
+    example = "farray s = redist(d_tanh(0, 1, 0.01, 0.05, 60), 31); assert s[31] == 1;"
+)]
+pub struct Redist<T: Scalar> {
+    /// The row.
+    given: Farray<T>,
+    /// How many numbers.
+    #[field(min = 2, max = MOST_NUMBERS)]
+    n: u32,
+}
+
+impl<T: Scalar> Build<T> for Redist<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let given = self.given.row().map_err(|fault| fault.in_field(0))?;
+        distribution::redist(&given, self.n as usize)
+            .map(farray)
+            .map_err(|error| fault(error).in_field(0))
+    }
+}

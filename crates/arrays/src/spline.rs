@@ -1,0 +1,490 @@
+//! Splines through arrays of points: `pcurve` and `psurface`.
+
+use crate::value::{Net, Points};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Scalar, SurfaceRef, Value};
+use moldloft_spline::{
+    ByArclen, End, Ends, GridSpline, InterpolatingSpline, InterpolationError, KnotLaw,
+    PiecewiseCubic, curvature_breaks,
+};
+use std::sync::Arc;
+
+/// The fault of a spline through the points in field 0; `of` says what a point is there.
+pub fn fault(error: InterpolationError, of: &str) -> Fault {
+    match error {
+        InterpolationError::Coincident { first, second } => {
+            let (a, b) = (first + 1, second + 1);
+            Fault::new("coincident-points", format!("{of}s {a} and {b} coincide"))
+                .expected("neighbours at different places")
+                .found(format!("no distance between {of}s {a} and {b}"))
+                .help(format!("leave {of} {b} out, or take the basis \"index\""))
+                .in_item(second)
+                .in_field(0)
+        }
+        InterpolationError::TooFew { expected, actual } => {
+            Fault::new("too-few-items", format!("a spline needs {expected} {of}s, found {actual}"))
+                .expected(format!("at least {expected} {of}s"))
+                .found(actual.to_string())
+                .in_field(0)
+        }
+        InterpolationError::NotFinite { index } => {
+            Fault::new("not-finite", error.to_string()).in_item(index).in_field(0)
+        }
+        InterpolationError::NotClosed { gap } => Fault::new("not-closed", error.to_string())
+            .expected(format!("the first {of} again as the last"))
+            .found(format!("a gap of {gap}"))
+            .help(format!("repeat the first {of} at the end"))
+            .in_field(1),
+        InterpolationError::Type { .. } | InterpolationError::Knots { .. } => {
+            Fault::new("no-spline", error.to_string())
+        }
+    }
+}
+
+/// The conditions by the names of the language.
+const ENDS: &str = "\"natural\", \"quadratic\", \"specified\", \"notaknot\", \"bessel\" or \
+                    \"periodic\", or two of them such as \"natural,specified\"";
+
+/// What holds at one end, before its slope is known.
+#[derive(Clone, Copy, PartialEq)]
+enum Name {
+    Natural,
+    Quadratic,
+    Specified,
+    NotAKnot,
+    Bessel,
+    Periodic,
+}
+
+fn unknown(word: &str, field: usize, what: &str, expected: &str) -> Fault {
+    Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
+        .expected(expected)
+        .found(format!("\"{word}\""))
+        .in_field(field)
+}
+
+fn name(word: &str, field: usize) -> Result<Name, Fault> {
+    Ok(match word {
+        "natural" => Name::Natural,
+        "quadratic" => Name::Quadratic,
+        "specified" | "clamped" => Name::Specified,
+        "notaknot" | "not-a-knot" => Name::NotAKnot,
+        "bessel" => Name::Bessel,
+        "periodic" | "closed" => Name::Periodic,
+        _ => return Err(unknown(word, field, "end condition", ENDS)),
+    })
+}
+
+/// The conditions at both ends.
+fn names(text: &str, field: usize) -> Result<[Name; 2], Fault> {
+    let words: Vec<&str> = text.split(',').map(str::trim).collect();
+    let pair = match words[..] {
+        [one] => [name(one, field)?; 2],
+        [start, end] => [name(start, field)?, name(end, field)?],
+        _ => return Err(unknown(text, field, "pair of end conditions", ENDS)),
+    };
+    if (pair[0] == Name::Periodic) != (pair[1] == Name::Periodic) {
+        return Err(Fault::new("unknown-word", "a spline is periodic at both ends or at none")
+            .expected("\"periodic\" alone")
+            .found(format!("\"{text}\""))
+            .in_field(field));
+    }
+    Ok(pair)
+}
+
+fn condition<T>(name: Name, slope: Vec3<T>) -> End<T> {
+    match name {
+        Name::Natural => End::Natural,
+        Name::Specified => End::Clamped(slope),
+        Name::NotAKnot => End::NotAKnot,
+        Name::Bessel => End::Bessel,
+        // Periodic splines are told apart before.
+        Name::Quadratic | Name::Periodic => End::Quadratic,
+    }
+}
+
+/// What the parameter of a spline is.
+#[derive(Clone, Copy, PartialEq)]
+struct Basis {
+    law: KnotLaw,
+    by_arclen: bool,
+    breaks: bool,
+}
+
+fn basis(word: &str, field: usize) -> Result<Basis, Fault> {
+    let plain = |law| Basis { law, by_arclen: false, breaks: false };
+    Ok(match word.replace(' ', "").as_str() {
+        "arc" | "chord" => plain(KnotLaw::Chord),
+        "index" => plain(KnotLaw::Index),
+        "centripetal" => plain(KnotLaw::Centripetal),
+        "arclen" => Basis { by_arclen: true, ..plain(KnotLaw::Chord) },
+        "arclen+breaks" => Basis { by_arclen: true, breaks: true, ..plain(KnotLaw::Chord) },
+        "arc+breaks" | "chord+breaks" => Basis { breaks: true, ..plain(KnotLaw::Chord) },
+        _ => {
+            let expected = "\"arc\" (chords), \"index\", \"centripetal\", \"arclen\", \
+                            \"arclen+breaks\" or \"arc+breaks\"";
+            return Err(unknown(word, field, "basis", expected));
+        }
+    })
+}
+
+/// The cubic spline through the points of a curve, as a pcurve.
+///
+/// `ends` says what holds at the ends: "natural" (no curvature), "quadratic" (the end piece is a
+/// parabola), "specified" (the tangents `t1`, `t2`), "notaknot", "bessel", "periodic"; or one of each
+/// as "natural,specified". `basis` is the parameter: "arc", the cumulative chord over the whole;
+/// "index"; "centripetal"; "arclen", the true arc length; "arclen+breaks", true arc length of splines
+/// that end wherever the curvature jumps, which a plain spline rounds off. It passes through every
+/// point, the two ends to the bit.
+///
+/// Tangents are dr/ds for the length-like bases and dr/d(index) for "index". Where curvature jumps is
+/// found from the points: continued from both sides, the curvatures of circles through three neighbours
+/// miss each other there by a quarter and more. `breaks` gives the points by their indices instead.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    function,
+    name = "makecc",
+    example = "Line l({0, 0, 0}, {1, 2, 0}); curve c = distc(l, uniform(0, 1, 9)); \
+               pcurve p = makecc(c, \"quadratic\", \"arc\"); curve d = distc(p, cosine(0, 1, 20));"
+)]
+pub struct Makecc<T: Scalar> {
+    /// The points, two or more.
+    curve: Points<T>,
+    /// End conditions.
+    #[field(default = "quadratic")]
+    ends: Arc<str>,
+    /// The parameter.
+    #[field(default = "arc")]
+    basis: Arc<str>,
+    /// Tangent at the start, where it is "specified".
+    t1: Option<Vec3<T>>,
+    /// Tangent at the end, where it is "specified".
+    t2: Option<Vec3<T>>,
+    /// Indices of the points at which the spline is split; found where not given.
+    #[field(min = 1)]
+    breaks: Option<Vec<usize>>,
+}
+
+impl<T: Scalar> Build<T> for Makecc<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let points = self.curve.0;
+        let ends = names(&self.ends, 1)?;
+        let basis = basis(&self.basis, 2)?;
+        let tangents = [self.t1, self.t2];
+        for (k, (end, tangent)) in ends.iter().zip(&tangents).enumerate() {
+            let (which, field) = (["start", "end"][k], 3 + k);
+            match (*end == Name::Specified, tangent) {
+                (true, None) => {
+                    return Err(Fault::new(
+                        "missing-argument",
+                        format!("the tangent at the {which} is specified, but not given"),
+                    )
+                    .expected(format!("t{} = {{x, y, z}}", k + 1))
+                    .help("makecc(c, \"specified\", \"arc\", t1, t2): dr/ds at both ends")
+                    .help("\"quadratic\" ends need no tangents")
+                    .in_field(field));
+                }
+                (false, Some(_)) => {
+                    return Err(Fault::new(
+                        "unused-argument",
+                        format!("a tangent is given, but the {which} is not \"specified\""),
+                    )
+                    .expected("\"specified\" in `ends`")
+                    .found(format!("\"{}\"", self.ends))
+                    .in_field(field));
+                }
+                _ => {}
+            }
+        }
+        let splits = splits(&points, basis, ends[0] == Name::Periodic, self.breaks)?;
+        let mut parts: Vec<PiecewiseCubic<T>> = Vec::with_capacity(splits.len() - 1);
+        for (k, w) in splits.windows(2).enumerate() {
+            let piece = &points[w[0]..=w[1]];
+            let knots = basis.law.knots(piece).map_err(|error| shifted(error, w[0]))?;
+            let end = |at: usize, outer: bool| {
+                let name = if outer { ends[at] } else { inner(ends[at]) };
+                condition(name, slope(basis.law, piece, &knots, at, tangents[at]))
+            };
+            let ends = match ends[0] {
+                Name::Periodic => Ends::Periodic,
+                _ => Ends::Open(end(0, k == 0), end(1, k + 2 == splits.len())),
+            };
+            let spline = InterpolatingSpline::with_knots(&knots, piece, ends);
+            let spline = spline.map_err(|error| shifted(error, w[0]))?;
+            if splits.len() == 2 && !basis.by_arclen {
+                return Ok(Value::Curve(CurveRef::new(spline, 0)));
+            }
+            parts.push(spline.pieces().clone());
+        }
+        if !basis.by_arclen {
+            return Ok(Value::Curve(CurveRef::new(
+                joined(basis.law, &points, &splits, &parts)?,
+                0,
+            )));
+        }
+        let curve = ByArclen::of(parts).ok_or_else(|| {
+            Fault::new("coincident-points", "the curve has no length").in_field(0)
+        })?;
+        Ok(Value::Curve(CurveRef::new(curve, 0)))
+    }
+}
+
+/// The condition at a break, whose sides know nothing of each other.
+fn inner(outer: Name) -> Name {
+    if outer == Name::NotAKnot { Name::NotAKnot } else { Name::Quadratic }
+}
+
+/// dC/dt at an end from the asked tangent.
+fn slope<T: Real>(
+    law: KnotLaw,
+    points: &[Vec3<T>],
+    knots: &[T],
+    at: usize,
+    tangent: Option<Vec3<T>>,
+) -> Vec3<T> {
+    let Some(tangent) = tangent else { return Vec3::zero() };
+    let n = points.len();
+    let (a, b) = if at == 0 { (0, 1) } else { (n - 2, n - 1) };
+    let gap = knots[b] - knots[a];
+    // dr/dt = dr/ds ds/dt, with ds/dt from the chord of the end interval.
+    let step = if law == KnotLaw::Index { T::one() } else { points[a].distance(points[b]) };
+    tangent * (step / gap)
+}
+
+fn shifted(error: InterpolationError, by: usize) -> Fault {
+    let error = match error {
+        InterpolationError::Coincident { first, second } => {
+            InterpolationError::Coincident { first: first + by, second: second + by }
+        }
+        InterpolationError::NotFinite { index } => {
+            InterpolationError::NotFinite { index: index + by }
+        }
+        other => other,
+    };
+    fault(error, "point")
+}
+
+/// The indices, from 0, of the ends of the pieces.
+fn splits<T: Real>(
+    points: &[Vec3<T>],
+    basis: Basis,
+    periodic: bool,
+    given: Option<Vec<usize>>,
+) -> Result<Vec<usize>, Fault> {
+    let n = points.len();
+    if n < 2 {
+        return Err(fault(InterpolationError::TooFew { expected: 2, actual: n }, "point"));
+    }
+    let mut all = vec![0];
+    match given {
+        Some(_) if !basis.breaks => {
+            return Err(Fault::new("unused-argument", "breaks are given, but the basis has none")
+                .expected("the basis \"arclen+breaks\" or \"arc+breaks\"")
+                .in_field(5));
+        }
+        Some(given) => {
+            for (k, index) in given.into_iter().enumerate() {
+                let last = all[all.len() - 1];
+                // Index 1 is the start.
+                if index < last + 2 || index >= n {
+                    let message = format!("point {index} cannot be a break");
+                    return Err(Fault::new("out-of-range", message)
+                        .expected(format!("ascending indices from 2 to {}", n - 1))
+                        .found(index.to_string())
+                        .in_item(k)
+                        .in_field(5));
+                }
+                all.push(index - 1);
+            }
+        }
+        None if basis.breaks => {
+            let plain: Vec<Vec3> = points.iter().map(|p| p.re()).collect();
+            all.extend(curvature_breaks(&plain));
+        }
+        None => {}
+    }
+    if periodic && all.len() > 1 {
+        return Err(Fault::new("no-spline", "a periodic spline has no breaks")
+            .expected("open ends, such as \"quadratic\"")
+            .found(format!("a break at point {}", all[1] + 1))
+            .in_field(1));
+    }
+    all.push(n - 1);
+    Ok(all)
+}
+
+/// The parts as one curve, their parameters in proportion to the knots of all points.
+fn joined<T: Real>(
+    law: KnotLaw,
+    points: &[Vec3<T>],
+    splits: &[usize],
+    parts: &[PiecewiseCubic<T>],
+) -> Result<PiecewiseCubic<T>, Fault> {
+    let knots = law.knots(points).map_err(|error| shifted(error, 0))?;
+    let mut coefficients = Vec::with_capacity(points.len());
+    for (w, part) in splits.windows(2).zip(parts) {
+        let shrink = T::one() / (knots[w[1]] - knots[w[0]]);
+        for &[a, b, c, d] in &part.coefficients()[..w[1] - w[0]] {
+            let (one, two) = (shrink, shrink * shrink);
+            coefficients.push([a, b * one, c * two, d * (two * one)]);
+        }
+    }
+    Ok(PiecewiseCubic::of_pieces(&knots, &coefficients, points[points.len() - 1]))
+}
+
+/// The polyline through the points of a curve, as a pcurve.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    function,
+    name = "makelc",
+    example = "Line l({0, 0, 0}, {1, 2, 0}); curve c = distc(l, uniform(0, 1, 9)); \
+               pcurve p = makelc(c, \"arc\"); vector q = evalc(p, 0.25);"
+)]
+pub struct Makelc<T: Scalar> {
+    /// The points, two or more.
+    curve: Points<T>,
+    /// The parameter: "arc" (true arc length here), "index" or "centripetal".
+    #[field(default = "arc")]
+    basis: Arc<str>,
+}
+
+impl<T: Scalar> Build<T> for Makelc<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let points = self.curve.0;
+        let law = basis(&self.basis, 1)?.law;
+        let knots = law.knots(&points).map_err(|error| shifted(error, 0))?;
+        let line = |k: usize| {
+            let slope = (points[k + 1] - points[k]) / (knots[k + 1] - knots[k]);
+            [points[k], slope, Vec3::zero(), Vec3::zero()]
+        };
+        let pieces: Vec<_> = (0..points.len() - 1).map(line).collect();
+        let curve = PiecewiseCubic::of_pieces(&knots, &pieces, points[points.len() - 1]);
+        Ok(Value::Curve(CurveRef::new(curve, 0)))
+    }
+}
+
+fn knots_of<T: Scalar>(net: &Net<T>, word: &str) -> Result<[Vec<T>; 2], Fault> {
+    let basis = basis(word, 2)?;
+    if basis.by_arclen || basis.breaks {
+        return Err(unknown(
+            word,
+            2,
+            "basis of a surface",
+            "\"arc\", \"index\" or \"centripetal\"",
+        )
+        .help("the lines of a surface share their parameters, which are means over all lines"));
+    }
+    let knots = |axis: usize| {
+        basis
+            .law
+            .averaged(net.m, net.n, &net.points, axis)
+            .map_err(|error| surface_fault(error, axis))
+    };
+    Ok([knots(0)?, knots(1)?])
+}
+
+fn surface_fault(error: InterpolationError, axis: usize) -> Fault {
+    let line = ["line s[i,]", "line s[,j]"][axis];
+    fault(error, line)
+}
+
+/// The bicubic spline surface through the points of a surface, as a psurface: u runs along the first
+/// index, v along the second.
+///
+/// `ends` as for `makecc`, without "specified"; `ends_v` for the lines along the second index. Parameters
+/// are means over the lines: "arc" chords, "index" or "centripetal". Lines that are one point (a nose,
+/// a tail) are allowed.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    function,
+    name = "makecs",
+    example = "Line l({0, 0, 0}, {1, 2, 0}); curve c = distc(l, uniform(0, 1, 5)); surface s[5,4]; \
+               for (j = 1:4) s[,j] = c + {0, 0, 1} * j; \
+               psurface p = makecs(s, \"natural\", \"arc\"); vector q = evals(p, 0.5, 0.25);"
+)]
+pub struct Makecs<T: Scalar> {
+    /// The points.
+    surface: Net<T>,
+    /// End conditions of the lines along the first index.
+    #[field(default = "quadratic")]
+    ends: Arc<str>,
+    /// The parameters.
+    #[field(default = "arc")]
+    basis: Arc<str>,
+    /// End conditions of the lines along the second index; those of the first, if not given.
+    ends_v: Option<Arc<str>>,
+}
+
+impl<T: Scalar> Build<T> for Makecs<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let [u, v] = knots_of(&self.surface, &self.basis)?;
+        let ends = |word: &str, field: usize| -> Result<Ends<T>, Fault> {
+            let pair = names(word, field)?;
+            if pair.contains(&Name::Specified) {
+                let fault = unknown(word, field, "end condition of a surface", ENDS);
+                return Err(fault.help("tangents can be specified for curves, with makecc"));
+            }
+            Ok(match pair[0] {
+                Name::Periodic => Ends::Periodic,
+                _ => {
+                    let [start, end] = pair.map(|name| condition(name, Vec3::zero()));
+                    Ends::Open(start, end)
+                }
+            })
+        };
+        let along = ends(&self.ends, 1)?;
+        let across = match &self.ends_v {
+            Some(word) => ends(word, 3)?,
+            None => along,
+        };
+        let spline = GridSpline::bicubic_with(u, v, self.surface.points, [along, across]);
+        let spline = spline.map_err(|error| surface_fault(error, 0))?;
+        Ok(Value::Surface(SurfaceRef::new(spline, 0)))
+    }
+}
+
+/// The bilinear surface through the points of a surface, as a psurface.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    function,
+    name = "makels",
+    example = "Line l({0, 0, 0}, {1, 2, 0}); curve c = distc(l, uniform(0, 1, 5)); surface s[5,4]; \
+               for (j = 1:4) s[,j] = c + {0, 0, 1} * j; psurface p = makels(s, \"index\");"
+)]
+pub struct Makels<T: Scalar> {
+    /// The points.
+    surface: Net<T>,
+    /// The parameters: "arc", "index" or "centripetal".
+    #[field(default = "arc")]
+    basis: Arc<str>,
+}
+
+impl<T: Scalar> Build<T> for Makels<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        // The basis is the second argument here.
+        let knots = knots_of(&self.surface, &self.basis);
+        let [u, v] = knots.map_err(|fault| match fault.place {
+            Some(place) if place.field == 2 => moved(fault, 1),
+            _ => fault,
+        })?;
+        let surface = GridSpline::bilinear(u, v, self.surface.points);
+        let surface = surface.map_err(|error| surface_fault(error, 0))?;
+        Ok(Value::Surface(SurfaceRef::new(surface, 0)))
+    }
+}
+
+/// The same fault about another field.
+fn moved(fault: Fault, field: usize) -> Fault {
+    let mut other = Fault::new(fault.id, fault.message.clone());
+    if let Some(expected) = &fault.expected {
+        other = other.expected(expected.clone());
+    }
+    if let Some(found) = &fault.found {
+        other = other.found(found.clone());
+    }
+    fault.help.iter().fold(other, |other, help| other.help(help.clone())).in_field(field)
+}

@@ -1,0 +1,189 @@
+//! Arrays in and out: the one place that knows how a value holds its numbers and vectors.
+
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{
+    Array, ArrayShape, Class, Fault, FromValue, Scalar, Value, Vectors as Planes,
+};
+use std::sync::Arc;
+
+/// A row or grid of numbers.
+pub struct Farray<T> {
+    pub shape: ArrayShape,
+    pub items: Vec<T>,
+}
+
+/// A row of vectors: the language's `curve`.
+pub struct Points<T>(pub Vec<Vec3<T>>);
+
+/// A grid of vectors: the language's `surface`; (i, j) at `i * n + j`.
+pub struct Net<T> {
+    pub m: usize,
+    pub n: usize,
+    pub points: Vec<Vec3<T>>,
+}
+
+/// A row or grid of vectors.
+pub struct Vectors<T> {
+    pub shape: ArrayShape,
+    pub items: Vec<Vec3<T>>,
+}
+
+/// A number or an farray; what is computed for each of its numbers has its shape.
+pub enum Numbers<T> {
+    One(T),
+    Many(Farray<T>),
+}
+
+fn not_finite(index: usize) -> Fault {
+    Fault::new("not-finite", format!("element {} is not finite", index + 1))
+        .expected("finite numbers")
+        .in_item(index)
+}
+
+fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
+    Err(match value {
+        Value::Unset => Fault::new("missing-argument", format!("{} is missing", class.a())),
+        _ => Fault::wrong_class(class, value.class()),
+    })
+}
+
+impl<T: Scalar> FromValue<T> for Farray<T> {
+    const CLASS: Class = Class::Number;
+    const MANY: bool = true;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let (shape, items) = match value {
+            Value::Numbers(a) => (a.shape, a.items.clone()),
+            other => {
+                let items: Vec<T> = FromValue::from_value(other)?;
+                (ArrayShape::Row(items.len()), items)
+            }
+        };
+        match items.iter().position(|x| !x.is_finite()) {
+            Some(index) => Err(not_finite(index)),
+            None => Ok(Self { shape, items }),
+        }
+    }
+}
+
+impl<T> Farray<T> {
+    /// The numbers of a row; a grid is refused.
+    pub fn row(self) -> Result<Vec<T>, Fault> {
+        match self.shape {
+            ArrayShape::Row(_) => Ok(self.items),
+            shape => {
+                Err(Fault::new("wrong-shape", format!("expected an farray [n], found {shape}"))
+                    .expected("one row of numbers")
+                    .found(shape.to_string())
+                    .help("take one of its rows: a[1,]"))
+            }
+        }
+    }
+}
+
+impl<T: Scalar> FromValue<T> for Vectors<T> {
+    const CLASS: Class = Class::Vectors;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let (shape, items) = match value {
+            Value::Vectors(a) => (a.shape, a.points()),
+            Value::List(items) => {
+                let each = |(k, v): (usize, &Value<T>)| {
+                    <Vec3<T>>::from_value(v).map_err(|fault| fault.in_item(k))
+                };
+                let points = items.iter().enumerate().map(each).collect::<Result<Vec<_>, _>>()?;
+                (ArrayShape::Row(points.len()), points)
+            }
+            other => return wrong(Class::Vectors, other),
+        };
+        match items.iter().position(|p| !p.is_finite()) {
+            Some(index) => Err(not_finite(index)),
+            None => Ok(Self { shape, items }),
+        }
+    }
+}
+
+impl<T: Scalar> FromValue<T> for Points<T> {
+    const CLASS: Class = Class::Vectors;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let Vectors { shape, items } = Vectors::from_value(value)?;
+        match shape {
+            ArrayShape::Row(_) => Ok(Self(items)),
+            _ => Err(Fault::new("wrong-shape", format!("expected a curve [n], found {shape}"))
+                .expected("a row of vectors: a curve")
+                .found(format!("a surface {shape}"))
+                .help("take one of its lines: s[1,] or s[,1]")),
+        }
+    }
+}
+
+impl<T: Scalar> FromValue<T> for Net<T> {
+    const CLASS: Class = Class::Vectors;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let Vectors { shape, items } = Vectors::from_value(value)?;
+        match shape {
+            ArrayShape::Grid(m, n) => Ok(Self { m, n, points: items }),
+            _ => Err(Fault::new("wrong-shape", format!("expected a surface [m,n], found {shape}"))
+                .expected("a grid of vectors: a surface")
+                .found(format!("a curve {shape}"))),
+        }
+    }
+}
+
+impl<T: Scalar> FromValue<T> for Numbers<T> {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Number(_) => Ok(Self::One(T::from_value(value)?)),
+            Value::Numbers(_) | Value::List(_) | Value::Vector(_) => {
+                Ok(Self::Many(Farray::from_value(value)?))
+            }
+            other => {
+                let found = other.class().a();
+                let message = format!("expected a number or an farray, found {found}");
+                Err(Fault::new("wrong-class", message)
+                    .expected("a number or an farray")
+                    .found(found))
+            }
+        }
+    }
+}
+
+impl<T: Real> Numbers<T> {
+    /// The numbers in order.
+    pub fn items(&self) -> &[T] {
+        match self {
+            Self::One(x) => std::slice::from_ref(x),
+            Self::Many(a) => &a.items,
+        }
+    }
+
+    /// A vector for each number, in their shape.
+    pub fn vectors(&self, items: Vec<Vec3<T>>) -> Value<T> {
+        match self {
+            Self::One(_) => Value::Vector(items[0]),
+            Self::Many(a) => vectors(a.shape, items),
+        }
+    }
+
+    /// A number for each number, in their shape.
+    pub fn numbers(&self, items: Vec<T>) -> Value<T> {
+        match self {
+            Self::One(_) => Value::Number(items[0]),
+            Self::Many(a) => numbers(a.shape, items),
+        }
+    }
+}
+
+/// Numbers as a value.
+pub fn numbers<T: Real>(shape: ArrayShape, items: Vec<T>) -> Value<T> {
+    Value::Numbers(Arc::new(Array { shape, items }))
+}
+
+/// Vectors as a value.
+pub fn vectors<T: Real>(shape: ArrayShape, items: Vec<Vec3<T>>) -> Value<T> {
+    Value::Vectors(Arc::new(Planes::new(shape, items)))
+}
+
+/// A row of numbers as a value.
+pub fn farray<T: Real>(items: Vec<T>) -> Value<T> {
+    numbers(ArrayShape::Row(items.len()), items)
+}
