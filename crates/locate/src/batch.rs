@@ -1,326 +1,511 @@
-//! Nearest points of one surface for many points: everything that does not depend on the point is
+//! Nearest points of one shape for many points: everything that does not depend on the point is
 //! computed beforehand.
 
-use crate::nearest::nearest_in_surface;
-use crate::pieces::{Patch, distance_sq};
-use crate::tree::{Boxes, SurfaceTree};
-use moldloft_num::{Box3, Surface, Vec3};
+use crate::cells::{Cells, Flat, LEAF, Piece};
+use crate::nearest::{TIE, nearest_in_curve, surface_foot};
+use crate::pieces::distance_sq;
+use crate::report::Status;
+use crate::tree::CurveTree;
+use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
+use smallvec::SmallVec;
 
-/// A part of a piece, in powers of its own parameters s and t in [-1, 1].
-#[derive(Clone, Debug)]
-struct Cell {
-    uv: [[f64; 2]; 2],
-    /// Coefficient of s^a t^b at [a * 4 + b].
-    powers: [Vec3; 16],
-    /// How far the cell may be from the parallelogram c + a s + b t.
-    bend: f64,
-    /// Products of its sides, for the nearest point of the parallelogram.
-    aa: f64,
-    ab: f64,
-    bb: f64,
-    /// Bounds of first, second and third derivatives.
-    bounds: [f64; 3],
+/// Boxes of this share of a cell's side, or smaller, are not divided any more: what a minimum there
+/// may be nearer by is below rounding.
+const DEEPEST: u32 = 9;
+
+/// Boxes that one point looks at before it takes the best it has, as where all points of a surface
+/// are equally near.
+const MOST_BOXES: u32 = 20_000;
+
+/// The nearest point of a shape with N parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest<const N: usize> {
+    /// Its parameters.
+    pub at: [f64; N],
+    /// Where it is.
+    pub xyz: Vec3,
+    /// How far it is.
+    pub distance: f64,
+    /// `Ok`, `EdgeClamped` at an end or edge, `Multiple` where others are equally near, `Tangent`
+    /// where the distance is stationary to second order, `Diverged` for a point that is not finite.
+    pub status: Status,
+}
+
+impl<const N: usize> Nearest<N> {
+    /// The answer for a point that is not finite.
+    fn lost() -> Self {
+        let xyz = Vec3::of(f64::NAN, f64::NAN, f64::NAN);
+        Self { at: [f64::NAN; N], xyz, distance: f64::NAN, status: Status::Diverged }
+    }
 }
 
 /// A surface prepared for many nearest-point questions.
 ///
 /// On surfaces that are cubic pieces exactly (B-splines up to degree three) the answer is the
-/// nearest point of all: cells are left out only when a bound of their distance exceeds the best,
-/// and a foot in a cell counts as its only one only when the second derivatives of the distance are
-/// certainly positive there. On other surfaces each answer comes from the general search.
+/// nearest point of all, to 1e-9 of the size: a cell is left out only when a bound of its distance
+/// exceeds the best, and a foot in it counts as its only one only when the second derivatives of
+/// the distance outweigh what its third ones can do there. Other surfaces are searched through
+/// cubic pieces near them and the feet brought to the surface itself; there the answer is right as
+/// far as the pieces' slack is (see [`crate::pieces`]).
+///
+/// Each answer depends on the surface and its point only.
 #[derive(Clone, Debug)]
 pub struct NearestSurface {
-    tree: SurfaceTree,
-    cells: Vec<Cell>,
-    boxes: Boxes,
+    cells: Cells,
 }
 
-impl Cell {
-    fn new(patch: &Patch) -> Self {
-        let line = |b: [Vec3; 4]| -> [Vec3; 4] {
-            // Bernstein on [0, 1] to powers of s = 2 x - 1.
-            let [a, b, c, d] = b;
-            [
-                (a + b * 3.0 + c * 3.0 + d) * 0.125,
-                (d + c - b - a) * 0.375 + Vec3::zero(),
-                (a - b - c + d) * 0.375,
-                (d - c * 3.0 + b * 3.0 - a) * 0.125,
-            ]
-        };
-        let mut powers = [Vec3::zero(); 16];
-        for i in 0..4 {
-            let row = line([0, 1, 2, 3].map(|j| patch.net[i * 4 + j]));
-            powers[i * 4..i * 4 + 4].copy_from_slice(&row);
-        }
-        for j in 0..4 {
-            let column = line([0, 1, 2, 3].map(|i| powers[i * 4 + j]));
-            for i in 0..4 {
-                powers[i * 4 + j] = column[i];
-            }
-        }
-        let size = |a: usize, b: usize| powers[a * 4 + b].norm();
-        let mut bend = 0.0;
-        let mut bounds = [[0.0; 3]; 3];
-        let falling = |n: usize, k: usize| (0..k).map(|i| n as f64 - i as f64).product::<f64>();
-        for a in 0..4 {
-            for b in 0..4 {
-                if a + b > 1 {
-                    bend += size(a, b);
-                }
-                for (order, row) in bounds.iter_mut().enumerate() {
-                    for k in 0..=order + 1 {
-                        let l = order + 1 - k;
-                        let factor = falling(a, k).max(0.0) * falling(b, l).max(0.0);
-                        let slot = k.min(2);
-                        row[slot] += factor * size(a, b);
-                    }
-                }
-            }
-        }
-        let most = |row: [f64; 3]| row.into_iter().fold(0.0, f64::max);
-        let (a, b) = (powers[4], powers[1]);
-        Cell {
-            uv: patch.uv,
-            powers,
-            bend: bend + patch.slack,
-            aa: a.norm_sq(),
-            ab: a.dot(b),
-            bb: b.norm_sq(),
-            bounds: bounds.map(most),
-        }
-    }
-
-    /// Position, first and second derivatives at (s, t).
-    #[inline]
-    fn jet(&self, s: f64, t: f64) -> [Vec3; 6] {
-        let mut out = [Vec3::zero(); 6];
-        for i in (0..4).rev() {
-            let c = &self.powers[i * 4..i * 4 + 4];
-            let f = ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
-            let d = (c[3] * (3.0 * t) + c[2] * 2.0) * t + c[1];
-            let dd = c[3] * (6.0 * t) + c[2] * 2.0;
-            // p, s, t, ss, st, tt by Horner's rule with derivatives.
-            out[3] = out[3] * s + out[1] * 2.0;
-            out[1] = out[1] * s + out[0];
-            out[0] = out[0] * s + f;
-            out[4] = out[4] * s + out[2];
-            out[2] = out[2] * s + d;
-            out[5] = out[5] * s + dd;
-        }
-        out
-    }
-}
-
-/// The nearest point to `q` of the parallelogram a s + b t over |s|, |t| <= h, and the square of
+/// The nearest point to `q` of the parallelogram a s + b t over |s|, |t| <= 1, and the square of
 /// its distance.
 #[inline]
-fn nearest_flat(q: Vec3, a: Vec3, b: Vec3, [aa, ab, bb]: [f64; 3], h: f64) -> ([f64; 2], f64) {
-    let (qa, qb) = (q.dot(a), q.dot(b));
+fn nearest_flat(q: Vec3, flat: &Flat) -> ([f64; 2], f64) {
+    let [aa, ab, bb] = flat.products;
+    let g = [-q.dot(flat.a), -q.dot(flat.b)];
+    let st = least_quadratic(g, [aa, ab, bb]);
+    let [s, t] = st;
+    (st, (q - flat.a * s - flat.b * t).norm_sq())
+}
+
+/// Where g . w + w . H w / 2 is least over the square |w| <= 1, for a matrix that is positive
+/// definite or nearly so.
+#[inline]
+fn least_quadratic(g: [f64; 2], [aa, ab, bb]: [f64; 3]) -> [f64; 2] {
+    let clamp = |x: f64| if x.is_finite() { x.clamp(-1.0, 1.0) } else { 0.0 };
     let det = aa * bb - ab * ab;
-    let clamp = |x: f64| if x.is_finite() { x.clamp(-h, h) } else { 0.0 };
-    let (s, t) = ((qa * bb - qb * ab) / det, (qb * aa - qa * ab) / det);
-    let off = |s: f64, t: f64| (q - a * s - b * t).norm_sq();
-    if det > 0.0 && s.abs() <= h && t.abs() <= h {
-        return ([s, t], off(s, t));
+    let (s, t) = ((ab * g[1] - g[0] * bb) / det, (ab * g[0] - g[1] * aa) / det);
+    if det > 0.0 && s.abs() <= 1.0 && t.abs() <= 1.0 {
+        return [s, t];
     }
+    let value = |s: f64, t: f64| g[0] * s + g[1] * t + 0.5 * (aa * s * s + bb * t * t) + ab * s * t;
     // The least lies on a side that the free one is beyond.
     let s1 = clamp(s);
-    let t1 = clamp((qb - ab * s1) / bb);
+    let t1 = clamp(-(g[1] + ab * s1) / bb);
     let t2 = clamp(t);
-    let s2 = clamp((qa - ab * t2) / aa);
-    let (d1, d2) = (off(s1, t1), off(s2, t2));
-    if d1 <= d2 { ([s1, t1], d1) } else { ([s2, t2], d2) }
+    let s2 = clamp(-(g[0] + ab * t2) / aa);
+    if value(s1, t1) <= value(s2, t2) { [s1, t1] } else { [s2, t2] }
 }
 
-/// A patch in four.
-fn quarters(patch: &Patch) -> [Patch; 4] {
-    let [[a, b], [c, d]] = patch.halves(0).map(|half| half.halves(1));
-    [a, b, c, d]
-}
-
-/// The best foot so far.
-#[derive(Clone, Copy)]
-struct Best {
+/// A foot that may be the nearest.
+#[derive(Clone, Copy, Debug)]
+struct Foot {
+    /// Distance to the piece, and the most it can be from the surface.
     distance: f64,
+    slack: f64,
     uv: [f64; 2],
+    /// At an edge of the surface.
+    edge: bool,
+    /// Held at the border of a box, beyond which the surface goes on.
+    border: bool,
+    flat: bool,
+}
+
+/// A box of a cell's parameters, in the piece's.
+#[derive(Clone, Copy)]
+struct Part {
+    middle: [f64; 2],
+    half: [f64; 2],
+    /// At the middle, by the box's own parameters: position less the point, s, t, ss, st, tt.
+    jet: [Vec3; 6],
+    /// See [`crate::cells::Bent`], for this box and point.
+    third: [f64; 4],
+    /// Bounds of the third derivatives of the position.
+    far: [f64; 4],
+    open: [[bool; 2]; 2],
+    depth: u32,
+}
+
+/// One point's search.
+struct Search<'a> {
+    p: Vec3,
+    piece: &'a Piece,
+    /// Feet farther than this do not count.
+    limit: f64,
+    feet: SmallVec<[Foot; 4]>,
+    slop: f64,
+    boxes: u32,
 }
 
 impl NearestSurface {
     /// Prepares a surface.
     pub fn new(surface: &dyn Surface<f64>) -> Self {
-        let tree = SurfaceTree::new(surface);
-        let mut cells = Vec::new();
-        let mut bounds = Vec::new();
-        if tree.exact {
-            for patch in &tree.patches {
-                for cell in quarters(patch).iter().flat_map(quarters) {
-                    bounds.push(cell.bounds());
-                    cells.push(Cell::new(&cell));
+        Self { cells: Cells::new(surface) }
+    }
+
+    /// The point of the surface that is nearest to `p`.
+    pub fn nearest(&self, surface: &dyn Surface<f64>, p: Vec3) -> Nearest<2> {
+        if !p.is_finite() {
+            return Nearest::lost();
+        }
+        let cells = &self.cells;
+        let size = cells.tree.size;
+        let slop = TIE * size;
+        let mut search = Search {
+            p,
+            piece: &cells.pieces[0],
+            limit: f64::INFINITY,
+            feet: SmallVec::new(),
+            slop,
+            boxes: 0,
+        };
+        if cells.forks.is_empty() {
+            search.cell(cells, 0);
+        } else {
+            // Depth first, the nearer child first; depths are the logarithm of the number of cells.
+            let mut stack = [(0.0, 0u32); 64];
+            let mut top = 1;
+            while top > 0 {
+                top -= 1;
+                let (low, at) = stack[top];
+                if low >= search.limit * search.limit {
+                    continue;
+                }
+                if at & LEAF != 0 {
+                    search.cell(cells, (at & !LEAF) as usize);
+                    continue;
+                }
+                let fork = &cells.forks[at as usize];
+                let d = [distance_sq(&fork.bounds[0], p), distance_sq(&fork.bounds[1], p)];
+                let near = usize::from(d[1] < d[0]);
+                for k in [1 - near, near] {
+                    if d[k] < search.limit * search.limit {
+                        stack[top] = (d[k], fork.below[k]);
+                        top += 1;
+                    }
                 }
             }
         }
-        let boxes = Boxes::new(&bounds, 1);
-        Self { tree, cells, boxes }
+        self.chosen(surface, search)
     }
 
-    /// The parameters of the nearest point of the surface, and its distance.
-    pub fn nearest(&self, surface: &dyn Surface<f64>, p: Vec3) -> ([f64; 2], f64) {
-        if self.cells.is_empty() {
-            let found = nearest_in_surface(surface, &self.tree, p, None);
-            let [u, v] = found.at;
-            let x = surface.jet(u, v, moldloft_num::Order::Zero).p;
-            return (found.at, x.distance(p));
+    /// The nearest of the feet that were found.
+    fn chosen(&self, surface: &dyn Surface<f64>, search: Search<'_>) -> Nearest<2> {
+        let (p, tree) = (search.p, &self.cells.tree);
+        let exhausted = search.boxes > MOST_BOXES;
+        let limit = search.limit;
+        let mut feet: SmallVec<[(Foot, Vec3); 4]> = SmallVec::new();
+        for mut foot in search.feet.into_iter().filter(|f| f.distance - f.slack <= limit) {
+            if !tree.exact {
+                let exact = surface_foot(surface, p, foot.uv, [[0.0, 1.0]; 2], tree.size);
+                foot.uv = exact.at;
+                foot.edge = exact.held.iter().any(|h| *h);
+                foot.border = false;
+                foot.flat = exact.flat && !foot.edge;
+            }
+            let x = surface.jet(foot.uv[0], foot.uv[1], Order::Zero).p;
+            foot.distance = x.distance(p);
+            feet.push((foot, x));
         }
-        let mut best = Best { distance: f64::INFINITY, uv: [0.5; 2] };
-        // Depth first, the nearer child first; depths are the logarithm of the number of cells.
-        let mut stack = [(0.0, 0u32); 64];
-        let mut top = 1;
-        let nodes = &self.boxes.nodes;
-        stack[0] = (distance_sq(&nodes[0].bounds, p), 0);
-        while top > 0 {
-            top -= 1;
-            let (low, at) = stack[top];
-            if low >= best.distance * best.distance {
-                continue;
-            }
-            let node = &nodes[at as usize];
-            if node.count > 0 {
-                let cell = &self.cells[self.boxes.order[node.first as usize] as usize];
-                self.search(cell, p, &mut best);
-                continue;
-            }
-            let children = [at + 1, node.first];
-            let d = children.map(|k| distance_sq(&nodes[k as usize].bounds, p));
-            let near = usize::from(d[1] < d[0]);
-            for k in [1 - near, near] {
-                if d[k] < best.distance * best.distance {
-                    stack[top] = (d[k], children[k]);
-                    top += 1;
-                }
+        let apart = |x: Vec3, y: Vec3| x.distance(y) > 1e-6 * tree.size;
+        let best = feet.iter().map(|(f, _)| f.distance).fold(f64::INFINITY, f64::min);
+        feet.retain(|(f, _)| f.distance <= best + search.slop);
+        // The least on the border of a box is a foot only where no neighbour has a nearer one.
+        let nearer = |a: &(Foot, Vec3)| {
+            feet.iter().any(|b| {
+                let near = b.1.distance(a.1) <= 1e-3 * tree.size;
+                near && !b.0.border && b.0.distance <= a.0.distance + 1e-15 * tree.size
+            })
+        };
+        let mut feet: SmallVec<[(Foot, Vec3); 4]> =
+            feet.iter().filter(|a| !a.0.border || !nearer(a)).copied().collect();
+        // In the order of the parameters; one that two cells share counts once.
+        feet.sort_by(|(a, _), (b, _)| {
+            a.uv[0].total_cmp(&b.uv[0]).then(a.uv[1].total_cmp(&b.uv[1]))
+        });
+        let equal = best + 1e-14 * tree.size;
+        let Some(&(foot, xyz)) = feet.iter().find(|(f, _)| f.distance <= equal) else {
+            return Nearest::lost();
+        };
+        let mut places: SmallVec<[Vec3; 4]> = SmallVec::new();
+        places.push(xyz);
+        for (_, x) in feet.iter().filter(|(f, _)| !f.border) {
+            if places.iter().all(|y| apart(*x, *y)) {
+                places.push(*x);
             }
         }
-        (best.uv, best.distance)
+        let next = places[1..].iter().map(|x| x.distance(xyz)).fold(f64::INFINITY, f64::min);
+        // Its number among them in the order of the parameters.
+        let before = feet.iter().take_while(|(f, _)| f.uv != foot.uv);
+        let chosen = before.filter(|(f, x)| !f.border && apart(*x, xyz)).count();
+        let chosen = chosen.min(places.len() - 1);
+        let status = if places.len() > 1 {
+            Status::Multiple { count: places.len(), chosen, next }
+        } else if foot.flat || exhausted {
+            Status::Tangent
+        } else if foot.edge {
+            Status::EdgeClamped
+        } else {
+            Status::Ok
+        };
+        Nearest { at: foot.uv, xyz, distance: foot.distance, status }
     }
 
-    fn search(&self, cell: &Cell, p: Vec3, best: &mut Best) {
-        let (a, b) = (cell.powers[4], cell.powers[1]);
-        let products = [cell.aa, cell.ab, cell.bb];
-        let (st, flat) = nearest_flat(p - cell.powers[0], a, b, products, 1.0);
-        if flat.sqrt() - cell.bend >= best.distance {
+    /// The box around the surface.
+    pub fn bounds(&self) -> Box3 {
+        self.cells.tree.bounds
+    }
+
+    /// The number of cells that the surface was cut into.
+    pub fn cells(&self) -> usize {
+        self.cells.flats.len()
+    }
+}
+
+impl<'a> Search<'a> {
+    /// Looks for feet in a cell.
+    #[inline]
+    fn cell(&mut self, cells: &'a Cells, k: usize) {
+        let flat = &cells.flats[k];
+        let away = flat.c - self.p;
+        let (_, off) = nearest_flat(-away, flat);
+        let off = off.sqrt();
+        if off - flat.bend >= self.limit {
             return;
         }
-        if flat.sqrt() < best.distance {
-            self.descend(cell, p, st, [-1.0, -1.0], [1.0, 1.0], best);
-        }
-        self.divide(cell, p, [0.0, 0.0], 1.0, best, 0);
+        // There is a point as near as this.
+        self.limit = self.limit.min(off + flat.bend + self.slop);
+        let bent = &cells.bents[k];
+        self.piece = &cells.pieces[bent.piece as usize];
+        let far = away.norm() + bent.reach;
+        let [ss, st, tt] = bent.second;
+        self.part(&Part {
+            middle: bent.middle,
+            half: bent.half,
+            jet: [away, flat.a, flat.b, ss, st, tt],
+            third: std::array::from_fn(|k| bent.fixed[k] + far * bent.far[k]),
+            far: bent.far,
+            open: bent.open,
+            depth: 0,
+        });
     }
 
-    /// Makes sure that no nearer foot is in the square of half side `h` about `c`.
-    fn divide(&self, cell: &Cell, p: Vec3, c: [f64; 2], h: f64, best: &mut Best, depth: u32) {
-        let [x, s, t, ss, st, tt] = cell.jet(c[0], c[1]);
-        let products = [s.norm_sq(), s.dot(t), t.norm_sq()];
-        let [_, second, third] = cell.bounds;
-        let (local, flat) = nearest_flat(p - x, s, t, products, h);
-        let bend = 2.0 * second * h * h;
-        if flat.sqrt() - bend >= best.distance * (1.0 - 1e-14) {
-            return;
-        }
-        // The second derivatives of half the square of the distance, and how much they change.
-        let r = x - p;
-        let (m11, m12, m22) =
-            (products[0] + ss.dot(r), products[1] + st.dot(r), products[2] + tt.dot(r));
-        let far = r.norm() + cell.bounds[0] * 2.0 * h;
-        // Where the distance falls towards one side all over the square, its least is there: in the
-        // neighbour, unless that is an edge of the surface.
-        let slopes = [s.dot(r), t.dot(r)];
-        let wobble = 2.0 * h * (cell.bounds[0] * cell.bounds[0] + far * second);
-        let mut to_edge = [false; 2];
+    /// Makes sure that no nearer foot is in the box.
+    fn part(&mut self, part: &Part) {
+        self.boxes += 1;
+        let [r, s, t, ss, st, tt] = part.jet;
+        let slack = self.piece.slack;
+        // Half the square of the distance: its derivatives at the middle, and bounds of the third.
+        let g = [s.dot(r), t.dot(r)];
+        let h = [s.norm_sq() + ss.dot(r), s.dot(t) + st.dot(r), t.norm_sq() + tt.dot(r)];
+        let [n0, n1, n2, n3] = part.third;
+        let convex = h[0] > 0.0 && h[2] > 0.0 && h[0] * h[2] > h[1] * h[1];
+        // No nearer than the least of the quadratic, or of the plane, less what they leave out.
+        let start = if convex {
+            let w = least_quadratic(g, h);
+            let value = g[0] * w[0]
+                + g[1] * w[1]
+                + 0.5 * (h[0] * w[0] * w[0] + h[2] * w[1] * w[1])
+                + h[1] * w[0] * w[1];
+            let rest = (n0 + 3.0 * (n1 + n2) + n3) / 6.0;
+            let low = (r.norm_sq() + 2.0 * (value - rest)).max(0.0).sqrt() - slack;
+            if low >= self.limit {
+                return;
+            }
+            let high = (r.norm_sq() + 2.0 * (value + rest)).max(0.0).sqrt() + slack;
+            self.limit = self.limit.min(high + self.slop);
+            w
+        } else {
+            let flat = Flat {
+                c: r,
+                a: s,
+                b: t,
+                products: [s.norm_sq(), s.dot(t), t.norm_sq()],
+                bend: 0.0,
+            };
+            let (w, off) = nearest_flat(-r, &flat);
+            let [f0, f1, f2, f3] = part.far;
+            let bend =
+                0.5 * (ss.norm() + tt.norm()) + st.norm() + (f0 + 3.0 * (f1 + f2) + f3) / 6.0;
+            if off.sqrt() - bend - slack >= self.limit {
+                return;
+            }
+            w
+        };
+        // Where the distance falls towards one side all over the box, its least is there: in the
+        // neighbour, unless nothing or something else is beyond it.
+        let slack_slope = if slack > 0.0 { 20.0 * slack * (s.norm() + t.norm()) } else { 0.0 };
+        let wobble = [
+            h[0].abs() + h[1].abs() + 0.5 * (n0 + 2.0 * n1 + n2) + slack_slope,
+            h[1].abs() + h[2].abs() + 0.5 * (n1 + 2.0 * n2 + n3) + slack_slope,
+        ];
+        let mut to_side = [false; 2];
         for k in 0..2 {
-            if slopes[k].abs() > wobble {
-                let edge = if slopes[k] > 0.0 {
-                    c[k] - h <= -1.0 && cell.uv[k][0] <= 0.0
-                } else {
-                    c[k] + h >= 1.0 && cell.uv[k][1] >= 1.0
-                };
-                if !edge {
+            if g[k].abs() > wobble[k] {
+                if !part.open[k][usize::from(g[k] < 0.0)] {
                     return;
                 }
-                to_edge[k] = true;
+                to_side[k] = true;
             }
         }
-        let change = 4.0 * h * (3.0 * second * cell.bounds[0] + far * third);
-        let (mean, half) = (0.5 * (m11 + m22), 0.5 * (m11 - m22));
-        let least = mean - (half * half + m12 * m12).sqrt();
-        let start = [c[0] + local[0], c[1] + local[1]];
-        let one = match to_edge {
-            [true, true] => true,
-            [true, false] => m22 > change,
-            [false, true] => m11 > change,
-            _ => least > change,
+        let change = [n0 + n1, n1 + n2, n2 + n3];
+        let definite = |[a, b, c]: [f64; 3], by: [f64; 3]| {
+            let (a, b, c) = (a - by[0], b.abs() + by[1], c - by[2]);
+            a > 0.0 && c > 0.0 && a * c > b * b
         };
-        if one || depth >= 16 {
-            let low = [c[0] - h, c[1] - h];
-            let high = [c[0] + h, c[1] + h];
-            self.descend(cell, p, start, low, high, best);
+        let one = match to_side {
+            [true, true] => true,
+            [true, false] => h[2] > change[2],
+            [false, true] => h[0] > change[0],
+            _ => definite(h, change),
+        };
+        let last = part.depth >= DEEPEST || self.boxes > MOST_BOXES;
+        let foot =
+            if one || last || convex || part.depth == 0 { self.descend(part, start) } else { None };
+        if last || one && foot.is_some() {
             return;
         }
-        let q = 0.5 * h;
-        for (a, b) in [(-q, -q), (-q, q), (q, -q), (q, q)] {
-            self.divide(cell, p, [c[0] + a, c[1] + b], q, best, depth + 1);
+        if let Some((w, h)) = foot {
+            // The foot's own second derivatives against the third ones on the way to the corners.
+            let d = [1.0 + w[0].abs(), 1.0 + w[1].abs()];
+            let by = [
+                (n0 * d[0] + n1 * d[1]) / 3.0,
+                (n1 * d[0] + n2 * d[1]) / 3.0,
+                (n2 * d[0] + n3 * d[1]) / 3.0,
+            ];
+            if definite(h, by) {
+                return;
+            }
+        }
+        // In four, the one with the start first.
+        let first = [start[0] > 0.0, start[1] > 0.0];
+        for flip in [[false, false], [true, false], [false, true], [true, true]] {
+            let high = [first[0] ^ flip[0], first[1] ^ flip[1]];
+            let half = part.half.map(|h| 0.5 * h);
+            let at = |k: usize| if high[k] { half[k] } else { -half[k] };
+            let middle = [part.middle[0] + at(0), part.middle[1] + at(1)];
+            let [x, s, t, ss, st, tt] = self.piece.jet(middle[0], middle[1]);
+            let [a, b] = half;
+            let mut open = part.open;
+            for k in 0..2 {
+                open[k][usize::from(!high[k])] = false;
+            }
+            self.part(&Part {
+                middle,
+                half,
+                jet: [x - self.p, s * a, t * b, ss * (a * a), st * (a * b), tt * (b * b)],
+                third: part.third.map(|n| 0.125 * n),
+                far: part.far.map(|n| 0.125 * n),
+                open,
+                depth: part.depth + 1,
+            });
         }
     }
 
-    /// Newton's method for the foot in a box of the cell.
-    fn descend(
-        &self,
-        cell: &Cell,
-        p: Vec3,
-        start: [f64; 2],
-        low: [f64; 2],
-        high: [f64; 2],
-        best: &mut Best,
-    ) {
-        let clamp = |q: [f64; 2]| [q[0].clamp(low[0], high[0]), q[1].clamp(low[1], high[1])];
-        let mut q = clamp(start);
-        for _ in 0..24 {
-            let [x, s, t, ss, st, tt] = cell.jet(q[0], q[1]);
-            let r = x - p;
-            let distance = r.norm();
-            if distance < best.distance {
-                let [us, vs] = cell.uv;
-                let along = |[a, b]: [f64; 2], x: f64| 0.5 * (a + b) + 0.5 * (b - a) * x;
-                *best = Best { distance, uv: [along(us, q[0]), along(vs, q[1])] };
+    /// Newton's method for the foot in a box: where it is in the box's parameters, and the second
+    /// derivatives of half the square of the distance there; `None` when it did not settle.
+    fn descend(&mut self, part: &Part, start: [f64; 2]) -> Option<([f64; 2], [f64; 3])> {
+        let clamp = |w: [f64; 2]| w.map(|x| x.clamp(-1.0, 1.0));
+        let mut w = clamp(start);
+        let mut before = f64::INFINITY;
+        let mut last = w;
+        let mut step_share = 1.0;
+        let mut h = [0.0; 3];
+        let (mut foot, mut held, mut settled) = (None, [false; 2], false);
+        let curvature = |h: f64, m: f64| if h > 1e-3 * m { h } else { h.abs().max(m) };
+        for _ in 0..30 {
+            let at = [0, 1].map(|k| part.middle[k] + part.half[k] * w[k]);
+            let [x, s, t, ss, st, tt] = self.piece.jet(at[0], at[1]);
+            let [a, b] = part.half;
+            let r = x - self.p;
+            let (s, t) = (s * a, t * b);
+            let d = r.norm_sq();
+            // Every step goes down, but for rounding.
+            if d > before * (1.0 + 1e-12) && step_share > 1e-4 {
+                step_share *= 0.25;
+                w = [0, 1].map(|k| last[k] + 0.25 * (w[k] - last[k]));
+                continue;
             }
+            (before, last) = (d.min(before), w);
             let g = [s.dot(r), t.dot(r)];
-            let held =
-                [0, 1].map(|k| q[k] <= low[k] && g[k] > 0.0 || q[k] >= high[k] && g[k] < 0.0);
-            let (a, b, c) = (s.norm_sq(), s.dot(t), t.norm_sq());
-            let (mut m11, mut m12, mut m22) = (a + ss.dot(r), b + st.dot(r), c + tt.dot(r));
-            if m11 <= 1e-3 * a || m22 <= 1e-3 * c || m11 * m22 - m12 * m12 <= 1e-6 * a * c {
-                (m11, m12, m22) = (a, b, c);
-            }
+            held = [0, 1].map(|k| w[k] <= -1.0 && g[k] > 0.0 || w[k] >= 1.0 && g[k] < 0.0);
+            let m = [s.norm_sq(), s.dot(t), t.norm_sq()];
+            h = [
+                m[0] + ss.dot(r) * (a * a),
+                m[1] + st.dot(r) * (a * b),
+                m[2] + tt.dot(r) * (b * b),
+            ];
+            foot = Some((d, at));
             let step = match held {
-                [true, true] => break,
-                [true, false] => [0.0, g[1] / m22],
-                [false, true] => [g[0] / m11, 0.0],
+                [true, true] => {
+                    settled = true;
+                    break;
+                }
+                [true, false] => [0.0, g[1] / curvature(h[2], m[2])],
+                [false, true] => [g[0] / curvature(h[0], m[0]), 0.0],
                 _ => {
-                    let det = m11 * m22 - m12 * m12;
-                    [(g[0] * m22 - m12 * g[1]) / det, (m11 * g[1] - g[0] * m12) / det]
+                    let least = 1e-6 * m[0] * m[2];
+                    let (mut h11, mut h12, mut h22) = (h[0], h[1], h[2]);
+                    if h11 <= 0.0 || h22 <= 0.0 || h11 * h22 - h12 * h12 <= least {
+                        // Downhill along both, no farther than either curvature lets it.
+                        (h11, h22) = (h11.abs().max(m[0]), h22.abs().max(m[2]));
+                        h12 = h12.clamp(-0.9 * (h11 * h22).sqrt(), 0.9 * (h11 * h22).sqrt());
+                    }
+                    let det = h11 * h22 - h12 * h12;
+                    [(g[0] * h22 - h12 * g[1]) / det, (h11 * g[1] - g[0] * h12) / det]
                 }
             };
             if !(step[0].is_finite() && step[1].is_finite()) {
                 break;
             }
-            let next = clamp([q[0] - step[0], q[1] - step[1]]);
-            let moved = (next[0] - q[0]).abs().max((next[1] - q[1]).abs());
-            q = next;
-            if moved < 1e-13 {
+            let next = clamp([w[0] - step[0], w[1] - step[1]]);
+            let moved = (next[0] - w[0]).abs().max((next[1] - w[1]).abs());
+            // Newton's next error is about the square of the step: below rounding then.
+            w = next;
+            step_share = 1.0;
+            if moved < 1e-9 {
+                let at = [0, 1].map(|k| part.middle[k] + part.half[k] * w[k]);
+                foot = Some((d, at));
+                last = w;
+                settled = true;
                 break;
             }
         }
+        if let Some((d, at)) = foot {
+            let distance = d.sqrt();
+            let slack = self.piece.slack;
+            if distance - slack <= self.limit {
+                let sides = [0, 1].map(|k| held[k] && part.open[k][usize::from(last[k] > 0.0)]);
+                let uv = self.piece.place(at[0], at[1]);
+                let border = (0..2).any(|k| held[k] && !sides[k]);
+                let edge = (0..2).any(|k| sides[k] && (uv[k] <= 0.0 || uv[k] >= 1.0));
+                let flat = held == [false; 2] && h[0] * h[2] - h[1] * h[1] <= 1e-9 * h[0] * h[2];
+                let limit = distance + slack + self.slop;
+                if limit < self.limit {
+                    self.limit = limit;
+                    self.feet.retain(|f| f.distance - f.slack <= limit);
+                }
+                let same =
+                    |f: &Foot| f.border == border && (0..2).all(|k| (f.uv[k] - uv[k]).abs() < 1e-9);
+                if !self.feet.iter().any(same) && self.feet.len() < 64 {
+                    self.feet.push(Foot { distance, slack, uv, edge, border, flat });
+                }
+            }
+        }
+        settled.then_some((last, h))
+    }
+}
+
+/// A curve prepared for many nearest-point questions; see [`NearestSurface`].
+#[derive(Clone, Debug)]
+pub struct NearestCurve {
+    tree: CurveTree,
+}
+
+impl NearestCurve {
+    /// Prepares a curve.
+    pub fn new(curve: &dyn Curve<f64>) -> Self {
+        Self { tree: CurveTree::new(curve) }
     }
 
-    /// The box around the surface.
+    /// The point of the curve that is nearest to `p`.
+    pub fn nearest(&self, curve: &dyn Curve<f64>, p: Vec3) -> Nearest<1> {
+        if !p.is_finite() {
+            return Nearest::lost();
+        }
+        let found = nearest_in_curve(curve, &self.tree, p, None);
+        let xyz = curve.jet(found.at[0], Order::Zero)[0];
+        Nearest { at: found.at, xyz, distance: xyz.distance(p), status: found.report.status }
+    }
+
+    /// The box around the curve.
     pub fn bounds(&self) -> Box3 {
         self.tree.bounds
     }

@@ -17,6 +17,7 @@
 #![allow(clippy::result_large_err)]
 
 mod batch;
+mod cells;
 pub mod implicit;
 pub mod march;
 mod nearest;
@@ -27,7 +28,7 @@ mod report;
 pub mod roots;
 mod tree;
 
-pub use batch::NearestSurface;
+pub use batch::{Nearest, NearestCurve, NearestSurface};
 pub use nearest::{nearest_in_curve, nearest_in_surface, nearest_on_curve, nearest_on_surface};
 pub use newton::{ACCURACY, LONGEST_STEP, MOST_STEPS, OUTSIDE, Range, Walk, newton};
 pub use plain::{PlainCurve, PlainSurface};

@@ -8,20 +8,20 @@ use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
 
 /// Feet whose distances differ by less than this share of the size are equally near.
-const TIE: f64 = 1e-9;
+pub(crate) const TIE: f64 = 1e-9;
 
 /// Where a descent ended.
 #[derive(Clone, Copy, Debug)]
-struct Foot<const N: usize> {
-    at: [f64; N],
+pub(crate) struct Foot<const N: usize> {
+    pub at: [f64; N],
     xyz: Vec3,
     /// What is left of the slope of the distance, as a length.
     residual: f64,
     iterations: u32,
     /// True when the unknown is held at an end of its range.
-    held: [bool; N],
+    pub held: [bool; N],
     /// True when the distance has no definite second derivative there.
-    flat: bool,
+    pub flat: bool,
     converged: bool,
 }
 
@@ -164,7 +164,7 @@ fn curve_foot(curve: &dyn Curve<f64>, p: Vec3, start: f64, ends: [f64; 2], size:
     })
 }
 
-fn surface_foot(
+pub(crate) fn surface_foot(
     surface: &dyn Surface<f64>,
     p: Vec3,
     start: [f64; 2],

@@ -1,7 +1,7 @@
 //! Curves and surfaces as cubic pieces in Bernstein form, with bounds.
 //!
 //! Every piece lies in the box around its control points, widened by its `slack`. Between the
-//! breaks that a shape states, a piece that is a polynomial of degree three or less in each
+//! joints that a shape states, a piece that is a polynomial of degree three or less in each
 //! parameter is represented exactly (slack of rounding): this is so for all B-splines up to the
 //! cubic, and the searches built on it then miss nothing. Other shapes are interpolated and split
 //! until they are close; their slack is twice the largest error met at points between the nodes,
@@ -29,6 +29,9 @@ pub struct CurvePiece {
     pub slack: f64,
     /// Its part of the piece that the slack was measured on.
     pub share: f64,
+    /// True at a side, first and last, beyond which the curve may go on in another direction or
+    /// does not go on: an end or a corner.
+    pub open: [bool; 2],
 }
 
 /// A bicubic piece of a surface.
@@ -42,6 +45,9 @@ pub struct Patch {
     pub slack: f64,
     /// Its parts, along u and v, of the piece that the slack was measured on.
     pub share: [f64; 2],
+    /// True at a side, low and high in u and in v, beyond which the surface may go on in another
+    /// direction or does not go on: an edge or a crease.
+    pub open: [[bool; 2]; 2],
 }
 
 /// Bernstein coefficients of the cubic through values at 0, 1/3, 2/3, 1.
@@ -80,9 +86,11 @@ impl CurvePiece {
     pub fn halves(&self) -> [Self; 2] {
         let [a, b] = halves(self.net);
         let m = 0.5 * (self.t[0] + self.t[1]);
+        let share = 0.5 * self.share;
+        let [first, last] = self.open;
         [
-            Self { t: [self.t[0], m], net: a, share: 0.5 * self.share, ..*self },
-            Self { t: [m, self.t[1]], net: b, share: 0.5 * self.share, ..*self },
+            Self { t: [self.t[0], m], net: a, share, open: [first, false], ..*self },
+            Self { t: [m, self.t[1]], net: b, share, open: [false, last], ..*self },
         ]
     }
 
@@ -115,6 +123,8 @@ impl Patch {
         let m = 0.5 * (self.uv[axis][0] + self.uv[axis][1]);
         out[0].uv[axis][1] = m;
         out[1].uv[axis][0] = m;
+        out[0].open[axis][1] = false;
+        out[1].open[axis][0] = false;
         out.iter_mut().for_each(|half| half.share[axis] *= 0.5);
         out
     }
@@ -178,7 +188,7 @@ impl CurvePiece {
         let far = away.norm();
         let slope = d.dot(away);
         if slope.abs() > d.norm() * r + v1 * (far + r) {
-            let end = if slope > 0.0 { self.t[0] <= 0.0 } else { self.t[1] >= 1.0 };
+            let end = self.open[usize::from(slope < 0.0)];
             return if end { Feet::One } else { Feet::Elsewhere };
         }
         let curvature = d.norm_sq() + dd.dot(away);
@@ -236,9 +246,7 @@ impl Patch {
         for (k, (d, reach)) in [a, b].into_iter().enumerate() {
             let slope = d.dot(away);
             if slope.abs() > d.norm() * r + reach * (far + r) {
-                let [low, high] = self.uv[k];
-                let edge = if slope > 0.0 { low <= 0.0 } else { high >= 1.0 };
-                if !edge {
+                if !self.open[k][usize::from(slope < 0.0)] {
                     return Feet::Elsewhere;
                 }
                 to_edge[k] = true;
@@ -326,8 +334,9 @@ fn along([a, b]: [f64; 2], s: f64) -> f64 {
 
 /// The pieces of a curve, in the order of t.
 pub fn curve_pieces(curve: &dyn Curve<f64>) -> Vec<CurvePiece> {
-    let ends = with_ends(curve.breaks());
+    let ends = with_ends(curve.joints());
     let mut todo: Vec<([f64; 2], u32)> = ends.windows(2).rev().map(|w| ([w[0], w[1]], 0)).collect();
+    let at_break = |t: f64| ends.contains(&t);
     let mut done = Vec::new();
     let mut bounds = Box3::EMPTY;
     while let Some((t, depth)) = todo.pop() {
@@ -345,23 +354,44 @@ pub fn curve_pieces(curve: &dyn Curve<f64>) -> Vec<CurvePiece> {
         let enough =
             error <= CLOSE * bounds.diagonal() && (error < 1e-13 * bounds.diagonal() || depth > 1);
         if enough || depth >= DEEPEST + 4 || done.len() + todo.len() >= MOST_PIECES {
-            done.push(CurvePiece { t, net, slack: 2.0 * error, share: 1.0 });
+            let open = t.map(at_break);
+            done.push(CurvePiece { t, net, slack: 2.0 * error, share: 1.0, open });
         } else {
             let m = 0.5 * (t[0] + t[1]);
             todo.push(([m, t[1]], depth + 1));
             todo.push(([t[0], m], depth + 1));
         }
     }
-    let rounding = 1e-15 * size_of(&bounds);
+    let size = size_of(&bounds);
+    for k in 1..done.len() {
+        let (a, b) = (done[k - 1], done[k]);
+        let slopes = [
+            (a.net[3] - a.net[2]) * (3.0 / (a.t[1] - a.t[0])),
+            (b.net[1] - b.net[0]) * (3.0 / (b.t[1] - b.t[0])),
+        ];
+        if a.slack.max(b.slack) <= SMOOTH * size && alike(slopes) {
+            done[k - 1].open[1] = false;
+            done[k].open[0] = false;
+        }
+    }
     for piece in &mut done {
-        piece.slack += rounding;
+        piece.slack += 1e-15 * size;
     }
     done
 }
 
+/// Pieces with less slack than this share of the size are near enough to the shape to tell whether
+/// its tangents on both sides of a border are the same.
+const SMOOTH: f64 = 1e-9;
+
+/// True when two tangents are the same, to rounding.
+fn alike([a, b]: [Vec3; 2]) -> bool {
+    a.distance(b) <= 1e-7 * a.norm().max(b.norm())
+}
+
 /// The pieces of a surface, cells of the breaks' grid one after the other.
 pub fn patches(surface: &dyn Surface<f64>) -> Vec<Patch> {
-    let [us, vs] = surface.breaks().map(with_ends);
+    let [us, vs] = surface.joints().map(with_ends);
     // All cells at once: surfaces have fast grids.
     let fine = |ends: &[f64]| -> Vec<f64> {
         let spans = ends.windows(2);
@@ -372,7 +402,7 @@ pub fn patches(surface: &dyn Surface<f64>) -> Vec<Patch> {
     surface.grid(&all_u, &all_v, &mut x, None);
     let bounds = Box3::around(x.iter().copied());
     let size = bounds.diagonal();
-    let mut done = Vec::new();
+    let mut cells = Vec::with_capacity((us.len() - 1) * (vs.len() - 1));
     let columns = all_v.len();
     let mut budget = MOST_PIECES.max(2 * (us.len() - 1) * (vs.len() - 1));
     for (i, wu) in us.windows(2).enumerate() {
@@ -383,15 +413,44 @@ pub fn patches(surface: &dyn Surface<f64>) -> Vec<Patch> {
                 let row = (i * 7 + a) * columns + j * 7;
                 samples[a * 7..a * 7 + 7].copy_from_slice(&x[row..row + 7]);
             }
-            let (patch, errors) = fit(uv, &samples);
-            split(surface, patch, errors, size, 0, &mut budget, &mut done);
+            cells.push(fit(uv, &samples));
         }
+    }
+    mark_smooth(&mut cells, vs.len() - 1, size);
+    let mut done = Vec::with_capacity(cells.len());
+    for (patch, errors) in cells {
+        split(surface, patch, errors, size, 0, &mut budget, &mut done);
     }
     let rounding = 1e-15 * size_of(&bounds);
     for patch in &mut done {
         patch.slack += rounding;
     }
     done
+}
+
+/// Clears the marks of the sides across which the tangents of neighbouring patches agree. The
+/// patches are those of a grid with `columns` along v.
+fn mark_smooth(cells: &mut [(Patch, [f64; 2])], columns: usize, size: f64) {
+    for k in 0..cells.len() {
+        for axis in 0..2 {
+            let next = if axis == 0 { k + columns } else { k + 1 };
+            if next >= cells.len() || axis == 1 && next % columns == 0 {
+                continue;
+            }
+            let (a, b) = (&cells[k].0, &cells[next].0);
+            let width = |p: &Patch| p.uv[axis][1] - p.uv[axis][0];
+            let same = |i: usize| {
+                let at = |row: usize| if axis == 0 { row * 4 + i } else { i * 4 + row };
+                let before = (a.net[at(3)] - a.net[at(2)]) * (3.0 / width(a));
+                let after = (b.net[at(1)] - b.net[at(0)]) * (3.0 / width(b));
+                alike([before, after])
+            };
+            if a.slack.max(b.slack) <= SMOOTH * size && (0..4).all(same) {
+                cells[k].0.open[axis][1] = false;
+                cells[next].0.open[axis][0] = false;
+            }
+        }
+    }
 }
 
 /// The k-th sample place of a span: the nodes first.
@@ -434,7 +493,7 @@ fn fit(uv: [[f64; 2]; 2], samples: &[Vec3; 49]) -> (Patch, [f64; 2]) {
             }
         }
     }
-    (Patch { uv, net, slack: 2.0 * most, share: [1.0; 2] }, errors)
+    (Patch { uv, net, slack: 2.0 * most, share: [1.0; 2], open: [[true; 2]; 2] }, errors)
 }
 
 fn split(
@@ -456,14 +515,16 @@ fn split(
     let axis = usize::from(errors[1] > errors[0]);
     let [a, b] = patch.uv[axis];
     let m = 0.5 * (a + b);
-    for half in [[a, m], [m, b]] {
+    for (k, half) in [[a, m], [m, b]].into_iter().enumerate() {
         let mut uv = patch.uv;
         uv[axis] = half;
+        let mut open = patch.open;
+        open[axis][1 - k] = false;
         let places = |span: [f64; 2]| [0, 4, 1, 5, 2, 6, 3].map(|k| place(span, k));
         let mut samples = [Vec3::zero(); 49];
         surface.grid(&places(uv[0]), &places(uv[1]), &mut samples, None);
         let (patch, errors) = fit(uv, &samples);
-        split(surface, patch, errors, size, depth + 1, budget, done);
+        split(surface, Patch { open, ..patch }, errors, size, depth + 1, budget, done);
     }
 }
 

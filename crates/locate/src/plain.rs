@@ -21,6 +21,10 @@ impl<T: Real> Curve<f64> for PlainCurve<'_, T> {
     fn breaks(&self) -> Vec<f64> {
         self.0.breaks()
     }
+
+    fn joints(&self) -> Vec<f64> {
+        self.0.joints()
+    }
 }
 
 /// A surface of any scalar seen through its real parts; see [`PlainCurve`].
@@ -58,5 +62,9 @@ impl<T: Real> Surface<f64> for PlainSurface<'_, T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         self.0.breaks()
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.0.joints()
     }
 }

@@ -76,6 +76,9 @@ impl Curve<f64> for Along<'_> {
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
     }
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
 }
 
 fn size_of_curve(curve: &dyn Curve<f64>) -> f64 {

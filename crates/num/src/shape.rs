@@ -59,6 +59,12 @@ pub trait Curve<T: Real>: Send + Sync {
         Vec::new()
     }
 
+    /// Interior parameters at which one formula ends and another begins, ascending: the breaks, and
+    /// those at which only higher derivatives jump. Between them a spline is a polynomial.
+    fn joints(&self) -> Vec<f64> {
+        self.breaks()
+    }
+
     /// What the curve runs along, for joins: itself, or a part of other curves.
     fn trace(&self) -> Trace<T> {
         Trace::own()
@@ -113,6 +119,12 @@ pub trait Surface<T: Real>: Send + Sync {
     /// Interior parameters u and v at which a derivative up to the second may jump, ascending.
     fn breaks(&self) -> [Vec<f64>; 2] {
         [Vec::new(), Vec::new()]
+    }
+
+    /// Interior parameters u and v at which one formula ends and another begins; see
+    /// [`Curve::joints`].
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.breaks()
     }
 
     /// The parameters in (0, 1), in any order, at which a path (u, v) in the parameter plane meets a

@@ -149,6 +149,10 @@ impl<T: Real> Curve<T> for RelabelledCurve<T> {
         breaks(&self.law, self.curve.breaks())
     }
 
+    fn joints(&self) -> Vec<f64> {
+        breaks(&self.law, self.curve.joints())
+    }
+
     fn trace(&self) -> Trace<T> {
         match self.curve.trace() {
             Trace::Pieces(pieces) => match pieces_by(&self.law, &pieces) {
@@ -225,6 +229,11 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         let [u, v] = self.surface.breaks();
+        [u, breaks(&self.law, v)]
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        let [u, v] = self.surface.joints();
         [u, breaks(&self.law, v)]
     }
 

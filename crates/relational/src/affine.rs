@@ -65,4 +65,8 @@ impl<T: Real> Curve<T> for Mapped<T> {
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
     }
+
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
 }

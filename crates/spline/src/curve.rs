@@ -227,6 +227,10 @@ impl<T: Real> Curve<T> for BSplineCurve<T> {
     fn breaks(&self) -> Vec<f64> {
         self.knots.breaks()
     }
+
+    fn joints(&self) -> Vec<f64> {
+        self.knots.joints()
+    }
 }
 
 #[cfg(test)]

@@ -252,6 +252,11 @@ impl<T: Real> Curve<T> for InterpolatingSpline<T> {
     fn breaks(&self) -> Vec<f64> {
         self.breaks.to_vec()
     }
+
+    fn joints(&self) -> Vec<f64> {
+        let knots = self.curve.knots();
+        knots[1..knots.len() - 1].iter().map(|k| k.re()).collect()
+    }
 }
 
 fn parabolic<T>(end: End<T>) -> bool {

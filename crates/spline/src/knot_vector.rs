@@ -219,6 +219,15 @@ impl KnotVector {
         inside.filter(|run| self.degree < run.len() + 2).map(|run| run[0]).collect()
     }
 
+    /// The distinct knots inside the domain.
+    pub fn joints(&self) -> Vec<f64> {
+        let (start, end) = self.domain();
+        let mut all: Vec<f64> =
+            self.knots.iter().copied().filter(|&k| start < k && k < end).collect();
+        all.dedup();
+        all
+    }
+
     /// The same knots with `knot` inserted `times` more.
     ///
     /// # Errors
@@ -271,6 +280,7 @@ mod tests {
         assert_eq!(found, [2, 2, 2, 4, 4, 5, 5, 5, 5]);
         assert_eq!(knots.spans().collect::<Vec<_>>(), [2, 4, 5]);
         assert_eq!(knots.breaks(), [0.25, 0.5]);
+        assert_eq!(KnotVector::clamped_uniform(3, 6).unwrap().joints().len(), 2);
         assert_eq!(KnotVector::clamped_uniform(4, 7).unwrap().breaks(), []);
     }
 

@@ -133,4 +133,8 @@ impl<T: Real> Surface<T> for BSplineSurface<T> {
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.u.breaks(), self.v.breaks()]
     }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        [self.u.joints(), self.v.joints()]
+    }
 }

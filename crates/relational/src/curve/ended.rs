@@ -19,6 +19,9 @@ impl<T: Real, C: Curve<T>> Curve<T> for Ended<C> {
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
     }
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
     fn trace(&self) -> Trace<T> {
         Trace::Own(self.ends)
     }

@@ -36,6 +36,9 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
     fn breaks(&self) -> Vec<f64> {
         self.curve.breaks()
     }
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
 
     fn law(&self) -> Option<Arc<dyn Law<T>>> {
         self.curve.law()

@@ -160,6 +160,10 @@ impl<T: Real> Surface<T> for Net<T> {
         self.surface.breaks()
     }
 
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.surface.joints()
+    }
+
     fn edges(&self) -> Edges<T> {
         Edges { corners: self.corners, ..Edges::own() }
     }

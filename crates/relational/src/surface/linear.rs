@@ -148,6 +148,10 @@ impl<T: Real> Surface<T> for Blend<T> {
         [self.masters.breaks(), self.knots.breaks()]
     }
 
+    fn joints(&self) -> [Vec<f64>; 2] {
+        [self.masters.joints(), self.knots.joints()]
+    }
+
     fn edges(&self) -> Edges<T> {
         if self.knots.degree() == 1 { self.masters.straight_edges() } else { self.masters.edges() }
     }

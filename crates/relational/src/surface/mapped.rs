@@ -85,6 +85,10 @@ impl<T: Real> Surface<T> for Image<T> {
         self.surface.breaks()
     }
 
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.surface.joints()
+    }
+
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
         self.surface.crossings(path, spans)
     }
@@ -227,6 +231,10 @@ impl<T: Real> Surface<T> for Foot<T> {
         self.surface.breaks()
     }
 
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.surface.joints()
+    }
+
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
         self.surface.crossings(path, spans)
     }
@@ -304,6 +312,10 @@ impl<T: Real> Surface<T> for Moved<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         self.surface.breaks()
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.surface.joints()
     }
 
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {

@@ -44,7 +44,16 @@ impl<T: Real> Masters<T> {
 
     /// The parameters u at which a master has a break.
     pub fn breaks(&self) -> Vec<f64> {
-        let mut all: Vec<f64> = self.0.iter().flat_map(|curve| curve.breaks()).collect();
+        self.merged(|curve| curve.breaks())
+    }
+
+    /// The parameters u at which a master goes over to another formula.
+    pub fn joints(&self) -> Vec<f64> {
+        self.merged(|curve| curve.joints())
+    }
+
+    fn merged(&self, of: impl Fn(&CurveRef<T>) -> Vec<f64>) -> Vec<f64> {
+        let mut all: Vec<f64> = self.0.iter().flat_map(of).collect();
         all.sort_by(f64::total_cmp);
         all.dedup();
         all

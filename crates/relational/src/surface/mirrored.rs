@@ -59,6 +59,10 @@ impl<T: Real> Surface<T> for MirrSurf<T> {
         self.surface.breaks()
     }
 
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.surface.joints()
+    }
+
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
         self.surface.crossings(path, spans)
     }

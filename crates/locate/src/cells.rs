@@ -1,0 +1,287 @@
+//! A surface as small cells that are nearly flat, with bounds of how they bend, for searches that
+//! ask the same surface many questions.
+//!
+//! `pieces -> cells -> tree of boxes`
+//!
+//! The piece that a cell is a part of holds the polynomial; the cell holds a parallelogram, the
+//! second derivatives at its middle, and bounds of what is left out. A first test looks at the
+//! parallelogram only, so that lies by itself.
+
+use crate::pieces::Patch;
+use crate::tree::{Boxes, SurfaceTree};
+use moldloft_num::{Box3, Surface, Vec3};
+
+/// Pieces are halved until they bend by less than this share of their length …
+const BEND: f64 = 0.06;
+
+/// … but into no more cells than this, each and altogether.
+const MOST_HALVINGS: u32 = 6;
+const MOST_CELLS: usize = 1 << 17;
+
+/// The polynomial of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    /// Its parameters on the surface.
+    pub uv: [[f64; 2]; 2],
+    /// Coefficient of s^i t^j at [i * 4 + j], with s and t in [-1, 1].
+    pub powers: [Vec3; 16],
+    /// How far the surface may be from it.
+    pub slack: f64,
+}
+
+/// The parallelogram c + a s + b t, |s| and |t| <= 1, and how far the surface may be from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flat {
+    pub c: Vec3,
+    pub a: Vec3,
+    pub b: Vec3,
+    /// a . a, a . b, b . b.
+    pub products: [f64; 3],
+    /// From the point of equal s and t, slack included.
+    pub bend: f64,
+}
+
+/// What a cell has besides its parallelogram.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bent {
+    /// Second derivatives by s and t at the middle.
+    pub second: [Vec3; 3],
+    /// Bounds of the third derivatives sss, sst, stt, ttt of half the square of the distance from
+    /// a point: `fixed` + `far` times the greatest distance.
+    pub fixed: [f64; 4],
+    pub far: [f64; 4],
+    /// How far the cell reaches from its middle.
+    pub reach: f64,
+    /// Middle and half sides in the piece's own parameters.
+    pub middle: [f64; 2],
+    pub half: [f64; 2],
+    /// The piece.
+    pub piece: u32,
+    /// See [`Patch::open`].
+    pub open: [[bool; 2]; 2],
+}
+
+/// Two boxes of a tree, side by side, and what is below them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fork {
+    pub bounds: [Box3; 2],
+    /// Index of the fork below, or of a cell with [`LEAF`] added.
+    pub below: [u32; 2],
+}
+
+/// Marks the index of a cell.
+pub(crate) const LEAF: u32 = 1 << 31;
+
+/// A surface cut up beforehand.
+#[derive(Clone, Debug)]
+pub(crate) struct Cells {
+    pub tree: SurfaceTree,
+    pub pieces: Vec<Piece>,
+    /// The cells, in the order of the leaves of the tree.
+    pub flats: Vec<Flat>,
+    pub bents: Vec<Bent>,
+    /// The tree; its root is the first. A single cell has none.
+    pub forks: Vec<Fork>,
+}
+
+/// Bernstein coefficients on [0, 1] to powers of s = 2 x - 1.
+fn powers([a, b, c, d]: [Vec3; 4]) -> [Vec3; 4] {
+    [
+        (a + b * 3.0 + c * 3.0 + d) * 0.125,
+        (d + c - b - a) * 0.375,
+        (a - b - c + d) * 0.375,
+        (d - c * 3.0 + b * 3.0 - a) * 0.125,
+    ]
+}
+
+fn patch_powers(patch: &Patch) -> [Vec3; 16] {
+    let mut out = [Vec3::zero(); 16];
+    for i in 0..4 {
+        out[i * 4..i * 4 + 4].copy_from_slice(&powers([0, 1, 2, 3].map(|j| patch.net[i * 4 + j])));
+    }
+    for j in 0..4 {
+        let column = powers([0, 1, 2, 3].map(|i| out[i * 4 + j]));
+        for i in 0..4 {
+            out[i * 4 + j] = column[i];
+        }
+    }
+    out
+}
+
+/// The derivative of a bicubic in powers by s (axis 0) or t (axis 1).
+fn derivative(f: &[Vec3; 16], axis: usize) -> [Vec3; 16] {
+    let mut out = [Vec3::zero(); 16];
+    for i in 0..4 {
+        for j in 0..4 {
+            let (k, from) = if axis == 0 { (i, i + 1) } else { (j, j + 1) };
+            if k < 3 {
+                let at = if axis == 0 { from * 4 + j } else { i * 4 + from };
+                out[i * 4 + j] = f[at] * from as f64;
+            }
+        }
+    }
+    out
+}
+
+/// A bound of the length of a bicubic on the square.
+fn most(f: &[Vec3; 16]) -> f64 {
+    f.iter().map(|c| c.norm()).sum()
+}
+
+/// A bound of |f . g| on the square: the sum of the coefficients of the product.
+fn most_product(f: &[Vec3; 16], g: &[Vec3; 16]) -> f64 {
+    let mut sums = [0.0; 49];
+    for (k, a) in f.iter().enumerate() {
+        if *a == Vec3::zero() {
+            continue;
+        }
+        for (l, b) in g.iter().enumerate() {
+            sums[(k / 4 + l / 4) * 7 + k % 4 + l % 4] += a.dot(*b);
+        }
+    }
+    sums.iter().map(|x| x.abs()).sum()
+}
+
+impl Flat {
+    fn new(patch: &Patch, x: &[Vec3; 16]) -> Self {
+        let (a, b) = (x[4], x[1]);
+        let high: f64 = (0..16).filter(|k| k / 4 + k % 4 > 1).map(|k| x[k].norm()).sum();
+        let products = [a.norm_sq(), a.dot(b), b.norm_sq()];
+        Flat { c: x[0], a, b, products, bend: high + patch.slack }
+    }
+}
+
+impl Bent {
+    fn new(cell: &Patch, x: &[Vec3; 16], piece: u32, place: [[f64; 2]; 2]) -> Self {
+        let (s, t) = (derivative(x, 0), derivative(x, 1));
+        let (ss, st, tt) = (derivative(&s, 0), derivative(&s, 1), derivative(&t, 1));
+        let third =
+            [derivative(&ss, 0), derivative(&ss, 1), derivative(&st, 1), derivative(&tt, 1)];
+        // The third derivatives of |X - p|^2 / 2 without their parts X''' . (X - p).
+        let fixed = [
+            3.0 * most_product(&ss, &s),
+            2.0 * most_product(&st, &s) + most_product(&ss, &t),
+            2.0 * most_product(&st, &t) + most_product(&tt, &s),
+            3.0 * most_product(&tt, &t),
+        ];
+        let reach = (1..16).map(|k| x[k].norm()).sum();
+        let [[a, b], [c, d]] = place;
+        Bent {
+            second: [ss[0], st[0], tt[0]],
+            fixed,
+            far: third.each_ref().map(most),
+            reach,
+            middle: [0.5 * (a + b), 0.5 * (c + d)],
+            half: [0.5 * (b - a), 0.5 * (d - c)],
+            piece,
+            open: cell.open,
+        }
+    }
+}
+
+impl Piece {
+    /// Position, first and second derivatives at (s, t): p, s, t, ss, st, tt.
+    #[inline]
+    pub fn jet(&self, s: f64, t: f64) -> [Vec3; 6] {
+        let mut out = [Vec3::zero(); 6];
+        for i in (0..4).rev() {
+            let c = &self.powers[i * 4..i * 4 + 4];
+            let f = ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
+            let d = (c[3] * (3.0 * t) + c[2] * 2.0) * t + c[1];
+            let dd = c[3] * (6.0 * t) + c[2] * 2.0;
+            // Horner's rule with derivatives.
+            out[3] = out[3] * s + out[1] * 2.0;
+            out[1] = out[1] * s + out[0];
+            out[0] = out[0] * s + f;
+            out[4] = out[4] * s + out[2];
+            out[2] = out[2] * s + d;
+            out[5] = out[5] * s + dd;
+        }
+        out
+    }
+
+    /// The surface's parameters at (s, t).
+    #[inline]
+    pub fn place(&self, s: f64, t: f64) -> [f64; 2] {
+        // Exact at both ends, so that an edge is 0 or 1 to the bit.
+        let along = |[a, b]: [f64; 2], x: f64| {
+            if x >= 1.0 {
+                b
+            } else if x <= -1.0 {
+                a
+            } else {
+                0.5 * (a + b) + 0.5 * (b - a) * x
+            }
+        };
+        [along(self.uv[0], s), along(self.uv[1], t)]
+    }
+}
+
+impl Cells {
+    /// Cuts a surface up.
+    pub fn new(surface: &dyn Surface<f64>) -> Self {
+        Self::of(SurfaceTree::new(surface))
+    }
+
+    fn of(tree: SurfaceTree) -> Self {
+        let mut pieces = Vec::with_capacity(tree.patches.len());
+        let mut cells: Vec<(Patch, u32, [[f64; 2]; 2])> = Vec::new();
+        for (k, patch) in tree.patches.iter().enumerate() {
+            let powers = patch_powers(patch);
+            pieces.push(Piece { uv: patch.uv, powers, slack: patch.slack });
+            let mut stack = vec![(*patch, [[-1.0, 1.0]; 2], 0)];
+            while let Some((part, place, halvings)) = stack.pop() {
+                let [lu, lv] = part.lengths();
+                let longest = lu.max(lv);
+                let enough = part.bend() <= BEND * lu.min(lv).max(0.25 * longest);
+                if enough || halvings >= MOST_HALVINGS || cells.len() + stack.len() >= MOST_CELLS {
+                    cells.push((part, k as u32, place));
+                    continue;
+                }
+                let axis = usize::from(lv > lu);
+                let [a, b] = place[axis];
+                let m = 0.5 * (a + b);
+                for (half, span) in part.halves(axis).into_iter().zip([[a, m], [m, b]]) {
+                    let mut place = place;
+                    place[axis] = span;
+                    stack.push((half, place, halvings + 1));
+                }
+            }
+        }
+        let bounds: Vec<Box3> = cells.iter().map(|c| c.0.bounds()).collect();
+        let boxes = Boxes::new(&bounds, 1);
+        let mut flats = Vec::with_capacity(cells.len());
+        let mut bents = Vec::with_capacity(cells.len());
+        for &k in &boxes.order {
+            let (part, piece, place) = &cells[k as usize];
+            let x = patch_powers(part);
+            flats.push(Flat::new(part, &x));
+            bents.push(Bent::new(part, &x, *piece, *place));
+        }
+        let forks = forks(&boxes);
+        Self { tree, pieces, flats, bents, forks }
+    }
+}
+
+/// The tree with the boxes of both children side by side; its leaves have one item.
+fn forks(boxes: &Boxes) -> Vec<Fork> {
+    let nodes = &boxes.nodes;
+    let mut number = vec![0u32; nodes.len()];
+    let mut inner = 0;
+    for (k, node) in nodes.iter().enumerate() {
+        if node.count == 0 {
+            number[k] = inner;
+            inner += 1;
+        } else {
+            number[k] = node.first | LEAF;
+        }
+    }
+    let children = |k: usize| [k + 1, nodes[k].first as usize];
+    (0..nodes.len())
+        .filter(|&k| nodes[k].count == 0)
+        .map(|k| Fork {
+            bounds: children(k).map(|c| nodes[c].bounds),
+            below: children(k).map(|c| number[c]),
+        })
+        .collect()
+}
