@@ -8,22 +8,26 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from moldloft.errors import Error
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from moldloft import _core
+    from moldloft.files import Output
 
-__all__ = ["FORMATS", "Block", "Blocks"]
+__all__ = ["FORMATS", "Block", "Blocks", "Boundary", "Interface"]
 
 FORMATS = {
     "p3d": "Plot3D volume grids, all blocks in one file",
     "vts": "VTK structured grids, one per block",
     "vtu": "VTK unstructured hexahedra",
+    "cgns": "CGNS structured zones with interfaces and named boundaries (needs h5py)",
+    "blockmesh": "OpenFOAM blockMeshDict",
 }
 """The formats of volume meshes by name, with a line about each."""
 
@@ -61,6 +65,63 @@ class Block:
     """Positions of its vertices, ``(nu + 1, nv + 1, nw + 1, 3)``."""
 
 
+@dataclass(frozen=True)
+class Interface:
+    """A rectangle of a block's face that is a rectangle of another's, or of its own."""
+
+    block: int
+    """The block, counted from 0."""
+    face: int
+    """Its face, counted from 0 as in :attr:`Block.faces`."""
+    begin: tuple[int, int, int]
+    end: tuple[int, int, int]
+    """Its first and last vertex, (i, j, k) from 0."""
+    donor: int
+    donor_face: int
+    donor_begin: tuple[int, int, int]
+    """The donor's vertex that is ``begin``."""
+    donor_end: tuple[int, int, int]
+    """The donor's vertex that is ``end``."""
+    transform: tuple[int, int, int]
+    """For each axis of the block, the donor's axis (from 1) that runs along it, negative if
+    against; as in CGNS."""
+
+    def reversed(self) -> Interface:
+        """The same seen from the donor."""
+        back = [0, 0, 0]
+        for axis, number in enumerate(self.transform):
+            back[abs(number) - 1] = (axis + 1) * (1 if number > 0 else -1)
+        return Interface(
+            self.donor,
+            self.donor_face,
+            self.donor_begin,
+            self.donor_end,
+            self.block,
+            self.face,
+            self.begin,
+            self.end,
+            (back[0], back[1], back[2]),
+        )
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A rectangle of a block's face that meets no other."""
+
+    block: int
+    """The block, counted from 0."""
+    face: int
+    """Its face, counted from 0 as in :attr:`Block.faces`."""
+    begin: tuple[int, int, int]
+    end: tuple[int, int, int]
+    """Its first and last vertex, (i, j, k) from 0."""
+    name: str
+    """The surface that it is, or the block and the face."""
+    kind: str
+    """``"symmetry"`` in a symmetry plane of the model, ``"wall"`` where it is a surface object,
+    else ``"open"``."""
+
+
 class Blocks:
     """Hexahedra of all shown solids of a model, at one state of it.
 
@@ -82,8 +143,10 @@ class Blocks:
     (6.0, True)
     """
 
-    def __init__(self, core: _core.Blocks) -> None:
+    def __init__(self, core: _core.Blocks, symmetry: str = "") -> None:
         self._core = core
+        self.symmetry = symmetry
+        """The planes that the model is mirrored in, of ``"xyz"``."""
         summary = core.summary()
         self.cells: int = summary["cells"]
         """How many cells there are."""
@@ -108,10 +171,33 @@ class Blocks:
             made.append(Block(**row, indices=indices, points=self.vertices[indices]))
         return tuple(made)
 
-    @property
-    def interfaces(self) -> list[tuple[int, int, int, int]]:
-        """Joined faces: block, face, block, face; faces count from 0 as in :attr:`Block.faces`."""
-        return self._core.interfaces()
+    @cached_property
+    def interfaces(self) -> tuple[Interface, ...]:
+        """Where blocks meet, by the identity of their vertices; each once."""
+        return tuple(
+            Interface(*_side(own), *_side(donor), (transform[0], transform[1], transform[2]))
+            for own, donor, transform in self._core.interfaces()
+        )
+
+    @cached_property
+    def boundaries(self) -> tuple[Boundary, ...]:
+        """The parts of faces that meet nothing. Faces that are a line or a point are left out."""
+        size = float(np.abs(self.vertices).max(initial=1.0))
+        found = []
+        for part in self._core.boundaries():
+            number, face, begin, end = _side(part)
+            block = self.blocks[number]
+            name = block.faces[face]
+            places = tuple(slice(a, b + 1) for a, b in zip(begin, end, strict=True))
+            points = block.points[places]
+            flat = any(
+                np.abs(points[..., "xyz".index(axis)]).max() <= 1e-9 * size
+                for axis in self.symmetry
+            )
+            own = f"{block.name}.{'uvw'[face // 2]}{face % 2}"
+            kind = "symmetry" if flat else "open" if name == own else "wall"
+            found.append(Boundary(number, face, begin, end, name, kind))
+        return tuple(found)
 
     @property
     def problems(self) -> list[_core.Diagnostic]:
@@ -138,25 +224,46 @@ class Blocks:
         path
             The file.
         format
-            One of :data:`moldloft.blocks.FORMATS`; by default what the file's name ends in.
+            One of :data:`moldloft.blocks.FORMATS`; by default what the file's name ends in, and
+            ``blockmesh`` for a file ``blockMeshDict``.
 
         Returns
         -------
         list of pathlib.Path
             The files written; ``vts`` takes several.
         """
-        from moldloft.files import Output, commit
+        from moldloft.files import commit
 
         path = Path(path)
-        wanted = (format or path.suffix.lstrip(".")).lower()
-        if wanted not in FORMATS:
+        ending = "blockmesh" if path.name.endswith("blockMeshDict") else path.suffix.lstrip(".")
+        return commit(path.parent, self.outputs((format or ending).lower(), path))
+
+    def outputs(self, format: str, path: Path) -> list[Output]:
+        """The files of a format, with names after ``path``."""
+        from moldloft.files import Output
+
+        if format not in FORMATS:
             raise Error(
-                f"error: there is no volume format `{wanted}`; there are: {', '.join(FORMATS)}"
+                f"error: there is no volume format `{format}`; there are: {', '.join(FORMATS)}"
             )
-        files = self._core.write(wanted, path.stem)
-        main = f"{path.stem}.{wanted}"
-        outputs = [Output(path.name if name == main else name, data) for name, data in files]
-        return commit(path.parent, outputs)
+        if format == "cgns":
+            from moldloft import volume_cgns
+
+            return [Output(path.name, volume_cgns.write(self, path.stem))]
+        if format == "blockmesh":
+            from moldloft import blockmesh
+
+            return [Output(path.name, blockmesh.write(self))]
+        files = self._core.write(format, path.stem)
+        main = f"{path.stem}.{format}"
+        return [Output(path.name if name == main else name, data) for name, data in files]
 
     def __repr__(self) -> str:
         return f"<Blocks: {len(self)} blocks, {self.cells} cells>"
+
+
+def _side(
+    part: _core.Side,
+) -> tuple[int, int, tuple[int, int, int], tuple[int, int, int]]:
+    block, face, begin, end = part
+    return block, face, (begin[0], begin[1], begin[2]), (end[0], end[1], end[2])

@@ -100,11 +100,11 @@ def zones(model: Model) -> list[Zone]:
     out: list[Zone] = []
     taken: set[str] = set()
     for _, name, tag, _, vertices in blocks:
-        out.append(Zone(_unique(name, taken), name, tag, vertices))
+        out.append(Zone(unique(name, taken), name, tag, vertices))
     return out
 
 
-def _unique(name: str, taken: set[str]) -> str:
+def unique(name: str, taken: set[str]) -> str:
     """A node's name: at most 32 characters, no slash, none twice."""
     base = "".join("_" if c in "/\\" or not c.isprintable() else c for c in name) or "unnamed"
     base = base.encode("ascii", "replace").decode().replace("?", "_")
@@ -190,13 +190,18 @@ def write(model: Model, title: str) -> bytes:
     joints = interfaces(patches)
     memory = io.BytesIO()
     with h5py.File(memory, "w", track_order=True) as file:
-        _root(file)
-        _node(file, "CGNSLibraryVersion", "CGNSLibraryVersion_t", np.array([3.3], dtype=np.float32))
-        base = _node(file, _unique(title, set()), "CGNSBase_t", np.array([2, 3], dtype=np.int32))
+        base = begin(file, title, 2)
         _families(base, patches)
         for z, zone in enumerate(patches):
             _zone(base, patches, z, zone, positions, joints, model.symmetry)
     return memory.getvalue()
+
+
+def begin(file: Any, title: str, dimensions: int) -> Any:
+    """The base of a new file, of cells of so many dimensions in space."""
+    _root(file)
+    node(file, "CGNSLibraryVersion", "CGNSLibraryVersion_t", np.array([3.3], dtype=np.float32))
+    return node(file, unique(title, set()), "CGNSBase_t", np.array([dimensions, 3], dtype=np.int32))
 
 
 def _root(file: Any) -> None:
@@ -218,7 +223,8 @@ def _chars(text: str, width: int | None = None) -> NDArray[np.int8]:
 _TYPES = {"float32": "R4", "float64": "R8", "int32": "I4", "int8": "C1"}
 
 
-def _node(parent: Any, name: str, label: str, data: NDArray[Any] | str | None = None) -> Any:
+def node(parent: Any, name: str, label: str, data: NDArray[Any] | str | None = None) -> Any:
+    """A new node of a kind under another one."""
     group = parent.create_group(name, track_order=True)
     values = _chars(data) if isinstance(data, str) else data
     kind = "MT" if values is None else _TYPES[values.dtype.name]
@@ -236,10 +242,10 @@ def _families(base: Any, patches: Sequence[Zone]) -> None:
         if zone.family in names:
             continue
         names.add(zone.family)
-        family = _node(base, zone.name, "Family_t")
+        family = node(base, zone.name, "Family_t")
         kind = "BCSymmetryPlane" if zone.tag == "symmetry" else "BCWall"
-        _node(family, "FamilyBC", "FamilyBC_t", kind)
-        _node(family, "Tag", "Descriptor_t", zone.tag)
+        node(family, "FamilyBC", "FamilyBC_t", kind)
+        node(family, "Tag", "Descriptor_t", zone.tag)
 
 
 def _zone(
@@ -254,18 +260,18 @@ def _zone(
     nu, nv = zone.vertices.shape
     sizes = np.array([[nu, nv], [nu - 1, nv - 1], [0, 0]], dtype=np.int32)
     # A zone and its family are children of one base and must differ in name.
-    node = _node(base, zone_node(zone), "Zone_t", sizes)
-    _node(node, "ZoneType", "ZoneType_t", "Structured")
-    _node(node, "FamilyName", "FamilyName_t", family_node(patches, zone))
-    grid = _node(node, "GridCoordinates", "GridCoordinates_t")
+    place = node(base, zone_node(zone), "Zone_t", sizes)
+    node(place, "ZoneType", "ZoneType_t", "Structured")
+    node(place, "FamilyName", "FamilyName_t", family_node(patches, zone))
+    grid = node(place, "GridCoordinates", "GridCoordinates_t")
     for axis, letter in enumerate("XYZ"):
         # Fortran's order: i fastest, so the transpose of ours.
         values = np.ascontiguousarray(positions[zone.vertices][..., axis].T) + 0.0
-        _node(grid, f"Coordinate{letter}", "DataArray_t", values)
+        node(grid, f"Coordinate{letter}", "DataArray_t", values)
     own = [joint for joint in joints if joint.zone == z]
     if own:
-        _connectivity(node, patches, zone, own)
-    _boundaries(node, zone, positions, own, symmetry)
+        _connectivity(place, patches, zone, own)
+    _boundaries(place, zone, positions, own, symmetry)
 
 
 def zone_node(zone: Zone) -> str:
@@ -278,25 +284,27 @@ def family_node(patches: Sequence[Zone], zone: Zone) -> str:
     return next(other.name for other in patches if other.family == zone.family)
 
 
-def _connectivity(node: Any, patches: Sequence[Zone], zone: Zone, own: Sequence[Interface]) -> None:
-    group = _node(node, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
+def _connectivity(
+    place: Any, patches: Sequence[Zone], zone: Zone, own: Sequence[Interface]
+) -> None:
+    group = node(place, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
     for k, joint in enumerate(own, 1):
         donor = patches[joint.donor]
-        one = _node(group, f"join{k}", "GridConnectivity1to1_t", zone_node(donor))
+        one = node(group, f"join{k}", "GridConnectivity1to1_t", zone_node(donor))
         _range(one, "PointRange", zone, joint.side, joint.first, joint.last)
         ends = joint.donor_side, joint.donor_first, joint.donor_last
         _range(one, "PointRangeDonor", donor, *ends)
         steps = np.array(joint.transform, dtype=np.int32)
-        _node(one, "Transform", '"int[IndexDimension]"', steps)
+        node(one, "Transform", '"int[IndexDimension]"', steps)
 
 
 def _range(parent: Any, name: str, zone: Zone, side: int, first: int, last: int) -> None:
     ends = [zone.place(side, first), zone.place(side, last)]
-    _node(parent, name, "IndexRange_t", np.array(ends, dtype=np.int32))
+    node(parent, name, "IndexRange_t", np.array(ends, dtype=np.int32))
 
 
 def _boundaries(
-    node: Any,
+    place: Any,
     zone: Zone,
     positions: NDArray[np.float64],
     own: Sequence[Interface],
@@ -309,7 +317,7 @@ def _boundaries(
             free.append((side, positions[edge]))
     if not free:
         return
-    group = _node(node, "ZoneBC", "ZoneBC_t")
+    group = node(place, "ZoneBC", "ZoneBC_t")
     size = float(np.abs(positions).max(initial=1.0))
     for side, points in free:
         flat = [
@@ -318,5 +326,5 @@ def _boundaries(
             if letter in symmetry and np.abs(points[:, axis]).max() <= 1e-9 * size
         ]
         kind = "BCSymmetryPlane" if flat else "UserDefined"
-        one = _node(group, EDGES[side], "BC_t", kind)
+        one = node(group, EDGES[side], "BC_t", kind)
         _range(one, "PointRange", zone, side, 0, len(points) - 1)

@@ -31,6 +31,11 @@ FORMATS = {
     "vts": "VTK structured grids, one per patch",
     "p3d": "Plot3D surface grids",
     "cgns": "CGNS structured surface zones with interfaces (needs h5py)",
+    "volume-p3d": "the cells of solids as Plot3D volume grids",
+    "volume-vts": "the cells of solids as VTK structured grids, one per block, and a .vtm",
+    "volume-vtu": "the cells of solids as VTK unstructured hexahedra",
+    "volume-cgns": "the cells of solids as CGNS zones (needs h5py)",
+    "blockmesh": "the blocks of solids as OpenFOAM's blockMeshDict",
     "offsets": "stations, waterlines and half-breadths (.csv)",
     "svg": "body plan, waterlines and buttocks, each with its scale",
     "png": "a picture",
@@ -61,6 +66,11 @@ _SUFFIXES = {
     "hams": "pnl",
     "aqwa": "dat",
     "offsets": "csv",
+    "volume-p3d": "volume.p3d",
+    "volume-vts": "volume.vts",
+    "volume-vtu": "volume.vtu",
+    "volume-cgns": "volume.cgns",
+    "blockmesh": "blockMeshDict",
 }
 """Endings of file names where they are not the format's name."""
 
@@ -125,12 +135,15 @@ def produce(
         return [
             Output(path.name, high_order.write(model, path.stem, tolerance=tolerance, lids=lids))
         ]
-    if wanted in ("gdf-high", "cgns", "offsets") and (immersed or tags):
+    volume = wanted == "blockmesh" or wanted.startswith("volume-")
+    if (volume or wanted in ("gdf-high", "cgns", "offsets")) and (immersed or tags):
         named = "immersed" if immersed else "tags"
         raise Error(f"error: `{named}` is not for {wanted}, which takes whole surfaces")
     if (lids or immersed) and wanted not in SOLVERS:
         named = "lids" if lids else "immersed"
         raise Error(f"error: `{named}` is for the files of panel codes, {', '.join(SOLVERS)}")
+    if volume:
+        return model.blocks().outputs(wanted.removeprefix("volume-"), path)
     if wanted == "cgns":
         from moldloft import cgns
 

@@ -298,7 +298,7 @@ class Model:
         """
         from moldloft.blocks import Blocks
 
-        return Blocks(self._document.blocks())
+        return Blocks(self._document.blocks(), self.symmetry)
 
     def block_jacobian(self, by: Sequence[str]) -> NDArray[np.float64]:
         """Exact derivatives of every vertex of :meth:`blocks`, ``(n, 3, len(by))``.

@@ -210,6 +210,8 @@ def test_formats_by_other_names(hull, tmp_path):
 
 def test_every_format_can_be_written(hull, tmp_path):
     for name in FORMATS:
+        if name == "blockmesh" or name.startswith("volume-"):  # for solids: test_volume_files.py
+            continue
         for path in hull.write(tmp_path / f"hull.{name}"):
             assert path.stat().st_size > 100
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 from pathlib import Path
@@ -56,6 +57,33 @@ def test_every_draw_builds_closed(name: str, path: str, draws: int, planes: str)
         assert on_planes.all(), f"{values}: open at {rim[~on_planes][:3]}"
 
 
+@pytest.mark.parametrize("path", [case[1] for case in CASES], ids=[case[0] for case in CASES])
+def test_a_nudge_moves_the_panels_as_the_derivative_says(path: str) -> None:
+    """What the derivative leaves over falls with the square of the nudge, down to rounding."""
+    model = moldloft.load(EXAMPLES / path)
+    names = list(model.params)
+    base = model.mesh().vertices.copy()
+    size = float(np.ptp(base, axis=0).max())
+    slopes = model.jacobian(names)
+    for k, name in enumerate(names):
+        at = model.params[name].value
+        low, high = model.params[name].low, model.params[name].high
+        left = {}
+        for share in (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12):
+            step = share * (high - low)
+            model.set({name: at + step if at + step <= high else at - step})
+            step = model.params[name].value - at
+            moved = model.mesh().vertices - base - step * slopes[..., k]
+            left[share] = float(np.abs(moved).max()) / size
+        for share, amount in left.items():
+            if share < 1e-3:
+                limit = 2 * left[1e-3] * (share / 1e-3) ** 2 + 3e-14
+                assert amount < limit, (name, share, amount)
+        assert left[1e-2] < 1e-2, name
+        model.set({name: at})
+        assert np.array_equal(model.mesh().vertices, base), name
+
+
 def _platform_volume(radius: float, pontoon: float, spacing: float, draft: float) -> float:
     """Four legs and four pontoons between them, without the pieces inside the legs."""
     from scipy.integrate import quad
@@ -80,7 +108,20 @@ def test_platform_volume_is_its_integral() -> None:
         model.set(values)
         exact = _platform_volume(*(values[name] for name in names))
         ours = model.hydrostatics().volume
-        assert abs(ours - exact) < 1e-2 * exact, (variant, ours, exact)
+        assert abs(ours - exact) < 1e-3 * exact, (variant, ours, exact)
+
+
+def test_platform_volume_converges_at_second_order() -> None:
+    text = (EXAMPLES / "platform/platform.sdl").read_text()
+    gaps = []
+    for fine in (8, 16, 32):
+        assert "int fine = 22;" in text
+        model = moldloft.loads(text.replace("int fine = 22;", f"int fine = {fine};"))
+        names = ("leg_radius", "pontoon_radius", "spacing", "draft")
+        exact = _platform_volume(*(model.params[name].value for name in names))
+        gaps.append(exact - model.hydrostatics().volume)
+    for coarse, fine in itertools.pairwise(gaps):
+        assert coarse / fine == pytest.approx(4, rel=0.01)
 
 
 def _unrolled(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -118,6 +159,30 @@ def test_propeller_sections_are_those_of_the_data_sheet() -> None:
         assert abs(thick[0] - thickness * diameter) < limit
         mean = np.array([(bx + fx) / 2 - x[1], (by + fy) / 2 - y[1]])
         assert abs(abs(across @ mean)[1] - camber * diameter) < limit
+
+
+def test_propeller_areas_are_those_of_the_data_sheet() -> None:
+    """Expanded area ratio and mean width ratio, as the sheet defines them."""
+    model = moldloft.load(EXAMPLES / "propeller/propeller.sdl")
+    diameter, blades = model["diameter"], float(model.eval("blades"))
+    chords, radii = [], []
+    for k in range(13):
+        foil = model["one.root.foil" if k == 0 else f"one.s[{k + 1}].foil"]
+        x, y, radius = _unrolled(np.array([foil(0.0), foil(0.5)]))
+        chords.append(float(np.hypot(x[0] - x[1], y[0] - y[1])) / diameter)
+        radii.append(float(radius.mean()) / diameter)
+    chords.append(0.0)
+    radii.append(0.5)
+    # The chord falls to zero like a root at the tip, so the area is taken over the square root of
+    # the distance from the tip.
+    from scipy.interpolate import CubicSpline
+
+    s = np.sqrt(0.5 - np.array(radii))[::-1]
+    area = CubicSpline(s, 2 * s * np.array(chords)[::-1]).integrate(0.0, s[-1])
+    ear = blades * area / (math.pi / 4)
+    mwr = area / (0.5 - 0.1)
+    assert ear == pytest.approx(0.7253, rel=1e-3)
+    assert mwr == pytest.approx(0.2848, rel=1e-3)
 
 
 def test_wing_corners_lie_where_the_laws_say() -> None:

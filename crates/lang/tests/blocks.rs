@@ -55,7 +55,7 @@ fn blocks_share_faces_by_identity() {
     assert!(report.positive() && blocked.diagnostics().is_empty(), "{:?}", blocked.diagnostics());
     // All cells are sheared bricks: 4 x 6 x 3.
     assert!((report.volume - 72.0).abs() < 1e-12, "{}", report.volume);
-    assert_eq!(blocked.blocks.boundary().len(), 8 * 6 - 2 * 12);
+    assert_eq!(blocked.blocks.interfaces().1.len(), 8 * 6 - 2 * 12);
 }
 
 #[test]

@@ -60,5 +60,6 @@ pub use report::{OpenLoop, TopologyReport};
 pub use section::{Polyline, section};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};
 pub use volume::{
-    BadCell, BlockFace, BlockQuality, Blocks, BlocksReport, HexBlock, Hexahedron, Interface,
+    BadCell, BlockFace, BlockQuality, Blocks, BlocksReport, Boundary, HexBlock, Hexahedron,
+    Interface,
 };

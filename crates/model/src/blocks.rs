@@ -5,6 +5,7 @@
 //! along w that follow one law between vertices that are one. Divisions are solved through all
 //! blocks: a number given for one block holds for every block that shares the edge, and so on.
 
+use crate::blocks_marks::{Marks, runs};
 use crate::blocks_solve::{Classes, Solved};
 use crate::panel::UnionFind;
 use crate::{Graph, Object};
@@ -26,10 +27,12 @@ const JOIN_ACCURACY: f64 = 1e-9;
 pub enum BlockRemark {
     /// The cells of one block along a part of another's edge do not fit, so they are not joined.
     Divisions {
-        /// The block whose edge has several parts, and the one along a part of it.
+        /// The block whose edge has several parts, and the other one along one of them.
         blocks: [String; 2],
-        /// Cells along the edge, and along the part.
-        divisions: [usize; 2],
+        /// Cells along the edge of the first.
+        divisions: usize,
+        /// Cells of the other along the part.
+        along: f64,
         /// The share of the edge that the part is.
         share: f64,
     },
@@ -57,7 +60,7 @@ impl BlockRemark {
 impl std::fmt::Display for BlockRemark {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
-            BlockRemark::Divisions { blocks: [a, b], divisions: [n, m], share } => write!(
+            BlockRemark::Divisions { blocks: [a, b], divisions: n, along: m, share } => write!(
                 f,
                 "`{a}` has {n} cells along an edge of which `{b}` has {m} along a share of {share}, \
                  so their cells do not join"
@@ -289,6 +292,7 @@ pub(crate) struct Joiner<'a, 'g> {
     spots: HashMap<Spot, u32>,
     /// Faces of solids that are surfaces elsewhere.
     named_faces: HashSet<(Key, u8)>,
+    pub marks: Marks,
 }
 
 impl<'a, 'g> Joiner<'a, 'g> {
@@ -317,6 +321,7 @@ impl<'a, 'g> Joiner<'a, 'g> {
             joined: UnionFind::new(next as usize),
             spots: HashMap::new(),
             named_faces: named_faces.collect(),
+            marks: Marks::new(drafts),
         }
     }
 
@@ -472,19 +477,11 @@ impl<'a, 'g> Joiner<'a, 'g> {
         }
     }
 
-    /// Joins an edge along a chain of pieces, as far as divisions fall on the pieces' ends.
+    /// Joins an edge along a chain of pieces, as far as divisions fall on the ends of their parts.
     fn join_chain(&mut self, vertices: &[u32], pieces: &[Piece<f64>]) {
-        let n = (vertices.len() - 1) as f64;
-        let mut begin = 0.0;
-        for piece in pieces {
-            let (low, high) = (begin * n, piece.until * n);
-            begin = piece.until;
-            let (first, last) = (low.round(), high.round());
-            if (low - first).abs() > 1e-9 || (high - last).abs() > 1e-9 || last <= first {
-                continue;
-            }
-            let part = &vertices[first as usize..=last as usize];
-            let (id, backwards) = stretch(piece);
+        for (first, last, piece) in runs(&self.marks.parts(pieces), vertices.len() - 1) {
+            let part = &vertices[first..=last];
+            let (id, backwards) = stretch(&piece);
             let (from, to) =
                 if backwards { (&piece.to, &piece.from) } else { (&piece.from, &piece.to) };
             let count = part.len() - 1;
@@ -534,9 +531,15 @@ impl<'a, 'g> Joiner<'a, 'g> {
                 if i > 0 && i < nu && j > 0 && j < nv {
                     continue;
                 }
-                let roots = self.roots(b, [i, j]);
+                let mut roots = self.roots(b, [i, j]);
+                // A loft is the same one from its other end.
+                let turned = !matches!(law, Law::Along(..)) && roots.last() < roots.first();
+                if turned {
+                    roots.reverse();
+                }
                 for k in 1..=last {
-                    let spot = Spot::OnLine(roots.clone(), law, k as u32, nw as u32);
+                    let at = if turned { nw - k } else { k };
+                    let spot = Spot::OnLine(roots.clone(), law, at as u32, nw as u32);
                     self.settle(self.vertex(b, [i, j, k]), spot);
                 }
             }

@@ -1,8 +1,9 @@
 //! The divisions of volume blocks, solved through all of them.
 
 use crate::blocks::{BlockRemark, Draft, FaceId, Joiner, Stretch, face_axes, face_id, stretch};
+use crate::blocks_marks::{Marks, Part};
 use crate::panel::UnionFind;
-use moldloft_num::trace::{Edge, Edges, Face, Law, Turn};
+use moldloft_num::trace::{Edge, Edges, Face, Law, Piece, Turn};
 use moldloft_registry::Fault;
 use std::collections::HashMap;
 
@@ -15,12 +16,13 @@ pub(crate) struct Solved {
     pub remarks: Vec<BlockRemark>,
 }
 
-/// Which axes of which blocks (number 3 b + axis) have one number of divisions.
+/// Which axes of which blocks (number 3 b + axis), and which stretches of roots (numbers above
+/// those), have one number of divisions.
 pub(crate) struct Classes {
     equal: UnionFind,
     stretches: HashMap<Stretch, usize>,
-    /// An axis, a share of it, and the stretch that runs along that share.
-    shares: Vec<(usize, f64, Stretch)>,
+    /// An axis, a share of it, and the number of the stretch that runs along that share.
+    shares: Vec<(usize, f64, usize)>,
 }
 
 impl Classes {
@@ -48,18 +50,22 @@ impl Classes {
                     if let Some(id) = face_id(*surface, *face_of) {
                         one(id, axes(f, *turn));
                     }
-                    classes.along_edges(edges, axes(f, *turn));
+                    classes.along_edges(&joiner.marks, edges, axes(f, *turn));
                 }
             }
             let Some(layers) = &draft.faces.layers else { continue };
             for (_, edges) in &layers.surfaces {
-                classes.along_edges(edges, axes(4, Turn::default()));
+                classes.along_edges(&joiner.marks, edges, axes(4, Turn::default()));
             }
             if matches!(layers.law, Law::Along(None, _)) {
                 continue;
             }
             for corner in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-                let line = (joiner.roots(b, corner), layers.law);
+                let mut roots = joiner.roots(b, corner);
+                if !matches!(layers.law, Law::Along(..)) && roots.last() < roots.first() {
+                    roots.reverse();
+                }
+                let line = (roots, layers.law);
                 let known = *lines.entry(line).or_insert(3 * b + 2);
                 classes.equal.join(known as u32, (3 * b + 2) as u32);
             }
@@ -67,26 +73,37 @@ impl Classes {
         classes
     }
 
-    fn along_edges(&mut self, edges: &Edges<f64>, [u, v]: [usize; 2]) {
+    fn along_edges(&mut self, marks: &Marks, edges: &Edges<f64>, [u, v]: [usize; 2]) {
         for (edge, axis) in edges.edges.iter().zip([u, v, u, v]) {
             let Edge::Pieces(pieces) = edge else { continue };
-            if let [whole] = pieces.as_slice() {
-                let known = *self.stretches.entry(stretch(whole).0).or_insert(axis);
-                self.equal.join(known as u32, axis as u32);
+            let parts = marks.parts(pieces);
+            if let ([_], [first, .., last]) = (pieces.as_slice(), parts.as_slice()) {
+                let whole = Piece { from: first.piece.from, ..last.piece };
+                let number = self.number(stretch(&whole).0);
+                self.equal.join(number as u32, axis as u32);
+            }
+            if let [Part { piece, .. }] = parts.as_slice() {
+                let number = self.number(stretch(piece).0);
+                self.equal.join(number as u32, axis as u32);
                 continue;
             }
             let mut begin = 0.0;
-            for piece in pieces {
-                self.shares.push((axis, piece.until - begin, stretch(piece).0));
+            for Part { piece, .. } in parts {
+                let number = self.number(stretch(&piece).0);
+                self.shares.push((axis, piece.until - begin, number));
                 begin = piece.until;
             }
         }
     }
 
+    fn number(&mut self, stretch: Stretch) -> usize {
+        *self.stretches.entry(stretch).or_insert_with(|| self.equal.push() as usize)
+    }
+
     /// # Errors
     /// `divisions-contradict` when two numbers are given for one class.
     pub fn solved(mut self, drafts: &[Draft]) -> Result<Solved, Fault> {
-        let count = 3 * drafts.len();
+        let count = 3 * drafts.len() + self.stretches.len();
         let mut known: Vec<Option<(usize, usize)>> = vec![None; count];
         for (b, draft) in drafts.iter().enumerate() {
             for axis in 0..3 {
@@ -105,18 +122,10 @@ impl Classes {
             }
         }
         // What the others of a chain say, until nothing is new.
-        let shares: Vec<(usize, f64, usize)> = self
-            .shares
-            .iter()
-            .filter_map(|(axis, share, stretch)| {
-                let part = *self.stretches.get(stretch)?;
-                Some((*axis, *share, part))
-            })
-            .collect();
         let mut remarks = Vec::new();
         for round in 0..=count {
             let mut changed = false;
-            for &(whole, share, part) in &shares {
+            for &(whole, share, part) in &self.shares {
                 let [w, p] = [whole, part].map(|a| self.equal.find(a as u32) as usize);
                 let near =
                     |x: f64| ((x - x.round()).abs() < 1e-9 && x >= 0.5).then(|| x.round() as usize);
@@ -149,15 +158,20 @@ impl Classes {
                 })
             })
             .collect();
-        for &(whole, share, part) in &shares {
-            let n = |a: usize| divisions[a / 3][a % 3];
-            if (n(whole) as f64 * share - n(part) as f64).abs() > 1e-9 {
+        // All who run along a stretch must have as many cells there as the first.
+        let mut first: HashMap<usize, (usize, f64)> = HashMap::new();
+        for (axis, n) in divisions.iter().flatten().enumerate() {
+            first.entry(self.equal.find(axis as u32) as usize).or_insert((axis, *n as f64));
+        }
+        for &(whole, share, part) in &self.shares {
+            let n = divisions[whole / 3][whole % 3];
+            let along = n as f64 * share;
+            let part = self.equal.find(part as u32) as usize;
+            let &mut (other, m) = first.entry(part).or_insert((whole, along));
+            if (along - m).abs() > 1e-9 {
                 let name = |a: usize| drafts[a / 3].object.name.to_string();
-                remarks.push(BlockRemark::Divisions {
-                    blocks: [name(whole), name(part)],
-                    divisions: [n(whole), n(part)],
-                    share,
-                });
+                let blocks = [name(whole), name(other)];
+                remarks.push(BlockRemark::Divisions { blocks, divisions: n, along: m, share });
             }
         }
         Ok(Solved { divisions, remarks })

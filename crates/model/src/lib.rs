@@ -9,6 +9,7 @@
 //! Invariant: this crate knows no particular kind, no syntax and no file.
 
 mod blocks;
+mod blocks_marks;
 mod blocks_solve;
 mod contour;
 mod graph;

@@ -10,6 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::Arc;
 
+/// A part of a face: block, face from 0, and the places (i, j, k) where it begins and ends.
+type Side = (usize, usize, [usize; 3], [usize; 3]);
+
 /// Volume blocks at one state of a model.
 #[pyclass(frozen, name = "Blocks", module = "moldloft._core")]
 pub struct PyBlocks {
@@ -76,10 +79,25 @@ impl PyBlocks {
         .collect()
     }
 
-    /// Pairs of joined faces: (block, face, block, face), faces from 0.
-    fn interfaces(&self) -> Vec<(usize, usize, usize, usize)> {
-        let all = self.blocked.blocks.interfaces();
-        all.iter().map(|i| (i.sides[0].0, i.sides[0].1, i.sides[1].0, i.sides[1].1)).collect()
+    /// Where blocks meet: (block, face, begin, end) of both sides, and the CGNS transform.
+    fn interfaces(&self) -> Vec<(Side, Side, [i32; 3])> {
+        let (all, _) = self.blocked.blocks.interfaces();
+        all.iter()
+            .map(|i| {
+                let side = |k: usize| (i.sides[k].0, i.sides[k].1, i.from[k], i.to[k]);
+                let transform = i.axes.map(|(axis, against)| {
+                    let number = axis as i32 + 1;
+                    if against { -number } else { number }
+                });
+                (side(0), side(1), transform)
+            })
+            .collect()
+    }
+
+    /// Parts of faces that meet nothing: (block, face, begin, end).
+    fn boundaries(&self) -> Vec<Side> {
+        let (_, free) = self.blocked.blocks.interfaces();
+        free.iter().map(|b| (b.block, b.face, b.from, b.to)).collect()
     }
 
     /// The files of a format: names and contents.

@@ -1,4 +1,4 @@
-use super::{Hexahedron, Interface};
+use super::{Boundary, Hexahedron, Interface};
 use crate::MeshError;
 use moldloft_num::{Real, Vec3};
 
@@ -180,19 +180,10 @@ impl<T: Real> Blocks<T> {
         sum
     }
 
-    /// The pairs of faces that are one, by the identity of all their vertices.
-    pub fn interfaces(&self) -> Vec<Interface> {
+    /// Where blocks meet, by the identity of their vertices, ordered by the first sides; and the
+    /// parts of faces that bound the whole.
+    pub fn interfaces(&self) -> (Vec<Interface>, Vec<Boundary>) {
         super::interface::find(&self.blocks)
-    }
-
-    /// The faces (block, 0..6) that bound the whole: those of no interface that are not a line or
-    /// a point, in order.
-    pub fn boundary(&self) -> Vec<(usize, usize)> {
-        let inner: Vec<(usize, usize)> = self.interfaces().iter().flat_map(|i| i.sides).collect();
-        let all = (0..self.blocks.len()).flat_map(|b| (0..6).map(move |f| (b, f)));
-        all.filter(|side| !inner.contains(side))
-            .filter(|&(b, f)| !self.blocks[b].face_panels(f).is_empty())
-            .collect()
     }
 
     /// The blocks of real parts.

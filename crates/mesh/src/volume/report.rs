@@ -95,7 +95,7 @@ impl Blocks<f64> {
         BlocksReport {
             vertices: used.iter().filter(|&&u| u).count(),
             cells: self.cell_count(),
-            interfaces: self.interfaces().len(),
+            interfaces: self.interfaces().0.len(),
             volume: blocks.iter().map(|b| b.volume).sum(),
             blocks,
         }

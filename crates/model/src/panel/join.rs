@@ -199,6 +199,12 @@ impl UnionFind {
         Self { parent: (0..n as u32).collect() }
     }
 
+    /// One more set, of one number, which is returned.
+    pub fn push(&mut self) -> u32 {
+        self.parent.push(self.parent.len() as u32);
+        self.parent.len() as u32 - 1
+    }
+
     pub fn find(&mut self, mut v: u32) -> u32 {
         while self.parent[v as usize] != v {
             let above = self.parent[self.parent[v as usize] as usize];

@@ -1,0 +1,99 @@
+"""CGNS files of volume blocks: structured zones, one-to-one interfaces, named boundaries."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import cgns
+from moldloft.errors import Error
+
+if TYPE_CHECKING:
+    from moldloft.blocks import Blocks
+
+__all__ = ["write"]
+
+_KINDS = {"symmetry": "BCSymmetryPlane", "wall": "BCWall"}
+
+
+def write(blocks: Blocks, title: str) -> bytes:
+    """The file: a zone per block.
+
+    Interfaces are written from both sides. What meets nothing is a boundary of the family of its
+    name: a wall where it is a surface object, a symmetry plane where it lies in one.
+
+    Parameters
+    ----------
+    blocks
+        The blocks.
+    title
+        The name of the base.
+    """
+    try:
+        import h5py  # type: ignore[import-untyped]
+    except ImportError as error:
+        raise Error("error: CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
+    points = blocks.vertices
+    if not np.isfinite(points).all():
+        raise Error("error: cannot write cgns: a position is not a finite number")
+    taken: set[str] = set()
+    zones = [cgns.unique(block.name, taken) for block in blocks.blocks]
+    families: dict[str, str] = {}
+    for free in blocks.boundaries:
+        if free.name not in families:
+            families[free.name] = cgns.unique(free.name, taken)
+    memory = io.BytesIO()
+    with h5py.File(memory, "w", track_order=True) as file:
+        base = cgns.begin(file, title, 3)
+        for free in blocks.boundaries:
+            if families[free.name] in base:
+                continue
+            family = cgns.node(base, families[free.name], "Family_t")
+            cgns.node(family, "FamilyBC", "FamilyBC_t", _KINDS.get(free.kind, "UserDefined"))
+        for number, block in enumerate(blocks.blocks):
+            size = np.array(block.indices.shape, dtype=np.int32)
+            sizes = np.array([size, size - 1, 0 * size], dtype=np.int32)
+            zone = cgns.node(base, zones[number], "Zone_t", sizes)
+            cgns.node(zone, "ZoneType", "ZoneType_t", "Structured")
+            grid = cgns.node(zone, "GridCoordinates", "GridCoordinates_t")
+            for axis, letter in enumerate("XYZ"):
+                # Fortran's order: i fastest, so the transpose of ours.
+                values = np.ascontiguousarray(block.points[..., axis].T) + 0.0
+                cgns.node(grid, f"Coordinate{letter}", "DataArray_t", values)
+            _joints(zone, blocks, zones, number)
+            _boundaries(zone, blocks, families, number)
+    return memory.getvalue()
+
+
+def _range(parent: Any, name: str, begin: Sequence[int], end: Sequence[int]) -> None:
+    ends = np.array([begin, end], dtype=np.int32) + np.int32(1)
+    cgns.node(parent, name, "IndexRange_t", ends)
+
+
+def _joints(zone: Any, blocks: Blocks, zones: Sequence[str], number: int) -> None:
+    seen = [joint for joint in blocks.interfaces if joint.block == number]
+    seen += [joint.reversed() for joint in blocks.interfaces if joint.donor == number]
+    if not seen:
+        return
+    group = cgns.node(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
+    for k, joint in enumerate(seen, 1):
+        one = cgns.node(group, f"join{k}", "GridConnectivity1to1_t", zones[joint.donor])
+        _range(one, "PointRange", joint.begin, joint.end)
+        _range(one, "PointRangeDonor", joint.donor_begin, joint.donor_end)
+        transform = np.array(joint.transform, dtype=np.int32)
+        cgns.node(one, "Transform", '"int[IndexDimension]"', transform)
+
+
+def _boundaries(zone: Any, blocks: Blocks, families: dict[str, str], number: int) -> None:
+    seen = [free for free in blocks.boundaries if free.block == number]
+    if not seen:
+        return
+    group = cgns.node(zone, "ZoneBC", "ZoneBC_t")
+    for k, free in enumerate(seen, 1):
+        name = ("u0", "u1", "v0", "v1", "w0", "w1")[free.face]
+        one = cgns.node(group, f"{name}_{k}", "BC_t", "FamilySpecified")
+        _range(one, "PointRange", free.begin, free.end)
+        cgns.node(one, "FamilyName", "FamilyName_t", families[free.name])
