@@ -11,8 +11,10 @@
 mod algebra;
 mod blend;
 mod bounds;
+mod cache;
 mod error;
 mod facet;
+mod foot;
 mod form;
 mod interval;
 mod kinds;
@@ -40,32 +42,16 @@ pub use error::FieldError;
 pub use facet::{Facets, Options, Resolution, crossing_faces, facet, refacet};
 pub use form::Form;
 pub use interval::Interval;
-pub use lifted::Lifted;
+pub use lifted::{Lifted, Lifter, On};
 pub use mass::{Mass, Moments, bracket, mass};
 pub use nearest::{Contour, Nearest, nearest};
 pub use oracle::{Affine, Oracle};
 pub use primitive::{Binary, Primitive};
 pub use ray::{Hit, Ray, roots};
 pub use set::{Attributes, Leaf, Membership, Set};
-pub use sheets::{Mixed, Sheet, Wire, facet_mixed};
+pub use sheets::{Dot, Mixed, Sheet, Wire, facet_mixed};
 
-use moldloft_registry::Row;
-use moldloft_registry::export::StaticRow;
-
-/// The primitives as rows of the registry, in the order of the reference.
-///
-/// # Example
-/// ```
-/// let rows = moldloft_field::rows();
-/// assert!(rows.iter().any(|row| row.name == "torus"));
-/// ```
-pub fn rows() -> Vec<Row> {
-    vec![
-        kinds::HalfSpace::<f64>::row(),
-        kinds::Sphere::<f64>::row(),
-        kinds::Cylinder::<f64>::row(),
-        kinds::Cone::<f64>::row(),
-        kinds::Torus::<f64>::row(),
-        kinds::Cyclide::<f64>::row(),
-    ]
-}
+pub use kinds::read::{field_value, primitive_of, set_of, set_value};
+pub use kinds::rows;
+pub use kinds::body::{Pieces, facets_of};
+pub use kinds::region::around;

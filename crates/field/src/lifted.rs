@@ -1,17 +1,137 @@
 //! How facets move when parameters change: their vertices and moments as numbers with derivatives.
 
-use crate::{Facets, FieldError, Gradient, Moments, Primitive, Set};
+use crate::{Facets, FieldError, Gradient, Leaf, Moments, Primitive, Set};
 use moldloft_mesh::Mesh;
 use moldloft_num::{Real, Vec3};
 use smallvec::SmallVec;
 
-/// Facets whose numbers carry derivatives; the real parts are those of the plain ones to rounding.
+/// Facets whose numbers carry derivatives; the real parts are those of the plain ones.
 #[derive(Clone, Debug)]
 pub struct Lifted<T: Real> {
     /// The mesh, on the plain one's topology.
     pub mesh: Mesh<T>,
     /// The body's moments.
     pub moments: Moments<T>,
+}
+
+/// The primitives of a set as they are with plain numbers, and as they are with derivatives.
+pub struct Lifter<T: Real> {
+    pairs: Vec<(Primitive<f64>, Primitive<T>)>,
+    corners: Option<[Vec3<T>; 2]>,
+}
+
+impl<T: Real> Lifter<T> {
+    /// Of a set, within a box whose corners move as given.
+    pub fn new(set: &Set<T>, corners: Option<[Vec3<T>; 2]>) -> Self {
+        let plain = set.re().traversal();
+        let pairs = plain.into_iter().zip(set.traversal()).collect();
+        Self { pairs, corners }
+    }
+
+    /// The primitive of a leaf with derivatives: one of the set, its complement or what it is a sheet
+    /// of, or a face of the box.
+    fn primitive(&self, leaf: &Leaf) -> Option<Primitive<T>> {
+        let wanted = &leaf.primitive;
+        for (plain, lifted) in &self.pairs {
+            for (p, q) in [(plain, lifted), (plain.of_sheet(), lifted.of_sheet())] {
+                if p.same(wanted) {
+                    return Some(q.clone());
+                }
+                if (-p).same(wanted) {
+                    return Some(-q);
+                }
+            }
+        }
+        // A face of the box: +-(coordinate - constant).
+        let g = wanted.gradient(Vec3::zero());
+        let axis = (0..3).find(|&k| g.slope[k].abs() == 1.0 && g.slope.norm() == 1.0)?;
+        let offset = match &self.corners {
+            Some([_, high]) if g.slope[axis] > 0.0 => -high[axis],
+            Some([low, _]) => low[axis],
+            None => T::from(g.value),
+        };
+        (offset.re() == g.value).then(|| Primitive::linear(Vec3::lifted(g.slope), offset))
+    }
+
+    /// The vertices of facets; see [`Facets::lifted`].
+    ///
+    /// # Errors
+    /// Facets of another set.
+    pub fn positions(&self, facets: &Facets) -> Result<Vec<Vec3<T>>, FieldError> {
+        let primitives = self.primitives(facets)?;
+        Ok(moved(facets.mesh.positions(), &facets.surfaces, &primitives))
+    }
+
+    /// Points that lie on surfaces of the set.
+    ///
+    /// # Errors
+    /// Surfaces that are not the set's.
+    pub fn moved_on(&self, points: &[Vec3], on: &On) -> Result<Vec<Vec3<T>>, FieldError> {
+        let primitives = self.those_of(&on.leaves, on.surfaces.iter().flatten().copied())?;
+        Ok(moved(points, &on.surfaces, &primitives))
+    }
+
+    fn primitives(&self, facets: &Facets) -> Result<Vec<Option<Primitive<T>>>, FieldError> {
+        let shown = facets.patch_leaves.iter().map(|&leaf| leaf as u32);
+        self.those_of(&facets.leaves, facets.surfaces.iter().flatten().copied().chain(shown))
+    }
+
+    /// The primitives of those leaves that are in use.
+    fn those_of(
+        &self,
+        leaves: &[Leaf],
+        in_use: impl Iterator<Item = u32>,
+    ) -> Result<Vec<Option<Primitive<T>>>, FieldError> {
+        let mut used = vec![false; leaves.len()];
+        in_use.for_each(|leaf| used[leaf as usize] = true);
+        let foreign = FieldError::Degenerate { what: "set: it is not the one of these facets" };
+        let each = leaves.iter().zip(used).map(|(leaf, used)| match used {
+            true => self.primitive(leaf).map(Some).ok_or_else(|| foreign.clone()),
+            false => Ok(None),
+        });
+        each.collect()
+    }
+}
+
+/// On which leaves each of some points lies.
+#[derive(Clone, Debug, Default)]
+pub struct On {
+    /// The leaves.
+    pub leaves: Vec<Leaf>,
+    /// For each point, numbers of leaves.
+    pub surfaces: Vec<SmallVec<[u32; 3]>>,
+}
+
+fn moved<T: Real>(
+    points: &[Vec3],
+    surfaces: &[SmallVec<[u32; 3]>],
+    primitives: &[Option<Primitive<T>>],
+) -> Vec<Vec3<T>> {
+    // Plain numbers are where they are.
+    if T::PARTS == 1 {
+        return points.iter().map(|p| Vec3::lifted(*p)).collect();
+    }
+    let mut values = Vec::new();
+    let mut positions = Vec::with_capacity(surfaces.len());
+    for (plain, surfaces) in points.iter().zip(surfaces) {
+        let p = Vec3::lifted(*plain);
+        let rows: SmallVec<[(Vec3<T>, T); 3]> = surfaces
+            .iter()
+            .filter_map(|&leaf| {
+                let tape = primitives[leaf as usize].as_ref()?.tape();
+                let g = tape.eval::<Gradient<T>>(&p, &mut values);
+                Some((g.slope, g.value))
+            })
+            .collect();
+        positions.push(moved_by(*plain, shortest(&rows)));
+    }
+    positions
+}
+
+/// The point with the derivatives of a step; the step's real part is a rounding residue.
+pub(crate) fn moved_by<T: Real>(plain: Vec3, step: Vec3<T>) -> Vec3<T> {
+    let part = |x: f64, d: T| T::from_parts(|k| if k == 0 { x } else { d.part(k) });
+    Vec3::new(part(plain.x, step.x), part(plain.y, step.y), part(plain.z, step.z))
 }
 
 impl Facets {
@@ -25,51 +145,24 @@ impl Facets {
     /// # Errors
     /// [`FieldError::Degenerate`] when the set is not of the same parts.
     pub fn lifted<T: Real>(&self, set: &Set<T>) -> Result<Lifted<T>, FieldError> {
-        let foreign = FieldError::Degenerate { what: "set: it is not the one of these facets" };
-        let primitives = self.primitives_of(set).ok_or(foreign.clone())?;
-        let mut values = Vec::new();
-        let mut positions = Vec::with_capacity(self.surfaces.len());
-        for (p, surfaces) in self.mesh.positions().iter().zip(&self.surfaces) {
-            let p = Vec3::lifted(*p);
-            let rows: SmallVec<[(Vec3<T>, T); 3]> = surfaces
-                .iter()
-                .map(|&leaf| {
-                    let tape = primitives[leaf as usize].tape();
-                    let g = tape.eval::<Gradient<T>>(&p, &mut values);
-                    (g.slope, g.value)
-                })
-                .collect();
-            positions.push(p + shortest(&rows));
-        }
-        let moments = self.moments_of(&positions, &primitives.iter().collect::<Vec<_>>());
-        let mesh = Mesh::new(self.mesh.topology().clone(), positions).map_err(|_| foreign)?;
-        Ok(Lifted { mesh, moments })
+        self.lifted_by(&Lifter::new(set, None))
     }
 
-    /// The primitives of `set` in the order of these leaves, the box's faces after them.
-    fn primitives_of<T: Real>(&self, set: &Set<T>) -> Option<Vec<Primitive<T>>> {
-        let caps = self.leaves.len().checked_sub(self.own_leaves)?;
-        let places = set.re().compiled().places;
-        let all = set.traversal();
-        if places.len() != all.len() {
-            return None;
-        }
-        let mut out: Vec<Option<Primitive<T>>> = vec![None; self.own_leaves];
-        for (primitive, place) in all.into_iter().zip(places) {
-            let slot = out.get_mut(place as usize)?;
-            if slot.is_none() {
-                if !primitive.re().same(&self.leaves[place as usize].primitive) {
-                    return None;
-                }
-                *slot = Some(primitive);
-            }
-        }
-        let mut out = out.into_iter().collect::<Option<Vec<_>>>()?;
-        for cap in &self.leaves[self.leaves.len() - caps..] {
-            let g = cap.primitive.gradient(Vec3::zero());
-            out.push(Primitive::linear(Vec3::lifted(g.slope), T::from(g.value)));
-        }
-        Some(out)
+    /// As [`Facets::lifted`].
+    ///
+    /// # Errors
+    /// As [`Facets::lifted`].
+    pub fn lifted_by<T: Real>(&self, lifter: &Lifter<T>) -> Result<Lifted<T>, FieldError> {
+        let primitives = lifter.primitives(self)?;
+        let positions = moved(self.mesh.positions(), &self.surfaces, &primitives);
+        // Leaves that do not show are of no concern.
+        let constant = Primitive::real(T::one());
+        let shown: Vec<&Primitive<T>> =
+            primitives.iter().map(|p| p.as_ref().unwrap_or(&constant)).collect();
+        let moments = self.moments_of(&positions, &shown);
+        let foreign = FieldError::Degenerate { what: "set: it is not the one of these facets" };
+        let mesh = Mesh::new(self.mesh.topology().clone(), positions).map_err(|_| foreign)?;
+        Ok(Lifted { mesh, moments })
     }
 }
 

@@ -245,6 +245,31 @@ impl<T: Real> Set<T> {
         self.with(Attributes { name: Some(name.to_owned()), ..Attributes::default() })
     }
 
+    /// The set with names for those of its primitives that have none.
+    pub(crate) fn with_names(&self, name: &dyn Fn(&Primitive<T>) -> Option<String>) -> Self {
+        let leaf = |p: &Primitive<T>| {
+            let set = Self::of(Kind::Leaf(p.clone()), Vec::new());
+            match name(p) {
+                Some(name) => set.named(&name),
+                None => set,
+            }
+        };
+        self.rebuilt(&leaf, false, &Self::combined)
+    }
+
+    /// True when both are the same combination of the same primitives, with the same attributes.
+    pub fn same(&self, o: &Self) -> bool {
+        if self.is(o) && self.attributes == o.attributes {
+            return true;
+        }
+        let (a, b) = (self.compiled(), o.compiled());
+        let said = |c: &Compiled<T>| c.leaves.iter().map(|l| l.attributes.clone()).collect::<Vec<_>>();
+        a.places == b.places
+            && a.tape.leaf == b.tape.leaf
+            && a.tape.same(&b.tape)
+            && said(&a) == said(&b)
+    }
+
     /// What this handle says of the set.
     pub fn attributes(&self) -> Option<&Attributes> {
         self.attributes.as_deref()

@@ -7,6 +7,7 @@
 //! solid. Likewise a wire is the edge between two sheets, and a point the corner of three.
 
 use crate::facet::{Facets, Options, facet};
+use crate::lifted::On;
 use crate::{FieldError, Primitive, Set};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
@@ -19,10 +20,12 @@ pub struct Sheet {
     pub mesh: Mesh,
     /// The number of its leaf among [`Set::leaves`].
     pub leaf: usize,
+    /// What its vertices lie on.
+    pub on: On,
 }
 
 /// A curve in which two sheets meet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Wire {
     /// Its vertices in order; the first is not repeated when it is closed.
     pub points: Vec<Vec3>,
@@ -30,6 +33,19 @@ pub struct Wire {
     pub closed: bool,
     /// The numbers of its two leaves.
     pub leaves: [usize; 2],
+    /// What its vertices lie on.
+    pub on: On,
+}
+
+/// A point where three sheets meet.
+#[derive(Clone, Debug)]
+pub struct Dot {
+    /// Where it is.
+    pub point: Vec3,
+    /// The numbers of its three leaves.
+    pub leaves: [usize; 3],
+    /// What it lies on.
+    pub on: On,
 }
 
 impl Wire {
@@ -52,8 +68,8 @@ pub struct Mixed {
     pub sheets: Vec<Sheet>,
     /// The wires, in the order of their leaves.
     pub wires: Vec<Wire>,
-    /// The points where three sheets meet, each with the numbers of their leaves.
-    pub points: Vec<(Vec3, [usize; 3])>,
+    /// The points where three sheets meet.
+    pub points: Vec<Dot>,
 }
 
 /// The set with its sheets replaced: those of `kept` by everything, others by nothing.
@@ -113,8 +129,8 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
             PatchInfo::new(name.unwrap_or_else(|| leaf(k).of_sheet().form().name().to_owned()))
                 .coloured(leaves[k].attributes.colour)
                 .of_kind(leaf(k).of_sheet().form().name());
-        if let Some(mesh) = patch_of(&facets, leaf(k).of_sheet(), info)? {
-            sheets.push(Sheet { mesh, leaf: k });
+        if let Some((mesh, on)) = patch_of(&facets, leaf(k).of_sheet(), info)? {
+            sheets.push(Sheet { mesh, leaf: k, on });
         }
     }
     let mut wires = Vec::new();
@@ -130,8 +146,11 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
             if !here.is_nothing() {
                 let facets = facet(&(half(a) & half(b) & here), over, options)?;
                 let pair = [leaf(a).of_sheet(), leaf(b).of_sheet()];
-                for (points, closed) in chains(&facets, pair) {
-                    wires.push(Wire { points, closed, leaves: [a, b] });
+                for (chain, closed) in chains(&facets, pair) {
+                    let at = |v: &u32| facets.mesh.positions()[*v as usize];
+                    let points = chain.iter().map(at).collect();
+                    let on = lying_on(&facets, &chain);
+                    wires.push(Wire { points, closed, leaves: [a, b], on });
                 }
             }
             for &c in thin.iter().skip(j + 1) {
@@ -142,12 +161,22 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
                 if !here.is_nothing() {
                     let facets = facet(&(half(a) & half(b) & half(c) & here), over, options)?;
                     let three = [a, b, c].map(|k| leaf(k).of_sheet());
-                    points.extend(corners(&facets, three).into_iter().map(|p| (p, [a, b, c])));
+                    for v in corners(&facets, three) {
+                        let (point, on) =
+                            (facets.mesh.positions()[v as usize], lying_on(&facets, &[v]));
+                        points.push(Dot { point, leaves: [a, b, c], on });
+                    }
                 }
             }
         }
     }
     Ok(Mixed { solid, sheets, wires, points })
+}
+
+/// What some vertices of facets lie on.
+fn lying_on(facets: &Facets, vertices: &[u32]) -> On {
+    let surfaces = vertices.iter().map(|&v| facets.surfaces[v as usize].clone()).collect();
+    On { leaves: facets.leaves.clone(), surfaces }
 }
 
 /// The number of a primitive among the leaves of facets.
@@ -156,17 +185,23 @@ fn number(facets: &Facets, f: &Primitive) -> Option<u32> {
 }
 
 /// The faces of one primitive as a mesh of their own.
-fn patch_of(facets: &Facets, f: &Primitive, info: PatchInfo) -> Result<Option<Mesh>, FieldError> {
+fn patch_of(
+    facets: &Facets,
+    f: &Primitive,
+    info: PatchInfo,
+) -> Result<Option<(Mesh, On)>, FieldError> {
     let Some(leaf) = number(facets, f) else { return Ok(None) };
     let patch = facets.patch_leaves.iter().position(|&l| l == leaf as usize);
     let Some(patch) = patch.map(|k| &facets.mesh.patches()[k]) else { return Ok(None) };
     let mut numbers: HashMap<u32, u32> = HashMap::new();
     let mut positions = Vec::new();
+    let mut used = Vec::new();
     let mut faces = Vec::with_capacity(patch.faces.len());
     for face in &facets.mesh.faces()[patch.faces.clone()] {
         faces.push(face.map(|v| {
             *numbers.entry(v).or_insert_with(|| {
                 positions.push(facets.mesh.positions()[v as usize]);
+                used.push(v);
                 positions.len() as u32 - 1
             })
         }));
@@ -176,11 +211,12 @@ fn patch_of(facets: &Facets, f: &Primitive, info: PatchInfo) -> Result<Option<Me
     let mut builder = TopologyBuilder::new();
     builder.add_vertices(positions.len()).map_err(broken)?;
     builder.add_faces(info, faces).map_err(broken)?;
-    Ok(Some(Mesh::new(builder.build().into(), positions).map_err(broken)?))
+    let mesh = Mesh::new(builder.build().into(), positions).map_err(broken)?;
+    Ok(Some((mesh, lying_on(facets, &used))))
 }
 
 /// The edges between the faces of two primitives, chained, in the order of their lowest vertex.
-fn chains(facets: &Facets, pair: [&Primitive; 2]) -> Vec<(Vec<Vec3>, bool)> {
+fn chains(facets: &Facets, pair: [&Primitive; 2]) -> Vec<(Vec<u32>, bool)> {
     let [Some(a), Some(b)] = pair.map(|f| number(facets, f)) else { return Vec::new() };
     let mut sides: HashMap<(u32, u32), u32> = HashMap::new();
     let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
@@ -227,29 +263,27 @@ fn chains(facets: &Facets, pair: [&Primitive; 2]) -> Vec<(Vec<Vec3>, bool)> {
             }
             let last = chain[chain.len() - 1];
             let closed = chain.len() > 2 && next[&last].contains(&start);
-            let points = chain.iter().map(|&v| facets.mesh.positions()[v as usize]).collect();
-            out.push((points, closed));
+            out.push((chain, closed));
         }
     }
     out
 }
 
 /// The vertices that lie on three primitives.
-fn corners(facets: &Facets, three: [&Primitive; 3]) -> Vec<Vec3> {
+fn corners(facets: &Facets, three: [&Primitive; 3]) -> Vec<u32> {
     let found = three.map(|f| number(facets, f));
     let [Some(a), Some(b), Some(c)] = found else { return Vec::new() };
-    let positions = facets.mesh.positions().iter().zip(&facets.surfaces);
-    let mut out: Vec<Vec3> = positions
-        .filter(|(_, s)| [a, b, c].iter().all(|k| s.contains(k)))
-        .map(|(p, _)| *p)
-        .collect();
+    let on_all = |s: &[u32]| [a, b, c].iter().all(|k| s.contains(k));
+    let vertices = facets.surfaces.iter().enumerate();
+    let mut out: Vec<u32> = vertices.filter(|(_, s)| on_all(s)).map(|(v, _)| v as u32).collect();
     // Cells beside a corner may each have found it.
     let near = 1e-9 * facets.step;
-    let mut kept: Vec<Vec3> = Vec::new();
-    out.retain(|p| {
-        let new = kept.iter().all(|q| p.distance(*q) > near);
+    let at = |v: u32| facets.mesh.positions()[v as usize];
+    let mut kept: Vec<u32> = Vec::new();
+    out.retain(|&v| {
+        let new = kept.iter().all(|&q| at(v).distance(at(q)) > near);
         if new {
-            kept.push(*p);
+            kept.push(v);
         }
         new
     });

@@ -10,7 +10,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Array, Class, CurveRef, FieldRef, Given, Scalar, SurfaceRef, Value, Vectors, arrange, many,
+    Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, arrange, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
@@ -98,7 +98,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The value with every object in it replaced by its own value, evaluated now.
     pub fn read(&mut self, value: Value<T>, span: Span) -> Evaluated<T> {
         match value {
-            Value::Object(key) => self.run.force(key).map_err(|failure| {
+            Value::Object(key) => self.forced(key).map_err(|failure| {
                 let root = match failure {
                     Failure::Blocked { by } => by,
                     Failure::Fault(_) => key,
@@ -696,21 +696,12 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
             Ok(row((0..n).map(at).collect()))
         }
         (Value::Solid(_), _) => Err(count("three parameters u, v and w, as in s(0.5, 0.25, 0.75)")),
-        (Value::Field(field), [p]) => {
-            let value = |f: &FieldRef<T>, p: Vec3<T>| f.value(p);
-            match p {
-                Value::Vector(p) => Ok(Value::Number(value(field, *p))),
-                Value::Point(p) => Ok(Value::Number(value(field, p.xyz))),
-                other => Err(Diagnostic::error("wrong-type", "a field is asked at a point")
-                    .expected("a point or vector")
-                    .found(other.class().a())),
-            }
-        }
-        (Value::Field(_), _) => Err(count("one point, as in f({1, 2, 3})")),
+        (Value::Field(_) | Value::Set(_), [p]) => crate::sets::at(value, p),
+        (Value::Field(_) | Value::Set(_), _) => Err(count("one point, as in f({1, 2, 3})")),
         (other, _) => {
             let class = other.class().a();
             Err(Diagnostic::error("not-callable", format!("{class} cannot be called"))
-                .expected("a curve, surface, relabel, field or function")
+                .expected("a curve, surface, relabel, field, set or function")
                 .found(class))
         }
     }

@@ -11,7 +11,7 @@ use moldloft_num::trace::Key;
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
-    AssignOp, ChainItem, Declarator, ExprId, ExprKind, Ident, List, StmtId, StmtKind, Type,
+    AssignOp, ChainItem, Declarator, ExprId, ExprKind, Ident, List, StmtId, StmtKind, Symbol, Type,
 };
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -92,6 +92,11 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub executed: HashSet<usize>,
     /// Sketch files that were brought in.
     pub sketches_done: HashSet<String>,
+    /// Objects that the expression under way has read, while that is to be noted.
+    pub reads: Vec<Key>,
+    pub noting_reads: bool,
+    /// The names that statements of a module assign to, by module.
+    pub assigned: HashMap<usize, HashSet<Symbol>>,
     /// Names that are declared somewhere in the main file: for hints at what comes later.
     pub(crate) current: usize,
 }
@@ -127,6 +132,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             blocked: HashSet::new(),
             executed: HashSet::new(),
             sketches_done: HashSet::new(),
+            reads: Vec::new(),
+            noting_reads: false,
+            assigned: HashMap::new(),
             current: 0,
         }
     }
@@ -334,7 +342,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     if self.is_given(m.names[item.name.symbol.0 as usize]) {
                         continue;
                     }
-                    if let Err(diagnostic) = self.declare(m, global, ty.0, ty.1, item) {
+                    if let Err(diagnostic) = self.declare(m, id, global, ty, item) {
                         self.report(diagnostic.or_at(item.name.span));
                         self.poison(m, item.name);
                     }
@@ -592,11 +600,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     fn declare(
         &mut self,
         m: &Module,
+        id: StmtId,
         global: bool,
-        ty: Type,
-        ty_span: Span,
+        (ty, ty_span): (Type, Span),
         item: &Declarator,
     ) -> Result<(), Diagnostic> {
+        let object = self.makes_object(m, ty, item);
         if let Type::Other(symbol) = ty {
             return Err(self.unknown_type(m.program.name(symbol)).at(ty_span));
         }
@@ -608,12 +617,18 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let value = match item.value {
             Some(expr) => {
                 let span = m.program[expr].span;
-                let value = self.expr(m, expr)?;
-                let value = self.read(value, span)?;
-                Some(variables::converted(ty, value).map_err(|d| d.or_at(span))?)
+                let value = self.noting(object, |this| {
+                    let value = this.expr(m, expr)?;
+                    this.read(value, span)
+                })?;
+                let value = variables::converted(ty, value).map_err(|d| d.or_at(span))?;
+                Some(crate::sets::called(ty, value, m.program.name(item.name.symbol)))
             }
             None => None,
         };
+        if let (true, Some(value)) = (object, &value) {
+            return self.implicit_object(m, id, ty, item, value.clone());
+        }
         if !dims.is_empty() {
             let count = dims.iter().fold(1usize, |count, &n| count.saturating_mul(n));
             let held = self.held.saturating_add(count);
@@ -635,9 +650,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     }
 
     fn unknown_type(&self, word: &str) -> Diagnostic {
-        const TYPES: [&str; 11] = [
+        const TYPES: [&str; 12] = [
             "int", "float", "string", "vector", "farray", "curve", "surface", "pcurve", "psurface",
-            "field", "param",
+            "field", "set", "param",
         ];
         Diagnostic::error("unknown-type", format!("there is no type `{word}`"))
             .suggest(word, TYPES)
@@ -827,10 +842,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         nearest(word, variables.chain(functions)).map(str::to_string)
     }
 
-    /// True when a chain of operators has a set or field among its operands.
+    /// True when a chain of operators has a set among its operands. Fields are functions, and grouped as
+    /// numbers are.
     pub fn has_set(&self, items: &[ChainItem], values: &HashMap<ExprId, Value<T>>) -> bool {
         items.iter().any(|item| match item {
-            ChainItem::Operand(expr) => matches!(values.get(expr), Some(Value::Field(_))),
+            ChainItem::Operand(expr) => matches!(values.get(expr), Some(Value::Set(_))),
             _ => false,
         })
     }

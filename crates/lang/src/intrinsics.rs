@@ -29,7 +29,10 @@ fn not_a_number<T: Real>(value: &Value<T>, field: usize) -> Fault {
         .in_field(field)
 }
 
-fn each<T: Real>(value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault> {
+fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault> {
+    if let Some(field) = crate::sets::function(name, value) {
+        return field;
+    }
     match value {
         Value::Number(x) => Ok(Value::Number(f(*x))),
         Value::Numbers(a) => {
@@ -63,7 +66,14 @@ fn pairs<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Result<V
 }
 
 /// All numbers of the arguments: of `max(a)`, of `max(a, b, c)`.
-fn reduced<T: Real>(args: &[Value<T>], f: impl Fn(T, T) -> T) -> Result<Value<T>, Fault> {
+fn reduced<T: Real>(
+    name: &str,
+    args: &[Value<T>],
+    f: impl Fn(T, T) -> T,
+) -> Result<Value<T>, Fault> {
+    if let Some(field) = crate::sets::functions(name, args) {
+        return field;
+    }
     let mut numbers = Vec::new();
     for (k, arg) in args.iter().enumerate() {
         match arg {
@@ -101,9 +111,9 @@ macro_rules! unary {
     ($($name:literal, $doc:literal, $f:expr;)*) => {
         [$({
             fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
-                each(&args[0], $f)
+                each($name, &args[0], $f)
             }
-            row!($name, $doc, vec![argument("x", "A number or a row of numbers.")],
+            row!($name, $doc, vec![argument("x", "A number, a row of numbers or a field.")],
                 "assert sin(0) == 0;", body)
         }),*]
     };
@@ -113,7 +123,10 @@ macro_rules! binary {
     ($($name:literal, $doc:literal, $a:literal, $b:literal, $f:expr;)*) => {
         [$({
             fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
-                pairs(&args[0], &args[1], $f)
+                match crate::sets::functions($name, args) {
+                    Some(field) => field,
+                    None => pairs(&args[0], &args[1], $f),
+                }
             }
             row!($name, $doc, vec![argument($a, "A number or a row."), argument($b, "A number or a row.")],
                 "assert hypot(3, 4) == 5;", body)
@@ -142,13 +155,13 @@ fn several() -> Vec<Field> {
 /// The rows of this file.
 pub fn rows() -> Vec<Row> {
     fn least<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
-        reduced(args, T::min)
+        reduced("min", args, T::min)
     }
     fn greatest<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
-        reduced(args, T::max)
+        reduced("max", args, T::max)
     }
     fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
-        reduced(args, |a, b| a + b)
+        reduced("sum", args, |a, b| a + b)
     }
     let mut rows = Vec::new();
     rows.extend(unary! {
@@ -165,7 +178,8 @@ pub fn rows() -> Vec<Row> {
         "sinh", "Hyperbolic sine.", T::sinh;
         "cosh", "Hyperbolic cosine.", T::cosh;
         "tanh", "Hyperbolic tangent.", T::tanh;
-        "abs", "Absolute value.", T::abs;
+        "abs", "Absolute value; of a field its sheet, which has no solid side.", T::abs;
+        "s_sqrt", "sgn(x) sqrt|x|.", |x: T| if x.re() < 0.0 { -(-x).sqrt() } else { x.sqrt() };
         "floor", "The greatest whole number that is not greater.", |x: T| step(x, f64::floor);
         "ceil", "The least whole number that is not less.", |x: T| step(x, f64::ceil);
         "round", "The nearest whole number; halves away from zero.", |x: T| step(x, f64::round);

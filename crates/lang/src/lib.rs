@@ -42,6 +42,7 @@ mod program;
 mod rename;
 mod routine;
 mod sections;
+mod sets;
 pub mod show;
 mod sketch_file;
 mod sketches;
@@ -66,6 +67,7 @@ use moldloft_registry::Registry;
 /// All rows of the project: every crate's list, joined.
 pub fn registry() -> Registry {
     let rows = moldloft_relational::rows().into_iter().chain(moldloft_fair::rows());
-    let rows = rows.chain(moldloft_sketch::entity::rows()).chain(moldloft_arrays::rows());
+    let rows = rows.chain(moldloft_field::rows()).chain(moldloft_sketch::entity::rows());
+    let rows = rows.chain(moldloft_arrays::rows());
     Registry::new(rows.chain(intrinsics::rows()).chain(header::rows()))
 }

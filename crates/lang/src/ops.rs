@@ -144,6 +144,9 @@ pub(crate) fn binary<T: Real>(
     b: &Value<T>,
 ) -> Result<Value<T>, Diagnostic> {
     use Elements::*;
+    if let Some(outcome) = crate::sets::binary(op, a, b) {
+        return outcome;
+    }
     let word = op.spelling();
     let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
     let undefined = || {
@@ -212,7 +215,6 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
             BinaryOp::Ne => a != b,
             _ => return Err(unsupported(op, "texts")),
         },
-        (Value::Field(_), _) | (_, Value::Field(_)) => return Err(unsupported(op, "fields")),
         _ => {
             let found = format!("{} and {}", a.class().a(), b.class().a());
             return Err(Diagnostic::error(
@@ -237,6 +239,9 @@ fn unsupported(op: BinaryOp, what: &str) -> Diagnostic {
 
 /// `-a`.
 pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    if let Some(value) = crate::sets::negated(a) {
+        return Ok(value);
+    }
     Ok(match elements(a, "-")? {
         Elements::Number(x) => Value::Number(-x),
         Elements::Vector(v) => Value::Vector(-v),
@@ -247,6 +252,9 @@ pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
 
 /// `|a|`: the length of vectors, the absolute value of numbers.
 pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    if let Some(value) = crate::sets::magnitude(a) {
+        return Ok(value);
+    }
     Ok(match elements(a, "|")? {
         Elements::Number(x) => Value::Number(x.abs()),
         Elements::Vector(v) => Value::Number(v.norm()),

@@ -45,6 +45,7 @@ pub(crate) fn type_of<T: Real>(value: &Value<T>) -> Type {
         Value::Curve(_) => Type::Pcurve,
         Value::Surface(_) => Type::Psurface,
         Value::Field(_) => Type::Field,
+        Value::Set(_) => Type::Set,
         _ => Type::Float,
     }
 }
@@ -93,7 +94,21 @@ pub(crate) fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, 
         | (Type::Farray, value @ Value::Numbers(_))
         | (Type::Pcurve, value @ Value::Curve(_))
         | (Type::Psurface, value @ Value::Surface(_))
-        | (Type::Field, value @ Value::Field(_)) => value,
+        | (Type::Field, value @ Value::Field(_))
+        | (Type::Set, value @ Value::Set(_)) => value,
+        // A plane stands for its half-space, a number for a constant, a field for its solid side.
+        (Type::Field, value @ (Value::Plane(_) | Value::Number(_))) => {
+            match moldloft_field::primitive_of(&value) {
+                Some(f) => moldloft_field::field_value(f),
+                None => return Err(wrong(&value)),
+            }
+        }
+        (Type::Set, value @ (Value::Field(_) | Value::Plane(_))) => {
+            match moldloft_field::set_of(&value) {
+                Some(s) => moldloft_field::set_value(s),
+                None => return Err(wrong(&value)),
+            }
+        }
         (Type::Vector, Value::Point(p)) => Value::Vector(p.xyz),
         (Type::Farray, Value::Vector(v)) => {
             Value::Numbers(Arc::new(Array::row(v.to_array().to_vec())))

@@ -57,6 +57,8 @@ pub enum Class {
     Relabel,
     /// An implicit function of space.
     Field,
+    /// A set of points, solid where implicit functions are negative.
+    Set,
     /// A body of triangles.
     Mesh,
     /// A list.
@@ -65,7 +67,7 @@ pub enum Class {
 
 impl Class {
     /// All classes, in the order of the reference.
-    pub const ALL: [Class; 28] = [
+    pub const ALL: [Class; 29] = [
         Class::Any,
         Class::Number,
         Class::Integer,
@@ -92,6 +94,7 @@ impl Class {
         Class::Contours,
         Class::Relabel,
         Class::Field,
+        Class::Set,
         Class::Mesh,
         Class::List,
     ];
@@ -125,6 +128,7 @@ impl Class {
             Class::Contours => "contours",
             Class::Relabel => "relabel",
             Class::Field => "field",
+            Class::Set => "set",
             Class::Mesh => "mesh",
             Class::List => "list",
         }
@@ -159,6 +163,7 @@ impl Class {
             Class::Contours => "contours",
             Class::Relabel => "a relabel",
             Class::Field => "a field",
+            Class::Set => "a set",
             Class::Mesh => "a mesh",
             Class::List => "a list",
         }
@@ -188,6 +193,9 @@ impl Class {
             Numbers => found == List,
             List => matches!(found, Numbers | Vectors),
             Plane => found == Text,
+            // A plane stands for the half-space behind it, a number for a constant.
+            Field => matches!(found, Plane | Number | Integer),
+            Set => matches!(found, Field | Plane),
             // A point stands for the axes of the world there.
             Frame => matches!(found, Point | Bead | Magnet | Ring | Vector),
             Mirror => {

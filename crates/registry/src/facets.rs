@@ -1,4 +1,18 @@
 use moldloft_num::{Real, Vec3};
+use std::ops::Range;
+
+/// Triangles of a body that belong together, such as those of one implicit surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Its name; in meshes it follows the body's.
+    pub name: String,
+    /// What it is a piece of, such as "cylinder".
+    pub kind: String,
+    /// Index of a palette colour, 0 to 15, when it has one of its own.
+    pub colour: Option<u8>,
+    /// Its triangles.
+    pub triangles: Range<usize>,
+}
 
 /// A body bounded by triangles, or an open sheet of them, with its measures.
 ///
@@ -9,6 +23,12 @@ pub struct Facets<T> {
     pub points: Vec<Vec3<T>>,
     /// Corners of the triangles, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// The triangles by what they are pieces of, in order and without gaps; none when the body is one.
+    pub groups: Vec<Group>,
+    /// Polylines that belong to the body without being surface.
+    pub wires: Vec<Vec<Vec3<T>>>,
+    /// Points that belong to the body without being surface or line.
+    pub dots: Vec<Vec3<T>>,
     /// Enclosed volume; of no meaning for an open sheet.
     pub volume: T,
     /// Area of all triangles.
@@ -47,12 +67,20 @@ impl<T: Real> Facets<T> {
         } else {
             middle
         };
-        Self { points, triangles, volume, area, centroid }
+        let (groups, wires, dots) = Default::default();
+        Self { points, triangles, groups, wires, dots, volume, area, centroid }
     }
 
     /// True when vertices and measures are the same bits and the triangles the same.
     pub fn same(&self, o: &Self) -> bool {
+        let all = |a: &[Vec3<T>], b: &[Vec3<T>]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.bits_eq(*b))
+        };
         self.triangles == o.triangles
+            && self.groups == o.groups
+            && all(&self.dots, &o.dots)
+            && self.wires.len() == o.wires.len()
+            && self.wires.iter().zip(&o.wires).all(|(a, b)| all(a, b))
             && self.points.len() == o.points.len()
             && self.points.iter().zip(&o.points).all(|(a, b)| a.bits_eq(*b))
             && self.volume.bits_eq(o.volume)

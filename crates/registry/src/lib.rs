@@ -24,13 +24,13 @@ mod value;
 
 pub use args::{Given, arrange, check_evaluated};
 pub use class::Class;
-pub use facets::Facets;
+pub use facets::{Facets, Group};
 pub use fault::{Fault, Place};
 pub use found::{Found, FoundStatus};
 pub use head::{HEAD, Head, Panels, Spacing};
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};
-pub use refs::{CurveRef, FieldRef, Point, RelabelRef, SolidRef, SurfaceRef};
+pub use refs::{CurveRef, FieldRef, Implicit, Point, RelabelRef, SetRef, SolidRef, SurfaceRef};
 pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
 pub use sweep::{LocusRef, Sweep};

@@ -1,5 +1,6 @@
 use crate::{
-    Class, CurveRef, Facets, Fault, FieldRef, Point, RelabelRef, SolidRef, SurfaceRef, Value,
+    Class, CurveRef, Facets, Fault, FieldRef, Point, RelabelRef, SetRef, SolidRef, SurfaceRef,
+    Value,
 };
 use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
@@ -159,6 +160,16 @@ impl<T: Real> FromValue<T> for FieldRef<T> {
         match value {
             Value::Field(f) => Ok(f.clone()),
             other => wrong(Class::Field, other),
+        }
+    }
+}
+
+impl<T: Real> FromValue<T> for SetRef<T> {
+    const CLASS: Class = Class::Set;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Set(s) => Ok(s.clone()),
+            other => wrong(Class::Set, other),
         }
     }
 }

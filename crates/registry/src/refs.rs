@@ -5,6 +5,7 @@ use moldloft_num::{
     lift_law, lift_surface,
 };
 use smallvec::SmallVec;
+use std::any::Any;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -121,10 +122,35 @@ pub struct SurfaceRef<T: Real> {
     pub depth: u32,
 }
 
+/// An implicit function or a set that can tell whether another is the same.
+pub trait Implicit<T: Real>: Field<T> + Any {
+    /// True when both are the same expression of the same bits under the same names.
+    fn alike(&self, o: &Self) -> bool;
+}
+
+/// An [`Implicit`] whose type was forgotten.
+trait Erased<T: Real>: Field<T> + Any {
+    fn alike_any(&self, o: &dyn Any) -> bool;
+}
+
+impl<T: Real, P: Implicit<T>> Erased<T> for P {
+    fn alike_any(&self, o: &dyn Any) -> bool {
+        o.downcast_ref::<P>().is_some_and(|o| self.alike(o))
+    }
+}
+
 /// An implicit function.
 #[derive(Clone)]
 pub struct FieldRef<T: Real> {
-    shape: Arc<dyn Field<T>>,
+    shape: Arc<dyn Erased<T>>,
+    /// The name that it was declared under.
+    pub name: Option<Arc<str>>,
+}
+
+/// A set of points: solid where its value is negative.
+#[derive(Clone)]
+pub struct SetRef<T: Real> {
+    shape: Arc<dyn Erased<T>>,
 }
 
 /// A law that redistributes a parameter.
@@ -172,7 +198,6 @@ macro_rules! shape_ref {
 }
 shape_ref!(CurveRef, Curve);
 shape_ref!(SurfaceRef, Surface);
-shape_ref!(FieldRef, Field);
 shape_ref!(RelabelRef, Law);
 shape_ref!(SolidRef, Solid);
 
@@ -254,10 +279,61 @@ impl<T: Real> SolidRef<T> {
     }
 }
 
+macro_rules! implicit_ref {
+    ($name:ident, $what:literal) => {
+        impl<T: Real> Deref for $name<T> {
+            type Target = dyn Field<T>;
+            fn deref(&self) -> &Self::Target {
+                &*self.shape
+            }
+        }
+
+        impl<T: Real> $name<T> {
+            /// What it was made from, when that is a `P`.
+            pub fn get<P: Implicit<T>>(&self) -> Option<&P> {
+                let any: &dyn Any = &*self.shape;
+                any.downcast_ref()
+            }
+        }
+
+        impl<T: Real> std::fmt::Debug for $name<T> {
+            fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str($what)
+            }
+        }
+    };
+}
+implicit_ref!(FieldRef, "FieldRef");
+implicit_ref!(SetRef, "SetRef");
+
 impl<T: Real> FieldRef<T> {
-    /// An implicit function.
-    pub fn new(shape: impl Field<T> + 'static) -> Self {
+    /// An implicit function without a name.
+    pub fn new(shape: impl Implicit<T>) -> Self {
+        Self { shape: Arc::new(shape), name: None }
+    }
+
+    /// The same function under a name.
+    pub fn called(mut self, name: &str) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// True when both are the same function under the same name.
+    pub fn same(&self, o: &Self) -> bool {
+        self.name == o.name
+            && (Arc::ptr_eq(&self.shape, &o.shape) || self.shape.alike_any(&*o.shape))
+    }
+}
+
+impl<T: Real> SetRef<T> {
+    /// A set.
+    pub fn new(shape: impl Implicit<T>) -> Self {
         Self { shape: Arc::new(shape) }
+    }
+
+    /// True when both are the same set with the same attributes.
+    pub fn same(&self, o: &Self) -> bool {
+        Arc::ptr_eq(&self.shape, &o.shape) || self.shape.alike_any(&*o.shape)
     }
 }
 

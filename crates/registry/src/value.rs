@@ -1,5 +1,6 @@
 use crate::{
-    Class, CurveRef, Facets, FieldRef, Found, LocusRef, Point, RelabelRef, SolidRef, SurfaceRef,
+    Class, CurveRef, Facets, FieldRef, Found, LocusRef, Point, RelabelRef, SetRef, SolidRef,
+    SurfaceRef,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
@@ -249,6 +250,8 @@ pub enum Value<T: Real> {
     Relabel(RelabelRef<T>),
     /// An implicit function.
     Field(FieldRef<T>),
+    /// A set of points: what implicit functions leave solid, combined.
+    Set(SetRef<T>),
     /// A body of triangles.
     Mesh(Arc<Facets<T>>),
     /// Where a point is when a bead moves, for kinds that sweep one.
@@ -291,6 +294,7 @@ impl<T: Real> Value<T> {
             Value::Contours(_) => Class::Contours,
             Value::Relabel(_) => Class::Relabel,
             Value::Field(_) => Class::Field,
+            Value::Set(_) => Class::Set,
             Value::Mesh(_) => Class::Mesh,
             Value::Locus(_) => Class::Point,
         }
@@ -336,6 +340,7 @@ impl<T: Real> Value<T> {
             }
             (Value::Relabel(a), Value::Relabel(b)) => a.same(b),
             (Value::Field(a), Value::Field(b)) => a.same(b),
+            (Value::Set(a), Value::Set(b)) => a.same(b),
             (Value::Mesh(a), Value::Mesh(b)) => Arc::ptr_eq(a, b) || a.same(b),
             _ => false,
         }

@@ -17,7 +17,6 @@ mod arguments;
 mod contours;
 mod curve;
 mod faults;
-mod field;
 mod foil;
 mod frame;
 mod lifted;
@@ -181,6 +180,5 @@ pub fn rows() -> Vec<Row> {
         lists::RealList,
         lists::KnotList,
         lists::EntityList,
-        field::Sphere,
     ]
 }

@@ -179,11 +179,3 @@ fn contours_and_rows_of_numbers() {
     let Value::Numbers(d) = scene.value("d") else { panic!("numbers") };
     assert!((d.items[29] - 0.7203569806627).abs() < 1e-8 && d.items[59] == 1.0);
 }
-
-#[test]
-fn a_field_is_a_row_too() {
-    let scene = scene("AbsPoint C(1, 0, 0); field ball = sphere(C, 2);");
-    let Value::Field(ball) = scene.value("ball") else { panic!("a field") };
-    let (value, gradient) = ball.value_and_gradient(Vec3::of(1.0, 0.0, 5.0));
-    assert_eq!((value, gradient), (3.0, Vec3::of(0.0, 0.0, 1.0)));
-}

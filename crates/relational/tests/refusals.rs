@@ -59,7 +59,6 @@ fn each_fault_has_its_id_and_its_place() {
         ("AbsPoint c(NaN, 0, 0);", "not-finite", 0, None),
         ("AbsPoint c(0, inf, 0);", "not-finite", 1, None),
         ("float c = length(S);", "wrong-class", 0, None),
-        ("field c = sphere(A, -1);", "out-of-range", 1, None),
         ("farray c = uniform(0, 1, 1);", "out-of-range", 2, None),
         ("farray t = uniform(0, 1.5, 4); curve c = distc(l, t);", "out-of-range", 1, Some(3)),
         ("farray c = d_tanh(1, 1, 0.1, 0.1, 5);", "no-distribution", 0, None),

@@ -51,6 +51,7 @@ impl Body {
             && (&self.name, &self.kind) == (&o.name, &o.kind)
             && self.facets.points.len() == o.facets.points.len()
             && self.facets.triangles == o.facets.triangles
+            && self.facets.groups == o.facets.groups
     }
 
     /// How many panels it has.
@@ -73,7 +74,20 @@ impl Body {
             let [a, b, c] = turned(*t).map(|v| v + start);
             [a, b, c, c]
         };
-        builder.add_faces(info, self.facets.triangles.iter().map(face))
+        if self.facets.groups.is_empty() {
+            return builder.add_faces(info, self.facets.triangles.iter().map(face));
+        }
+        for group in &self.facets.groups {
+            let own = PatchInfo {
+                name: format!("{}.{}", self.name, group.name),
+                kind: group.kind.clone(),
+                colour: group.colour.or(info.colour),
+                ..info.clone()
+            };
+            let triangles = &self.facets.triangles[group.triangles.clone()];
+            builder.add_faces(own, triangles.iter().map(face))?;
+        }
+        Ok(())
     }
 }
 

@@ -73,6 +73,11 @@ impl Program {
         self.interner.len()
     }
 
+    /// Number of statements; their ids are `0..stmt_count`.
+    pub fn stmt_count(&self) -> usize {
+        self.stmts.len()
+    }
+
     /// Number of expressions; their ids are `0..expr_count`.
     pub fn expr_count(&self) -> usize {
         self.exprs.len()

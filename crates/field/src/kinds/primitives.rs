@@ -1,16 +1,9 @@
 //! The primitives as rows of the registry.
 
-use crate::{FieldError, Primitive};
-use moldloft_num::{Axis, Real};
-use moldloft_registry::{Build, Context, Fault, FieldRef, Kind, Point, Value};
-
-/// A primitive as the value of a row, or its error as a fault.
-fn field<T: Real>(primitive: Result<Primitive<T>, FieldError>) -> Result<Value<T>, Fault> {
-    match primitive {
-        Ok(f) => Ok(Value::Field(FieldRef::new(f))),
-        Err(error) => Err(Fault::new("no-field", error.to_string())),
-    }
-}
+use super::read::{Shape, field};
+use crate::Primitive;
+use moldloft_num::{Axis, Plane, Real};
+use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
 
 /// The half-space behind a plane: the distance from it, positive on the side of the normal.
 #[derive(Kind)]
@@ -33,7 +26,27 @@ impl<T: Real> Build<T> for HalfSpace<T> {
     }
 }
 
-/// The ball |X - centre|^2 - radius^2.
+/// The half-space behind a plane object or a coordinate plane: the distance from it, positive on the
+/// side of its normal.
+#[derive(Kind)]
+#[kind(
+    class = Field,
+    function,
+    name = "half_space",
+    example = "ZPlane deck(3); field below = half_space(deck);"
+)]
+pub struct BehindPlane<T: Real> {
+    /// The plane.
+    plane: Plane<T>,
+}
+
+impl<T: Real> Build<T> for BehindPlane<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        field(Primitive::plane(self.plane.normal, self.plane.point))
+    }
+}
+
+/// The ball |X - centre|^2 - radius^2; with `distance = 1` the distance |X - centre| - radius.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -47,15 +60,23 @@ pub struct Sphere<T: Real> {
     /// Radius.
     #[field(min = 0)]
     radius: T,
+    /// 1 for the distance instead of the polynomial.
+    #[field(default = 0, min = 0, max = 1)]
+    distance: u32,
 }
 
 impl<T: Real> Build<T> for Sphere<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        field(Primitive::sphere(self.centre.xyz, self.radius))
+        let (centre, radius) = (self.centre.xyz, self.radius);
+        field(match self.distance {
+            0 => Primitive::sphere(centre, radius),
+            _ => Primitive::sphere_distance(centre, radius),
+        })
     }
 }
 
-/// The infinite cylinder about a line.
+/// The infinite cylinder p^2 + q^2 - radius^2 about a line; with `distance = 1` the distance
+/// sqrt(p^2 + q^2) - radius.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -69,11 +90,17 @@ pub struct Cylinder<T: Real> {
     /// Radius.
     #[field(min = 0)]
     radius: T,
+    /// 1 for the distance instead of the polynomial.
+    #[field(default = 0, min = 0, max = 1)]
+    distance: u32,
 }
 
 impl<T: Real> Build<T> for Cylinder<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        field(Primitive::cylinder(self.axis, self.radius))
+        field(match self.distance {
+            0 => Primitive::cylinder(self.axis, self.radius),
+            _ => Primitive::cylinder_distance(self.axis, self.radius),
+        })
     }
 }
 
@@ -150,5 +177,27 @@ pub struct Cyclide<T: Real> {
 impl<T: Real> Build<T> for Cyclide<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         field(Primitive::cyclide(self.axis, self.along.xyz, self.major, self.minor, self.change))
+    }
+}
+
+/// An implicit function under a name: what `field f = ...;` declares.
+#[derive(Kind)]
+#[kind(
+    class = Field,
+    name = "Field",
+    example = "Field ball(sphere({0, 0, 0}, 1));"
+)]
+pub struct FieldObject<T: Real> {
+    /// The function.
+    field: Shape<T>,
+    /// The objects that it was computed from.
+    #[field(default)]
+    of: Option<Vec<Value<T>>>,
+}
+
+impl<T: Real> Build<T> for FieldObject<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        drop(self.of);
+        Ok(self.field.value())
     }
 }

@@ -1,0 +1,259 @@
+//! Blends as rows of the registry.
+
+use super::read::{Shape, fault, field, set};
+use super::region::corners;
+use crate::{Blend, FieldError, Primitive, check_rail, check_rails, liming, liming_on_rail, zhang};
+use moldloft_num::Real;
+use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+
+/// The surface through the four curves in which two bodies meet two others:
+/// lambda L1 L2 - (1 - lambda) L3 L4. With one rail, L4 = L3, it touches both bodies where the rail does.
+///
+/// After Liming (1944). With a rail, `contact = n` gives contact G^n by lambda L1 L2 -
+/// (1 - lambda) |L3|^(n + 1). The rail must cut each body outside the other; with a box `low`, `high` that
+/// is proved, or the place is told where it fails.
+#[derive(Kind)]
+#[kind(
+    class = Field,
+    function,
+    name = "liming",
+    example = "field x = plane({1, 0, 0}, {0, 0, 0}); field y = plane({0, 1, 0}, {0, 0, 0}); field b = liming(x, y, x + y - 1, lambda = 2/3);"
+)]
+pub struct Liming<T: Real> {
+    /// A body.
+    l1: Shape<T>,
+    /// The other body.
+    l2: Shape<T>,
+    /// The rail, or one of the two others.
+    l3: Shape<T>,
+    /// The other of them.
+    #[field(default)]
+    l4: Option<Shape<T>>,
+    /// Shape: near 0 the blend hugs the rail, near 1 the bodies.
+    #[field(default = 0.5)]
+    lambda: T,
+    /// Order of contact on a rail.
+    #[field(default = 1, min = 1, max = 100)]
+    contact: u32,
+    /// Low corner of a box over which the contact is checked.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// Its high corner.
+    #[field(default)]
+    high: Option<Point<T>>,
+}
+
+impl<T: Real> Build<T> for Liming<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let [l1, l2, l3] = [&self.l1, &self.l2, &self.l3].map(|s| &s.primitive);
+        if let Some(l4) = &self.l4 {
+            return field(liming([l1, l2], [l3, &l4.primitive], self.lambda));
+        }
+        if let Some(over) = corners(&self.low, &self.high, 6)? {
+            checked(check_rail([&l1.re(), &l2.re()], &l3.re(), &over))?;
+        }
+        field(liming_on_rail([l1, l2], l3, self.lambda, self.contact))
+    }
+}
+
+fn checked(outcome: Result<(), FieldError>) -> Result<(), Fault> {
+    outcome.map_err(|e| fault(&e).in_field(2))
+}
+
+/// The transition from one body, which it touches at its rail, to another, which it touches at its own:
+/// (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
+///
+/// After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; with a box `low`, `high` that is proved,
+/// or the place is told where it fails.
+#[derive(Kind)]
+#[kind(
+    class = Field,
+    function,
+    name = "zhang",
+    example = "field x = plane({1, 0, 0}, {0, 0, 0}); field a = sphere({0, 0, 0}, 1); field duct = zhang(a, sphere({0, 0, 0}, 2), x, 1 - x);"
+)]
+pub struct Zhang<T: Real> {
+    /// The body that it begins on.
+    l1: Shape<T>,
+    /// The body that it ends on.
+    l2: Shape<T>,
+    /// The rail on the first body.
+    l3: Shape<T>,
+    /// The rail on the second.
+    l4: Shape<T>,
+    /// Shape: which body it follows longer.
+    #[field(default = 0.5)]
+    lambda: T,
+    /// Order of contact.
+    #[field(default = 1, min = 1, max = 100)]
+    contact: u32,
+    /// Low corner of a box over which the contact is checked.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// Its high corner.
+    #[field(default)]
+    high: Option<Point<T>>,
+}
+
+impl<T: Real> Build<T> for Zhang<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let [l1, l2, l3, l4] = [&self.l1, &self.l2, &self.l3, &self.l4].map(|s| &s.primitive);
+        if let Some(over) = corners(&self.low, &self.high, 6)? {
+            checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over))?;
+        }
+        field(zhang([l1, l2], [l3, l4], self.lambda, self.contact))
+    }
+}
+
+/// The rail of prescribed setbacks, L1/a + L2/b - 1: it meets L1 = 0 where L2 = b and L2 = 0 where L1 = a.
+/// With distances the setbacks are lengths.
+#[derive(Kind)]
+#[kind(
+    class = Field,
+    function,
+    name = "setback",
+    example = "field x = plane({1, 0, 0}, {0, 0, 0}); field y = plane({0, 1, 0}, {0, 0, 0}); field rail = setback(x, y, 0.2, 0.3);"
+)]
+pub struct Setback<T: Real> {
+    /// A body.
+    l1: Shape<T>,
+    /// The other body.
+    l2: Shape<T>,
+    /// Setback on the second body, measured by the first.
+    #[field(min = 0)]
+    a: T,
+    /// Setback on the first body, measured by the second; the same by default.
+    #[field(default, min = 0)]
+    b: Option<T>,
+}
+
+impl<T: Real> Build<T> for Setback<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let setbacks = [self.a, self.b.unwrap_or(self.a)];
+        field(crate::setback_rail([&self.l1.primitive, &self.l2.primitive], setbacks))
+    }
+}
+
+macro_rules! corner_blend {
+    ($kind:ident, $name:literal, $make:path, $doc:literal, $example:literal) => {
+        #[doc = $doc]
+        ///
+        /// With distances the widths are lengths. With a box `low`, `high` the contact is proved over it, or the
+        /// place is told where it fails.
+        #[derive(Kind)]
+        #[kind(class = Set, function, name = $name, example = $example)]
+        pub struct $kind<T: Real> {
+            /// A body.
+            l1: Shape<T>,
+            /// The other body.
+            l2: Shape<T>,
+            /// Setback of the blend on both bodies.
+            #[field(min = 0)]
+            width: T,
+            /// Setback on the first body, where it differs.
+            #[field(default, min = 0)]
+            other: Option<T>,
+            /// Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between
+            /// perpendicular planes.
+            #[field(default = crate::CIRCULAR)]
+            lambda: T,
+            /// Low corner of a box over which the contact is checked.
+            #[field(default)]
+            low: Option<Point<T>>,
+            /// Its high corner.
+            #[field(default)]
+            high: Option<Point<T>>,
+        }
+
+        impl<T: Real> Build<T> for $kind<T> {
+            fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+                let bodies = [&self.l1.primitive, &self.l2.primitive];
+                let setbacks = [self.width, self.other.unwrap_or(self.width)];
+                let blend = $make(bodies, setbacks, self.lambda).map_err(|e| fault(&e))?;
+                if let Some(over) = corners(&self.low, &self.high, 5)? {
+                    let sign = |p: &Primitive<T>| if $name == "rounded" { -p } else { p.clone() };
+                    let signed = bodies.map(sign);
+                    let rail = crate::setback_rail([&signed[0], &signed[1]], setbacks);
+                    let rail = rail.map_err(|e| fault(&e))?;
+                    checked(check_rail([&signed[0].re(), &signed[1].re()], &rail.re(), &over))?;
+                }
+                finished(blend, [&self.l1, &self.l2], $name)
+            }
+        }
+    };
+}
+
+/// The blend with its parts named: the bodies as they are called, the blend as its function is.
+fn finished<T: Real>(
+    blend: Blend<T>,
+    bodies: [&Shape<T>; 2],
+    word: &str,
+) -> Result<Value<T>, Fault> {
+    let name = |p: &Primitive<T>| {
+        let called = |s: &&&Shape<T>| s.primitive.same(p) || s.primitive.same(&-p);
+        match bodies.iter().find(called) {
+            Some(body) => body.name.as_ref().map(|n| n.to_string()),
+            None => Some(word.to_string()),
+        }
+    };
+    set(Ok(blend.set.with_names(&name)))
+}
+
+corner_blend!(
+    Fillet,
+    "fillet",
+    crate::fillet,
+    "The union of the solid sides of two fields with a fillet in their corner.",
+    "field x = plane({1, 0, 0}, {0, 0, 0}); field z = plane({0, 0, 1}, {0, 0, 0}); set corner = fillet(x, z, 0.2);"
+);
+corner_blend!(
+    Rounded,
+    "rounded",
+    crate::round,
+    "The intersection of the solid sides of two fields with their edge rounded.",
+    "field x = plane({1, 0, 0}, {0, 0, 0}); field z = plane({0, 0, 1}, {0, 0, 0}); set edge = rounded(x, z, 0.2);"
+);
+
+/// One body up to its rail, the other up to its own, and Zhang's transition between them.
+///
+/// The solid sides of the rails keep the bodies. See `zhang`.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "transition",
+    example = "field a = sphere({0, 0, 0}, 1); field b = sphere({3, 0, 0}, 0.5); set neck = transition(a, b, plane({1, 0, 0}, {0.8, 0, 0}), plane({-1, 0, 0}, {2.7, 0, 0}));"
+)]
+pub struct Transition<T: Real> {
+    /// The body that it begins on.
+    l1: Shape<T>,
+    /// The body that it ends on.
+    l2: Shape<T>,
+    /// The rail on the first body: its solid side keeps the body.
+    l3: Shape<T>,
+    /// The rail on the second.
+    l4: Shape<T>,
+    /// Shape: which body it follows longer.
+    #[field(default = 0.5)]
+    lambda: T,
+    /// Order of contact.
+    #[field(default = 1, min = 1, max = 100)]
+    contact: u32,
+    /// Low corner of a box over which the contact is checked.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// Its high corner.
+    #[field(default)]
+    high: Option<Point<T>>,
+}
+
+impl<T: Real> Build<T> for Transition<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let [l1, l2, l3, l4] = [&self.l1, &self.l2, &self.l3, &self.l4].map(|s| &s.primitive);
+        if let Some(over) = corners(&self.low, &self.high, 6)? {
+            checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over))?;
+        }
+        let blend = crate::transition([l1, l2], [l3, l4], self.lambda, self.contact);
+        finished(blend.map_err(|e| fault(&e))?, [&self.l1, &self.l2], "transition")
+    }
+}

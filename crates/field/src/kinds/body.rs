@@ -1,0 +1,165 @@
+//! Facets of a set as a body of triangles.
+
+use super::read::{Solid, fault};
+use super::region::region;
+use crate::facet::{Facets, Options, Resolution};
+use crate::sheets::Mixed;
+use crate::{FieldError, Lifter, Set, cache, facet_mixed};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Context, Facets as Body, Fault, Group, Kind, Point, Value};
+use std::sync::Arc;
+
+/// Facets of that resolution, which stop when the model does.
+pub fn options(resolution: Resolution, _: &Context) -> Options {
+    Options::new(resolution)
+}
+
+/// The surface of a set as triangles: a mesh like any other.
+///
+/// Its panels are a patch for each primitive that shows, called after the set or field that it came from
+/// (`part.pipe`), with its colour. Solids are closed, oriented and manifold; where the box cuts them, its
+/// faces close them (`part.cap -x`). Sheets are open, wires are polylines and points are points. The
+/// members `volume` and `centroid` are corrected for the distance of the triangles from the surface.
+#[derive(Kind)]
+#[kind(
+    class = Mesh,
+    example = "set ball = set(sphere({0, 0, 0}, 1)); SetBody b(ball, depth = 4);"
+)]
+pub struct SetBody<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// Low corner of the box; found around a set that has an end.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// High corner of the box.
+    #[field(default)]
+    high: Option<Point<T>>,
+    /// How often the longest side of the box is halved: cells of its 2^depth-th part. 6 when no accuracy
+    /// is asked.
+    #[field(default, min = 1, max = 16)]
+    depth: Option<u32>,
+    /// How far the middles of triangles are from the surface at most: estimated by refining.
+    #[field(default)]
+    accuracy: Option<T>,
+}
+
+impl<T: Real> Build<T> for SetBody<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let resolution = match (self.depth, self.accuracy) {
+            (Some(_), Some(_)) => {
+                return Err(Fault::new("argument-twice", "depth and accuracy are both given")
+                    .expected("one of them")
+                    .in_field(4));
+            }
+            (Some(depth), None) => Resolution::Depth(depth),
+            (None, Some(accuracy)) => Resolution::Accuracy(accuracy.re()),
+            (None, None) => Resolution::Depth(6),
+        };
+        let set = &self.set.0;
+        let plain = set.re();
+        if plain.is_nothing() {
+            return Err(Fault::new("empty-set", "the set is empty").in_field(0));
+        }
+        let region = region(&plain, &self.low, &self.high, 2)?;
+        let lifter = Lifter::new(set, region.corners);
+        let body = facets_of(&plain, &region.over, &options(resolution, context))
+            .and_then(|pieces| pieces.body(&lifter))
+            .map_err(|e| fault(&e))?;
+        if body.triangles.is_empty() && body.wires.is_empty() && body.dots.is_empty() {
+            return Err(Fault::new("empty-set", "the set has no surface in the box")
+                .expected("a set whose surface passes through the box")
+                .in_field(0));
+        }
+        Ok(Value::Mesh(Arc::new(body)))
+    }
+}
+
+/// The facets of a set: of solids only, or of all dimensions.
+pub enum Pieces {
+    /// Of a set without sheets.
+    Solid(Arc<Facets>),
+    /// Of one with.
+    Mixed(Mixed),
+}
+
+/// The facets of a set within a box.
+///
+/// # Errors
+/// As [`crate::facet`].
+pub fn facets_of(
+    set: &Set,
+    over: &moldloft_num::Box3,
+    options: &Options,
+) -> Result<Pieces, FieldError> {
+    if set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
+        Ok(Pieces::Mixed(facet_mixed(set, over, options)?))
+    } else {
+        Ok(Pieces::Solid(cache::facet(set, over, options)?))
+    }
+}
+
+/// Names that were used, so that each is given once.
+#[derive(Default)]
+struct Names(std::collections::HashMap<String, usize>);
+
+impl Names {
+    fn of(&mut self, name: &str) -> String {
+        let count = self.0.entry(name.to_string()).or_insert(0);
+        *count += 1;
+        if *count == 1 { name.to_string() } else { format!("{name}.{count}") }
+    }
+}
+
+impl Pieces {
+    /// As a body whose numbers carry the derivatives of the set's.
+    ///
+    /// # Errors
+    /// A lifter of another set.
+    pub fn body<T: Real>(&self, lifter: &Lifter<T>) -> Result<Body<T>, FieldError> {
+        let solid: &Facets = match self {
+            Pieces::Solid(facets) => facets,
+            Pieces::Mixed(mixed) => &mixed.solid,
+        };
+        let lifted = solid.lifted_by(lifter)?;
+        let mut points: Vec<Vec3<T>> = lifted.mesh.positions().to_vec();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        let mut groups = Vec::new();
+        let mut names = Names::default();
+        let mut take = |mesh: &moldloft_mesh::Mesh, start: u32| {
+            for patch in mesh.patches() {
+                let first = triangles.len();
+                let faces = &mesh.faces()[patch.faces.clone()];
+                triangles.extend(faces.iter().map(|f| [f[0], f[1], f[2]].map(|v| v + start)));
+                groups.push(Group {
+                    name: names.of(&patch.info.name),
+                    kind: patch.info.kind.clone(),
+                    colour: patch.info.colour,
+                    triangles: first..triangles.len(),
+                });
+            }
+        };
+        take(&solid.mesh, 0);
+        let (mut wires, mut dots) = (Vec::new(), Vec::new());
+        if let Pieces::Mixed(mixed) = self {
+            for sheet in &mixed.sheets {
+                take(&sheet.mesh, points.len() as u32);
+                points.extend(lifter.moved_on(sheet.mesh.positions(), &sheet.on)?);
+            }
+            for wire in &mixed.wires {
+                let mut line = lifter.moved_on(&wire.points, &wire.on)?;
+                line.extend(line.first().copied().filter(|_| wire.closed));
+                wires.push(line);
+            }
+            for dot in &mixed.points {
+                dots.extend(lifter.moved_on(&[dot.point], &dot.on)?);
+            }
+        }
+        let mut body = Body::new(points, triangles);
+        let m = lifted.moments;
+        body.volume = m.volume();
+        if m.volume().re() > 0.0 {
+            body.centroid = m.centroid();
+        }
+        Ok(Body { groups, wires, dots, ..body })
+    }
+}

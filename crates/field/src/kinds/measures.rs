@@ -1,0 +1,514 @@
+//! What is asked of fields and sets, as rows of the registry.
+
+use super::body::options;
+use super::read::{Solid, fault, set_of, primitive_of};
+use super::region::{Region, around, region};
+use crate::facet::{Facets, Resolution};
+use crate::{FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, cache, facet_mixed, foot};
+use moldloft_num::{Box3, Real, Vec3};
+use moldloft_registry::{Array, Build, Class, Context, Fault, FromValue, Kind, Point, Value};
+use std::sync::Arc;
+
+/// The coarsest and finest divisions of the box by which integrals are made.
+const DEPTHS: [u32; 2] = [5, 9];
+
+/// The least part of the box's volume to which volumes agree unless asked otherwise.
+const USUAL: f64 = 1e-6;
+
+fn none<T: Real>() -> Moments<T> {
+    Moments([T::zero(); 10])
+}
+
+/// Moments of a set from facets that are made finer until two agree.
+fn moments<T: Real>(
+    set: &Set<T>,
+    region: &Region<T>,
+    accuracy: Option<T>,
+    context: &Context,
+) -> Result<Moments<T>, FieldError> {
+    let plain = set.re();
+    let size = (0..3).map(|k| region.over.high[k] - region.over.low[k]).product::<f64>();
+    let accuracy = match accuracy {
+        Some(a) => crate::error::positive("accuracy", a.re())?,
+        None => USUAL * size,
+    };
+    let mut before: Option<(Arc<Facets>, f64)> = None;
+    for depth in DEPTHS[0]..=DEPTHS[1] {
+        let facets = cache::facet(&plain, &region.over, &options(Resolution::Depth(depth), context))?;
+        if facets.mesh.faces().is_empty() {
+            return Ok(none());
+        }
+        let volume = facets.moments().volume();
+        if let Some((_, coarser)) = before
+            && (volume - coarser).abs() <= accuracy
+        {
+            before = Some((facets, volume));
+            break;
+        }
+        before = Some((facets, volume));
+    }
+    match before {
+        Some((facets, _)) => {
+            let lifter = Lifter::new(set, region.corners);
+            Ok(facets.lifted_by(&lifter)?.moments)
+        }
+        None => Ok(none()),
+    }
+}
+
+macro_rules! measure {
+    (
+        $kind:ident, $class:ident, $name:literal, $doc:literal, $accuracy:literal, $example:literal,
+        |$this:ident, $set:ident, $region:ident, $context:ident| $body:expr
+    ) => {
+        #[doc = $doc]
+        ///
+        /// The box is found when it is not given; a set that has no end needs one. Faces of the box cut the set.
+        #[derive(Kind)]
+        #[kind(class = $class, function, name = $name, example = $example)]
+        pub struct $kind<T: Real> {
+            /// The set.
+            set: Solid<T>,
+            /// Low corner of the box.
+            #[field(default)]
+            low: Option<Point<T>>,
+            /// High corner of the box.
+            #[field(default)]
+            high: Option<Point<T>>,
+            #[doc = $accuracy]
+            #[field(default)]
+            accuracy: Option<T>,
+        }
+
+        impl<T: Real> Build<T> for $kind<T> {
+            fn build(self, $context: &Context) -> Result<Value<T>, Fault> {
+                let $this = self;
+                let $set = &$this.set.0;
+                let $region = region(&$set.re(), &$this.low, &$this.high, 2)?;
+                $body
+            }
+        }
+    };
+}
+
+measure!(
+    Volume, Number, "volume",
+    "The volume of a set within a box: a best value of fourth order, whose bracket is `volume_bracket`.",
+    "How well two values, of a box divided once more, agree; by default 1e-6 of the box's volume.",
+    "assert abs(volume(set(sphere({0, 0, 0}, 1))) - 4.18879) < 1e-4;",
+    |this, set, region, context| {
+        let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
+        Ok(Value::Number(m.volume()))
+    }
+);
+
+measure!(
+    Centroid, Vector, "centroid",
+    "The centre of mass of a set within a box.",
+    "How well two volumes, of a box divided once more, agree; by default 1e-6 of the box's volume.",
+    "set half = set(sphere({0, 0, 0}, 1)) & set(plane({0, 0, -1}, {0, 0, 0})); assert abs(centroid(half).z - 0.375) < 1e-4;",
+    |this, set, region, context| {
+        let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
+        if m.volume().re() <= 0.0 {
+            return Err(empty());
+        }
+        Ok(Value::Vector(m.centroid()))
+    }
+);
+
+measure!(
+    Inertia, Vectors, "inertia",
+    "The rows of the matrix of inertia of a set of density 1 about its centroid.",
+    "How well two volumes, of a box divided once more, agree; by default 1e-6 of the box's volume.",
+    "curve rows = inertia(cuboid({0, 0, 0}, {1, 2, 3})); assert abs(rows[1].x - 6.5) < 1e-6;",
+    |this, set, region, context| {
+        let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
+        if m.volume().re() <= 0.0 {
+            return Err(empty());
+        }
+        Ok(Value::Vectors(Arc::new(Array::row(m.inertia().to_vec()))))
+    }
+);
+
+fn empty() -> Fault {
+    Fault::new("empty-set", "the set has no volume in the box")
+        .expected("a solid in the box")
+        .in_field(0)
+}
+
+measure!(
+    Area, Number, "area",
+    "The area of the surface of a set within a box, sheets counted once.",
+    "How well two values, of a box divided once more, agree; by default 1e-4 of the area.",
+    "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.566) < 5e-3;",
+    |this, set, region, context| {
+        let asked = match this.accuracy {
+            Some(a) => Some(crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(3))?),
+            None => None,
+        };
+        let mut before: Option<T> = None;
+        for depth in DEPTHS[0]..=DEPTHS[1] {
+            let options = options(Resolution::Depth(depth), context);
+            let area = surface(set, &region, &options).map_err(|e| fault(&e))?;
+            let close = before.is_some_and(|b| {
+                (area - b).re().abs() <= asked.unwrap_or(1e-4 * area.re())
+            });
+            // Of second order: a third of the last step is still to go.
+            let better = before.map_or(area, |b| area + (area - b) / 3.0);
+            if close || depth == DEPTHS[1] {
+                return Ok(Value::Number(better));
+            }
+            before = Some(area);
+        }
+        Ok(Value::Number(T::zero()))
+    }
+);
+
+/// The area of the facets at one resolution.
+fn surface<T: Real>(
+    set: &Set<T>,
+    region: &Region<T>,
+    options: &crate::Options,
+) -> Result<T, FieldError> {
+    let lifter = Lifter::new(set, region.corners);
+    let plain = set.re();
+    let own = |facets: &Facets| -> Result<T, FieldError> {
+        let positions = lifter.positions(facets)?;
+        let mut area = T::zero();
+        for (patch, &leaf) in facets.mesh.patches().iter().zip(&facets.patch_leaves) {
+            // A face of the box is no surface of the set.
+            if leaf < facets.own_leaves {
+                area += sum(&positions, &facets.mesh.faces()[patch.faces.clone()]);
+            }
+        }
+        Ok(area)
+    };
+    if plain.leaves().iter().all(|l| !l.primitive.is_sheet()) {
+        return own(&*cache::facet(&plain, &region.over, options)?);
+    }
+    let mixed = facet_mixed(&plain, &region.over, options)?;
+    let mut area = own(&mixed.solid)?;
+    for sheet in &mixed.sheets {
+        let positions = lifter.moved_on(sheet.mesh.positions(), &sheet.on)?;
+        area += sum(&positions, sheet.mesh.faces());
+    }
+    Ok(area)
+}
+
+fn sum<T: Real>(positions: &[Vec3<T>], faces: &[[u32; 4]]) -> T {
+    let mut area = T::zero();
+    for face in faces {
+        let [a, b, c] = [0, 1, 2].map(|k| positions[face[k] as usize]);
+        let n = (b - a).cross(c - a);
+        if n.re().norm_sq() > 0.0 {
+            area += n.norm() * 0.5;
+        }
+    }
+    area
+}
+
+/// Proved bounds of the volume of a set within a box, {low, high}, from ranges over boxes.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "volume_bracket",
+    example = "farray v = volume_bracket(set(sphere({0, 0, 0}, 1)), depth = 5); assert v[1] < 4.18879; assert v[2] > 4.18879;"
+)]
+pub struct VolumeBracket<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// Low corner of the box.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// High corner of the box.
+    #[field(default)]
+    high: Option<Point<T>>,
+    /// How often the box is halved.
+    #[field(default = 6, min = 1, max = 12)]
+    depth: u32,
+}
+
+impl<T: Real> Build<T> for VolumeBracket<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let set = self.set.0.re();
+        let region = region(&set, &self.low, &self.high, 2)?;
+        let volume = bracket(&set, &region.over, self.depth).map_err(|e| fault(&e))?.volume();
+        let ends = vec![T::from(volume.low.max(0.0)), T::from(volume.high)];
+        Ok(Value::Numbers(Arc::new(Array::row(ends))))
+    }
+}
+
+/// Where a point lies: "solid", "surface" or "air".
+#[derive(Kind)]
+#[kind(
+    class = Text,
+    function,
+    name = "member",
+    example = "assert member(set(sphere({0, 0, 0}, 1)), {0.5, 0, 0}) == \"solid\";"
+)]
+pub struct Member<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// The point.
+    point: Point<T>,
+    /// How near to a surface counts as on it.
+    #[field(default = 1e-9, min = 0)]
+    tolerance: T,
+}
+
+impl<T: Real> Build<T> for Member<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let place = self.set.0.member(self.point.xyz, self.tolerance.re());
+        Ok(Value::text(match place {
+            Membership::Solid => "solid",
+            Membership::Surface => "surface",
+            Membership::Air => "air",
+        }))
+    }
+}
+
+/// The name of the primitive that decides at a point: where unions are least and intersections greatest.
+#[derive(Kind)]
+#[kind(
+    class = Text,
+    function,
+    name = "winner",
+    example = "field a = sphere({0, 0, 0}, 1); field b = sphere({3, 0, 0}, 1); assert winner(set(a) | set(b), {2.9, 0, 0}) == \"b\";"
+)]
+pub struct Winner<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// The point.
+    point: Point<T>,
+}
+
+impl<T: Real> Build<T> for Winner<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let word = match self.set.0.winner(self.point.xyz) {
+            (_, Some(leaf)) => {
+                let leaf = self.set.0.leaves().swap_remove(leaf);
+                leaf.attributes.name.unwrap_or_else(|| leaf.primitive.form().name().to_string())
+            }
+            (value, None) => if value.re() < 0.0 { "everything" } else { "nothing" }.to_string(),
+        };
+        Ok(Value::text(&word))
+    }
+}
+
+/// A field or a set.
+enum Either<T: Real> {
+    Field(Primitive<T>),
+    Set(Set<T>),
+}
+
+impl<T: Real> FromValue<T> for Either<T> {
+    const CLASS: Class = Class::Set;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let wrong = || Fault::wrong_class(Class::Set, value.class());
+        match value {
+            Value::Set(_) => set_of(value).map(Either::Set).ok_or_else(wrong),
+            _ => primitive_of(value).map(Either::Field).ok_or_else(wrong),
+        }
+    }
+}
+
+/// The exact gradient of a field or set at a point.
+#[derive(Kind)]
+#[kind(
+    class = Vector,
+    function,
+    name = "gradient",
+    example = "vector g = gradient(sphere({0, 0, 0}, 1), {0.5, 0, 0}); assert g.x == 1;"
+)]
+pub struct Gradient<T: Real> {
+    /// The field or set.
+    shape: Either<T>,
+    /// The point.
+    point: Point<T>,
+}
+
+impl<T: Real> Build<T> for Gradient<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let p = self.point.xyz;
+        Ok(Value::Vector(match self.shape {
+            Either::Field(f) => f.gradient(p).slope,
+            Either::Set(s) => moldloft_num::Field::value_and_gradient(&s, p).1,
+        }))
+    }
+}
+
+/// Bounds {low, high} of the values of a field or set over a box, rounded outward.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "range",
+    example = "farray r = range(sphere({0, 0, 0}, 1), {0, 0, 0}, {1, 1, 1}); assert r[1] <= -1; assert r[2] >= 2;"
+)]
+pub struct Range<T: Real> {
+    /// The field or set.
+    shape: Either<T>,
+    /// Low corner of the box.
+    low: Point<T>,
+    /// High corner of the box.
+    high: Point<T>,
+}
+
+impl<T: Real> Build<T> for Range<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let over = Box3 { low: self.low.xyz.re(), high: self.high.xyz.re() };
+        let over = crate::error::solid_box(over).map_err(|e| fault(&e).in_field(2))?;
+        let range = match self.shape {
+            Either::Field(f) => f.re().range(&over),
+            Either::Set(s) => s.re().range(&over),
+        };
+        let ends = vec![T::from(range.low), T::from(range.high)];
+        Ok(Value::Numbers(Arc::new(Array::row(ends))))
+    }
+}
+
+/// The degree of a field, or the highest in a set: numbers 0, planes 1, sums the larger, products the sum,
+/// functions one more, primitives from outside 100.
+#[derive(Kind)]
+#[kind(
+    class = Number,
+    function,
+    name = "degree",
+    example = "AbsPoint a(0, 0, 0); AbsPoint b(0, 0, 1); Line axis(a, b); assert degree(torus(axis, 2, 0.5)) == 4;"
+)]
+pub struct Degree<T: Real> {
+    /// The field or set.
+    shape: Either<T>,
+}
+
+impl<T: Real> Build<T> for Degree<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let degree = match self.shape {
+            Either::Field(f) => f.degree(),
+            Either::Set(s) => s.degree(),
+        };
+        Ok(Value::Number(T::from(f64::from(degree))))
+    }
+}
+
+/// The point of a set's surface that is nearest to a point.
+///
+/// The box is found when it is not given.
+#[derive(Kind)]
+#[kind(
+    class = Vector,
+    function,
+    name = "nearest",
+    example = "vector p = nearest(set(sphere({0, 0, 0}, 1)), {3, 0, 0}); assert abs(p.x - 1) < 1e-9;"
+)]
+pub struct NearestPoint<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// The point.
+    point: Point<T>,
+    /// Low corner of the box.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// High corner of the box.
+    #[field(default)]
+    high: Option<Point<T>>,
+    /// How much nearer another point may be; by default 1e-6 of the box.
+    #[field(default)]
+    accuracy: Option<T>,
+}
+
+impl<T: Real> Build<T> for NearestPoint<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let set = &self.set.0;
+        let plain = set.re();
+        let over = region(&plain, &self.low, &self.high, 3)?.over;
+        let accuracy = self.accuracy.map_or(1e-6 * over.diagonal(), T::re);
+        let p = self.point.xyz;
+        let found = crate::nearest(&plain, p.re(), &over, accuracy).map_err(|e| fault(&e))?;
+        let Some(found) = found else {
+            return Err(Fault::new("no-surface", "the set has no surface in the box")
+                .expected("a set whose surface passes through the box")
+                .in_field(0));
+        };
+        let near = 1e-9 * over.diagonal();
+        Ok(Value::Vector(foot::nearest(set, p, found.point, near)))
+    }
+}
+
+/// How far along a ray, in lengths of its direction, it first meets the surface of a set.
+#[derive(Kind)]
+#[kind(
+    class = Number,
+    function,
+    name = "hit",
+    example = "assert abs(hit(set(sphere({0, 0, 0}, 1)), {-3, 0, 0}, {1, 0, 0}) - 2) < 1e-12;"
+)]
+pub struct FirstHit<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// Where the ray begins.
+    start: Point<T>,
+    /// Where it goes.
+    direction: Point<T>,
+    /// How far it goes; by default through the box of the set.
+    #[field(default, min = 0)]
+    length: Option<T>,
+}
+
+impl<T: Real> Build<T> for FirstHit<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let set = &self.set.0;
+        let plain = set.re();
+        let (start, direction) = (self.start.xyz, self.direction.xyz);
+        let size = direction.re().norm();
+        if size == 0.0 {
+            let none = FieldError::Degenerate { what: "direction of the ray" };
+            return Err(fault(&none).in_field(2));
+        }
+        let none = || {
+            Fault::new("no-hit", "the ray does not meet the set").expected("a ray that meets it")
+        };
+        let length = match self.length {
+            Some(length) => length.re(),
+            None => {
+                let over = around(&plain).map_err(|e| fault(&e).in_field(0))?.ok_or_else(none)?;
+                (over.centre().distance(start.re()) + over.diagonal()) / size
+            }
+        };
+        let ray = foot::ray(start, direction, length);
+        let hit = plain.first_hit(&ray).ok_or_else(none)?;
+        let leaves = set.leaves();
+        // With derivatives, equal primitives may count twice: the one at this place of the plain set.
+        let wanted = &plain.leaves()[hit.leaf].primitive;
+        let leaf = leaves.iter().find(|l| l.primitive.re().same(wanted));
+        let t = leaf.map(|l| foot::along(l.primitive.of_sheet(), start, direction, hit.t));
+        Ok(Value::Number(t.unwrap_or(T::from(hit.t))))
+    }
+}
+
+/// A box around a set, {low, high}.
+#[derive(Kind)]
+#[kind(
+    class = Vectors,
+    function,
+    name = "bounds",
+    example = "curve b = bounds(set(sphere({0, 0, 0}, 1)), 1e-3); assert abs(b[2].x - 1) < 2e-3;"
+)]
+pub struct Bounds<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// How much wider than the set it may be.
+    #[field(default = 1e-3, min = 0)]
+    accuracy: T,
+}
+
+impl<T: Real> Build<T> for Bounds<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let found = crate::bounds(&self.set.0.re(), self.accuracy.re()).map_err(|e| fault(&e))?;
+        let Some(over) = found else { return Err(empty()) };
+        let ends = vec![Vec3::lifted(over.low), Vec3::lifted(over.high)];
+        Ok(Value::Vectors(Arc::new(Array::row(ends))))
+    }
+}
+

@@ -1,0 +1,66 @@
+//! Primitives, sets, blends and what is asked of them, as rows of the registry.
+
+mod blends;
+pub mod body;
+mod measures;
+mod primitives;
+pub mod read;
+pub mod region;
+mod sets;
+mod transforms;
+
+use moldloft_registry::Row;
+use moldloft_registry::export::StaticRow;
+
+/// All rows, in the order of the reference.
+pub fn rows() -> Vec<Row> {
+    macro_rules! rows {
+        ($($module:ident::$kind:ident,)*) => {
+            vec![$($module::$kind::<f64>::row()),*]
+        };
+    }
+    rows![
+        primitives::HalfSpace,
+        primitives::BehindPlane,
+        primitives::Sphere,
+        primitives::Cylinder,
+        primitives::Cone,
+        primitives::Torus,
+        primitives::Cyclide,
+        sets::SetOf,
+        sets::Cuboid,
+        sets::Tetrahedron,
+        sets::Thin,
+        sets::Everything,
+        sets::Nothing,
+        sets::Attributed,
+        sets::Regularized,
+        transforms::Translated,
+        transforms::Turned,
+        transforms::Mirrored,
+        transforms::Scaled,
+        transforms::Stretched,
+        blends::Liming,
+        blends::Zhang,
+        blends::Setback,
+        blends::Fillet,
+        blends::Rounded,
+        blends::Transition,
+        measures::Volume,
+        measures::Area,
+        measures::Centroid,
+        measures::Inertia,
+        measures::VolumeBracket,
+        measures::Member,
+        measures::Winner,
+        measures::Gradient,
+        measures::Range,
+        measures::Degree,
+        measures::NearestPoint,
+        measures::FirstHit,
+        measures::Bounds,
+        primitives::FieldObject,
+        sets::SetObject,
+        body::SetBody,
+    ]
+}

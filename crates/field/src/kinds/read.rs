@@ -1,0 +1,165 @@
+//! Arguments that are implicit: fields, sets, and what stands for them; results and faults.
+
+use crate::{FieldError, Primitive, Set};
+use moldloft_num::{Field, Real, Vec3};
+use moldloft_registry::{Class, Fault, FieldRef, FromValue, Implicit, SetRef, Value};
+use std::sync::Arc;
+
+impl<T: Real> Implicit<T> for Primitive<T> {
+    fn alike(&self, o: &Self) -> bool {
+        self.same(o)
+    }
+}
+
+impl<T: Real> Field<T> for Set<T> {
+    fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>) {
+        match self.winner(p) {
+            (value, None) => (value, Vec3::zero()),
+            (_, Some(leaf)) => {
+                let g = self.leaves()[leaf].primitive.gradient(p);
+                (g.value, g.slope)
+            }
+        }
+    }
+    fn value(&self, p: Vec3<T>) -> T {
+        Set::value(self, p)
+    }
+}
+
+impl<T: Real> Implicit<T> for Set<T> {
+    fn alike(&self, o: &Self) -> bool {
+        self.same(o)
+    }
+}
+
+/// A primitive as a value of the language.
+pub fn field_value<T: Real>(primitive: Primitive<T>) -> Value<T> {
+    Value::Field(FieldRef::new(primitive))
+}
+
+/// A set as a value of the language.
+pub fn set_value<T: Real>(set: Set<T>) -> Value<T> {
+    Value::Set(SetRef::new(set))
+}
+
+/// The primitive that a value is or stands for: a field, a plane (the half-space behind it), a number
+/// (a constant).
+pub fn primitive_of<T: Real>(value: &Value<T>) -> Option<Primitive<T>> {
+    match value {
+        Value::Field(f) => f.get::<Primitive<T>>().cloned(),
+        Value::Number(x) if x.is_finite() => Some(Primitive::real(*x)),
+        Value::Plane(p) => Primitive::plane(p.normal, p.point).ok(),
+        _ => None,
+    }
+}
+
+/// The set that a value is or stands for: a set, or the solid side of a field or plane. Faces of a field
+/// are called as the field is.
+pub fn set_of<T: Real>(value: &Value<T>) -> Option<Set<T>> {
+    match value {
+        Value::Set(s) => s.get::<Set<T>>().cloned(),
+        Value::Field(f) => {
+            let set = Set::new(f.get::<Primitive<T>>()?);
+            Some(match &f.name {
+                Some(name) => set.named(name),
+                None => set,
+            })
+        }
+        Value::Plane(_) => primitive_of(value).map(|p| Set::new(&p)),
+        _ => None,
+    }
+}
+
+/// A field with the name that it was declared under.
+pub struct Shape<T: Real> {
+    pub primitive: Primitive<T>,
+    pub name: Option<Arc<str>>,
+}
+
+impl<T: Real> Shape<T> {
+    /// It as a value again.
+    pub fn value(self) -> Value<T> {
+        let mut field = FieldRef::new(self.primitive);
+        field.name = self.name;
+        Value::Field(field)
+    }
+}
+
+impl<T: Real> FromValue<T> for Shape<T> {
+    const CLASS: Class = Class::Field;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let name = match value {
+            Value::Field(f) => f.name.clone(),
+            _ => None,
+        };
+        match primitive_of(value) {
+            Some(primitive) => Ok(Self { primitive, name }),
+            None => Err(Fault::wrong_class(Class::Field, value.class())),
+        }
+    }
+}
+
+/// A set, or the solid side of a field.
+pub struct Solid<T: Real>(pub Set<T>);
+
+impl<T: Real> FromValue<T> for Solid<T> {
+    const CLASS: Class = Class::Set;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match set_of(value) {
+            Some(set) => Ok(Self(set)),
+            None => Err(Fault::wrong_class(Class::Set, value.class())),
+        }
+    }
+}
+
+/// The error as a fault that says how to mend it.
+pub fn fault(error: &FieldError) -> Fault {
+    let id = match error {
+        FieldError::NotFinite { .. } => "not-finite",
+        FieldError::NotPositive { .. } | FieldError::Exponent { .. } | FieldError::Lambda { .. } => {
+            "out-of-range"
+        }
+        FieldError::Degenerate { .. } => "degenerate",
+        FieldError::Division => "field-division",
+        FieldError::RailsMeet { .. } => "rails-meet",
+        FieldError::RailInside { .. } => "rail-inside",
+        FieldError::RailSingular { .. } => "rail-singular",
+        FieldError::EmptyBox { .. } => "empty-box",
+        FieldError::Unbounded { .. } => "unbounded-set",
+        FieldError::TooFine { .. } => "too-fine",
+        FieldError::Cancelled => "cancelled",
+        FieldError::NoValue { .. } => "no-value",
+    };
+    let fault = Fault::new(id, error.to_string());
+    match error {
+        FieldError::Division => fault.help("multiply out, or divide by a number"),
+        FieldError::Exponent { .. } => {
+            fault.expected("a whole number from 0 to 1000").help("roots are sqrt() and s_sqrt()")
+        }
+        FieldError::Lambda { .. } => fault.expected("a number above 0 and below 1"),
+        FieldError::RailsMeet { .. } => {
+            fault.help("set the rails apart, or look at a smaller box")
+        }
+        FieldError::RailInside { .. } => {
+            fault.help("a rail must cut each body outside the other: move it outward")
+        }
+        FieldError::Unbounded { .. } => {
+            fault.expected("a box: {low corner}, {high corner}").help("or cut it with planes")
+        }
+        FieldError::TooFine { .. } => fault.help("ask for a coarser accuracy, or a smaller box"),
+        FieldError::EmptyBox { .. } => {
+            fault.expected("low and high corners that differ along x, y and z")
+        }
+        _ => fault,
+    }
+}
+
+/// A primitive as the value of a row, or its error as a fault.
+pub fn field<T: Real>(primitive: Result<Primitive<T>, FieldError>) -> Result<Value<T>, Fault> {
+    primitive.map(field_value).map_err(|e| fault(&e))
+}
+
+/// A set as the value of a row, or its error as a fault.
+pub fn set<T: Real>(set: Result<Set<T>, FieldError>) -> Result<Value<T>, Fault> {
+    set.map(set_value).map_err(|e| fault(&e))
+}

@@ -1,0 +1,82 @@
+//! The box over which a set is looked at.
+
+use super::read::fault;
+use crate::{Set, bounds};
+use moldloft_num::{Box3, Real, Vec3};
+use moldloft_registry::{Fault, Point};
+
+/// The box of two corners, if both are given; `field` is the place of the second.
+pub fn corners<T: Real>(
+    low: &Option<Point<T>>,
+    high: &Option<Point<T>>,
+    field: usize,
+) -> Result<Option<Box3>, Fault> {
+    match (low, high) {
+        (Some(low), Some(high)) => {
+            let over = Box3 { low: low.xyz.re(), high: high.xyz.re() };
+            crate::error::solid_box(over).map(Some).map_err(|e| fault(&e).in_field(field))
+        }
+        (None, None) => Ok(None),
+        _ => Err(Fault::new("missing-argument", "a box has two corners, and one is missing")
+            .expected("low and high, or neither")
+            .in_field(field)),
+    }
+}
+
+/// A box with its corners as the language gave them, when it did.
+pub struct Region<T> {
+    pub over: Box3,
+    pub corners: Option<[Vec3<T>; 2]>,
+}
+
+/// By which part of its size a box that was found is widened, so that nothing lies in its faces. The three
+/// differ, and are no simple fractions, so that the grid falls on no symmetry.
+const WIDENED: [f64; 3] = [0.0213, 0.0231, 0.0197];
+
+/// The box that was given, or one found around the set.
+///
+/// # Errors
+/// A set without end, or without a point.
+pub fn region<T: Real>(
+    set: &Set<f64>,
+    low: &Option<Point<T>>,
+    high: &Option<Point<T>>,
+    field: usize,
+) -> Result<Region<T>, Fault> {
+    if let Some(over) = corners(low, high, field)? {
+        let corners = low.as_ref().zip(high.as_ref()).map(|(l, h)| [l.xyz, h.xyz]);
+        return Ok(Region { over, corners });
+    }
+    let over = around(set).map_err(|e| fault(&e).in_field(0))?;
+    match over {
+        Some(over) => Ok(Region { over, corners: None }),
+        None => Err(Fault::new("empty-set", "the set is empty: it has no box")
+            .expected("a set with points in it, or a box")
+            .in_field(0)),
+    }
+}
+
+/// A box around a set, a little wider; `None` for an empty set.
+///
+/// # Errors
+/// A set without end.
+pub fn around(set: &Set<f64>) -> Result<Option<Box3>, crate::FieldError> {
+    let mut accuracy = 0.5;
+    let mut found = bounds(set, accuracy)?;
+    // To a hundredth of its size.
+    while let Some(over) = found {
+        let size = over.diagonal();
+        if accuracy <= 0.01 * size || accuracy < 1e-9 {
+            break;
+        }
+        accuracy = if size < 4.0 * accuracy { accuracy / 16.0 } else { 0.01 * size };
+        found = bounds(set, accuracy)?;
+    }
+    Ok(found.map(|mut over| {
+        let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
+        let more = Vec3::from(WIDENED) * size.max(1e-9);
+        over.low -= more;
+        over.high += more;
+        over
+    }))
+}

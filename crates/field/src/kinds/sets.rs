@@ -1,0 +1,207 @@
+//! Sets as rows of the registry.
+
+use super::read::{Shape, Solid, set, set_value};
+use crate::{Attributes, Set};
+use moldloft_num::Real;
+use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use std::sync::Arc;
+
+/// The points where a field is not positive.
+///
+/// Its faces are called as the field is. Sets are combined by `|` (union), `&` (intersection), `-`
+/// (difference), `^` (points in just one) and the sign `-` (complement).
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set",
+    example = "field c = sphere({0, 0, 0}, 1); set ball = set(c) & -set(plane({0, 0, 1}, {0, 0, 0}));"
+)]
+pub struct SetOf<T: Real> {
+    /// The field.
+    field: Shape<T>,
+}
+
+impl<T: Real> Build<T> for SetOf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let set = Set::new(&self.field.primitive);
+        Ok(set_value(match &self.field.name {
+            Some(name) => set.named(name),
+            None => set,
+        }))
+    }
+}
+
+/// The box between two corners, of six half-spaces.
+#[derive(Kind)]
+#[kind(class = Set, function, name = "cuboid", example = "set block = cuboid({0, 0, 0}, {2, 1, 1});")]
+pub struct Cuboid<T: Real> {
+    /// Low corner.
+    low: Point<T>,
+    /// High corner.
+    high: Point<T>,
+}
+
+impl<T: Real> Build<T> for Cuboid<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        set(Set::cuboid(self.low.xyz, self.high.xyz))
+    }
+}
+
+/// The tetrahedron of four points, in any order.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "tetrahedron",
+    example = "set t = tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});"
+)]
+pub struct Tetrahedron<T: Real> {
+    /// A corner.
+    a: Point<T>,
+    /// A corner.
+    b: Point<T>,
+    /// A corner.
+    c: Point<T>,
+    /// A corner.
+    d: Point<T>,
+}
+
+impl<T: Real> Build<T> for Tetrahedron<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        set(Set::tetrahedron([self.a.xyz, self.b.xyz, self.c.xyz, self.d.xyz]))
+    }
+}
+
+/// The faces of a set as sheets, without its inside.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "thin",
+    example = "set tank = thin(cuboid({0, 0, 0}, {2, 1, 1}));"
+)]
+pub struct Thin<T: Real> {
+    /// The set, whose primitives meet.
+    set: Solid<T>,
+}
+
+impl<T: Real> Build<T> for Thin<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        Ok(set_value(self.set.0.skin()))
+    }
+}
+
+/// All of space.
+#[derive(Kind)]
+#[kind(class = Set, function, name = "everything", example = "set all = everything();")]
+pub struct Everything<T: Real> {
+    /// Of no meaning; a call has none.
+    #[field(default)]
+    unused: Option<T>,
+}
+
+impl<T: Real> Build<T> for Everything<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let _ = self.unused;
+        Ok(set_value(Set::everything()))
+    }
+}
+
+/// The empty set: where a union of many begins.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "nothing",
+    example = "set balls = nothing(); for (i = 1:3) balls = balls | set(sphere({i, 0, 0}, 0.4));"
+)]
+pub struct Nothing<T: Real> {
+    /// Of no meaning; a call has none.
+    #[field(default)]
+    unused: Option<T>,
+}
+
+impl<T: Real> Build<T> for Nothing<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let _ = self.unused;
+        Ok(set_value(Set::nothing()))
+    }
+}
+
+/// The same set with attributes; what its parts say of themselves stays.
+///
+/// They reach every triangle, and the panels of each are a patch under the name.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "attributes",
+    example = "set ball = attributes(set(sphere({0, 0, 0}, 1)), name = \"ball\", colour = 12);"
+)]
+pub struct Attributed<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// The name of its faces.
+    #[field(default)]
+    name: Option<Arc<str>>,
+    /// Index of a palette colour.
+    #[field(default, min = 0, max = 15)]
+    colour: Option<u32>,
+    /// Its material.
+    #[field(default)]
+    material: Option<Arc<str>>,
+    /// Distance below which two of its points count as one.
+    #[field(default, min = 0)]
+    tolerance: Option<T>,
+}
+
+impl<T: Real> Build<T> for Attributed<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let text = |t: Option<Arc<str>>| t.map(|t| t.to_string());
+        Ok(set_value(self.set.0.with(Attributes {
+            name: text(self.name),
+            colour: self.colour.map(|c| c as u8),
+            material: text(self.material),
+            tolerance: self.tolerance.map(T::re),
+        })))
+    }
+}
+
+/// An equal set without parts that combine to nothing new: A|A = A, A|-A = everything, A&-A = nothing,
+/// A|(A&B) = A, A&(A|B) = A.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "regularized",
+    example = "set b = set(sphere({0, 0, 0}, 1)); set once = regularized(b | b);"
+)]
+pub struct Regularized<T: Real> {
+    /// The set.
+    set: Solid<T>,
+}
+
+impl<T: Real> Build<T> for Regularized<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        Ok(set_value(self.set.0.regularized()))
+    }
+}
+
+/// A set under a name: what `set s = ...;` declares.
+#[derive(Kind)]
+#[kind(class = Set, name = "Set", example = "Set ball(set(sphere({0, 0, 0}, 1)));")]
+pub struct SetObject<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// The objects that it was computed from.
+    #[field(default)]
+    of: Option<Vec<Value<T>>>,
+}
+
+impl<T: Real> Build<T> for SetObject<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        drop(self.of);
+        Ok(set_value(self.set.0))
+    }
+}

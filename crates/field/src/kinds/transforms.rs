@@ -1,0 +1,163 @@
+//! Moved, turned, mirrored and scaled fields and sets.
+
+use super::read::{fault, field, set, set_of, primitive_of};
+use crate::Affine;
+use moldloft_num::{Axis, Plane, Real, Vec3};
+use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Mirror, Point, Value};
+
+/// A field or a set.
+pub struct Movable<T: Real>(Value<T>);
+
+impl<T: Real> FromValue<T> for Movable<T> {
+    const CLASS: Class = Class::Set;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Field(_) | Value::Set(_) | Value::Plane(_) => Ok(Self(value.clone())),
+            other => Err(Fault::wrong_class(Class::Set, other.class())),
+        }
+    }
+}
+
+impl<T: Real> Movable<T> {
+    /// It moved; a field stays a field.
+    fn mapped(self, world_from: &Affine<T>) -> Result<Value<T>, Fault> {
+        match &self.0 {
+            Value::Set(_) => match set_of(&self.0) {
+                Some(s) => set(s.mapped(world_from)),
+                None => Err(Fault::wrong_class(Class::Set, self.0.class())),
+            },
+            value => match primitive_of(value) {
+                Some(f) => field(f.mapped(world_from)),
+                None => Err(Fault::wrong_class(Class::Field, value.class())),
+            },
+        }
+    }
+}
+
+/// A field or set moved by a vector.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "translated",
+    example = "set ball = translated(set(sphere({0, 0, 0}, 1)), {3, 0, 0});"
+)]
+pub struct Translated<T: Real> {
+    /// What is moved.
+    shape: Movable<T>,
+    /// By how much.
+    by: Point<T>,
+}
+
+impl<T: Real> Build<T> for Translated<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        self.shape.mapped(&Affine::translation(self.by.xyz))
+    }
+}
+
+/// A field or set turned about a line.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "turned",
+    example = "AbsPoint a(0, 0, 0); AbsPoint b(0, 0, 1); Line axis(a, b); set s = turned(cuboid({0, 0, 0}, {2, 1, 1}), axis, 0.5);"
+)]
+pub struct Turned<T: Real> {
+    /// What is turned.
+    shape: Movable<T>,
+    /// The axis, right-handed.
+    axis: Axis<T>,
+    /// The angle.
+    #[field(angle)]
+    angle: T,
+}
+
+impl<T: Real> Build<T> for Turned<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        self.shape.mapped(&Affine::rotation(&self.axis, self.angle))
+    }
+}
+
+/// The mirror image of a field or set.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "mirrored",
+    example = "set both = set(sphere({0, 2, 0}, 1)); both = both | mirrored(both, \"y=0\");"
+)]
+pub struct Mirrored<T: Real> {
+    /// What is mirrored.
+    shape: Movable<T>,
+    /// A plane, line or point.
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Build<T> for Mirrored<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let map = match &self.mirror {
+            Mirror::Plane(plane) => Affine::reflection(&unit(plane)),
+            Mirror::Line(axis) => Affine::rotation(axis, T::from(std::f64::consts::PI)),
+            Mirror::Point(p) => Affine::scaling(*p, T::from(-1.0)),
+        };
+        self.shape.mapped(&map)
+    }
+}
+
+fn unit<T: Real>(plane: &Plane<T>) -> Plane<T> {
+    Plane { normal: plane.normal.normalized().unwrap_or(plane.normal), ..*plane }
+}
+
+/// A field or set scaled about a point.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "scaled",
+    example = "set half = scaled(cuboid({0, 0, 0}, {2, 1, 1}), 0.5);"
+)]
+pub struct Scaled<T: Real> {
+    /// What is scaled.
+    shape: Movable<T>,
+    /// The factor, not 0.
+    factor: T,
+    /// The point that stays; the origin by default.
+    #[field(default)]
+    centre: Option<Point<T>>,
+}
+
+impl<T: Real> Build<T> for Scaled<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let centre = self.centre.map_or_else(Vec3::zero, |p| p.xyz);
+        let map = Affine::scaling(centre, self.factor);
+        self.shape.mapped(&map).map_err(|f| f.in_field(1))
+    }
+}
+
+/// A field or set stretched along a line; the plane across the line's start stays.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "stretched",
+    example = "AbsPoint a(0, 0, 0); AbsPoint b(0, 0, 1); Line axis(a, b); set egg = stretched(set(sphere({0, 0, 0}, 1)), axis, 1.5);"
+)]
+pub struct Stretched<T: Real> {
+    /// What is stretched.
+    shape: Movable<T>,
+    /// The line.
+    axis: Axis<T>,
+    /// The factor, not 0.
+    factor: T,
+}
+
+impl<T: Real> Build<T> for Stretched<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        if self.factor.re() == 0.0 {
+            let zero = crate::FieldError::Degenerate { what: "factor: it is 0" };
+            return Err(fault(&zero).in_field(2));
+        }
+        self.shape.mapped(&Affine::stretch(&self.axis, self.factor))
+    }
+}

@@ -1,0 +1,303 @@
+//! Fields and sets in the language: operators, grouping, objects, measures, facets, derivatives.
+
+mod common;
+
+use common::{ids, number, open, sound, told, vector};
+use moldloft_lang::Document;
+use moldloft_registry::Value;
+use std::f64::consts::PI;
+
+/// The T-piece of the svLis manual, its radii and shape as parameters.
+const TEE: &str = "
+param float r1 = 1 in [0.8, 1.2];
+param float r2 = 0.6 in [0.4, 0.8];
+AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); AbsPoint D(1, 0, 1);
+Line along(O, X); Line slope(O, D);
+field c1 = cylinder(along, r1);
+field c2 = cylinder(slope, r2);
+vector d = {1, 0, 1} / |{1, 0, 1}|;
+AbsPoint apex(4.5, 0, 4.5);
+Line back(apex, O);
+field k = cone(back, radians(17));
+field s = plane(d, {0, 0, 0});
+set ends = set(plane({1, 0, 0}, {3.5, 0, 0})) & set(plane({-1, 0, 0}, {-3.5, 0, 0}));
+set top = set(-s) & set(s - 4);
+field q = 0.6*c1*c2 - 0.4*k^2;
+set tee = set(c1) & ends | set(c2) & top | set(q) & set(k) & top;
+";
+
+fn holds(text: &str) {
+    sound(&format!("AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);\n{text}"));
+}
+
+/// The ids and messages of a text's diagnostics.
+fn faults(text: &str) -> Vec<String> {
+    told(&open(&format!("AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);\n{text}")))
+}
+
+#[test]
+fn arithmetic_on_fields_is_that_of_their_values() {
+    holds(
+        "field a = sphere({0, 0, 0}, 1); field b = plane({1, 0, 0}, {0.5, 0, 0}); vector p = {0.3, 0.4, 0.5};
+         field all = 0.6*a*b - 0.4*b^2 + a/2 - 1 + 3*b;
+         float f = a(p); float g = b(p);
+         assert abs(all(p) - (0.6*f*g - 0.4*g^2 + f/2 - 1 + 3*g)) < 1e-15;
+         assert (-a)(p) == -f; assert (1 - a)(p) == 1 - f; assert (2/4*a)(p) == 0.5*f;
+         assert abs(a)(p) == abs(f); assert |b|(p) == abs(g); assert (a^3)(p) == f*f*f;
+         assert abs(sin(b)(p) - sin(g)) < 1e-15; assert abs(exp(a)(p) - exp(f)) < 1e-15;
+         assert abs(s_sqrt(b)(p) - s_sqrt(g)) < 1e-15;
+         assert min(a, b)(p) == min(f, g); assert max(a, b, 3)(p) == 3; assert abs(atan2(a, b)(p) - atan2(f, g)) < 1e-15;
+         assert gradient(a, p).y == 0.8; assert degree(all) == 3; assert sign(b)(p) == -1;
+         curve rows[2]; rows[1] = p; rows[2] = {1, 0, 0}; farray v = a(rows); assert v[2] == 0;",
+    );
+}
+
+#[test]
+fn sets_group_as_in_c_and_fields_as_numbers() {
+    holds(
+        "field a = sphere({0, 0, 0}, 1); field b = sphere({1.5, 0, 0}, 1); field c = plane({0, 0, 1}, {0, 0, 0});
+         set A = set(a); set B = set(b); set C = set(c);
+         vector both = {0.75, 0, -0.1}; vector left = {-0.5, 0, -0.1}; vector above = {-0.5, 0, 0.1};
+         set u = A | B & C; assert member(u, above) == \"solid\"; assert member((A | B) & C, above) == \"air\";
+         set x = A ^ B; assert member(x, both) == \"air\"; assert member(x, left) == \"solid\";
+         set d = A - B & C; assert member(d, both) == \"air\"; assert member(d, above) == \"air\"; assert member(d, left) == \"solid\";
+         assert member(-A, left) == \"air\"; assert member(-A | A, left) == \"solid\";
+         field f = a - 2*c^2; assert f(left) == a(left) - 2*c(left)^2;
+         assert |volume(A | B, {-2, -2, -2}, {3, 2, 2}, 1e-3) - 8| < 2;
+         assert member(A | C, above) == \"solid\"; assert member(a & c, above) == \"air\";
+         assert winner(A | B, {1.4, 0, 0}) == \"B\";",
+    );
+}
+
+#[test]
+fn names_of_faces_are_those_of_the_innermost_declaration() {
+    let mut model = sound(&format!("{TEE} SetBody part(tee, {{-4, -4, -4}}, {{4, 4, 4}}, depth = 5);"));
+    let mesh = model.panelled().unwrap();
+    let names: Vec<&str> = mesh.mesh.patches().iter().map(|p| p.info.name.as_str()).collect();
+    assert_eq!(names, ["part.c1", "part.ends", "part.ends.2", "part.c2", "part.top", "part.q"]);
+    assert_eq!(mesh.mesh.patches()[0].info.kind, "cylinder");
+    let report = mesh.mesh.report();
+    assert!(report.closed && report.manifold && report.oriented && report.components == 1);
+    let euler = report.vertices as i64 - 3 * report.faces as i64 / 2 + report.faces as i64;
+    assert_eq!(euler, 2, "genus 0");
+}
+
+#[test]
+fn the_golden_volume_and_its_bracket() {
+    let mut model = sound(TEE);
+    let volume = number(&mut model, "volume(tee, {-4,-4,-4}, {4,4,4})");
+    assert!((volume - 25.097).abs() < 1e-3, "{volume}");
+    let found = number(&mut model, "volume(tee)");
+    assert!((volume - found).abs() < 1e-3, "{volume} {found}");
+    let Ok(Value::Numbers(bracket)) = model.eval("volume_bracket(tee, {-4,-4,-4}, {4,4,4})") else {
+        panic!()
+    };
+    assert!(bracket.items[0] < volume && volume < bracket.items[1]);
+}
+
+#[test]
+fn closed_forms() {
+    let mut model = sound(
+        "param float r = 1 in [0.5, 2]; AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); AbsPoint Z(0, 0, 1);
+         Line x(O, X); Line z(O, Z);
+         set ball = set(sphere(O, r)); set ring = set(torus(z, 2*r, 0.5*r));
+         set steinmetz = set(cylinder(x, r)) & set(cylinder(z, r));
+         set napkin = set(sphere(O, r)) - set(cylinder(z, 0.6*r));",
+    );
+    let r = 1.0f64;
+    let forms = [
+        ("volume(ball)", 4.0 * PI / 3.0 * r.powi(3)),
+        ("area(ball)", 4.0 * PI),
+        ("volume(ring)", 2.0 * PI * PI * 2.0 * 0.25),
+        ("volume(steinmetz)", 16.0 / 3.0),
+        ("area(steinmetz)", 16.0),
+        ("volume(napkin)", PI * 1.6f64.powi(3) / 6.0),
+    ];
+    for (text, exact) in forms {
+        let found = number(&mut model, text);
+        assert!((found - exact).abs() < 3e-4 * exact, "{text}: {found} {exact}");
+        // d/dr: volumes grow as r^3, areas as r^2.
+        let power = if text.starts_with("volume") { 3.0 } else { 2.0 };
+        let slope = model.derivatives(&[text.into()], &["r".into()]).unwrap();
+        let Value::Number(slope) = slope[0][0] else { panic!() };
+        assert!((slope - power * exact).abs() < 1e-3 * exact, "{text}: {slope}");
+    }
+}
+
+#[test]
+fn derivatives_equal_differences() {
+    let mut model = sound(
+        "param float r = 0.7 in [0.5, 1]; param float a = 0.3 in [0, 1];
+         AbsPoint P(a, 0.1, 0.2); AbsPoint Q(a + 0.2, 1, 0.5*r); Line axis(P, Q);
+         set s = (set(sphere(P, r)) | set(cylinder(axis, 0.3*r))) - set(plane({1, 0.2, 0}, Q));
+         SetBody b(s, {-1, -1, -1}, {2, 2, 2}, depth = 5);",
+    );
+    let texts = [
+        "volume(s, {-1,-1,-1}, {2,2,2})",
+        "centroid(s, {-1,-1,-1}, {2,2,2}).x",
+        "inertia(s, {-1,-1,-1}, {2,2,2})[1].x",
+        "nearest(s, {-3, a, r}, {-1,-1,-1}, {2,2,2}).y",
+        "hit(s, {-3, a, 0.1}, {1, r/10, 0}, 9)",
+        "s({a, r, 0.1})",
+        "gradient(s, {a, r, 0.1}).z",
+        "b.volume",
+    ];
+    for by in ["r", "a", "P.y"] {
+        let all: Vec<String> = texts.iter().map(|t| t.to_string()).collect();
+        let exact = model.derivatives(&all, &[by.into()]).unwrap();
+        let start = number(&mut model, by);
+        for (text, exact) in texts.iter().zip(&exact) {
+            let Value::Number(exact) = exact[0] else { panic!() };
+            // Integrals by facets are smooth to their own accuracy: wide steps, extrapolated.
+            let integral = text.starts_with("volume") || text.starts_with("ce") || text.starts_with("i") || *text == "b.volume";
+            let (h, tolerance) = if integral { (0.02, 2e-3) } else { (1e-4, 1e-6) };
+            let mut at = |x: f64| {
+                model.set(&[(by.into(), x)]).unwrap();
+                number(&mut model, text)
+            };
+            let mut slope = |h: f64| (at(start + h) - at(start - h)) / (2.0 * h);
+            let (wide, narrow) = (slope(h), slope(0.5 * h));
+            let centred = narrow + (narrow - wide) / 3.0;
+            model.set(&[(by.into(), start)]).unwrap();
+            let close = (exact - centred).abs() <= tolerance * exact.abs().max(1.0);
+            assert!(close, "d({text})/d({by}) = {exact}, differences {centred}");
+        }
+    }
+}
+
+#[test]
+fn a_moved_point_moves_the_blend_and_only_what_hangs_on_it() {
+    let text = "AbsPoint P(0, 0, 0); AbsPoint Q(5, 0, 0); field a = sphere(P, 1); field b = sphere(Q, 1);
+         set A = set(a); set B = set(b); SetBody one(A, depth = 3); SetBody two(B, depth = 3);";
+    let mut model = sound(text);
+    assert_eq!(model.graph().get(model.graph().find("A").unwrap()).unwrap().parents.len(), 1);
+    let before = number(&mut model, "two.volume");
+    model.set(&[("P.x".into(), 0.5)]).unwrap();
+    // P, a, A, one: the other half stays.
+    assert!(model.applied().evaluated <= 4, "{}", model.applied().evaluated);
+    assert!((vector(&mut model, "one.centroid").x - 0.5).abs() < 1e-6);
+    assert_eq!(number(&mut model, "two.volume").to_bits(), before.to_bits());
+    // The same as from the text.
+    let mut fresh = sound(&model.text());
+    let panels = |m: &mut Document| m.panelled().unwrap().mesh.positions().to_vec();
+    assert_eq!(panels(&mut model), panels(&mut fresh));
+}
+
+#[test]
+fn sets_are_objects_or_variables() {
+    let mut model = sound(
+        "set balls = nothing(); for (i = 1:3) balls = balls | set(sphere({2*i, 0, 0}, 0.9));
+         function set pair(float r) { set s = set(sphere({0, 0, 0}, r)); return s | translated(s, {0, 5, 0}); }
+         set two = pair(0.5);",
+    );
+    assert!((number(&mut model, "volume(balls)") - 4.0 * PI * 0.729).abs() < 1e-3);
+    assert!((number(&mut model, "volume(two)") - PI / 3.0).abs() < 1e-3);
+    assert!(model.graph().find("two").is_some() && model.graph().find("balls").is_none());
+    let twice = open("set s = everything(); set s = nothing();");
+    assert_eq!(ids(&twice), ["duplicate-name"]);
+}
+
+#[test]
+fn moved_sets_are_where_they_were_moved() {
+    holds(
+        "set block = cuboid({0, 0, 0}, {1, 2, 3}); float tol = 1e-9;
+         assert |centroid(translated(block, {1, 1, 1})) - {1.5, 2, 2.5}| < tol;
+         assert |centroid(turned(block, axis, radians(90))) - {-1, 0.5, 1.5}| < tol;
+         assert |centroid(mirrored(block, \"x=0\")) - {-0.5, 1, 1.5}| < tol;
+         assert abs(volume(scaled(block, 2, {1, 2, 3})) - 48) < tol;
+         assert abs(volume(stretched(block, axis, 3)) - 18) < tol;
+         assert abs(volume(tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1})) - 1/6) < tol;
+         assert abs(area(thin(block), {-1, -1, -1}, {4, 4, 4}) - 22) < 1e-3;
+         field half = half_space(\"z=0\"); assert half({0, 0, 2}) == 2;
+         ZPlane deck(1); assert abs(volume(block & deck) - 2) < tol;
+         field far = sphere({0, 0, 0}, 2, distance = 1); assert far({5, 0, 0}) == 3;
+         field pipe = cylinder(axis, 2, distance = 1); assert pipe({5, 0, 9}) == 3;",
+    );
+}
+
+#[test]
+fn blends_touch_and_say_where_they_would_not() {
+    holds(
+        "field x = plane({1, 0, 0}, {0, 0, 0}); field y = plane({0, 1, 0}, {0, 0, 0});
+         set f = fillet(x, y, 1, low = {-2, -2, -1}, high = {3, 3, 1});
+         float t = 1 - sqrt(0.5); assert abs(nearest(f, {t + 0.01, t + 0.01, 0}, {-2, -2, -1}, {3, 3, 1}).x - t) < 1e-9;
+         assert winner(f, {0.1, 0.1, 0}) == \"fillet\";
+         set r = rounded(x, y, 1); assert member(r, {-0.1, -0.1, 0}) == \"air\"; assert member(r, {-0.5, -0.5, 0}) == \"solid\";
+         field rail = setback(x, y, 1, 2); assert rail({1, 0, 0}) == 0; assert rail({0, 2, 0}) == 0;
+         field b = liming(x, y, rail, lambda = 0.3); assert degree(b) == 2;
+         field four = liming(x, y, rail, plane({1, 1, 0}, {1, 1, 0})); assert degree(four) == 2;",
+    );
+    let told = faults(
+        "field a = sphere({0, 0, 0}, 1); field b = sphere({1, 0, 0}, 1);
+         field q = liming(a, b, sphere({0.5, 0, 0}, 0.7), low = {-3, -3, -3}, high = {3, 3, 3});",
+    );
+    assert!(told[0].contains("rail-inside") && told[0].contains("near ("), "{told:?}");
+    let told = faults(
+        "field a = sphere({0, 0, 0}, 1); field b = sphere({1, 0, 0}, 1); field p = plane({1, 0, 0}, {0, 0, 0});
+         field q = zhang(a, b, p, plane({0, 1, 0}, {0, 0, 0}), low = {-3, -3, -3}, high = {3, 3, 3});",
+    );
+    assert!(told[0].contains("rails-meet"), "{told:?}");
+}
+
+#[test]
+fn bad_input_is_told() {
+    for (text, id, part) in [
+        ("field f = sphere({0,0,0}, 0);", "out-of-range", "radius"),
+        ("field f = sphere({0,0,0}, -1);", "out-of-range", "radius"),
+        ("field f = sphere({0,0,0}, 1)/plane({1,0,0}, {0,0,0});", "field-division", "divided by numbers"),
+        ("field f = sphere({0,0,0}, 1)/0;", "field-division", "divided by numbers"),
+        ("field f = sphere({0,0,0}, 1)^0.5;", "field-power", "whole number"),
+        ("field f = sphere({0,0,0}, 1)^-1;", "field-power", "whole number"),
+        ("field f = plane({0,0,0}, {0,0,0});", "degenerate", "normal"),
+        ("float n = 0; field f = sphere({0,0,0}, n/n);", "not-finite", "finite"),
+        ("field a = sphere({0,0,0}, 1); field f = liming(a, a, a, lambda = 1);", "out-of-range", "between 0 and 1"),
+        ("field a = sphere({0,0,0}, 1); field f = liming(a, a, a, lambda = 0);", "out-of-range", "between 0 and 1"),
+        ("set s = set(cylinder(axis, 1)); float v = volume(s);", "unbounded-set", "give the box"),
+        ("SetBody b(everything());", "unbounded-set", "give the box"),
+        ("SetBody b(nothing());", "empty-set", "empty"),
+        ("float v = volume(set(sphere({0,0,0}, 1)) & set(sphere({9,0,0}, 1)));", "empty-set", "empty"),
+        ("SetBody b(set(sphere({0,0,0}, 1)), {0,0,0}, {1,1,0});", "empty-box", "no volume"),
+        ("SetBody b(set(sphere({0,0,0}, 1)), {0,0,0});", "missing-argument", "two corners"),
+        ("SetBody b(set(sphere({0,0,0}, 1)), accuracy = 1e-12);", "too-fine", "boxes"),
+        ("SetBody b(set(sphere({0,0,0}, 1)), depth = 16);", "too-fine", "boxes"),
+        ("SetBody b(set(sphere({0,0,0}, 1)), depth = 4, accuracy = 0.1);", "argument-twice", "both given"),
+        ("set s = set(sphere({0,0,0}, 1)) + 1;", "wrong-operand", "`+`"),
+        ("set s = set(sphere({0,0,0}, 1)) ^ 2;", "wrong-operand", "`^`"),
+        ("set s = set(sphere({0,0,0}, 1)) | 2;", "wrong-operand", "`|`"),
+        ("field s = 3 < sphere({0,0,0}, 1);", "wrong-operand", "`<`"),
+        ("field f = tan(sphere({0,0,0}, 1));", "wrong-class", "tan"),
+        ("set s = abs(set(sphere({0,0,0}, 1)));", "wrong-class", "takes no set"),
+        ("field f = set(sphere({0,0,0}, 1));", "wrong-type", "expected a field, found a set"),
+        ("set s = 3;", "wrong-type", "expected a set"),
+        ("float d = sphere({0,0,0}, 1)(3);", "wrong-type", "asked at a point"),
+        ("float t = hit(set(sphere({0,0,0}, 1)), {0,5,0}, {1,0,0});", "no-hit", "does not meet"),
+        ("set t = tetrahedron({0,0,0}, {1,0,0}, {0,1,0}, {1,1,0});", "degenerate", "tetrahedron"),
+        ("set t = scaled(cuboid({0,0,0}, {1,1,1}), 0);", "degenerate", "map"),
+    ] {
+        let told = faults(text);
+        let found = told.first().cloned().unwrap_or_default();
+        assert!(found.contains(&format!("[{id}]")) && found.contains(part), "{text}: {told:?}");
+    }
+}
+
+#[test]
+fn sheets_wires_and_points_reach_the_body() {
+    let model = sound(
+        "field a = sphere({0, 0, 0}, 1); field b = plane({0, 0, 1}, {0, 0, 0.5}); field c = plane({1, 0, 0}, {0, 0, 0});
+         set shell = set(abs(a)); set rim = shell & set(abs(b)); set dots = rim & set(abs(c));
+         SetBody sheet(shell, {-2,-2,-2}, {2,2,2}, depth = 5); SetBody wire(rim, {-2,-2,-2}, {2,2,2}, depth = 5);
+         SetBody dot(dots, {-2,-2,-2}, {2,2,2}, depth = 5);",
+    );
+    let body = |name: &str| {
+        let object = model.graph().get(model.graph().find(name).unwrap()).unwrap();
+        let Some(Value::Mesh(m)) = object.value() else { panic!() };
+        m.clone()
+    };
+    let (sheet, wire, dot) = (body("sheet"), body("wire"), body("dot"));
+    assert!((sheet.area - 4.0 * PI).abs() < 0.03 && sheet.wires.is_empty());
+    assert_eq!(sheet.groups[0].name, "a");
+    assert!(wire.triangles.is_empty() && wire.wires.len() == 1);
+    let length: f64 = wire.wires[0].windows(2).map(|p| p[0].distance(p[1])).sum();
+    assert!((length - 2.0 * PI * 0.75f64.sqrt()).abs() < 5e-3, "{length}");
+    assert_eq!(dot.dots.len(), 2);
+}
