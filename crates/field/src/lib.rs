@@ -51,7 +51,7 @@ pub use ray::{Hit, Ray, roots};
 pub use set::{Attributes, Leaf, Membership, Set};
 pub use sheets::{Dot, Mixed, Sheet, Wire, facet_mixed};
 
-pub use kinds::read::{field_value, primitive_of, set_of, set_value};
-pub use kinds::rows;
 pub use kinds::body::{Pieces, facets_of};
+pub use kinds::read::{field_value, primitive_of, set_of, set_value};
 pub use kinds::region::around;
+pub use kinds::rows;

@@ -15,12 +15,6 @@ pub trait Oracle<T: Real>: Field<T> {
         [Interval::ENTIRE; 3]
     }
 
-    /// Value, gradient and matrix of second derivatives; without knowledge the matrix is zero.
-    fn second_order(&self, p: Vec3<T>) -> (T, Vec3<T>, [Vec3<T>; 3]) {
-        let (value, gradient) = self.value_and_gradient(p);
-        (value, gradient, [Vec3::zero(); 3])
-    }
-
     /// The same with real parts only.
     fn re(&self) -> Arc<dyn Oracle<f64>>;
 }

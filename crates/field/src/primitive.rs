@@ -436,6 +436,16 @@ impl<T: Real> Field<T> for Primitive<T> {
     fn value(&self, p: Vec3<T>) -> T {
         Primitive::value(self, p)
     }
+    fn second_order(&self, p: Vec3<T>) -> (T, Vec3<T>, [Vec3<T>; 3]) {
+        let h = self.hessian(p);
+        (h.value, h.slope, h.second)
+    }
+    fn bounds(&self, over: &Box3) -> Option<[f64; 2]> {
+        let any: &dyn std::any::Any = self;
+        let plain = any.downcast_ref::<Primitive<f64>>()?;
+        let range = plain.range(over);
+        Some([range.low, range.high])
+    }
 }
 
 impl<T: Real> std::fmt::Debug for Primitive<T> {

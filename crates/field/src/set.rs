@@ -263,7 +263,8 @@ impl<T: Real> Set<T> {
             return true;
         }
         let (a, b) = (self.compiled(), o.compiled());
-        let said = |c: &Compiled<T>| c.leaves.iter().map(|l| l.attributes.clone()).collect::<Vec<_>>();
+        let said =
+            |c: &Compiled<T>| c.leaves.iter().map(|l| l.attributes.clone()).collect::<Vec<_>>();
         a.places == b.places
             && a.tape.leaf == b.tape.leaf
             && a.tape.same(&b.tape)

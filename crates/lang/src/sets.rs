@@ -51,11 +51,7 @@ pub(crate) fn binary<T: Real>(
     Some(if sets { of_sets(op, a, b) } else { of_fields(op, a, b) })
 }
 
-fn of_sets<T: Real>(
-    op: BinaryOp,
-    a: &Value<T>,
-    b: &Value<T>,
-) -> Result<Value<T>, Diagnostic> {
+fn of_sets<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>, Diagnostic> {
     let (Some(x), Some(y)) = (set_of(a), set_of(b)) else { return Err(undefined(op, a, b)) };
     Ok(set_value(match op {
         BinaryOp::Union => x | y,
@@ -66,11 +62,7 @@ fn of_sets<T: Real>(
     }))
 }
 
-fn of_fields<T: Real>(
-    op: BinaryOp,
-    a: &Value<T>,
-    b: &Value<T>,
-) -> Result<Value<T>, Diagnostic> {
+fn of_fields<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>, Diagnostic> {
     let (Some(x), Some(y)) = (primitive_of(a), primitive_of(b)) else {
         return Err(undefined(op, a, b));
     };
@@ -148,10 +140,7 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
 }
 
 /// A function of several numbers applied to fields; `None` when there is no field among them.
-pub(crate) fn functions<T: Real>(
-    name: &str,
-    args: &[Value<T>],
-) -> Option<Result<Value<T>, Fault>> {
+pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result<Value<T>, Fault>> {
     let at = args.iter().position(is_implicit)?;
     let mut fields = Vec::new();
     for (k, arg) in args.iter().enumerate().filter(|(_, a)| !matches!(a, Value::Unset)) {

@@ -71,7 +71,8 @@ fn sets_group_as_in_c_and_fields_as_numbers() {
 
 #[test]
 fn names_of_faces_are_those_of_the_innermost_declaration() {
-    let mut model = sound(&format!("{TEE} SetBody part(tee, {{-4, -4, -4}}, {{4, 4, 4}}, depth = 5);"));
+    let mut model =
+        sound(&format!("{TEE} SetBody part(tee, {{-4, -4, -4}}, {{4, 4, 4}}, depth = 5);"));
     let mesh = model.panelled().unwrap();
     let names: Vec<&str> = mesh.mesh.patches().iter().map(|p| p.info.name.as_str()).collect();
     assert_eq!(names, ["part.c1", "part.ends", "part.ends.2", "part.c2", "part.top", "part.q"]);
@@ -149,7 +150,10 @@ fn derivatives_equal_differences() {
         for (text, exact) in texts.iter().zip(&exact) {
             let Value::Number(exact) = exact[0] else { panic!() };
             // Integrals by facets are smooth to their own accuracy: wide steps, extrapolated.
-            let integral = text.starts_with("volume") || text.starts_with("ce") || text.starts_with("i") || *text == "b.volume";
+            let integral = text.starts_with("volume")
+                || text.starts_with("ce")
+                || text.starts_with("i")
+                || *text == "b.volume";
             let (h, tolerance) = if integral { (0.02, 2e-3) } else { (1e-4, 1e-6) };
             let mut at = |x: f64| {
                 model.set(&[(by.into(), x)]).unwrap();
@@ -167,7 +171,8 @@ fn derivatives_equal_differences() {
 
 #[test]
 fn a_moved_point_moves_the_blend_and_only_what_hangs_on_it() {
-    let text = "AbsPoint P(0, 0, 0); AbsPoint Q(5, 0, 0); field a = sphere(P, 1); field b = sphere(Q, 1);
+    let text =
+        "AbsPoint P(0, 0, 0); AbsPoint Q(5, 0, 0); field a = sphere(P, 1); field b = sphere(Q, 1);
          set A = set(a); set B = set(b); SetBody one(A, depth = 3); SetBody two(B, depth = 3);";
     let mut model = sound(text);
     assert_eq!(model.graph().get(model.graph().find("A").unwrap()).unwrap().parents.len(), 1);
@@ -244,23 +249,43 @@ fn bad_input_is_told() {
     for (text, id, part) in [
         ("field f = sphere({0,0,0}, 0);", "out-of-range", "radius"),
         ("field f = sphere({0,0,0}, -1);", "out-of-range", "radius"),
-        ("field f = sphere({0,0,0}, 1)/plane({1,0,0}, {0,0,0});", "field-division", "divided by numbers"),
+        (
+            "field f = sphere({0,0,0}, 1)/plane({1,0,0}, {0,0,0});",
+            "field-division",
+            "divided by numbers",
+        ),
         ("field f = sphere({0,0,0}, 1)/0;", "field-division", "divided by numbers"),
         ("field f = sphere({0,0,0}, 1)^0.5;", "field-power", "whole number"),
         ("field f = sphere({0,0,0}, 1)^-1;", "field-power", "whole number"),
         ("field f = plane({0,0,0}, {0,0,0});", "degenerate", "normal"),
         ("float n = 0; field f = sphere({0,0,0}, n/n);", "not-finite", "finite"),
-        ("field a = sphere({0,0,0}, 1); field f = liming(a, a, a, lambda = 1);", "out-of-range", "between 0 and 1"),
-        ("field a = sphere({0,0,0}, 1); field f = liming(a, a, a, lambda = 0);", "out-of-range", "between 0 and 1"),
+        (
+            "field a = sphere({0,0,0}, 1); field f = liming(a, a, a, lambda = 1);",
+            "out-of-range",
+            "between 0 and 1",
+        ),
+        (
+            "field a = sphere({0,0,0}, 1); field f = liming(a, a, a, lambda = 0);",
+            "out-of-range",
+            "between 0 and 1",
+        ),
         ("set s = set(cylinder(axis, 1)); float v = volume(s);", "unbounded-set", "give the box"),
         ("SetBody b(everything());", "unbounded-set", "give the box"),
         ("SetBody b(nothing());", "empty-set", "empty"),
-        ("float v = volume(set(sphere({0,0,0}, 1)) & set(sphere({9,0,0}, 1)));", "empty-set", "empty"),
+        (
+            "float v = volume(set(sphere({0,0,0}, 1)) & set(sphere({9,0,0}, 1)));",
+            "empty-set",
+            "empty",
+        ),
         ("SetBody b(set(sphere({0,0,0}, 1)), {0,0,0}, {1,1,0});", "empty-box", "no volume"),
         ("SetBody b(set(sphere({0,0,0}, 1)), {0,0,0});", "missing-argument", "two corners"),
         ("SetBody b(set(sphere({0,0,0}, 1)), accuracy = 1e-12);", "too-fine", "boxes"),
         ("SetBody b(set(sphere({0,0,0}, 1)), depth = 16);", "too-fine", "boxes"),
-        ("SetBody b(set(sphere({0,0,0}, 1)), depth = 4, accuracy = 0.1);", "argument-twice", "both given"),
+        (
+            "SetBody b(set(sphere({0,0,0}, 1)), depth = 4, accuracy = 0.1);",
+            "argument-twice",
+            "both given",
+        ),
         ("set s = set(sphere({0,0,0}, 1)) + 1;", "wrong-operand", "`+`"),
         ("set s = set(sphere({0,0,0}, 1)) ^ 2;", "wrong-operand", "`^`"),
         ("set s = set(sphere({0,0,0}, 1)) | 2;", "wrong-operand", "`|`"),
@@ -300,4 +325,48 @@ fn sheets_wires_and_points_reach_the_body() {
     let length: f64 = wire.wires[0].windows(2).map(|p| p[0].distance(p[1])).sum();
     assert!((length - 2.0 * PI * 0.75f64.sqrt()).abs() < 5e-3, "{length}");
     assert_eq!(dot.dots.len(), 2);
+}
+
+#[test]
+fn implicit_surfaces_serve_projections_and_intersections() {
+    let mut model = sound(
+        "param float r = 1 in [0.5, 2]; AbsPoint O(0, 0, 0); AbsPoint P(3, 4, 0); AbsPoint A(-2, 0.3, 0.1); AbsPoint B(2, 0.3, 0.1);
+         Line l(A, B); field ball = sphere(O, r); ProjPoint foot(P, ball); AbsBead near(l, 0.7); IntBead hit(near, ball);
+         ProjCurve arc(l, ball);
+         AbsPoint C(-2, -2, 0.2); AbsPoint D(2, -2, 0.3); AbsPoint E(-2, 2, 0.1); AbsPoint F(2, 2, 0.4);
+         Line m(C, D); Line n(E, F); RuledSurf sheet(m, n); IntSnake cut(sheet, ball);
+         IntSnake again(sheet, O.x + ball*1);",
+    );
+    assert!((vector(&mut model, "foot") - vector(&mut model, "{0.6, 0.8, 0}")).norm() < 1e-12);
+    let hit = vector(&mut model, "hit");
+    assert!((hit.norm() - 1.0).abs() < 1e-12 && hit.x > 0.0);
+    for t in [0.0, 0.1, 0.37, 0.5, 0.9] {
+        for curve in ["arc", "cut"] {
+            let p = vector(&mut model, &format!("{curve}({t})"));
+            assert!((p.norm() - 1.0).abs() < 1e-10, "{curve}({t}) = {p:?}");
+        }
+    }
+    assert_eq!(number(&mut model, "abs(length(cut) - length(again)) < 1e-9"), 1.0);
+    for (text, by) in [
+        ("foot.x", "r"),
+        ("hit.t", "r"),
+        ("arc(0.3).y", "r"),
+        ("length(cut)", "r"),
+        ("cut(0.3).x", "P.x"),
+        ("foot.y", "P.y"),
+    ] {
+        let exact = model.derivatives(&[text.into()], &[by.into()]).unwrap();
+        let Value::Number(exact) = exact[0][0] else { panic!() };
+        let start = number(&mut model, by);
+        let mut at = |x: f64| {
+            model.set(&[(by.into(), x)]).unwrap();
+            number(&mut model, text)
+        };
+        let centred = (at(start + 1e-4) - at(start - 1e-4)) / 2e-4;
+        model.set(&[(by.into(), start)]).unwrap();
+        assert!(
+            (exact - centred).abs() < 1e-6,
+            "d({text})/d({by}) = {exact}, differences {centred}"
+        );
+    }
 }

@@ -14,7 +14,7 @@ use crate::implicit::solve;
 use crate::newton::{OUTSIDE, Range, newton};
 use crate::pieces::{Patch, meet, size_of};
 use crate::tree::SurfaceTree;
-use moldloft_num::{Box3, Order, Plane, SurfJet, Surface, Vec3};
+use moldloft_num::{Box3, Field, Order, Plane, SurfJet, Surface, Vec3, slope_scale};
 
 /// Unknowns of a point of an intersection: (u, v, p, r), the last two 0 for a plane.
 pub type Unknowns = [f64; 4];
@@ -26,6 +26,8 @@ pub enum Other<'a> {
     Plane(Plane<f64>),
     /// A surface.
     Surface(&'a dyn Surface<f64>),
+    /// The zero set of an implicit function.
+    Level(&'a dyn Field<f64>),
 }
 
 /// A surface and what it is intersected with.
@@ -104,10 +106,15 @@ impl<'a> Crossing<'a> {
         Self { first, other: Other::Surface(second), size }
     }
 
+    /// A surface and the zero set of an implicit function.
+    pub fn with_level(first: &'a dyn Surface<f64>, field: &'a dyn Field<f64>) -> Self {
+        Self { first, other: Other::Level(field), size: size_by_samples(first) }
+    }
+
     /// The number of unknowns.
     pub fn unknowns(&self) -> usize {
         match self.other {
-            Other::Plane(_) => 2,
+            Other::Plane(_) | Other::Level(_) => 2,
             Other::Surface(_) => 4,
         }
     }
@@ -127,6 +134,19 @@ impl<'a> Crossing<'a> {
                     let (e, de) = extra([u, v, 0.0, 0.0], &j);
                     let n = plane.normal;
                     ([plane.distance(j.p), e], [[n.dot(j.u), n.dot(j.v)], [de[0], de[1]]])
+                });
+                walk.found.then_some([walk.at[0], walk.at[1], 0.0, 0.0])
+            }
+            Other::Level(field) => {
+                // As a length, by the gradient where the walk begins.
+                let begin = self.first.jet(guess[0], guess[1], Order::Zero).p;
+                let scale = slope_scale(field.value_and_gradient(begin).1);
+                let walk = newton([guess[0], guess[1]], &[wide; 2], self.size, |[u, v]| {
+                    let j = self.first.jet(u, v, Order::First);
+                    let (e, de) = extra([u, v, 0.0, 0.0], &j);
+                    let (f, g) = field.value_and_gradient(j.p);
+                    let g = g * scale;
+                    ([f * scale, e], [[g.dot(j.u), g.dot(j.v)], [de[0], de[1]]])
                 });
                 walk.found.then_some([walk.at[0], walk.at[1], 0.0, 0.0])
             }
@@ -164,6 +184,10 @@ impl<'a> Crossing<'a> {
         let j = self.first.jet(q[0], q[1], Order::First);
         match self.other {
             Other::Plane(plane) => (j, None, j.normal(), plane.normal),
+            Other::Level(field) => {
+                let g = field.value_and_gradient(j.p).1;
+                (j, None, j.normal(), g.normalized().unwrap_or_default())
+            }
             Other::Surface(second) => {
                 let k = second.jet(q[2], q[3], Order::First);
                 (j, Some(k), j.normal(), k.normal())
@@ -309,7 +333,7 @@ impl<'a> Crossing<'a> {
     pub fn near(&self, [u, v]: [f64; 2], second: Option<[f64; 2]>) -> Option<Unknowns> {
         let x = self.first.jet(u, v, Order::Zero).p;
         let [p, r] = match (self.other, second) {
-            (Other::Plane(_), _) => [0.0; 2],
+            (Other::Plane(_) | Other::Level(_), _) => [0.0; 2],
             (_, Some(pr)) => pr,
             (Other::Surface(second), None) => crate::nearest_on_surface(second, x, None).at,
         };
@@ -351,7 +375,7 @@ impl<'a> Crossing<'a> {
     pub fn branches(&self) -> Vec<Branch> {
         let first = SurfaceTree::new(self.first);
         match self.other {
-            Other::Plane(_) => self.branches_in(&first, None),
+            Other::Plane(_) | Other::Level(_) => self.branches_in(&first, None),
             Other::Surface(second) => self.branches_in(&first, Some(&SurfaceTree::new(second))),
         }
     }
@@ -382,7 +406,8 @@ impl<'a> Crossing<'a> {
                 let (la, lb) = (a.lengths(), b.map_or([0.0; 2], |b| b.lengths()));
                 let flat = |p: &Patch, l: [f64; 2]| p.bend() <= 0.05 * l[0].max(l[1]);
                 let small = la[0].max(la[1]) < 1e-4 * self.size;
-                if flat(&a, la) && b.as_ref().is_none_or(|b| flat(b, lb)) || small {
+                let even = self.evenly_met(&a, la[0].max(la[1]));
+                if flat(&a, la) && even && b.as_ref().is_none_or(|b| flat(b, lb)) || small {
                     if let Some(q) = self.seed(&a, b.as_ref())
                         && !found.iter().any(|branch| self.passes(branch, q))
                     {
@@ -406,8 +431,24 @@ impl<'a> Crossing<'a> {
         found
     }
 
+    /// True when a level has nearly one normal over a patch of that length, so that it crosses it once.
+    fn evenly_met(&self, a: &Patch, length: f64) -> bool {
+        let Other::Level(field) = self.other else { return true };
+        let [u, v] = a.middle();
+        let (_, g, h) = field.second_order(self.first.jet(u, v, Order::Zero).p);
+        let bend = h.iter().map(|row| row.norm_sq()).sum::<f64>();
+        bend * length * length <= 0.06 * g.norm_sq()
+    }
+
     fn may_meet(&self, a: &Patch, b: Option<&Patch>) -> bool {
         match (self.other, b) {
+            (Other::Level(field), _) => {
+                let mut around = a.bounds();
+                let slack = Vec3::of(a.slack, a.slack, a.slack);
+                around.low -= slack;
+                around.high += slack;
+                field.bounds(&around).is_none_or(|[low, high]| low <= 0.0 && high >= 0.0)
+            }
             (Other::Plane(plane), _) => {
                 let mut low = f64::INFINITY;
                 let mut high = f64::NEG_INFINITY;

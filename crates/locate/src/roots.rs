@@ -10,7 +10,7 @@ use crate::newton::{OUTSIDE, Range, Walk, newton};
 use crate::pieces::{CurvePiece, Patch, meet, size_of};
 use crate::report::{Report, Root, Roots, Solution, Status};
 use crate::tree::{CurveTree, SurfaceTree};
-use moldloft_num::{Box3, Curve, CurveJet, Order, Surface, Vec3};
+use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Surface, Vec3};
 
 /// Pairs of pieces that a search looks at before it gives up.
 const MOST_PAIRS: usize = 100_000;
@@ -25,8 +25,8 @@ const TANGENT: f64 = 1e-6;
 const TOUCH: f64 = 1e-10;
 
 /// A function g of space of which a level is sought along a curve: zero on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Level {
+#[derive(Clone, Copy)]
+pub enum Level<'a> {
     /// n . X - offset, with a unit normal n.
     Plane {
         /// The unit normal.
@@ -41,9 +41,11 @@ pub enum Level {
         /// The radius.
         radius: f64,
     },
+    /// An implicit function.
+    Field(&'a dyn Field<f64>),
 }
 
-impl Level {
+impl Level<'_> {
     /// g along the jet of a curve: value and two derivatives by t.
     pub fn along(&self, [p, d, dd]: CurveJet<f64>) -> [f64; 3] {
         match *self {
@@ -59,6 +61,11 @@ impl Level {
                     2.0 * (r.dot(dd) + d.norm_sq()) * half,
                 ]
             }
+            Level::Field(field) => {
+                let (f, g, h) = field.second_order(p);
+                let bent = Vec3::new(h[0].dot(d), h[1].dot(d), h[2].dot(d)).dot(d);
+                [f, g.dot(d), g.dot(dd) + bent]
+            }
         }
     }
 }
@@ -66,7 +73,7 @@ impl Level {
 /// The values of a level along a curve, as a curve on the x axis.
 struct Along<'a> {
     curve: &'a dyn Curve<f64>,
-    level: &'a Level,
+    level: &'a Level<'a>,
 }
 
 impl Curve<f64> for Along<'_> {
@@ -132,7 +139,7 @@ fn from_all<const N: usize>(
 /// The report when there is none.
 pub fn curve_level(
     curve: &dyn Curve<f64>,
-    level: &Level,
+    level: &Level<'_>,
     start: Option<f64>,
 ) -> Result<Solution<1>, Report> {
     if let Some(t) = start {
@@ -151,13 +158,13 @@ pub fn curve_level(
     from_all(all, start.as_ref().map(std::slice::from_ref), |all| all.nearest_to(&[from]))
 }
 
-fn sine_to_level(curve: &dyn Curve<f64>, level: &Level, t: f64) -> f64 {
+fn sine_to_level(curve: &dyn Curve<f64>, level: &Level<'_>, t: f64) -> f64 {
     let jet = curve.jet(t, Order::First);
     level.along(jet)[1].abs() / jet[1].norm().max(f64::MIN_POSITIVE)
 }
 
 /// All crossings of a curve and a level.
-pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level) -> Roots<1> {
+pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
     let size = size_of_curve(curve);
     let along = Along { curve, level };
     let tree = CurveTree::new(&along);

@@ -198,6 +198,58 @@ pub trait Field<T: Real>: Send + Sync {
     fn value(&self, p: Vec3<T>) -> T {
         self.value_and_gradient(p).0
     }
+
+    /// Value, gradient and rows of second derivatives at `p`; these by differences of the gradient, to
+    /// some ten digits, where the function does not know them.
+    fn second_order(&self, p: Vec3<T>) -> (T, Vec3<T>, [Vec3<T>; 3]) {
+        let (value, gradient) = self.value_and_gradient(p);
+        let h = 1e-5 * (1.0 + p.re().norm());
+        let along = |k: usize| {
+            let mut step = [0.0; 3];
+            step[k] = h;
+            let step = Vec3::lifted(step.into());
+            let (high, low) =
+                (self.value_and_gradient(p + step).1, self.value_and_gradient(p - step).1);
+            (high - low) / T::from(2.0 * h)
+        };
+        (value, gradient, [along(0), along(1), along(2)])
+    }
+
+    /// Bounds of the real values over a box, where they are known.
+    fn bounds(&self, _over: &crate::Box3) -> Option<[f64; 2]> {
+        None
+    }
+}
+
+impl<T: Real> dyn Field<T> + '_ {
+    /// The value at a place that is a jet, divided by the size of the gradient there: a length.
+    pub fn at<J: Jet<T>>(&self, p: Vec3<J>) -> J {
+        let here = p.map(J::value);
+        let (value, gradient, second) = match J::ORDER {
+            Order::Second => self.second_order(here),
+            _ => {
+                let (value, gradient) = self.value_and_gradient(here);
+                (value, gradient, [Vec3::zero(); 3])
+            }
+        };
+        let d = p - here.map(J::fixed);
+        let mut sum = J::fixed(value);
+        for k in 0..3 {
+            sum += d[k].scaled(gradient[k]);
+            if J::ORDER == Order::Second {
+                for i in 0..3 {
+                    sum += (d[k] * d[i]).scaled(second[k][i] * 0.5);
+                }
+            }
+        }
+        sum * slope_scale(gradient.re())
+    }
+}
+
+/// What makes a value with this gradient a length.
+pub fn slope_scale(gradient: Vec3) -> f64 {
+    let size = gradient.norm();
+    if size > 0.0 && size.is_finite() { 1.0 / size } else { 1.0 }
 }
 
 impl<T: Real> dyn Curve<T> + '_ {

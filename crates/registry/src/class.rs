@@ -47,7 +47,7 @@ pub enum Class {
     /// A surface, or a magnet on it that says where to begin a search.
     Onto,
     /// What things are intersected with or projected to: a plane, a surface (or a magnet on it), a
-    /// curve (or a bead on it), a point.
+    /// curve (or a bead on it), a point, the zero set of a field.
     Target,
     /// A frame of three axes.
     Frame,
@@ -158,7 +158,7 @@ impl Class {
             Class::Along => "a curve or a bead",
             Class::AlongSnake => "a snake or a ring",
             Class::Onto => "a surface or a magnet",
-            Class::Target => "a plane, surface, magnet, curve, bead or point",
+            Class::Target => "a plane, surface, magnet, curve, bead, point or field",
             Class::Frame => "a frame",
             Class::Contours => "contours",
             Class::Relabel => "a relabel",
@@ -187,7 +187,17 @@ impl Class {
             Onto => matches!(found, Surface | Magnet | Ring),
             Target => matches!(
                 found,
-                Plane | Text | Surface | Magnet | Ring | Curve | Snake | Bead | Point | Vector
+                Plane
+                    | Text
+                    | Surface
+                    | Magnet
+                    | Ring
+                    | Curve
+                    | Snake
+                    | Bead
+                    | Point
+                    | Vector
+                    | Field
             ),
             Vectors => found == List,
             Numbers => found == List,

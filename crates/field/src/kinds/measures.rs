@@ -1,10 +1,12 @@
 //! What is asked of fields and sets, as rows of the registry.
 
 use super::body::options;
-use super::read::{Solid, fault, set_of, primitive_of};
+use super::read::{Solid, fault, primitive_of, set_of};
 use super::region::{Region, around, region};
 use crate::facet::{Facets, Resolution};
-use crate::{FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, cache, facet_mixed, foot};
+use crate::{
+    FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, cache, facet_mixed, foot,
+};
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{Array, Build, Class, Context, Fault, FromValue, Kind, Point, Value};
 use std::sync::Arc;
@@ -34,7 +36,8 @@ fn moments<T: Real>(
     };
     let mut before: Option<(Arc<Facets>, f64)> = None;
     for depth in DEPTHS[0]..=DEPTHS[1] {
-        let facets = cache::facet(&plain, &region.over, &options(Resolution::Depth(depth), context))?;
+        let facets =
+            cache::facet(&plain, &region.over, &options(Resolution::Depth(depth), context))?;
         if facets.mesh.faces().is_empty() {
             return Ok(none());
         }
@@ -92,7 +95,9 @@ macro_rules! measure {
 }
 
 measure!(
-    Volume, Number, "volume",
+    Volume,
+    Number,
+    "volume",
     "The volume of a set within a box: a best value of fourth order, whose bracket is `volume_bracket`.",
     "How well two values, of a box divided once more, agree; by default 1e-6 of the box's volume.",
     "assert abs(volume(set(sphere({0, 0, 0}, 1))) - 4.18879) < 1e-4;",
@@ -103,7 +108,9 @@ measure!(
 );
 
 measure!(
-    Centroid, Vector, "centroid",
+    Centroid,
+    Vector,
+    "centroid",
     "The centre of mass of a set within a box.",
     "How well two volumes, of a box divided once more, agree; by default 1e-6 of the box's volume.",
     "set half = set(sphere({0, 0, 0}, 1)) & set(plane({0, 0, -1}, {0, 0, 0})); assert abs(centroid(half).z - 0.375) < 1e-4;",
@@ -117,7 +124,9 @@ measure!(
 );
 
 measure!(
-    Inertia, Vectors, "inertia",
+    Inertia,
+    Vectors,
+    "inertia",
     "The rows of the matrix of inertia of a set of density 1 about its centroid.",
     "How well two volumes, of a box divided once more, agree; by default 1e-6 of the box's volume.",
     "curve rows = inertia(cuboid({0, 0, 0}, {1, 2, 3})); assert abs(rows[1].x - 6.5) < 1e-6;",
@@ -137,22 +146,25 @@ fn empty() -> Fault {
 }
 
 measure!(
-    Area, Number, "area",
+    Area,
+    Number,
+    "area",
     "The area of the surface of a set within a box, sheets counted once.",
     "How well two values, of a box divided once more, agree; by default 1e-4 of the area.",
     "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.566) < 5e-3;",
     |this, set, region, context| {
         let asked = match this.accuracy {
-            Some(a) => Some(crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(3))?),
+            Some(a) => Some(
+                crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(3))?,
+            ),
             None => None,
         };
         let mut before: Option<T> = None;
         for depth in DEPTHS[0]..=DEPTHS[1] {
             let options = options(Resolution::Depth(depth), context);
             let area = surface(set, &region, &options).map_err(|e| fault(&e))?;
-            let close = before.is_some_and(|b| {
-                (area - b).re().abs() <= asked.unwrap_or(1e-4 * area.re())
-            });
+            let close =
+                before.is_some_and(|b| (area - b).re().abs() <= asked.unwrap_or(1e-4 * area.re()));
             // Of second order: a third of the last step is still to go.
             let better = before.map_or(area, |b| area + (area - b) / 3.0);
             if close || depth == DEPTHS[1] {
@@ -511,4 +523,3 @@ impl<T: Real> Build<T> for Bounds<T> {
         Ok(Value::Vectors(Arc::new(Array::row(ends))))
     }
 }
-

@@ -116,9 +116,9 @@ impl<T: Real> FromValue<T> for Solid<T> {
 pub fn fault(error: &FieldError) -> Fault {
     let id = match error {
         FieldError::NotFinite { .. } => "not-finite",
-        FieldError::NotPositive { .. } | FieldError::Exponent { .. } | FieldError::Lambda { .. } => {
-            "out-of-range"
-        }
+        FieldError::NotPositive { .. }
+        | FieldError::Exponent { .. }
+        | FieldError::Lambda { .. } => "out-of-range",
         FieldError::Degenerate { .. } => "degenerate",
         FieldError::Division => "field-division",
         FieldError::RailsMeet { .. } => "rails-meet",
@@ -137,9 +137,7 @@ pub fn fault(error: &FieldError) -> Fault {
             fault.expected("a whole number from 0 to 1000").help("roots are sqrt() and s_sqrt()")
         }
         FieldError::Lambda { .. } => fault.expected("a number above 0 and below 1"),
-        FieldError::RailsMeet { .. } => {
-            fault.help("set the rails apart, or look at a smaller box")
-        }
+        FieldError::RailsMeet { .. } => fault.help("set the rails apart, or look at a smaller box"),
         FieldError::RailInside { .. } => {
             fault.help("a rail must cut each body outside the other: move it outward")
         }

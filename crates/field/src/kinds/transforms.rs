@@ -1,6 +1,6 @@
 //! Moved, turned, mirrored and scaled fields and sets.
 
-use super::read::{fault, field, set, set_of, primitive_of};
+use super::read::{fault, field, primitive_of, set, set_of};
 use crate::Affine;
 use moldloft_num::{Axis, Plane, Real, Vec3};
 use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Mirror, Point, Value};

@@ -1,7 +1,7 @@
 //! Arguments of searches: a shape, or a point on it that says where to begin.
 
 use moldloft_num::{Plane, Real, Vec3};
-use moldloft_registry::{Class, CurveRef, Fault, FromValue, SurfaceRef, Value};
+use moldloft_registry::{Class, CurveRef, Fault, FieldRef, FromValue, SurfaceRef, Value};
 
 fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
     Err(Fault::wrong_class(class, value.class()))
@@ -95,6 +95,8 @@ pub enum Target<T: Real> {
     Curve(Along<T>),
     /// A point.
     Point(Vec3<T>),
+    /// The zero set of an implicit function.
+    Field(FieldRef<T>),
 }
 
 impl<T: Real> FromValue<T> for Target<T> {
@@ -109,6 +111,7 @@ impl<T: Real> FromValue<T> for Target<T> {
         match value {
             Value::Plane(_) | Value::Text(_) => Plane::from_value(value).map(Target::Plane),
             Value::Point(p) => Ok(Target::Point(p.xyz)),
+            Value::Field(f) => Ok(Target::Field(f.clone())),
             Value::Vector(_) | Value::List(_) => Vec3::from_value(value).map(Target::Point),
             other => wrong(Class::Target, other),
         }

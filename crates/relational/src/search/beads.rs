@@ -19,8 +19,10 @@ fn bead<T: Real>(along: Along<T>, (t, found): (T, Found)) -> Result<Value<T>, Fa
 /// The parameter at which the curve crosses a level.
 fn on_level<T: Real>(along: &Along<T>, level: LevelOf<T>, name: &str) -> Result<(T, Found), Fault> {
     let plain = PlainCurve(&*along.curve);
-    let solution = curve_level(&plain, &level.plain(), along.start)
+    let field = level.plain_field();
+    let solution = curve_level(&plain, &level.plain(&field), along.start)
         .map_err(|report| no_intersection(&report, "curve", name))?;
+    drop(field);
     let system = OnLevel { curve: &along.curve, level };
     let [t] = refined(&system, solution.at, T::zero()).ok_or_else(tangent)?;
     Ok((t, found(&solution.report, ANOTHER)))
@@ -57,6 +59,7 @@ pub(super) fn crossing<T: Real>(
             }
             on_level(along, LevelOf::Sphere { centre: *centre, radius }, "sphere")
         }
+        Target::Field(field) => on_level(along, LevelOf::Field(field.clone()), "field"),
         Target::Surface(onto) => {
             let (t, found, _) = piercing(along, onto)?;
             Ok((t, found))

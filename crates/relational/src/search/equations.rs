@@ -1,11 +1,13 @@
 //! The equations that searches solve, for derivatives by the implicit function theorem.
 
 use moldloft_locate::implicit::Implicit;
-use moldloft_num::{CurveJet, Jet, Order, Plane, Real, SurfJet, Vec3, lift_surface};
-use moldloft_registry::{CurveRef, SurfaceRef};
+use moldloft_num::{
+    Box3, CurveJet, Field, Jet, Order, Plane, Real, SurfJet, Vec3, lift_surface, slope_scale,
+};
+use moldloft_registry::{CurveRef, FieldRef, SurfaceRef};
 
 /// A level of a function of space.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum LevelOf<T: Real> {
     /// A plane.
     Plane(Plane<T>),
@@ -16,12 +18,35 @@ pub enum LevelOf<T: Real> {
         /// The distance.
         radius: T,
     },
+    /// The zero set of an implicit function.
+    Field(FieldRef<T>),
+}
+
+/// An implicit function in plain numbers.
+pub struct PlainField<'a, T: Real>(pub &'a FieldRef<T>);
+
+impl<T: Real> Field<f64> for PlainField<'_, T> {
+    fn value_and_gradient(&self, p: Vec3) -> (f64, Vec3) {
+        let (value, gradient) = self.0.value_and_gradient(Vec3::lifted(p));
+        (value.re(), gradient.re())
+    }
+    fn second_order(&self, p: Vec3) -> (f64, Vec3, [Vec3; 3]) {
+        let (value, gradient, second) = self.0.second_order(Vec3::lifted(p));
+        (value.re(), gradient.re(), second.map(|row| row.re()))
+    }
+    fn bounds(&self, over: &Box3) -> Option<[f64; 2]> {
+        self.0.bounds(over)
+    }
 }
 
 impl<T: Real> LevelOf<T> {
-    /// The same in plain numbers.
-    pub fn plain(&self) -> moldloft_locate::Level {
+    /// The same in plain numbers; `field` holds a plain field.
+    pub fn plain<'a>(&self, field: &'a Option<PlainField<'a, T>>) -> moldloft_locate::Level<'a> {
         match self {
+            LevelOf::Field(_) => match field {
+                Some(field) => moldloft_locate::Level::Field(field),
+                None => unreachable!("a field has its plain twin"),
+            },
             LevelOf::Plane(plane) => {
                 let normal = plane.normal.re();
                 moldloft_locate::Level::Plane { normal, offset: normal.dot(plane.point.re()) }
@@ -29,6 +54,14 @@ impl<T: Real> LevelOf<T> {
             LevelOf::Sphere { centre, radius } => {
                 moldloft_locate::Level::Sphere { centre: centre.re(), radius: radius.re() }
             }
+        }
+    }
+
+    /// What [`LevelOf::plain`] holds on to.
+    pub fn plain_field(&self) -> Option<PlainField<'_, T>> {
+        match self {
+            LevelOf::Field(field) => Some(PlainField(field)),
+            _ => None,
         }
     }
 
@@ -40,6 +73,7 @@ impl<T: Real> LevelOf<T> {
                 let r = J::fixed(*radius);
                 ((x - fixed(*centre)).norm_sq() - r * r) / (r * 2.0)
             }
+            LevelOf::Field(field) => field.at(x),
         }
     }
 
@@ -47,6 +81,10 @@ impl<T: Real> LevelOf<T> {
         match self {
             LevelOf::Plane(plane) => plane.normal,
             LevelOf::Sphere { centre, radius } => (x - *centre) / *radius,
+            LevelOf::Field(field) => {
+                let g = field.value_and_gradient(x).1;
+                g * T::from(slope_scale(g.re()))
+            }
         }
     }
 }

@@ -1,15 +1,18 @@
 //! Snakes along which a surface meets a plane or another surface.
 
 use super::arguments::{Onto, Target};
+use super::equations::PlainField;
 use super::outcome::no_intersection;
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, jets, refined, solve};
 use moldloft_locate::march::{Branch, Crossing, End, Other, Station, Unknowns};
 use moldloft_locate::{PlainSurface, Report, Status};
 use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, solve_dense};
+use moldloft_num::{
+    Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, slope_scale, solve_dense,
+};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, FieldRef, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
 };
 
 /// The curve along which a surface meets a plane or another surface, as a snake of the first; its
@@ -34,7 +37,7 @@ use moldloft_registry::{
 pub struct IntSnake<T: Real> {
     /// The surface that the snake lies on, or a magnet of it near the branch that is meant.
     surface: Onto<T>,
-    /// The plane, or the other surface (or a magnet of it).
+    /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
     target: Target<T>,
     /// Where it begins: a magnet or ring of the intersection.
     start: Option<Magnet<T>>,
@@ -56,11 +59,15 @@ impl<T: Real> Build<T> for IntSnake<T> {
                 let start = onto.from();
                 (Second::Surface(onto.surface), start)
             }
+            Target::Field(field) => (Second::Field(field), None),
             Target::Curve(_) | Target::Point(_) => {
-                return Err(Fault::new("wrong-class", "a surface is cut by a plane or a surface")
-                    .expected("a plane, a surface or a magnet")
-                    .found("a curve or a point")
-                    .in_field(1));
+                return Err(Fault::new(
+                    "wrong-class",
+                    "a surface is cut by a plane, a surface or a field",
+                )
+                .expected("a plane, a surface, a magnet or a field")
+                .found("a curve or a point")
+                .in_field(1));
             }
         };
         for (field, magnet) in [(2, &start), (3, &end)] {
@@ -100,6 +107,44 @@ impl<T: Real> Build<T> for IntSnake<T> {
 enum Second<T: Real> {
     Plane(Plane<T>),
     Surface(SurfaceRef<T>),
+    Field(FieldRef<T>),
+}
+
+/// The second shape in plain numbers, for as long as a search lasts.
+enum PlainSecond<'a, T: Real> {
+    Plane(Plane<f64>),
+    Surface(PlainSurface<'a, T>),
+    Field(PlainField<'a, T>),
+}
+
+impl<T: Real> Second<T> {
+    fn plain(&self) -> PlainSecond<'_, T> {
+        match self {
+            Second::Plane(plane) => {
+                PlainSecond::Plane(Plane { point: plane.point.re(), normal: plane.normal.re() })
+            }
+            Second::Surface(surface) => PlainSecond::Surface(PlainSurface(&**surface)),
+            Second::Field(field) => PlainSecond::Field(PlainField(field)),
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Second::Plane(_) => "plane",
+            Second::Surface(_) => "other surface",
+            Second::Field(_) => "field",
+        }
+    }
+}
+
+impl<T: Real> PlainSecond<'_, T> {
+    fn other(&self) -> Other<'_> {
+        match self {
+            PlainSecond::Plane(plane) => Other::Plane(*plane),
+            PlainSecond::Surface(surface) => Other::Surface(surface),
+            PlainSecond::Field(field) => Other::Level(field),
+        }
+    }
 }
 
 /// Points of a piece that its polynomial goes through.
@@ -194,6 +239,21 @@ impl<T: Real> Implicit<T, 2> for AcrossPlane<'_, T> {
     }
 }
 
+struct AcrossField<'a, T: Real>(Across<'a, T>, &'a FieldRef<T>);
+
+impl<T: Real> Implicit<T, 2> for AcrossField<'_, T> {
+    fn at<J: Jet<T>>(&self, [u, v]: [J; 2], x: J) -> [J; 2] {
+        let p = self.0.first.at(u, v);
+        [self.1.at(p), self.0.level(p, x)]
+    }
+    fn jacobian(&self, [u, v]: [T; 2], x: T) -> [[T; 2]; 2] {
+        let j = self.0.first.jet(u, v, Order::First);
+        let g = self.1.value_and_gradient(j.p).1;
+        let g = g * T::from(slope_scale(g.re()));
+        [[g.dot(j.u), g.dot(j.v)], self.0.gradient(&j, x)]
+    }
+}
+
 struct AcrossSurface<'a, T: Real>(Across<'a, T>, &'a SurfaceRef<T>);
 
 impl<T: Real> Implicit<T, 4> for AcrossSurface<'_, T> {
@@ -224,6 +284,7 @@ fn derived<T: Real>(
     let across = Across { first, powers };
     match second {
         Second::Plane(plane) => jets(&AcrossPlane(across, plane), [q[0], q[1]], x, order),
+        Second::Field(field) => jets(&AcrossField(across, field), [q[0], q[1]], x, order),
         Second::Surface(surface) => {
             let all = jets(&AcrossSurface(across, surface), q, x, order)?;
             Some(all.map(|[u, v, ..]| [u, v]))
@@ -264,13 +325,17 @@ fn edge_point<T: Real>(
     value: f64,
 ) -> Option<Vec3<T>> {
     match second {
-        Second::Plane(plane) => {
+        Second::Plane(_) | Second::Field(_) => {
             // One unknown is left.
             let [u, v] = [T::from(q[0]), T::from(q[1])];
             let j = first.jet(u, v, Order::First);
-            let rest = plane.distance(j.p);
+            let (rest, normal) = match second {
+                Second::Plane(plane) => (plane.distance(j.p), plane.normal),
+                Second::Field(field) => field.value_and_gradient(j.p),
+                Second::Surface(_) => return None,
+            };
             let along = if unknown == 0 { j.v } else { j.u };
-            let slope = plane.normal.re().dot(along.re());
+            let slope = normal.re().dot(along.re());
             let [step] = solve(&[[T::from(slope)]], [rest - rest.re()])?;
             Some(j.p - along.map(|x| T::from(x.re())) * step)
         }
@@ -299,17 +364,11 @@ fn traced<T: Real>(
 ) -> Result<(Cut<T>, Found), Fault> {
     let first = &onto.surface;
     let plain = PlainSurface(&**first);
-    let plain_second = match &second {
-        Second::Surface(surface) => Some(PlainSurface(&**surface)),
-        Second::Plane(_) => None,
-    };
-    let crossing = match (&second, &plain_second) {
-        (Second::Plane(plane), _) => Crossing::with_plane(
-            &plain,
-            Plane { point: plane.point.re(), normal: plane.normal.re() },
-        ),
-        (_, Some(surface)) => Crossing::with_surface(&plain, surface),
-        _ => unreachable!("a second surface has its plain twin"),
+    let plain_second = second.plain();
+    let crossing = match plain_second.other() {
+        Other::Plane(plane) => Crossing::with_plane(&plain, plane),
+        Other::Surface(surface) => Crossing::with_surface(&plain, surface),
+        Other::Level(field) => Crossing::with_level(&plain, field),
     };
     let given = onto.from().or_else(|| ends[0].as_ref().map(|m| m.uv.map(|x| x.re())));
     let seed = given.and_then(|uv| crossing.near(uv, second_start));
@@ -329,6 +388,10 @@ fn traced<T: Real>(
                 let x = plain.jet(from[0], from[1], Order::Zero).p;
                 let residual = match crossing.other {
                     Other::Plane(plane) => plane.distance(x).abs(),
+                    Other::Level(field) => {
+                        let (f, g) = field.value_and_gradient(x);
+                        (f * slope_scale(g)).abs()
+                    }
                     Other::Surface(s) => {
                         let [p, r] = moldloft_locate::nearest_on_surface(s, x, None).at;
                         s.jet(p, r, Order::Zero).p.distance(x)
@@ -342,8 +405,7 @@ fn traced<T: Real>(
                     last: from.into_iter().collect(),
                     alternatives: Vec::new(),
                 };
-                let other = if plain_second.is_some() { "other surface" } else { "plane" };
-                return Err(no_intersection(&report, "surface", other).in_field(1));
+                return Err(no_intersection(&report, "surface", second.name()).in_field(1));
             };
             if given.is_some() {
                 status = FoundStatus::Fallback;
@@ -737,6 +799,10 @@ fn closed_start<T: Real>(
     let j = first.jet(u, v, Order::First);
     let normal = match second {
         Second::Plane(plane) => plane.normal,
+        Second::Field(field) => {
+            let g = field.value_and_gradient(j.p).1;
+            g * T::from(slope_scale(g.re()))
+        }
         Second::Surface(surface) => {
             let onto = Onto { surface: surface.clone(), start: None };
             let ([p, r], _) = super::magnets::foot(&onto, j.p, true).ok()?;
@@ -805,17 +871,8 @@ impl<T: Real> Cut<T> {
             .expect("there are nodes");
         let guess = guess(&piece.places, near, plain);
         let first = PlainSurface(&*self.first);
-        let second = match &self.second {
-            Second::Surface(surface) => Some(PlainSurface(&**surface)),
-            Second::Plane(_) => None,
-        };
-        let other = match (&self.second, &second) {
-            (Second::Plane(plane), _) => {
-                Other::Plane(Plane { point: plane.point.re(), normal: plane.normal.re() })
-            }
-            (_, Some(surface)) => Other::Surface(surface),
-            _ => unreachable!("a second surface has its plain twin"),
-        };
+        let second = self.second.plain();
+        let other = second.other();
         let crossing = Crossing { first: &first, other, size: self.size };
         let q = crossing.across(guess, c, d / d.norm()).unwrap_or(guess);
         let all = derived(&self.first, &self.second, &piece.powers, q, x, order);

@@ -10,7 +10,7 @@ use moldloft_locate::{OUTSIDE, PlainSurface, Range, newton};
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Mirror, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, FieldRef, Found, FoundStatus, Kind, Mirror, SurfaceRef, Value,
 };
 
 /// The first step along the curve, and the least.
@@ -64,7 +64,7 @@ impl<T: Real> Build<T> for ProjSnake<T> {
     }
 }
 
-/// The projection of a curve onto a plane, line, point or surface, point by point, as a curve in
+/// The projection of a curve onto a plane, line, point, surface or the zero set of a field, point by point, as a curve in
 /// space.
 #[derive(Kind)]
 #[kind(
@@ -92,7 +92,48 @@ impl<T: Real> Build<T> for ProjCurve<T> {
                 let shape = Projected { trace: Trace::own(), path };
                 Ok(Value::Curve(CurveRef::new(shape, context.nesting).with_found(found)))
             }
+            MirrorOrSurface::Field(field) => {
+                for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                    let p = self.curve.jet(T::from(t), Order::Zero)[0];
+                    super::points::foot_on_level(&field, p).map_err(|f| f.in_field(1))?;
+                }
+                let shape = OntoField { curve: self.curve, field };
+                Ok(Value::Curve(CurveRef::new(shape, context.nesting)))
+            }
         }
+    }
+}
+
+/// The feet of a curve's points on the zero set of a field.
+struct OntoField<T: Real> {
+    curve: CurveRef<T>,
+    field: FieldRef<T>,
+}
+
+impl<T: Real> OntoField<T> {
+    fn first(&self, t: T) -> [Vec3<T>; 2] {
+        let [p, d, _] = self.curve.jet(t, Order::First);
+        let nan = Vec3::lifted(Vec3::of(f64::NAN, f64::NAN, f64::NAN));
+        super::points::foot_rate(&self.field, p, d).unwrap_or([nan; 2])
+    }
+}
+
+/// Step of the differences that give second derivatives, for which third ones of the field would be
+/// needed: with the five-point formula some nine digits remain.
+const BEND_STEP: f64 = 1.0 / 1024.0;
+
+impl<T: Real> Curve<T> for OntoField<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        let [x, d] = self.first(t);
+        if order != Order::Second {
+            return [x, d, Vec3::zero()];
+        }
+        let at = |k: f64| self.first(t + k * BEND_STEP)[1];
+        let near = (at(1.0) - at(-1.0)) * T::from(8.0);
+        [x, d, (near - (at(2.0) - at(-2.0))) / T::from(12.0 * BEND_STEP)]
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
     }
 }
 

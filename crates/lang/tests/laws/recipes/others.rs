@@ -39,7 +39,9 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             format!("{}, 0, 3, 0.5*w, 0.25", p.object("Line", &format!("{a}, {b}")))
         }
         "Field" => format!("sphere({}, w) - 0.5*w", p.point()),
-        "Set" => format!("set(sphere({}, w)) & -set(plane({{{x}, 1, 0.3}}, {}))", p.point(), p.point()),
+        "Set" => {
+            format!("set(sphere({}, w)) & -set(plane({{{x}, 1, 0.3}}, {}))", p.point(), p.point())
+        }
         // Vertices move along normals, unlike differences of facets; those of a set that stays are at rest.
         "SetBody" => "set(sphere({0.1, 0, 0}, 1)), depth = 3".to_string(),
         "RealList" => format!("{{{x}, {y}*w}}"),
