@@ -24,6 +24,7 @@ FORMATS = {
     "hams": "HAMS panels (.pnl)",
     "aqwa": "AQWA geometry decks (.dat)",
     "stl": "triangles, binary STL",
+    "3mf": "triangles with names and colours, for printers",
     "obj": "Wavefront OBJ",
     "ply": "binary PLY",
     "glb": "glTF with patch names and colours",

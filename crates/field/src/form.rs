@@ -115,6 +115,12 @@ impl<T: Real> Form<T> {
         self.mapped(|c| c.re(), |c| c.re(), vector, vector)
     }
 
+    /// The form among numbers with derivatives.
+    pub(crate) fn constant<S: Real>(&self) -> Form<S> {
+        let vector = |v: Vec3<T>| Vec3::lifted(v.re());
+        self.mapped(|c| S::from(c.re()), |c| S::from(c.re()), vector, vector)
+    }
+
     /// The form after a map that multiplies all lengths by `scale`.
     pub(crate) fn moved(&self, world_from: &Affine<T>, scale: T) -> Self {
         let direction = |v: Vec3<T>| world_from.linear(v) / scale;

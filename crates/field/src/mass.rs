@@ -8,6 +8,7 @@ use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Integrals over a body of 1; x, y, z; xx, yy, zz; xy, yz, zx.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,6 +118,19 @@ fn integral(side: Interval, n: u32) -> Interval {
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```
 pub fn bracket(set: &Set, over: &Box3, depth: u32) -> Result<Moments<Interval>, FieldError> {
+    bracket_until(set, over, depth, &AtomicBool::new(false))
+}
+
+/// As [`bracket`]; ends early when `cancel` is set.
+///
+/// # Errors
+/// As [`bracket`]; [`FieldError::Cancelled`].
+pub fn bracket_until(
+    set: &Set,
+    over: &Box3,
+    depth: u32,
+    cancel: &AtomicBool,
+) -> Result<Moments<Interval>, FieldError> {
     let over = solid_box(*over)?;
     if depth > 12 {
         return Err(FieldError::TooFine { boxes: 4f64.powi(depth as i32), limit: 4f64.powi(12) });
@@ -146,10 +160,13 @@ pub fn bracket(set: &Set, over: &Box3, depth: u32) -> Result<Moments<Interval>, 
         .map(|b| {
             let mut sum = Moments::ZERO;
             let mut room = RangeRoom::default();
-            halve(&tape, b, depth - spread, &mut room, &mut sum);
+            halve(&tape, b, depth - spread, cancel, (&mut room, &mut sum));
             sum
         })
         .collect();
+    if cancel.load(Ordering::Relaxed) {
+        return Err(FieldError::Cancelled);
+    }
     let mut sum = Moments::ZERO;
     for part in &parts {
         sum.add(part);
@@ -161,9 +178,12 @@ fn halve(
     tape: &Arc<Tape<f64>>,
     b: &[Interval; 3],
     depth: u32,
-    room: &mut RangeRoom,
-    sum: &mut Moments<Interval>,
+    cancel: &AtomicBool,
+    (room, sum): (&mut RangeRoom, &mut Moments<Interval>),
 ) {
+    if cancel.load(Ordering::Relaxed) {
+        return;
+    }
     let range = tape.range(b, &mut room.ranges);
     if range.low > 0.0 {
         return;
@@ -190,7 +210,7 @@ fn halve(
                 Interval::new(middle, b[axis].high)
             }
         });
-        halve(&tape, &half, depth - 1, room, sum);
+        halve(&tape, &half, depth - 1, cancel, (&mut *room, &mut *sum));
     }
 }
 

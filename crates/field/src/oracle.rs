@@ -15,8 +15,44 @@ pub trait Oracle<T: Real>: Field<T> {
         [Interval::ENTIRE; 3]
     }
 
+    /// The values at many points.
+    fn values(&self, points: &[Vec3<T>], out: &mut [T]) {
+        for (x, p) in out.iter_mut().zip(points) {
+            *x = self.value(*p);
+        }
+    }
+
     /// The same with real parts only.
     fn re(&self) -> Arc<dyn Oracle<f64>>;
+}
+
+/// A plain primitive among numbers with derivatives: it depends on no parameter, but its place may.
+pub struct Constant(pub Arc<dyn Oracle<f64>>);
+
+impl<T: Real> Field<T> for Constant {
+    fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>) {
+        let (value, gradient, second) = self.0.second_order(p.re());
+        let d = p - Vec3::lifted(p.re());
+        let along = |row: Vec3, x: f64| d.x * row.x + d.y * row.y + d.z * row.z + x;
+        let slope = Vec3::new(
+            along(second[0], gradient.x),
+            along(second[1], gradient.y),
+            along(second[2], gradient.z),
+        );
+        (along(gradient, value), slope)
+    }
+}
+
+impl<T: Real> Oracle<T> for Constant {
+    fn range(&self, over: &Box3) -> Interval {
+        self.0.range(over)
+    }
+    fn gradient_range(&self, over: &Box3) -> [Interval; 3] {
+        self.0.gradient_range(over)
+    }
+    fn re(&self) -> Arc<dyn Oracle<f64>> {
+        self.0.clone()
+    }
 }
 
 /// An affine map of space, here from the world to where a primitive was made.

@@ -411,6 +411,28 @@ impl<T: Real> Primitive<T> {
 }
 
 impl Primitive<f64> {
+    /// The same function among numbers with derivatives, on no parameter of which it depends.
+    pub fn constant<S: Real>(&self) -> Primitive<S> {
+        self.rebuilt(
+            &|c| S::from(c),
+            &|op| match op {
+                Op::Plane { normal, offset } => {
+                    Primitive::linear(Vec3::lifted(*normal), S::from(*offset))
+                }
+                Op::User { oracle, map } => Primitive::from_op(Op::User {
+                    oracle: Arc::new(crate::Constant(oracle.clone())),
+                    map: Affine {
+                        rows: map.rows.map(Vec3::lifted),
+                        shift: Vec3::lifted(map.shift),
+                    },
+                }),
+                Op::Real(c) => Primitive::real(S::from(*c)),
+                _ => unreachable!("leaves only"),
+            },
+            &|form| form.constant(),
+        )
+    }
+
     /// A range of the values over a box: the plain interval value and the mean-value form, both
     /// rounded outward, whichever is tighter at each end.
     pub fn range(&self, over: &Box3) -> Interval {

@@ -7,7 +7,7 @@
 
 use crate::interval::Interval;
 use crate::tape::{Code, NO_LEAF, Tape};
-use crate::{Membership, Primitive, Set};
+use crate::{Leaf, Membership, Primitive, Set};
 use moldloft_num::{Real, Vec3, find_root};
 use smallvec::SmallVec;
 
@@ -225,18 +225,44 @@ pub fn roots(f: &Primitive, ray: &Ray) -> Vec<f64> {
     kept.into_iter().map(|(a, b)| 0.5 * (a + b)).collect()
 }
 
-impl Set<f64> {
-    /// Where a ray crosses the surface of the set, in order: from air to solid, from solid to air, or
-    /// through a sheet.
+/// A set made ready for many rays.
+pub struct Caster<'a> {
+    set: &'a Set,
+    leaves: Vec<Leaf>,
+}
+
+impl<'a> Caster<'a> {
+    /// Makes a set ready.
+    pub fn new(set: &'a Set) -> Self {
+        Self { set, leaves: set.leaves() }
+    }
+
+    /// The primitives, as [`Set::leaves`].
+    pub fn leaves(&self) -> &[Leaf] {
+        &self.leaves
+    }
+
+    /// As [`Set::hits`].
     pub fn hits(&self, ray: &Ray) -> Vec<Hit> {
-        let leaves = self.leaves();
+        self.until(ray, usize::MAX)
+    }
+
+    /// As [`Set::first_hit`].
+    pub fn first(&self, ray: &Ray) -> Option<Hit> {
+        self.until(ray, 1).pop()
+    }
+
+    /// The first hits, `most` at most.
+    fn until(&self, ray: &Ray, most: usize) -> Vec<Hit> {
+        let leaves = &self.leaves;
         let mut candidates: Vec<(f64, usize)> = Vec::new();
         for (k, leaf) in leaves.iter().enumerate() {
             // A sheet is where its inside is zero.
             candidates.extend(roots(leaf.primitive.of_sheet(), ray).into_iter().map(|t| (t, k)));
         }
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let inside = |a: f64, b: f64| self.member(ray.at(0.5 * (a + b)), 0.0) == Membership::Solid;
+        let inside =
+            |a: f64, b: f64| self.set.member(ray.at(0.5 * (a + b)), 0.0) == Membership::Solid;
         let mut hits = Vec::new();
         let mut from = 0.0;
         for (k, &(t, leaf)) in candidates.iter().enumerate() {
@@ -257,7 +283,7 @@ impl Set<f64> {
                 .collect();
             let shows = before != after
                 || (!before
-                    && self.member_knowing(point, 0.0, &known) == Membership::Surface
+                    && self.set.member_knowing(point, 0.0, &known) == Membership::Surface
                     && leaves[leaf].primitive.is_sheet());
             if candidates[k + 1..].first().is_none_or(|next| !group(next.0)) {
                 from = t;
@@ -267,14 +293,25 @@ impl Set<f64> {
                 let g = leaves[leaf].primitive.gradient(point);
                 let normal = g.slope.normalized().unwrap_or_default();
                 hits.push(Hit { t, point, leaf, normal, enters: after && !before });
+                if hits.len() == most {
+                    break;
+                }
             }
         }
         hits
     }
+}
+
+impl Set<f64> {
+    /// Where a ray crosses the surface of the set, in order: from air to solid, from solid to air, or
+    /// through a sheet.
+    pub fn hits(&self, ray: &Ray) -> Vec<Hit> {
+        Caster::new(self).hits(ray)
+    }
 
     /// The first crossing of a ray with the surface; from within the solid, the exit.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.hits(ray).into_iter().next()
+        Caster::new(self).first(ray)
     }
 }
 

@@ -545,6 +545,12 @@ impl<T: Real> Set<T> {
 }
 
 impl Set<f64> {
+    /// The same set among numbers with derivatives, on no parameter of which it depends.
+    pub fn constant<S: Real>(&self) -> Set<S> {
+        let leaf = |p: &Primitive| Set::of(Kind::Leaf(p.constant()), Vec::new());
+        self.rebuilt(&leaf, false, &Set::combined)
+    }
+
     /// A range of the value over a box.
     pub fn range(&self, over: &Box3) -> Interval {
         self.compiled().tape.range(&crate::interval::sides(over), &mut Vec::new())

@@ -504,10 +504,11 @@ impl Tape<f64> {
             }
             Code::User(k) => {
                 let (oracle, map) = &self.users[k as usize];
-                for k in 0..count {
-                    let p = Vec3::new(xyz[0][k], xyz[1][k], xyz[2][k]);
-                    out[k] = oracle.value(map.apply(p));
+                let mut points = [Vec3::zero(); CHUNK];
+                for (k, p) in points[..count].iter_mut().enumerate() {
+                    *p = map.apply(Vec3::new(xyz[0][k], xyz[1][k], xyz[2][k]));
                 }
+                oracle.values(&points[..count], &mut out[..count]);
             }
             Code::Unary(f, a) => match f {
                 Unary::Neg => one(out, of(a), |a| -a),

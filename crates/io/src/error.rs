@@ -37,6 +37,15 @@ pub enum WriteError {
         /// What it cannot say.
         what: &'static str,
     },
+    /// An object is of a dimension that the format has no place for.
+    NoPlace {
+        /// The format.
+        format: &'static str,
+        /// `wires` or `points`.
+        what: &'static str,
+        /// The object.
+        name: String,
+    },
     /// A panel reaches above the water where the format allows none to.
     AboveWater {
         /// The format.
@@ -84,6 +93,9 @@ impl fmt::Display for WriteError {
             }
             Self::NoGrid { patches } => {
                 write!(f, "no structured grid in patch `{}`", patches.join("`, `"))
+            }
+            Self::NoPlace { format, what, name } => {
+                write!(f, "{format} cannot hold the {what} of `{name}`; obj and vtp can")
             }
             Self::CannotHold { format, what } => write!(f, "{format} cannot hold {what}"),
             Self::AboveWater { format, patch } => write!(

@@ -10,6 +10,7 @@
 //! | PLY | [`ply::write`] (binary) | – |
 //! | glTF | [`gltf::write`] (`.glb`) | – |
 //! | STL | [`stl::write`] (binary) | [`stl::read`] (binary and text) |
+//! | 3MF | [`threemf::write`] | – |
 //! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`] | – |
 //! | Plot3D surfaces | [`plot3d::write`] | – |
@@ -40,10 +41,42 @@ pub mod obj;
 pub mod plot3d;
 pub mod ply;
 pub mod stl;
+pub mod threemf;
 pub mod vtk;
 
 pub use error::{Bits, Place, ReadError, WriteError};
 pub use solver::Skin;
+
+use moldloft_num::Vec3;
+
+/// What a model has besides surfaces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Strands {
+    /// Polylines, each with the name of its object; a closed one repeats its first point.
+    pub wires: Vec<(String, Vec<Vec3>)>,
+    /// Points, each with the name of its object.
+    pub dots: Vec<(String, Vec3)>,
+}
+
+impl Strands {
+    /// True when there are none.
+    pub fn is_empty(&self) -> bool {
+        self.wires.is_empty() && self.dots.is_empty()
+    }
+
+    /// Refuses them, by name, for a format that has no place for them.
+    ///
+    /// # Errors
+    /// When there are some.
+    pub fn refused(&self, format: &'static str) -> Result<(), WriteError> {
+        let named = |what, name: &String| WriteError::NoPlace { format, what, name: name.clone() };
+        match (self.wires.first(), self.dots.first()) {
+            (Some((name, _)), _) => Err(named("wires", name)),
+            (_, Some((name, _))) => Err(named("points", name)),
+            _ => Ok(()),
+        }
+    }
+}
 
 #[cfg(test)]
 mod fixtures;

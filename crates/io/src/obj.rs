@@ -2,7 +2,7 @@
 
 use crate::error::check_positions;
 use crate::text::{Line, put, quoted, real, utf8, word};
-use crate::{Place, ReadError, WriteError};
+use crate::{Place, ReadError, Strands, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, is_triangle};
 use moldloft_num::Vec3;
 
@@ -13,6 +13,14 @@ const FORMAT: &str = "OBJ";
 /// # Errors
 /// Positions that are not finite.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
+    write_with(mesh, &Strands::default())
+}
+
+/// As [`write`], with polylines (`l`) and points (`p`) after the faces.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_with(mesh: &Mesh, strands: &Strands) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
     let mut used = vec![false; mesh.positions().len()];
     mesh.faces().iter().flatten().for_each(|&v| used[v as usize] = true);
@@ -41,6 +49,24 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
                 put!(out, "f {a} {b} {c} {d}\n");
             }
         }
+    }
+    for (name, wire) in &strands.wires {
+        put!(out, "g {}\n", word(name));
+        for p in wire {
+            let [x, y, z] = p.to_array().map(real);
+            put!(out, "v {x} {y} {z}\n");
+        }
+        out.push('l');
+        for _ in wire {
+            next += 1;
+            put!(out, " {next}");
+        }
+        out.push('\n');
+    }
+    for (name, p) in &strands.dots {
+        next += 1;
+        let [x, y, z] = p.to_array().map(real);
+        put!(out, "g {}\nv {x} {y} {z}\np {next}\n", word(name));
     }
     Ok(out.into_bytes())
 }

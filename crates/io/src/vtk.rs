@@ -4,9 +4,9 @@
 //! Arrays stand behind the XML as raw little-endian bytes, each after its length in 64 bits
 //! ("VTK File Formats", vtk.org, section "XML File Formats").
 
-use crate::WriteError;
 use crate::error::{check_blocks, check_positions};
 use crate::text::{put, word, xml};
+use crate::{Strands, WriteError};
 use moldloft_mesh::{Blocks, HexBlock, Mesh, is_triangle};
 use moldloft_num::Vec3;
 
@@ -83,6 +83,14 @@ fn strings<'a>(name: &str, values: impl ExactSizeIterator<Item = &'a str>) -> St
 /// # Errors
 /// Positions that are not finite.
 pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
+    polydata_with(mesh, &Strands::default())
+}
+
+/// As [`polydata`], with points as vertex cells and polylines as line cells, whose `patch` is -1.
+///
+/// # Errors
+/// As [`polydata`].
+pub fn polydata_with(mesh: &Mesh, strands: &Strands) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
     let mut used = vec![false; mesh.positions().len()];
     mesh.faces().iter().flatten().for_each(|&v| used[v as usize] = true);
@@ -91,7 +99,24 @@ pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
         mesh.positions().iter().zip(&used).map(|(&p, &u)| if u { p } else { Vec3::zero() });
     let corners = |face: [u32; 4]| if is_triangle(face) { 3 } else { 4 };
     let mut data = Appended::default();
-    let points = data.add_reals(points.flat_map(Vec3::to_array));
+    let (dots, wires) = (&strands.dots, &strands.wires);
+    let wired = wires.iter().flat_map(|(_, line)| line.iter().copied());
+    let more = dots.iter().map(|(_, p)| *p).chain(wired);
+    let count =
+        mesh.positions().len() + dots.len() + wires.iter().map(|w| w.1.len()).sum::<usize>();
+    let points = data.add_reals(points.chain(more).flat_map(Vec3::to_array));
+    let first = mesh.positions().len() as i64;
+    let verts = [
+        data.add_integers((0..dots.len() as i64).map(|k| first + k)),
+        data.add_integers((0..dots.len() as i64).map(|k| k + 1)),
+    ];
+    let lines = [
+        data.add_integers(first + dots.len() as i64..count as i64),
+        data.add_integers(wires.iter().scan(0, |end, w| {
+            *end += w.1.len() as i64;
+            Some(*end)
+        })),
+    ];
     let connectivity = data.add_integers(
         mesh.faces().iter().flat_map(|f| f[..corners(*f)].iter().map(|&v| i64::from(v))),
     );
@@ -100,7 +125,9 @@ pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
         Some(*end)
     }));
     let owners = mesh.patches().iter().enumerate();
-    let patch = data.add_integers(owners.flat_map(|(k, p)| p.faces.clone().map(move |_| k as i64)));
+    let loose = dots.len() + wires.len();
+    let owner = owners.flat_map(|(k, p)| p.faces.clone().map(move |_| k as i64));
+    let patch = data.add_integers(std::iter::repeat_n(-1, loose).chain(owner));
     let mut names: Vec<&String> = mesh.patches().iter().flat_map(|p| &p.info.tags).collect();
     names.sort_unstable();
     names.dedup();
@@ -108,24 +135,38 @@ pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
     for name in names {
         let has = |info: &moldloft_mesh::PatchInfo| i64::from(info.tags.contains(name));
         let cells = mesh.patches().iter().flat_map(|p| p.faces.clone().map(|_| has(&p.info)));
-        let offset = data.add_integers(cells);
+        let offset = data.add_integers(std::iter::repeat_n(0, loose).chain(cells));
         tags += &array("Int64", &xml(&format!("tag {name}")), 1, offset);
     }
     let body = format!(
         "<PolyData>\n<FieldData>\n{}{}</FieldData>\n<Piece NumberOfPoints=\"{}\" \
-         NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n\
-         <CellData Scalars=\"patch\">\n{}{tags}</CellData>\n<Points>\n{}</Points>\n<Polys>\n{}{}</Polys>\n\
+         NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n\
+         <CellData Scalars=\"patch\">\n{}{tags}</CellData>\n<Points>\n{}</Points>\n{}{}<Polys>\n{}{}</Polys>\n\
          </Piece>\n</PolyData>\n",
         strings("patch_name", mesh.patches().iter().map(|p| p.info.name.as_str())),
         strings("patch_tag", mesh.patches().iter().map(|p| p.info.tag.word())),
-        mesh.positions().len(),
+        count,
+        dots.len(),
+        wires.len(),
         mesh.faces().len(),
         array("Int64", "patch", 1, patch),
         array("Float64", "Points", 3, points),
+        cells("Verts", dots.is_empty(), verts),
+        cells("Lines", wires.is_empty(), lines),
         array("Int64", "connectivity", 1, connectivity),
         array("Int64", "offsets", 1, offsets),
     );
     Ok(data.file("PolyData", &body))
+}
+
+/// An element of cells, unless there are none.
+fn cells(name: &str, none: bool, [connectivity, offsets]: [usize; 2]) -> String {
+    if none {
+        return String::new();
+    }
+    let (a, b) =
+        (array("Int64", "connectivity", 1, connectivity), array("Int64", "offsets", 1, offsets));
+    format!("<{name}>\n{a}{b}</{name}>\n")
 }
 
 /// The `.vts` file of one grid, whose vertices come u fastest, then v.

@@ -180,6 +180,7 @@ impl Document {
         report: bool,
     ) -> Applied {
         let mut found = Vec::new();
+        evaluation.graph.obey(self.cancelled.clone());
         let inputs =
             Inputs { overrides: &self.overrides, seed, seeded_objects, cancelled: &self.cancelled };
         let sketch = match &self.source {

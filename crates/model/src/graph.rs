@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashSet};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Shapes nested deeper than this are refused, so that evaluating one never exhausts the stack.
 pub const DEEPEST_NESTING: u32 = 100;
@@ -144,7 +145,12 @@ impl<T: Scalar> Graph<T> {
 
     /// What calls may know besides their arguments.
     pub(crate) fn context(&self) -> Context {
-        self.context
+        self.context.clone()
+    }
+
+    /// Says what ends long evaluations when it is set to true.
+    pub fn obey(&mut self, cancel: Arc<AtomicBool>) {
+        self.context.cancel = cancel;
     }
 
     pub(crate) fn object(&self, key: Key) -> &Object<T> {
@@ -602,7 +608,12 @@ impl<T: Scalar> Run<'_, T> {
             self.check_cycle(key, &args)?;
             self.graph.connect(key, args);
         }
-        if !same || !same_row {
+        // What was cancelled was never found out.
+        let cancelled = matches!(
+            &self.graph.object(key).state,
+            State::Failed(Failure::Fault(fault)) if fault.id == "cancelled"
+        );
+        if !same || !same_row || cancelled {
             self.graph.object_mut(key).row = row.clone();
             self.graph.mark_pending(key);
         }
@@ -721,8 +732,8 @@ impl<T: Scalar> Run<'_, T> {
     /// # Errors
     /// What the row's body reports.
     pub fn call(&mut self, row: &Arc<Row>, args: Vec<Value<T>>) -> Result<Value<T>, Fault> {
-        let (clock, context) = (self.graph.clock, self.graph.context);
-        self.graph.memo.call(row, args, clock, &context)
+        let graph = &mut *self.graph;
+        graph.memo.call(row, args, graph.clock, &graph.context)
     }
 
     /// Whether this is a run or an edit.

@@ -30,4 +30,4 @@ mod render;
 
 pub use camera::Camera;
 pub use palette::{PALETTE, patch_colour};
-pub use render::{Line, Look, Options, PictureError, render};
+pub use render::{Line, Look, Options, PictureError, encoded, render};

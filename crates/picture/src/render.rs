@@ -302,7 +302,14 @@ fn axes(raster: &mut Raster, aimed: &Aimed, width: usize, height: usize) {
     }
 }
 
-fn encoded(rgb: &[u8], width: usize, height: usize) -> Result<Vec<u8>, PictureError> {
+/// The PNG file of picture points, three bytes each, row by row from the top.
+///
+/// # Errors
+/// What the encoder says.
+///
+/// # Panics
+/// When there are not `3 * width * height` bytes.
+pub fn encoded(rgb: &[u8], width: usize, height: usize) -> Result<Vec<u8>, PictureError> {
     let failed = |e: png::EncodingError| PictureError::Encoding(e.to_string());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);

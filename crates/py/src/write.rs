@@ -4,7 +4,8 @@ use moldloft_diag::Diagnostic;
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{
-    Skin, WriteError, aqwa, gdf, gltf, hams, hydrostar, nemoh, obj, plot3d, ply, stl, vtk,
+    Skin, Strands, WriteError, aqwa, gdf, gltf, hams, hydrostar, nemoh, obj, plot3d, ply, stl,
+    threemf, vtk,
 };
 use moldloft_lang::{Document, Section};
 use moldloft_mesh::Mesh;
@@ -83,15 +84,21 @@ pub fn files(
     let part = tagged(&panelled.mesh, &wishes.tags)?;
     let mesh = part.as_ref().unwrap_or(&panelled.mesh);
     let one = |bytes: Vec<u8>| vec![NamedFile { name: format!("{stem}.{format}"), bytes }];
+    let strands = strands(document);
+    if !strands.is_empty() && !matches!(format, "obj" | "vtp") {
+        let name = format_name(format);
+        strands.refused(name).map_err(|error| cannot_write(format, &error))?;
+    }
     let files = match format {
         "gdf" | "nemoh" | "hydrostar" | "hams" | "aqwa" => {
             solver_files(mesh, format, stem, &symmetry, GRAVITY / metres, &wishes)
         }
         "stl" => stl::write(mesh, stem).map(one),
-        "obj" => obj::write(mesh).map(one),
+        "obj" => obj::write_with(mesh, &strands).map(one),
+        "3mf" => threemf::write(mesh, stem, threemf_unit(metres), patch_colour).map(one),
         "ply" => ply::write(mesh).map(one),
         "glb" => gltf::write(mesh, stem, metres, patch_colour).map(one),
-        "vtp" => vtk::polydata(mesh).map(one),
+        "vtp" => vtk::polydata_with(mesh, &strands).map(one),
         "vts" => vtk::structured_files(mesh, stem),
         "p3d" => plot3d::write(mesh, plot3d::Layout::Stream).map(one),
         _ => {
@@ -100,6 +107,39 @@ pub fn files(
         }
     };
     files.map_err(|error| cannot_write(format, &error))
+}
+
+/// The polylines and points of the shown bodies.
+fn strands(document: &Document) -> Strands {
+    let mut strands = Strands::default();
+    for object in document.graph().objects().filter(|o| o.head.shown()) {
+        if let Some(Value::Mesh(body)) = object.value() {
+            let name = object.name.to_string();
+            strands.wires.extend(body.wires.iter().map(|w| (name.clone(), w.clone())));
+            strands.dots.extend(body.dots.iter().map(|p| (name.clone(), *p)));
+        }
+    }
+    strands
+}
+
+/// The name of a format for messages.
+fn format_name(format: &str) -> &'static str {
+    const NAMES: [&str; 11] =
+        ["gdf", "nemoh", "hydrostar", "hams", "aqwa", "stl", "ply", "glb", "vts", "p3d", "3mf"];
+    NAMES.into_iter().find(|name| *name == format).unwrap_or("this format")
+}
+
+/// The unit of a 3MF file that is so many metres long; metres where it has none.
+fn threemf_unit(metres: f64) -> &'static str {
+    const UNITS: [(f64, &str); 5] = [
+        (1e-3, "millimeter"),
+        (1e-2, "centimeter"),
+        (0.0254, "inch"),
+        (0.3048, "foot"),
+        (1.0, "meter"),
+    ];
+    let found = UNITS.into_iter().find(|(size, _)| (size - metres).abs() < 1e-9 * metres);
+    found.map_or("meter", |(_, name)| name)
 }
 
 fn cannot_write(format: &str, error: &WriteError) -> Vec<Diagnostic> {

@@ -214,7 +214,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                 #check
                 let this = Self { #(#reads),* };
                 let nesting = args.iter().map(::moldloft_registry::Value::depth).max().unwrap_or(0);
-                let context = ::moldloft_registry::Context { nesting, ..*context };
+                let context = ::moldloft_registry::Context { nesting, ..context.clone() };
                 #finish
             }
         }

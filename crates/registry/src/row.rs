@@ -3,6 +3,7 @@ use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// The closed list of scalars that models are evaluated with.
 pub trait Scalar: Real + FromValue<Self> {
@@ -32,17 +33,19 @@ impl Scalar for Dual4 {
 }
 
 /// What a call may know besides its arguments.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Context {
     /// The model's tolerance: the distance below which two points count as one.
     pub tolerance: f64,
     /// How deep shapes are nested in the arguments.
     pub nesting: u32,
+    /// Set to true from elsewhere to end long calls.
+    pub cancel: Arc<AtomicBool>,
 }
 
 impl Default for Context {
     fn default() -> Self {
-        Self { tolerance: 1e-6, nesting: 0 }
+        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default() }
     }
 }
 

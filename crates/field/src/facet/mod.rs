@@ -57,7 +57,7 @@ impl Options {
         Self { resolution, limit: 2e7, cancel: None }
     }
 
-    fn cancelled(&self) -> bool {
+    pub(crate) fn cancelled(&self) -> bool {
         self.cancel.as_ref().is_some_and(|c| c.load(Ordering::Relaxed))
     }
 }

@@ -10,8 +10,8 @@ use moldloft_registry::{Build, Context, Facets as Body, Fault, Group, Kind, Poin
 use std::sync::Arc;
 
 /// Facets of that resolution, which stop when the model does.
-pub fn options(resolution: Resolution, _: &Context) -> Options {
-    Options::new(resolution)
+pub fn options(resolution: Resolution, context: &Context) -> Options {
+    Options { cancel: Some(context.cancel.clone()), ..Options::new(resolution) }
 }
 
 /// The surface of a set as triangles: a mesh like any other.
