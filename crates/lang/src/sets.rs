@@ -286,7 +286,7 @@ pub(crate) fn at<T: Real>(shape: &Value<T>, place: &Value<T>) -> Result<Value<T>
         Value::Vector(p) => one(*p),
         Value::Point(p) => one(p.xyz),
         Value::Vectors(a) => {
-            Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: values(&a.items) })))
+            Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: values(&a.points()) })))
         }
         other => Err(Diagnostic::error("wrong-type", "a field is asked at a point")
             .expected("a point, a vector, or a row or grid of vectors")

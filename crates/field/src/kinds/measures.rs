@@ -8,7 +8,9 @@ use crate::{
     FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, cache, facet_mixed, foot,
 };
 use moldloft_num::{Box3, Real, Vec3};
-use moldloft_registry::{Array, Build, Class, Context, Fault, FromValue, Kind, Point, Value};
+use moldloft_registry::{
+    Array, Build, Class, Context, Fault, FromValue, Kind, Point, Value, Vectors,
+};
 use std::sync::Arc;
 
 /// The coarsest and finest divisions of the box by which integrals are made.
@@ -135,7 +137,7 @@ measure!(
         if m.volume().re() <= 0.0 {
             return Err(empty());
         }
-        Ok(Value::Vectors(Arc::new(Array::row(m.inertia().to_vec()))))
+        Ok(Value::Vectors(Arc::new(Vectors::row(m.inertia().to_vec()))))
     }
 );
 
@@ -520,6 +522,6 @@ impl<T: Real> Build<T> for Bounds<T> {
         let found = crate::bounds(&self.set.0.re(), self.accuracy.re()).map_err(|e| fault(&e))?;
         let Some(over) = found else { return Err(empty()) };
         let ends = vec![Vec3::lifted(over.low), Vec3::lifted(over.high)];
-        Ok(Value::Vectors(Arc::new(Array::row(ends))))
+        Ok(Value::Vectors(Arc::new(Vectors::row(ends))))
     }
 }
