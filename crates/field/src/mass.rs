@@ -67,6 +67,18 @@ impl Moments<Interval> {
         [1, 2, 3].map(|k| self.0[k] * one)
     }
 
+    /// Brackets of the matrix of inertia about the centroid, for unit density; everything when the volume
+    /// may be zero. Each moment stands in several terms, so they are wider than those of the moments.
+    pub fn inertia(&self) -> [[Interval; 3]; 3] {
+        let m = &self.0;
+        let one = m[0].reciprocal();
+        let central = |k: usize, i: usize, j: usize| m[k] - m[1 + i] * m[1 + j] * one;
+        let square = |k: usize, i: usize| m[k] - m[1 + i].square() * one;
+        let (xx, yy, zz) = (square(4, 0), square(5, 1), square(6, 2));
+        let (xy, yz, zx) = (central(7, 0, 1), central(8, 1, 2), central(9, 2, 0));
+        [[yy + zz, -xy, -zx], [-xy, zz + xx, -yz], [-zx, -yz, xx + yy]]
+    }
+
     /// True when all of `m` lies inside.
     pub fn contains(&self, m: &Moments<f64>) -> bool {
         self.0.iter().zip(&m.0).all(|(range, x)| range.contains(*x))

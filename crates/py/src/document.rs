@@ -257,6 +257,18 @@ impl PyDocument {
         })
     }
 
+    /// Makes a field or set callable in the model under `name`, without arguments.
+    fn add_shape(&self, py: Python<'_>, name: String, shape: &Bound<'_, PyAny>) -> PyResult<()> {
+        let Some(row) = crate::foreign::shape_row(&name, shape) else {
+            return Err(plain_error(format!("`{name}` is neither a field nor a set")));
+        };
+        // A field may be a Python function.
+        self.calls_python.store(true, Ordering::Relaxed);
+        self.long(py, move |d| {
+            d.add_row(row);
+        })
+    }
+
     fn eval<'py>(&self, py: Python<'py>, expression: &str) -> PyResult<Bound<'py, PyAny>> {
         if self.calls_python.load(Ordering::Relaxed) {
             let expression = expression.to_owned();

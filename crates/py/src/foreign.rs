@@ -46,6 +46,50 @@ pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny
     }
 }
 
+/// A field or set made in Python, as a function without arguments.
+enum Shape {
+    Field(moldloft_field::Primitive),
+    Set(moldloft_field::Set),
+}
+
+impl Shape {
+    fn value<T: Real>(&self) -> Value<T> {
+        match self {
+            Shape::Field(f) => moldloft_field::field_value(f.constant()),
+            Shape::Set(s) => moldloft_field::set_value(s.constant()),
+        }
+    }
+}
+
+impl Foreign for Shape {
+    fn call_plain(&self, _: &[Value<f64>], _: &Context) -> Result<Value<f64>, Fault> {
+        Ok(self.value())
+    }
+    fn call_dual(&self, _: &[Value<Dual4>], _: &Context) -> Result<Value<Dual4>, Fault> {
+        Ok(self.value())
+    }
+}
+
+/// The row of a field or set: a call without arguments gives it. `None` for anything else.
+pub fn shape_row(name: &str, object: &Bound<'_, PyAny>) -> Option<Row> {
+    let shape = if let Ok(field) = object.cast::<crate::implicit::PyField>() {
+        Shape::Field(field.get().inner.clone())
+    } else {
+        Shape::Set(object.cast::<crate::implicit::PySet>().ok()?.get().inner.clone())
+    };
+    Some(Row {
+        name: name.to_owned().into(),
+        doc: "A field or set made in Python.".into(),
+        class: Class::Any,
+        fields: Vec::new().into(),
+        kind: false,
+        columns: None,
+        sweep: None,
+        example: "".into(),
+        body: Body::Foreign(Arc::new(shape)),
+    })
+}
+
 impl PythonFunction {
     fn call<T: Number>(&self, args: &[Value<T>]) -> Result<Value<T>, Fault> {
         let mut encoded = Vec::with_capacity(args.len());

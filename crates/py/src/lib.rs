@@ -13,6 +13,7 @@ mod document;
 mod error;
 mod fair;
 mod foreign;
+mod implicit;
 mod mesh;
 mod portrait;
 mod reference;
@@ -39,6 +40,8 @@ mod _core {
     use crate::document::{PyDocument, format_text};
     #[pymodule_export]
     use crate::fair::{Look, Net, Spline, Web, divided_differences, eta_y, monotone_runs};
+    #[pymodule_export]
+    use crate::implicit::{PyFacets, PyField, PySet};
     #[pymodule_export]
     use crate::mesh::PyMesh;
     #[pymodule_export]

@@ -1,6 +1,7 @@
 //! Values of the language as Python objects.
 
 use crate::arrays;
+use crate::implicit::{PyField, PySet};
 use moldloft_num::Vec3;
 use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
 use numpy::{PyArray, PyArrayMethods};
@@ -51,6 +52,14 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
             dict.set_item("centroid", vector(py, mesh.centroid))?;
             dict.into_any()
         }
+        Value::Field(_) => match moldloft_field::primitive_of(value) {
+            Some(field) => Bound::new(py, PyField::of(field))?.into_any(),
+            None => py.None().into_bound(py),
+        },
+        Value::Set(_) => match moldloft_field::set_of(value) {
+            Some(set) => Bound::new(py, PySet::of(set))?.into_any(),
+            None => py.None().into_bound(py),
+        },
         other => Bound::new(py, Shape { class: other.class() })?.into_any(),
     })
 }

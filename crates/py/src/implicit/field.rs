@@ -1,0 +1,323 @@
+//! Implicit functions.
+
+use super::oracle::{PythonOracle, Slots};
+use super::{box_of, finished, points};
+use crate::arrays;
+use crate::error::plain_error;
+use moldloft_field::{Affine, FieldError, Form, Primitive, check_rail, check_rails};
+use moldloft_num::{Axis, Vec3};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// An implicit function.
+#[pyclass(frozen, name = "Field", module = "moldloft._core")]
+pub struct PyField {
+    pub inner: Primitive,
+    pub slots: Slots,
+}
+
+/// How many points a thread takes at a time.
+const CHUNK: usize = 1 << 14;
+
+impl PyField {
+    pub fn of(inner: Primitive) -> Self {
+        Self { inner, slots: Slots::default() }
+    }
+
+    fn made(inner: Result<Primitive, FieldError>) -> PyResult<Self> {
+        inner.map(Self::of).map_err(plain_error)
+    }
+
+    fn from(&self, inner: Primitive) -> Self {
+        Self { inner, slots: self.slots.clone() }
+    }
+
+    fn both(&self, o: &Self, inner: Primitive) -> Self {
+        Self { inner, slots: self.slots.with(&o.slots) }
+    }
+}
+
+fn axis(point: [f64; 3], direction: [f64; 3]) -> Axis<f64> {
+    Axis { point: Vec3::from(point), direction: Vec3::from(direction) }
+}
+
+/// The values at many points, spread over threads.
+pub fn values(
+    points: &[Vec3],
+    out: &mut [f64],
+    serial: bool,
+    evaluate: impl Fn(&[Vec3], &mut [f64]) + Sync,
+) {
+    if serial || points.len() <= CHUNK {
+        return evaluate(points, out);
+    }
+    let chunks = points.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK));
+    chunks.for_each(|(points, out)| evaluate(points, out));
+}
+
+#[pymethods]
+impl PyField {
+    #[staticmethod]
+    fn real(value: f64) -> Self {
+        Self::of(Primitive::real(value))
+    }
+
+    #[staticmethod]
+    fn plane(normal: [f64; 3], point: [f64; 3]) -> PyResult<Self> {
+        Self::made(Primitive::plane(Vec3::from(normal), Vec3::from(point)))
+    }
+
+    #[staticmethod]
+    fn sphere(centre: [f64; 3], radius: f64, distance: bool) -> PyResult<Self> {
+        let centre = Vec3::from(centre);
+        Self::made(match distance {
+            false => Primitive::sphere(centre, radius),
+            true => Primitive::sphere_distance(centre, radius),
+        })
+    }
+
+    #[staticmethod]
+    fn cylinder(
+        point: [f64; 3],
+        direction: [f64; 3],
+        radius: f64,
+        distance: bool,
+    ) -> PyResult<Self> {
+        let axis = axis(point, direction);
+        Self::made(match distance {
+            false => Primitive::cylinder(axis, radius),
+            true => Primitive::cylinder_distance(axis, radius),
+        })
+    }
+
+    #[staticmethod]
+    fn cone(apex: [f64; 3], direction: [f64; 3], angle: f64) -> PyResult<Self> {
+        Self::made(Primitive::cone(axis(apex, direction), angle))
+    }
+
+    #[staticmethod]
+    fn torus(centre: [f64; 3], direction: [f64; 3], major: f64, minor: f64) -> PyResult<Self> {
+        Self::made(Primitive::torus(axis(centre, direction), major, minor))
+    }
+
+    #[staticmethod]
+    fn cyclide(
+        centre: [f64; 3],
+        direction: [f64; 3],
+        along: [f64; 3],
+        major: f64,
+        minor: f64,
+        change: f64,
+    ) -> PyResult<Self> {
+        let axis = axis(centre, direction);
+        Self::made(Primitive::cyclide(axis, Vec3::from(along), major, minor, change))
+    }
+
+    /// A primitive that is a Python function of points (n, 3).
+    #[staticmethod]
+    fn user(
+        value: Py<PyAny>,
+        gradient: Option<Py<PyAny>>,
+        range: Option<Py<PyAny>>,
+        lipschitz: Option<f64>,
+    ) -> Self {
+        let (oracle, slot) = PythonOracle::new(value, gradient, range, lipschitz);
+        Self { inner: Primitive::user(Arc::new(oracle)), slots: Slots::one(slot) }
+    }
+
+    fn binary(&self, name: &str, o: &Self) -> PyResult<Self> {
+        let (a, b) = (&self.inner, &o.inner);
+        let inner = match name {
+            "+" => a + b,
+            "-" => a - b,
+            "*" => a * b,
+            "/" => a.over(b).map_err(plain_error)?,
+            "min" => a.min(b),
+            "max" => a.max(b),
+            "atan2" => a.atan2(b),
+            _ => return Err(plain_error(format!("there is no operator {name}"))),
+        };
+        Ok(self.both(o, inner))
+    }
+
+    fn unary(&self, name: &str) -> PyResult<Self> {
+        let a = &self.inner;
+        Ok(self.from(match name {
+            "-" => -a,
+            "abs" => a.abs(),
+            "sign" => a.sign(),
+            "sqrt" => a.sqrt(),
+            "s_sqrt" => a.s_sqrt(),
+            "sin" => a.sin(),
+            "cos" => a.cos(),
+            "exp" => a.exp(),
+            _ => return Err(plain_error(format!("there is no function {name} of fields"))),
+        }))
+    }
+
+    fn power(&self, exponent: f64) -> PyResult<Self> {
+        self.inner.to_power(exponent).map(|p| self.from(p)).map_err(plain_error)
+    }
+
+    fn liming(
+        &self,
+        o: &Self,
+        l3: &Self,
+        l4: Option<&Self>,
+        lambda: f64,
+        contact: u32,
+    ) -> PyResult<Self> {
+        let bodies = [&self.inner, &o.inner];
+        let made = match l4 {
+            Some(l4) => moldloft_field::liming(bodies, [&l3.inner, &l4.inner], lambda),
+            None => moldloft_field::liming_on_rail(bodies, &l3.inner, lambda, contact),
+        };
+        let mut slots = self.slots.with(&o.slots).with(&l3.slots);
+        if let Some(l4) = l4 {
+            slots = slots.with(&l4.slots);
+        }
+        Ok(Self { inner: made.map_err(plain_error)?, slots })
+    }
+
+    fn zhang(&self, o: &Self, l3: &Self, l4: &Self, lambda: f64, contact: u32) -> PyResult<Self> {
+        let made =
+            moldloft_field::zhang([&self.inner, &o.inner], [&l3.inner, &l4.inner], lambda, contact);
+        let slots = self.slots.with(&o.slots).with(&l3.slots).with(&l4.slots);
+        Ok(Self { inner: made.map_err(plain_error)?, slots })
+    }
+
+    fn setback(&self, o: &Self, a: f64, b: f64) -> PyResult<Self> {
+        let made = moldloft_field::setback_rail([&self.inner, &o.inner], [a, b]);
+        made.map(|p| self.both(o, p)).map_err(plain_error)
+    }
+
+    fn check_rail(
+        &self,
+        py: Python<'_>,
+        o: &Self,
+        rail: &Self,
+        low: [f64; 3],
+        high: [f64; 3],
+    ) -> PyResult<()> {
+        let over = box_of(low, high);
+        let outcome = py.detach(|| check_rail([&self.inner, &o.inner], &rail.inner, &over));
+        finished(py, &self.slots.with(&o.slots).with(&rail.slots), outcome)
+    }
+
+    fn check_rails(
+        &self,
+        py: Python<'_>,
+        o: &Self,
+        l3: &Self,
+        l4: &Self,
+        low: [f64; 3],
+        high: [f64; 3],
+    ) -> PyResult<()> {
+        let over = box_of(low, high);
+        let bodies = [&self.inner, &o.inner];
+        let outcome = py.detach(|| check_rails(bodies, [&l3.inner, &l4.inner], &over));
+        finished(py, &self.slots.with(&o.slots).with(&l3.slots).with(&l4.slots), outcome)
+    }
+
+    fn values<'py>(
+        &self,
+        py: Python<'py>,
+        at: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let points = points(&at)?;
+        let mut out = vec![0.0; points.len()];
+        let serial = !self.slots.is_empty();
+        py.detach(|| values(&points, &mut out, serial, |p, o| self.inner.values(p, o)));
+        finished(py, &self.slots, Ok(()))?;
+        Ok(PyArray1::from_vec(py, out))
+    }
+
+    fn gradients<'py>(
+        &self,
+        py: Python<'py>,
+        at: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
+        let points = points(&at)?;
+        let all: Vec<_> = py.detach(|| match self.slots.is_empty() {
+            true => points.par_iter().map(|p| self.inner.gradient(*p)).collect(),
+            false => points.iter().map(|p| self.inner.gradient(*p)).collect(),
+        });
+        finished(py, &self.slots, Ok(()))?;
+        let fill = |out: &mut [Vec3]| out.iter_mut().zip(&all).for_each(|(o, g)| *o = g.slope);
+        let slopes = arrays::filled(py, [all.len(), 3], fill).0;
+        Ok((PyArray1::from_vec(py, all.iter().map(|g| g.value).collect()), slopes))
+    }
+
+    fn range(&self, py: Python<'_>, low: [f64; 3], high: [f64; 3]) -> PyResult<(f64, f64)> {
+        let over = box_of(low, high);
+        let range = py.detach(|| self.inner.range(&over));
+        finished(py, &self.slots, Ok((range.low, range.high)))
+    }
+
+    fn mapped(&self, rows: [[f64; 3]; 3], shift: [f64; 3]) -> PyResult<Self> {
+        let map = Affine { rows: rows.map(Vec3::from), shift: Vec3::from(shift) };
+        self.inner.mapped(&map).map(|p| self.from(p)).map_err(plain_error)
+    }
+
+    fn same(&self, o: &Self) -> bool {
+        self.inner.same(&o.inner)
+    }
+
+    #[getter]
+    fn degree(&self) -> u32 {
+        self.inner.degree()
+    }
+
+    #[getter]
+    fn is_sheet(&self) -> bool {
+        self.inner.is_sheet()
+    }
+
+    /// What it was made as, with its dimensions.
+    fn form<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let form = self.inner.form();
+        let dict = PyDict::new(py);
+        dict.set_item("kind", form.name())?;
+        let vector = |v: Vec3| v.to_array();
+        let axial = |a: &Axis<f64>| -> PyResult<()> {
+            dict.set_item("point", vector(a.point))?;
+            dict.set_item("direction", vector(a.direction))
+        };
+        match form {
+            Form::Real(c) => dict.set_item("value", *c)?,
+            Form::Plane(p) => {
+                dict.set_item("point", vector(p.point))?;
+                dict.set_item("normal", vector(p.normal))?;
+            }
+            Form::Sphere { centre, radius } => {
+                dict.set_item("centre", vector(*centre))?;
+                dict.set_item("radius", *radius)?;
+            }
+            Form::Cylinder { axis, radius } => {
+                axial(axis)?;
+                dict.set_item("radius", *radius)?;
+            }
+            Form::Cone { axis, angle } => {
+                axial(axis)?;
+                dict.set_item("angle", *angle)?;
+            }
+            Form::Torus { axis, major, minor } => {
+                axial(axis)?;
+                dict.set_item("major", *major)?;
+                dict.set_item("minor", *minor)?;
+            }
+            Form::Cyclide { axis, along, major, minor, change } => {
+                axial(axis)?;
+                dict.set_item("along", vector(*along))?;
+                dict.set_item("major", *major)?;
+                dict.set_item("minor", *minor)?;
+                dict.set_item("change", *change)?;
+            }
+            Form::General => {}
+        }
+        Ok(dict)
+    }
+}

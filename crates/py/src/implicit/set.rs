@@ -1,0 +1,452 @@
+//! Sets.
+
+use super::field::{PyField, values};
+use super::oracle::Slots;
+use super::{PyFacets, box_of, finished, points};
+use crate::arrays;
+use crate::error::plain_error;
+use crate::work::interruptible;
+use moldloft_field::{
+    Affine, Attributes, Caster, FieldError, Light, Membership, Options, Portrait, Ray, Resolution,
+    Set, facets_of,
+};
+use moldloft_num::{Box3, Vec3};
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyList};
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// A set of points.
+#[pyclass(frozen, name = "Set", module = "moldloft._core")]
+pub struct PySet {
+    pub inner: Set,
+    pub slots: Slots,
+}
+
+impl PySet {
+    pub fn of(inner: Set) -> Self {
+        Self { inner, slots: Slots::default() }
+    }
+
+    fn from(&self, inner: Set) -> Self {
+        Self { inner, slots: self.slots.clone() }
+    }
+
+    /// Work on the set that may take long, and stops at Ctrl-C.
+    fn long<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Set, Arc<AtomicBool>) -> Result<R, FieldError> + Send + 'static,
+    ) -> PyResult<R> {
+        let cancel = Arc::new(AtomicBool::new(false));
+        let (set, flag) = (self.inner.clone(), cancel.clone());
+        let outcome = interruptible(py, &cancel, move || work(&set, flag))?;
+        finished(py, &self.slots, outcome)
+    }
+}
+
+/// The box given, or one around the set.
+fn region(set: &Set, given: Option<Box3>) -> Result<Box3, FieldError> {
+    match given {
+        Some(over) => Ok(over),
+        None => match moldloft_field::around(set)? {
+            Some(over) => Ok(over),
+            None => Err(FieldError::Degenerate { what: "set: it is empty and has no box; it" }),
+        },
+    }
+}
+
+type Corners = Option<([f64; 3], [f64; 3])>;
+
+fn given(corners: Corners) -> Option<Box3> {
+    corners.map(|(low, high)| box_of(low, high))
+}
+
+#[pymethods]
+impl PySet {
+    #[staticmethod]
+    fn of_field(field: &PyField) -> Self {
+        Self { inner: Set::new(&field.inner), slots: field.slots.clone() }
+    }
+
+    #[staticmethod]
+    fn everything() -> Self {
+        Self::of(Set::everything())
+    }
+
+    #[staticmethod]
+    fn nothing() -> Self {
+        Self::of(Set::nothing())
+    }
+
+    #[staticmethod]
+    fn cuboid(low: [f64; 3], high: [f64; 3]) -> PyResult<Self> {
+        Set::cuboid(Vec3::from(low), Vec3::from(high)).map(Self::of).map_err(plain_error)
+    }
+
+    #[staticmethod]
+    fn tetrahedron(corners: [[f64; 3]; 4]) -> PyResult<Self> {
+        Set::tetrahedron(corners.map(Vec3::from)).map(Self::of).map_err(plain_error)
+    }
+
+    fn binary(&self, name: &str, o: &Self) -> PyResult<Self> {
+        let (a, b) = (&self.inner, &o.inner);
+        let inner = match name {
+            "|" => a | b,
+            "&" => a & b,
+            "-" => a - b,
+            "^" => a ^ b,
+            _ => return Err(plain_error(format!("there is no operator {name} of sets"))),
+        };
+        Ok(Self { inner, slots: self.slots.with(&o.slots) })
+    }
+
+    fn complement(&self) -> Self {
+        self.from(self.inner.complement())
+    }
+
+    fn skin(&self) -> Self {
+        self.from(self.inner.skin())
+    }
+
+    fn regularized(&self) -> Self {
+        self.from(self.inner.regularized())
+    }
+
+    fn pruned(&self, low: [f64; 3], high: [f64; 3]) -> Self {
+        self.from(self.inner.pruned(&box_of(low, high)))
+    }
+
+    fn mapped(&self, rows: [[f64; 3]; 3], shift: [f64; 3]) -> PyResult<Self> {
+        let map = Affine { rows: rows.map(Vec3::from), shift: Vec3::from(shift) };
+        self.inner.mapped(&map).map(|s| self.from(s)).map_err(plain_error)
+    }
+
+    #[staticmethod]
+    fn blended(
+        kind: &str,
+        l1: &PyField,
+        l2: &PyField,
+        setbacks: [f64; 2],
+        lambda: f64,
+    ) -> PyResult<(Self, PyField)> {
+        let bodies = [&l1.inner, &l2.inner];
+        let blend = match kind {
+            "fillet" => moldloft_field::fillet(bodies, setbacks, lambda),
+            _ => moldloft_field::round(bodies, setbacks, lambda),
+        };
+        let blend = blend.map_err(plain_error)?;
+        let slots = l1.slots.with(&l2.slots);
+        let field = PyField { inner: blend.primitive, slots: slots.clone() };
+        Ok((Self { inner: blend.set, slots }, field))
+    }
+
+    #[staticmethod]
+    fn transition(
+        l1: &PyField,
+        l2: &PyField,
+        l3: &PyField,
+        l4: &PyField,
+        lambda: f64,
+        contact: u32,
+    ) -> PyResult<(Self, PyField)> {
+        let blend = moldloft_field::transition(
+            [&l1.inner, &l2.inner],
+            [&l3.inner, &l4.inner],
+            lambda,
+            contact,
+        )
+        .map_err(plain_error)?;
+        let slots = l1.slots.with(&l2.slots).with(&l3.slots).with(&l4.slots);
+        let field = PyField { inner: blend.primitive, slots: slots.clone() };
+        Ok((Self { inner: blend.set, slots }, field))
+    }
+
+    fn with_attributes(
+        &self,
+        name: Option<String>,
+        colour: Option<u8>,
+        material: Option<String>,
+        tolerance: Option<f64>,
+    ) -> Self {
+        self.from(self.inner.with(Attributes { name, colour, material, tolerance }))
+    }
+
+    #[getter]
+    fn degree(&self) -> u32 {
+        self.inner.degree()
+    }
+
+    #[getter]
+    fn contents(&self) -> usize {
+        self.inner.contents()
+    }
+
+    #[getter]
+    fn is_everything(&self) -> bool {
+        self.inner.is_everything()
+    }
+
+    #[getter]
+    fn is_nothing(&self) -> bool {
+        self.inner.is_nothing()
+    }
+
+    fn operands(&self) -> Vec<Self> {
+        self.inner.operands().iter().map(|s| self.from(s.clone())).collect()
+    }
+
+    fn same(&self, o: &Self) -> bool {
+        self.inner.same(&o.inner)
+    }
+
+    /// The primitives with their attributes.
+    fn leaves<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let list = PyList::empty(py);
+        for leaf in self.inner.leaves() {
+            let dict = attributes(py, &leaf.attributes)?;
+            dict.set_item("kind", leaf.primitive.form().name())?;
+            let field = PyField { inner: leaf.primitive, slots: self.slots.clone() };
+            list.append((field.into_pyobject(py)?, dict))?;
+        }
+        Ok(list)
+    }
+
+    fn values<'py>(
+        &self,
+        py: Python<'py>,
+        at: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let points = points(&at)?;
+        let mut out = vec![0.0; points.len()];
+        let serial = !self.slots.is_empty();
+        py.detach(|| values(&points, &mut out, serial, |p, o| self.inner.values(p, o)));
+        finished(py, &self.slots, Ok(()))?;
+        Ok(PyArray1::from_vec(py, out))
+    }
+
+    /// -1 in the solid, 0 on the surface, 1 in air.
+    fn members<'py>(
+        &self,
+        py: Python<'py>,
+        at: PyReadonlyArray2<'py, f64>,
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+        let points = points(&at)?;
+        let one = |p: &Vec3| match self.inner.member(*p, tolerance) {
+            Membership::Solid => -1i8,
+            Membership::Surface => 0,
+            Membership::Air => 1,
+        };
+        let out: Vec<i8> = py.detach(|| match self.slots.is_empty() {
+            true => points.par_iter().map(one).collect(),
+            false => points.iter().map(one).collect(),
+        });
+        finished(py, &self.slots, Ok(()))?;
+        Ok(PyArray1::from_vec(py, out))
+    }
+
+    /// The number of the leaf that decides at each point, -1 where there is none.
+    fn winners<'py>(
+        &self,
+        py: Python<'py>,
+        at: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let points = points(&at)?;
+        let one = |p: &Vec3| self.inner.winner(*p).1.map_or(-1, |leaf| leaf as i64);
+        let out: Vec<i64> = py.detach(|| points.iter().map(one).collect());
+        finished(py, &self.slots, Ok(()))?;
+        Ok(PyArray1::from_vec(py, out))
+    }
+
+    fn range(&self, py: Python<'_>, low: [f64; 3], high: [f64; 3]) -> PyResult<(f64, f64)> {
+        let over = box_of(low, high);
+        let range = py.detach(|| self.inner.range(&over));
+        finished(py, &self.slots, Ok((range.low, range.high)))
+    }
+
+    fn bounds(&self, py: Python<'_>, accuracy: f64) -> PyResult<Option<([f64; 3], [f64; 3])>> {
+        let found = self.long(py, move |set, _| moldloft_field::bounds(set, accuracy))?;
+        Ok(found.map(|b| (b.low.to_array(), b.high.to_array())))
+    }
+
+    #[pyo3(signature = (corners, depth, accuracy, limit, before=None))]
+    fn facets(
+        &self,
+        py: Python<'_>,
+        corners: Corners,
+        depth: Option<u32>,
+        accuracy: Option<f64>,
+        limit: f64,
+        before: Option<&PyFacets>,
+    ) -> PyResult<PyFacets> {
+        let before = before.and_then(PyFacets::solid);
+        let resolution = match (depth, accuracy) {
+            (_, Some(accuracy)) => Resolution::Accuracy(accuracy),
+            (depth, None) => Resolution::Depth(depth.unwrap_or(6)),
+        };
+        let (pieces, over) = self.long(py, move |set, cancel| {
+            let over = region(set, given(corners))?;
+            let options = Options { limit, cancel: Some(cancel), ..Options::new(resolution) };
+            let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
+            let pieces = match (&before, plain) {
+                (Some(before), true) => {
+                    let facets = moldloft_field::refacet(set, &over, &options, Some(&**before))?;
+                    moldloft_field::Pieces::Solid(Arc::new(facets))
+                }
+                _ => facets_of(set, &over, &options)?,
+            };
+            Ok((pieces, over))
+        })?;
+        Ok(PyFacets::new(pieces, over))
+    }
+
+    /// Brackets and best values of volume, centroid and inertia.
+    fn mass<'py>(
+        &self,
+        py: Python<'py>,
+        corners: Corners,
+        depth: u32,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (bracket, best) = self.long(py, move |set, cancel| {
+            let over = region(set, given(corners))?;
+            let bracket = moldloft_field::bracket_until(set, &over, depth, &cancel)?;
+            let options =
+                Options { cancel: Some(cancel), ..Options::new(Resolution::Depth(depth)) };
+            let mut best = moldloft_field::facet(set, &over, &options)?.moments();
+            for (x, range) in best.0.iter_mut().zip(&bracket.0) {
+                *x = x.clamp(range.low, range.high);
+            }
+            Ok((bracket, best))
+        })?;
+        let dict = PyDict::new(py);
+        dict.set_item("volume", best.volume())?;
+        let v = bracket.volume();
+        dict.set_item("volume_bracket", (v.low.max(0.0), v.high))?;
+        let empty = best.volume() <= 0.0;
+        dict.set_item("centroid", (!empty).then(|| best.centroid().to_array()))?;
+        let centroid = bracket.centroid().map(|i| (i.low, i.high));
+        dict.set_item("centroid_bracket", centroid)?;
+        dict.set_item("inertia", (!empty).then(|| best.inertia().map(|r| r.to_array())))?;
+        let inertia = bracket.inertia().map(|row| row.map(|i| (i.low, i.high)));
+        dict.set_item("inertia_bracket", inertia)?;
+        Ok(dict)
+    }
+
+    /// The nearest point of the surface, its distance and a proved lower bound of it.
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        point: [f64; 3],
+        corners: Corners,
+        accuracy: Option<f64>,
+    ) -> PyResult<Option<([f64; 3], f64, f64)>> {
+        let found = self.long(py, move |set, _| {
+            let over = region(set, given(corners))?;
+            let accuracy = accuracy.unwrap_or(1e-6 * over.diagonal());
+            moldloft_field::nearest(set, Vec3::from(point), &over, accuracy)
+        })?;
+        Ok(found.map(|n| (n.point.to_array(), n.distance, n.at_least)))
+    }
+
+    /// Hits of a ray: parameter, point, leaf, normal, entering.
+    #[allow(clippy::type_complexity)]
+    fn hits(
+        &self,
+        py: Python<'_>,
+        start: [f64; 3],
+        direction: [f64; 3],
+        length: f64,
+    ) -> PyResult<Vec<(f64, [f64; 3], usize, [f64; 3], bool)>> {
+        let (start, direction) = (Vec3::from(start), Vec3::from(direction));
+        if !(direction.norm() > 0.0 && length > 0.0 && length.is_finite()) {
+            return Err(plain_error("a ray needs a direction and a finite length above 0"));
+        }
+        let ray = Ray { start, direction, length };
+        let hits = py.detach(|| Caster::new(&self.inner).hits(&ray));
+        finished(py, &self.slots, Ok(()))?;
+        let one = |h: moldloft_field::Hit| {
+            (h.t, h.point.to_array(), h.leaf, h.normal.to_array(), h.enters)
+        };
+        Ok(hits.into_iter().map(one).collect())
+    }
+
+    /// A ray-traced picture as a PNG file.
+    #[allow(clippy::too_many_arguments)]
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        corners: Corners,
+        size: [usize; 2],
+        view: ([f64; 3], [f64; 3], [f64; 3], f64),
+        lights: Vec<(Option<[f64; 3]>, [f64; 3], [f64; 3])>,
+        ambient: [f64; 3],
+        background: [[u8; 3]; 2],
+        looks: (bool, [f64; 2], usize),
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        if size.iter().any(|n| *n == 0 || *n > 8192) {
+            return Err(plain_error("a picture is 1 to 8192 points wide and high"));
+        }
+        let (eye, centre, up, angle) = view;
+        let light = |(direction, place, colour): (Option<[f64; 3]>, [f64; 3], [f64; 3])| Light {
+            direction: direction.map(Vec3::from),
+            place: Vec3::from(place),
+            colour,
+        };
+        let colours = self
+            .inner
+            .leaves()
+            .iter()
+            .enumerate()
+            .map(|(k, leaf)| {
+                let turn = [9usize, 14, 10, 12, 11, 13, 6, 7][k % 8];
+                let index = leaf.attributes.colour.map_or(turn, usize::from);
+                moldloft_picture::PALETTE[index % 16]
+            })
+            .collect();
+        let view = Portrait {
+            size,
+            eye: Vec3::from(eye),
+            centre: Vec3::from(centre),
+            up: Vec3::from(up),
+            angle,
+            lights: lights.into_iter().map(light).collect(),
+            ambient,
+            background,
+            shadows: looks.0,
+            shine: looks.1,
+            samples: looks.2,
+            colours,
+        };
+        let rgb = self.long(py, move |set, cancel| {
+            let over = region(set, given(corners))?;
+            let options = Options { cancel: Some(cancel), ..Options::new(Resolution::Depth(1)) };
+            moldloft_field::portrait(set, &over, &view, &options)
+        })?;
+        let png = moldloft_picture::encoded(&rgb, size[0], size[1]).map_err(plain_error)?;
+        Ok(PyBytes::new(py, &png))
+    }
+
+    /// The box around the set that is used when none is given.
+    fn around(&self, py: Python<'_>) -> PyResult<([f64; 3], [f64; 3])> {
+        let over = self.long(py, |set, _| region(set, None))?;
+        Ok((over.low.to_array(), over.high.to_array()))
+    }
+}
+
+/// Attributes as data.
+pub fn attributes<'py>(py: Python<'py>, a: &Attributes) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("name", &a.name)?;
+    dict.set_item("colour", a.colour)?;
+    dict.set_item("material", &a.material)?;
+    dict.set_item("tolerance", a.tolerance)?;
+    Ok(dict)
+}
+
+/// Points as an array (n, 3).
+pub fn array<'py>(py: Python<'py>, points: &[Vec3]) -> Bound<'py, numpy::PyArray2<f64>> {
+    arrays::filled(py, [points.len(), 3], |out| out.copy_from_slice(points)).0
+}
