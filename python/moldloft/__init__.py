@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from moldloft.builder import Builder, model, param
     from moldloft.errors import Error, FairingError, FileError, ModelError, UnknownNameError
     from moldloft.fairing import fair
+    from moldloft.implicit import Field, Set
     from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
     from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model, Param, load, loads
@@ -38,6 +39,7 @@ __all__ = [
     "Diagnostic",
     "Error",
     "FairingError",
+    "Field",
     "FileError",
     "HydrostaticTable",
     "Hydrostatics",
@@ -48,6 +50,7 @@ __all__ = [
     "Param",
     "Patch",
     "RightingCurve",
+    "Set",
     "Sketch",
     "SketchError",
     "UnknownNameError",
@@ -71,6 +74,8 @@ _HOMES = {
     "ModelError": "moldloft.errors",
     "UnknownNameError": "moldloft.errors",
     "HydrostaticTable": "moldloft.hydrostatics",
+    "Field": "moldloft.implicit",
+    "Set": "moldloft.implicit",
     "Hydrostatics": "moldloft.hydrostatics",
     "RightingCurve": "moldloft.hydrostatics",
     "Mesh": "moldloft.mesh",

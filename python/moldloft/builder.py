@@ -245,6 +245,8 @@ def _spelled(x: object) -> str:
     """An argument as the language writes it."""
     if isinstance(x, Handle):
         return x.name
+    if isinstance(x, Shape):
+        return x.text
     if isinstance(x, str):
         escaped = x.replace("\\", "\\\\").replace('"', '\\"')
         return f'"{escaped}"'
@@ -277,6 +279,98 @@ class Handle:
 
     def __repr__(self) -> str:
         return f"<Handle: {self.name}>"
+
+
+class Shape:
+    """A field or set of a model, as an expression of the language.
+
+    Fields combine by ``+ - * /`` and ``**``, sets by ``|``, ``&``, ``-``, ``^``, and ``-`` is the
+    complement. Functions such as ``sphere`` and ``set`` come from :mod:`moldloft.functions`.
+    """
+
+    __array_ufunc__ = None
+
+    def __init__(self, text: str, rank: int = _ATOM) -> None:
+        self.text = text
+        self._rank = rank
+
+    def _in(self) -> str:
+        return self.text if self._rank == _ATOM else f"({self.text})"
+
+    def _binary(self, other: object, sign: str, *, swap: bool = False) -> Any:
+        if isinstance(other, Shape):
+            right = other._in()
+        elif isinstance(other, Handle):
+            right = other.name
+        else:
+            number = _expr(other)
+            if number is None:
+                return NotImplemented
+            right = number._in(_ATOM)
+        a, b = (right, self._in()) if swap else (self._in(), right)
+        return Shape(f"{a} {sign} {b}", _SUM)
+
+    def __add__(self, other: object) -> Any:
+        return self._binary(other, "+")
+
+    def __radd__(self, other: object) -> Any:
+        return self._binary(other, "+", swap=True)
+
+    def __sub__(self, other: object) -> Any:
+        return self._binary(other, "-")
+
+    def __rsub__(self, other: object) -> Any:
+        return self._binary(other, "-", swap=True)
+
+    def __mul__(self, other: object) -> Any:
+        return self._binary(other, "*")
+
+    def __rmul__(self, other: object) -> Any:
+        return self._binary(other, "*", swap=True)
+
+    def __truediv__(self, other: object) -> Any:
+        return self._binary(other, "/")
+
+    def __pow__(self, exponent: int) -> Any:
+        return self._binary(exponent, "^")
+
+    def __or__(self, other: object) -> Any:
+        return self._binary(other, "|")
+
+    def __and__(self, other: object) -> Any:
+        return self._binary(other, "&")
+
+    def __xor__(self, other: object) -> Any:
+        return self._binary(other, "^")
+
+    def __neg__(self) -> Shape:
+        return Shape(f"-{self._in()}", _SIGN)
+
+    def __abs__(self) -> Shape:
+        return Shape(f"abs({self.text})")
+
+    def __call__(self, point: object) -> Expr:
+        """The value at a point."""
+        return Expr(f"{self._in()}({_spelled(point)})")
+
+    def __repr__(self) -> str:
+        return f"Shape({self.text!r})"
+
+
+class Function:
+    """A function of the language: calling it gives an expression of a model that is being built."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def __call__(self, *args: object, **named: object) -> Shape:
+        """The call; the arguments are those of the language."""
+        words = [_spelled(a) for a in args]
+        words += [f"{key} = {_spelled(value)}" for key, value in named.items()]
+        return Shape(f"{self.name}({', '.join(words)})")
+
+    def __repr__(self) -> str:
+        return f"<Function: {self.name}>"
 
 
 class Kind:
@@ -354,6 +448,35 @@ class Builder:
         words += [f"{key} = {_spelled(value)}" for key, value in named.items()]
         self._lines.append(f"{kind} {name}({', '.join(words)});")
         return Handle(name)
+
+    def field(self, name: str, value: Shape | float) -> Shape:
+        """Declare a field: an implicit function under a name.
+
+        >>> from moldloft import functions as f, kinds as k
+        >>> from moldloft.builder import Builder
+        >>> with Builder() as b:
+        ...     r = b.param("r", 1, 0.5, 2)
+        ...     ball = b.field("ball", f.sphere([0, 0, 0], r))
+        ...     half = b.set("half", f.set(ball) & f.set(f.plane([0, 0, 1], [0, 0, 0])))
+        ...     body = k.SetBody("body", half, depth=4)
+        >>> print(b.text, end="")
+        param float r = 1 in [0.5, 2];
+        field ball = sphere({0, 0, 0}, r);
+        set half = set(ball) & set(plane({0, 0, 1}, {0, 0, 0}));
+        SetBody body(half, depth = 4);
+        >>> round(b.model().eval("volume(half)"), 3)
+        2.094
+        """
+        return self._implicit("field", name, value)
+
+    def set(self, name: str, value: Shape) -> Shape:
+        """Declare a set: the solid sides of fields, combined, under a name; see :meth:`field`."""
+        return self._implicit("set", name, value)
+
+    def _implicit(self, word: str, name: str, value: Shape | float) -> Shape:
+        _check_name(name)
+        self._lines.append(f"{word} {name} = {_spelled(value)};")
+        return Shape(name)
 
     def param(
         self,

@@ -46,7 +46,7 @@ def load(
     path: str | os.PathLike[str],
     *,
     library: Sequence[str | os.PathLike[str]] = (),
-    functions: Mapping[str, Callable[..., Any]] | None = None,
+    functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
     strict: bool = True,
 ) -> Model:
     """Load a model from a file.
@@ -61,7 +61,8 @@ def load(
         Python functions that the model may call, by the names it calls them. They take and
         return floats, vectors ``(3,)`` and arrays; where derivatives are asked for they are given
         :class:`moldloft.numbers.Dual` numbers, on which arithmetic and NumPy's elementary
-        functions work.
+        functions work. A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set` is called
+        without arguments: ``field scan = scan();``.
     strict
         Whether errors raise. Without it they are told by :attr:`Model.diagnostics` only, and
         what does not depend on a failed object lives on.
@@ -89,7 +90,7 @@ def loads(
     *,
     name: str = "model.sdl",
     library: Sequence[str | os.PathLike[str]] = (),
-    functions: Mapping[str, Callable[..., Any]] | None = None,
+    functions: Mapping[str, Callable[..., Any] | Field | Set] | None = None,
     strict: bool = True,
 ) -> Model:
     """Load a model from a text.
@@ -130,10 +131,33 @@ def loads(
     return model
 
 
-def _add_functions(model: Model, functions: Mapping[str, Callable[..., Any]] | None) -> None:
+def _wrapped(value: Any) -> Any:
+    """Fields and sets as users know them."""
+    if isinstance(value, _core.Field):
+        from moldloft.implicit import Field
+
+        return Field(value)
+    if isinstance(value, _core.Set):
+        from moldloft.implicit import Set
+
+        return Set(value)
+    if isinstance(value, list):
+        return [_wrapped(item) for item in value]
+    return value
+
+
+def _add_functions(
+    model: Model, functions: Mapping[str, Callable[..., Any] | Field | Set] | None
+) -> None:
     for name, function in (functions or {}).items():
         if not name.isidentifier() or not name.isascii():
             raise ValueError(f"{name!r} is no name: expected a letter, then letters, digits and _")
+        core = getattr(function, "_core", None)
+        if isinstance(core, (_core.Field, _core.Set)):
+            model._document.add_shape(name, core)
+            continue
+        if not callable(function):
+            raise TypeError(f"`{name}` is neither a function nor a field or set")
         arguments = list(inspect.signature(function).parameters)
         doc = inspect.getdoc(function) or f"The Python function {name}."
         model._document.add_function(name, arguments, doc, function)
@@ -259,8 +283,9 @@ class Model:
 
         Returns
         -------
-        float, str, numpy.ndarray or list
-            A vector as an array ``(3,)``; rows and grids as arrays.
+        float, str, numpy.ndarray, list, Field or Set
+            A vector as an array ``(3,)``; rows and grids as arrays; fields and sets as
+            :class:`moldloft.implicit.Field` and :class:`moldloft.implicit.Set`.
 
         Examples
         --------
@@ -268,7 +293,7 @@ class Model:
         >>> moldloft.loads("AbsPoint P(1, 2, 2);").eval("P.x + 2")
         3.0
         """
-        return self._document.eval(expression)
+        return _wrapped(self._document.eval(expression))
 
     def mesh(self, *, tags: str | Sequence[str] = ()) -> Mesh:
         """Panels of all shown surfaces, as the model stands now; remembered until it changes.

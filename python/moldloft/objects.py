@@ -78,7 +78,8 @@ class Object:
         return bool(self._facts()["ok"])
 
     def __call__(self, *parameters: ArrayLike) -> Floats:
-        """Positions on the curve at ``t``, or on the surface at ``u, v``.
+        """Positions on the curve at ``t``, or on the surface at ``u, v``; of a field or set the values
+        at points ``(…, 3)``.
 
         Parameters
         ----------
@@ -91,6 +92,9 @@ class Object:
         numpy.ndarray
             Shape ``(…, 3)``: that of the parameters and the coordinates.
         """
+        if len(parameters) == 1 and self.class_ in ("field", "set"):
+            values: Floats = self.value(parameters[0])
+            return values
         if len(parameters) == 1:
             t = np.asarray(parameters[0], dtype=np.float64)
             flat = self._document.curve(self.name, np.ascontiguousarray(t.ravel()))
@@ -127,6 +131,20 @@ class Object:
         if normals:
             return self._document.grid_with_normals(self.name, nu, nv)
         return self._document.grid(self.name, nu, nv)
+
+    @property
+    def value(self) -> Any:
+        """Its value: a :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set`, an array of
+        coordinates, the data of a body.
+
+        >>> import moldloft
+        >>> m = moldloft.loads("AbsPoint P(1, 0, 0); field f = sphere(P, 2); set ball = set(f);")
+        >>> m["ball"].value, m["f"]([[1, 0, 0], [4, 0, 0]])
+        (<set of 1 primitive>, array([-4.,  5.]))
+        """
+        from moldloft.models import _wrapped
+
+        return _wrapped(self._document.eval(self.name))
 
     def look(self, u: ArrayLike = 41, v: ArrayLike = 41) -> Look:
         """Normals, curvatures and reflections of a surface.

@@ -30,10 +30,39 @@ fn active<T: Real>(set: &Set<T>, at: Vec3, tolerance: f64) -> Vec<Primitive<T>> 
 /// The point `at` of a set's surface nearest to `p`, with its derivatives: the stationary point of
 /// |x - p|^2 / 2 + sum of l_k f_k.
 pub fn nearest<T: Real>(set: &Set<T>, p: Vec3<T>, at: Vec3, tolerance: f64) -> Vec3<T> {
+    match step(&active(set, at, tolerance), p, at) {
+        Some(step) => moved_by(at, step),
+        None => Vec3::lifted(at),
+    }
+}
+
+/// The point near `at` on the same primitives that is nearest to `p` to rounding; `at` itself when Newton's
+/// method does not lead to a nearer one at once.
+pub fn polished(set: &Set, p: Vec3, at: Vec3, tolerance: f64) -> Vec3 {
     let surfaces = active(set, at, tolerance);
+    let mut x = at;
+    for _ in 0..20 {
+        let Some(step) = step(&surfaces, p, x) else { return at };
+        x += step;
+        if step.norm() <= 1e-15 * (1.0 + x.norm()) {
+            break;
+        }
+    }
+    let size = 1.0 + x.norm();
+    let near = x.distance(at) <= 0.1 * (p.distance(at) + tolerance)
+        && x.distance(p) <= at.distance(p) + 1e-12 * size;
+    let shown = || {
+        let known: Vec<Primitive> = surfaces.iter().flat_map(|f| [f.clone(), f.abs()]).collect();
+        set.member_knowing(x, 1e-12 * size, &known) == crate::Membership::Surface
+    };
+    if x.is_finite() && near && shown() { x } else { at }
+}
+
+/// Newton's step from `at` towards the stationary point of |x - p|^2 / 2 + sum of l_k f_k.
+fn step<T: Real>(surfaces: &[Primitive<T>], p: Vec3<T>, at: Vec3) -> Option<Vec3<T>> {
     let m = surfaces.len();
     if m == 0 {
-        return Vec3::lifted(at);
+        return None;
     }
     let jets: Vec<_> = surfaces.iter().map(|f| f.hessian(Vec3::lifted(at))).collect();
     // The multipliers by least squares: p - x = sum of l_k n_k.
@@ -47,9 +76,7 @@ pub fn nearest<T: Real>(set: &Set<T>, p: Vec3<T>, at: Vec3, tolerance: f64) -> V
             normal[i * m + j] = n.dot(jets[j].slope.re());
         }
     }
-    if solve_dense(&mut normal, &mut l).is_err() {
-        return Vec3::lifted(at);
-    }
+    solve_dense(&mut normal, &mut l).ok()?;
     let n = 3 + m;
     let mut a = vec![T::zero(); n * n];
     let mut b = vec![T::zero(); n];
@@ -68,10 +95,8 @@ pub fn nearest<T: Real>(set: &Set<T>, p: Vec3<T>, at: Vec3, tolerance: f64) -> V
     for (k, jet) in jets.iter().enumerate() {
         b[3 + k] = -jet.value;
     }
-    match solve_dense(&mut a, &mut b) {
-        Ok(()) => moved_by(at, Vec3::new(b[0], b[1], b[2])),
-        Err(_) => Vec3::lifted(at),
-    }
+    solve_dense(&mut a, &mut b).ok()?;
+    Some(Vec3::new(b[0], b[1], b[2]))
 }
 
 /// The parameter `t` at which a ray meets the surface of `f`, with its derivatives.

@@ -23,8 +23,13 @@ pub struct Lifter<T: Real> {
 impl<T: Real> Lifter<T> {
     /// Of a set, within a box whose corners move as given.
     pub fn new(set: &Set<T>, corners: Option<[Vec3<T>; 2]>) -> Self {
-        let plain = set.re().traversal();
-        let pairs = plain.into_iter().zip(set.traversal()).collect();
+        Self::of(set, &set.re(), corners)
+    }
+
+    /// As [`Lifter::new`], given the set in plain numbers of which facets were made. Primitives from outside
+    /// are told by their identity, so they must be those.
+    pub fn of(set: &Set<T>, plain: &Set<f64>, corners: Option<[Vec3<T>; 2]>) -> Self {
+        let pairs = plain.traversal().into_iter().zip(set.traversal()).collect();
         Self { pairs, corners }
     }
 

@@ -98,6 +98,9 @@ pub fn nearest(
         if let Some((point, found)) = best
             && distance >= found - accuracy
         {
+            // Near a minimum of the distance the place is known by its root only: Newton's method settles it.
+            let point = crate::foot::polished(set, p, point, 1e-9 * over.diagonal());
+            let found = point.distance(p).min(found);
             return Ok(Some(Nearest { point, distance: found, at_least: distance.min(found) }));
         }
         seen += 1;

@@ -395,6 +395,10 @@ impl<T: Real> Primitive<T> {
 
     /// The primitive with real parts only.
     pub fn re(&self) -> Primitive<f64> {
+        let any: &dyn std::any::Any = self;
+        if let Some(plain) = any.downcast_ref::<Primitive<f64>>() {
+            return plain.clone();
+        }
         self.rebuilt(
             &|c| c.re(),
             &|op| match op {

@@ -367,6 +367,10 @@ impl<T: Real> Set<T> {
 
     /// The set with real parts only.
     pub fn re(&self) -> Set<f64> {
+        let any: &dyn std::any::Any = self;
+        if let Some(plain) = any.downcast_ref::<Set<f64>>() {
+            return plain.clone();
+        }
         self.rebuilt(&|p| Set::of(Kind::Leaf(p.re()), Vec::new()), false, &Set::combined)
     }
 

@@ -206,3 +206,30 @@ fn bad_requests_are_refused() {
     let nan = Set::new(&(Primitive::axes()[0].clone() * f64::NAN));
     assert!(matches!(facet(&nan, &cube(2.0), &at_depth(3)), Err(FieldError::NoValue { .. })));
 }
+
+#[test]
+fn fewer_triangles_within_an_accuracy() {
+    let set = t_piece();
+    let fine = facets(&set, &cube(4.0), 7);
+    let rms = |f: &moldloft_field::Facets| {
+        let all = f.centre_distances();
+        (all.iter().map(|d| d * d).sum::<f64>() / all.len() as f64).sqrt()
+    };
+    let simple = fine.simplified(1e-3).unwrap();
+    let report = sound(&simple);
+    assert_eq!((report.euler, report.components), (2, 1));
+    println!(
+        "{} triangles, rms {:.2e}; {} after, rms {:.2e}",
+        fine.mesh.faces().len(),
+        rms(&fine),
+        simple.mesh.faces().len(),
+        rms(&simple)
+    );
+    assert!(simple.mesh.faces().len() * 4 < fine.mesh.faces().len() * 3);
+    assert!(simple.worst_vertex() <= 1e-12 * 8.0 * 3f64.sqrt());
+    assert!(crossing_faces(&simple.mesh, None).is_empty());
+    assert!((volume(&simple) - 25.097).abs() < 0.06);
+    // The same bits again.
+    assert_eq!(fine.simplified(1e-3).unwrap().mesh.positions(), simple.mesh.positions());
+    assert!(fine.simplified(0.0).is_err());
+}

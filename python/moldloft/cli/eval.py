@@ -36,6 +36,7 @@ def as_data(value: Any) -> Any:
     from numpy import ndarray
 
     from moldloft._core import Shape
+    from moldloft.implicit import Field, Set
 
     if isinstance(value, ndarray):
         return value.tolist()
@@ -43,6 +44,12 @@ def as_data(value: Any) -> Any:
         return [as_data(item) for item in value]
     if isinstance(value, Shape):
         return {"class": value.class_}
+    if isinstance(value, (Field, Set)):
+        return {"class": type(value).__name__.lower(), "text": repr(value).strip("<>")}
+    if isinstance(value, dict):
+        # A body: its triangles by number only.
+        counts = {"class": "mesh", "triangles": len(value["triangles"])}
+        return counts | {k: as_data(value[k]) for k in ("volume", "area", "centroid")}
     return value
 
 
@@ -57,6 +64,8 @@ def as_text(value: Any) -> str:
         return f"{data:.10g}"
     if isinstance(data, list):
         return "{" + ", ".join(as_text(item) for item in data) + "}"
+    if isinstance(data, dict) and "triangles" in data:
+        return f"a mesh of {data['triangles']} triangles, volume {data['volume']:.10g}"
     if isinstance(data, dict):
-        return f"a {data['class']}"
+        return str(data.get("text") or f"a {data['class']}")
     return str(data)

@@ -13,6 +13,7 @@ mod block;
 mod cell;
 mod crossing;
 mod grid;
+mod simplify;
 pub(crate) mod vertex;
 
 use crate::error::solid_box;

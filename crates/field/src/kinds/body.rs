@@ -41,6 +41,9 @@ pub struct SetBody<T: Real> {
     /// How far the middles of triangles are from the surface at most: estimated by refining.
     #[field(default)]
     accuracy: Option<T>,
+    /// How far triangles may be from the surface when fewer are made of them; none are merged by default.
+    #[field(default)]
+    simplify: Option<T>,
 }
 
 impl<T: Real> Build<T> for SetBody<T> {
@@ -61,8 +64,13 @@ impl<T: Real> Build<T> for SetBody<T> {
             return Err(Fault::new("empty-set", "the set is empty").in_field(0));
         }
         let region = region(&plain, &self.low, &self.high, 2)?;
-        let lifter = Lifter::new(set, region.corners);
+        let lifter = Lifter::of(set, &plain, region.corners);
+        let simplify = self.simplify.map(T::re);
         let body = facets_of(&plain, &region.over, &options(resolution, context))
+            .and_then(|pieces| match simplify {
+                Some(accuracy) => pieces.simplified(accuracy),
+                None => Ok(pieces),
+            })
             .and_then(|pieces| pieces.body(&lifter))
             .map_err(|e| fault(&e))?;
         if body.triangles.is_empty() && body.wires.is_empty() && body.dots.is_empty() {
@@ -75,6 +83,7 @@ impl<T: Real> Build<T> for SetBody<T> {
 }
 
 /// The facets of a set: of solids only, or of all dimensions.
+#[derive(Clone)]
 pub enum Pieces {
     /// Of a set without sheets.
     Solid(Arc<Facets>),
@@ -111,6 +120,20 @@ impl Names {
 }
 
 impl Pieces {
+    /// The same with fewer triangles of its solids; see [`Facets::simplified`].
+    ///
+    /// # Errors
+    /// An accuracy that is not above zero.
+    pub fn simplified(self, accuracy: f64) -> Result<Self, FieldError> {
+        Ok(match self {
+            Pieces::Solid(facets) => Pieces::Solid(Arc::new(facets.simplified(accuracy)?)),
+            Pieces::Mixed(mixed) => {
+                let solid = mixed.solid.simplified(accuracy)?;
+                Pieces::Mixed(Mixed { solid, ..mixed })
+            }
+        })
+    }
+
     /// As a body whose numbers carry the derivatives of the set's.
     ///
     /// # Errors

@@ -54,7 +54,7 @@ fn moments<T: Real>(
     }
     match before {
         Some((facets, _)) => {
-            let lifter = Lifter::new(set, region.corners);
+            let lifter = Lifter::of(set, &plain, region.corners);
             Ok(facets.lifted_by(&lifter)?.moments)
         }
         None => Ok(none()),
@@ -184,8 +184,8 @@ fn surface<T: Real>(
     region: &Region<T>,
     options: &crate::Options,
 ) -> Result<T, FieldError> {
-    let lifter = Lifter::new(set, region.corners);
     let plain = set.re();
+    let lifter = Lifter::of(set, &plain, region.corners);
     let own = |facets: &Facets| -> Result<T, FieldError> {
         let positions = lifter.positions(facets)?;
         let mut area = T::zero();
@@ -498,6 +498,86 @@ impl<T: Real> Build<T> for FirstHit<T> {
         let leaf = leaves.iter().find(|l| l.primitive.re().same(wanted));
         let t = leaf.map(|l| foot::along(l.primitive.of_sheet(), start, direction, hit.t));
         Ok(Value::Number(t.unwrap_or(T::from(hit.t))))
+    }
+}
+
+/// How far two sets are apart; 0 where they overlap or touch.
+///
+/// The box is found when it is not given.
+#[derive(Kind)]
+#[kind(
+    class = Number,
+    function,
+    name = "distance",
+    example = "assert abs(distance(set(sphere({0, 0, 0}, 1)), set(sphere({5, 0, 0}, 1))) - 3) < 1e-6;"
+)]
+pub struct Distance<T: Real> {
+    /// A set.
+    a: Solid<T>,
+    /// The other.
+    b: Solid<T>,
+    /// Low corner of the box.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// High corner of the box.
+    #[field(default)]
+    high: Option<Point<T>>,
+    /// How much nearer they may be; by default 1e-5 of the box.
+    #[field(default)]
+    accuracy: Option<T>,
+}
+
+impl<T: Real> Build<T> for Distance<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let [a, b] = [&self.a.0, &self.b.0];
+        let [p, q] = [a.re(), b.re()];
+        let over = region(&(p.clone() | q.clone()), &self.low, &self.high, 3)?.over;
+        let accuracy = self.accuracy.map_or(1e-5 * over.diagonal(), T::re);
+        let found = crate::gap(&p, &q, &over, accuracy).map_err(|e| fault(&e))?;
+        let Some(found) = found else { return Err(empty()) };
+        if found.distance == 0.0 {
+            return Ok(Value::Number(T::zero()));
+        }
+        // Each foot moves as its own surface does; what it slides along changes the distance by nothing.
+        let near = 1e-9 * over.diagonal();
+        let x = foot::nearest(a, Vec3::lifted(found.second), found.first, near);
+        let y = foot::nearest(b, Vec3::lifted(found.first), found.second, near);
+        Ok(Value::Number((x - y).norm()))
+    }
+}
+
+/// How many bodies a set is of, those that only touch counted apart: by facets.
+#[derive(Kind)]
+#[kind(
+    class = Number,
+    function,
+    name = "components",
+    example = "assert components(set(sphere({0, 0, 0}, 1)) | set(sphere({5, 0, 0}, 1))) == 2;"
+)]
+pub struct Components<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// Low corner of the box.
+    #[field(default)]
+    low: Option<Point<T>>,
+    /// High corner of the box.
+    #[field(default)]
+    high: Option<Point<T>>,
+    /// How often the longest side of the box is halved.
+    #[field(default = 6, min = 1, max = 10)]
+    depth: u32,
+}
+
+impl<T: Real> Build<T> for Components<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let set = self.set.0.re();
+        if set.is_nothing() {
+            return Ok(Value::Number(T::zero()));
+        }
+        let over = region(&set, &self.low, &self.high, 2)?.over;
+        let options = options(Resolution::Depth(self.depth), context);
+        let facets = cache::facet(&set, &over, &options).map_err(|e| fault(&e))?;
+        Ok(Value::Number(T::from(facets.bodies() as f64)))
     }
 }
 

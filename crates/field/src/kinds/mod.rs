@@ -7,6 +7,7 @@ mod primitives;
 pub mod read;
 pub mod region;
 mod sets;
+mod shapes;
 mod transforms;
 
 use moldloft_registry::Row;
@@ -27,6 +28,10 @@ pub fn rows() -> Vec<Row> {
         primitives::Cone,
         primitives::Torus,
         primitives::Cyclide,
+        shapes::TubeOf,
+        shapes::PlateOf,
+        shapes::SideOf,
+        shapes::InsideOf,
         sets::SetOf,
         sets::Cuboid,
         sets::Tetrahedron,
@@ -58,6 +63,8 @@ pub fn rows() -> Vec<Row> {
         measures::Degree,
         measures::NearestPoint,
         measures::FirstHit,
+        measures::Distance,
+        measures::Components,
         measures::Bounds,
         primitives::FieldObject,
         sets::SetObject,

@@ -132,6 +132,22 @@ impl PyFacets {
         Ok(dict)
     }
 
+    /// The same with fewer triangles.
+    fn simplified(&self, py: Python<'_>, accuracy: f64) -> PyResult<Self> {
+        let pieces = self.pieces.clone();
+        let simple = py.detach(|| pieces.simplified(accuracy)).map_err(plain_error)?;
+        Ok(Self::new(simple, self.over))
+    }
+
+    /// The volumes of the connected parts of the solids' surface, how many bodies these are, and where bodies
+    /// only touch.
+    fn shells<'py>(&self, py: Python<'py>) -> (Vec<f64>, usize, Bound<'py, PyArray2<f64>>) {
+        let solid = solid_of(&self.pieces);
+        let (shells, touching) = py.detach(|| (solid.shells(), solid.touching()));
+        let bodies = shells.iter().filter(|s| s.volume > 0.0).count();
+        (shells.iter().map(|s| s.volume).collect(), bodies, array(py, &touching))
+    }
+
     /// The boxes that did not come out right.
     fn undecided(&self) -> Vec<([f64; 3], [f64; 3])> {
         let solid = solid_of(&self.pieces);

@@ -351,6 +351,27 @@ impl PySet {
         Ok(found.map(|n| (n.point.to_array(), n.distance, n.at_least)))
     }
 
+    /// The distance to another set: itself, a proved bound, and a point of each.
+    #[allow(clippy::type_complexity)]
+    fn distance(
+        &self,
+        py: Python<'_>,
+        o: &Self,
+        corners: Corners,
+        accuracy: Option<f64>,
+    ) -> PyResult<Option<(f64, f64, [f64; 3], [f64; 3])>> {
+        let other = o.inner.clone();
+        let found = self.long(py, move |set, _| {
+            let over = region(&(set | &other), given(corners))?;
+            let accuracy = accuracy.unwrap_or(1e-5 * over.diagonal());
+            moldloft_field::gap(set, &other, &over, accuracy)
+        })?;
+        let row = |g: moldloft_field::Gap| {
+            (g.distance, g.at_least, g.first.to_array(), g.second.to_array())
+        };
+        Ok(found.map(row))
+    }
+
     /// Hits of a ray: parameter, point, leaf, normal, entering.
     #[allow(clippy::type_complexity)]
     fn hits(

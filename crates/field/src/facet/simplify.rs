@@ -1,0 +1,289 @@
+//! Fewer triangles where the surface is flat: vertices are moved into neighbours, the cheapest first.
+//!
+//! Only whole vertices go, so those that stay are on their surfaces as before. A vertex of a face may go into
+//! any neighbour, one of an edge only along the edge, one of a corner never. On a cylinder triangles
+//! become long along its axis, which is where most is saved.
+
+use super::{Facets, crossing_faces, distance, vertex};
+use crate::FieldError;
+use crate::tape::Tape;
+use moldloft_mesh::{Mesh, TopologyBuilder};
+use moldloft_num::Vec3;
+use smallvec::SmallVec;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+/// The least height of a triangle as a share of its longest side.
+const THIN: f64 = 0.04;
+/// The least cosine of the angle by which a triangle turns.
+const TURN: f64 = 0.8;
+/// How often vertices beside triangles that cut others are locked, and all is done again.
+const TRIES: usize = 4;
+
+/// A vertex that may go into another, at the error that this makes.
+struct Candidate {
+    error: f64,
+    from: u32,
+    into: u32,
+    stamp: u32,
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, o: &Self) -> bool {
+        self.cmp(o) == Ordering::Equal
+    }
+}
+impl Eq for Candidate {}
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+impl Ord for Candidate {
+    /// The cheapest first; of equal ones that of the lowest vertex.
+    fn cmp(&self, o: &Self) -> Ordering {
+        let places = (o.from, o.into).cmp(&(self.from, self.into));
+        o.error.total_cmp(&self.error).then(places)
+    }
+}
+
+type Star = SmallVec<[u32; 8]>;
+
+struct Work<'a> {
+    positions: &'a [Vec3],
+    surfaces: &'a [SmallVec<[u32; 3]>],
+    tapes: Vec<&'a Arc<Tape<f64>>>,
+    triangles: Vec<[u32; 3]>,
+    leaves: Vec<u32>,
+    alive: Vec<bool>,
+    stars: Vec<Star>,
+    stamps: Vec<u32>,
+    locked: &'a [bool],
+    solver: vertex::Solver,
+    accuracy: f64,
+}
+
+impl Work<'_> {
+    fn corners(&self, t: [u32; 3]) -> [Vec3; 3] {
+        t.map(|v| self.positions[v as usize])
+    }
+
+    /// The vertices beside `v`, ascending.
+    fn ring(&self, v: u32) -> Star {
+        let mut ring: Star = self.stars[v as usize]
+            .iter()
+            .flat_map(|&t| self.triangles[t as usize])
+            .filter(|&w| w != v)
+            .collect();
+        ring.sort_unstable();
+        ring.dedup();
+        ring
+    }
+
+    /// The error of moving `v` into `w`; `None` when that must not be.
+    fn error(&mut self, v: u32, w: u32) -> Option<f64> {
+        let (own, other) = (&self.surfaces[v as usize], &self.surfaces[w as usize]);
+        if self.locked[v as usize] || own.len() > 2 || !own.iter().all(|s| other.contains(s)) {
+            return None;
+        }
+        // Exactly two triangles go, or the surface would be torn or pinched.
+        let (a, b) = (self.ring(v), self.ring(w));
+        let shared = a.iter().filter(|x| b.contains(x)).count();
+        let beside: SmallVec<[u32; 2]> = self.stars[v as usize]
+            .iter()
+            .copied()
+            .filter(|&t| self.triangles[t as usize].contains(&w))
+            .collect();
+        if shared != 2 || beside.len() != 2 {
+            return None;
+        }
+        let patches = [0, 1].map(|k| self.leaves[beside[k] as usize]);
+        // Along an edge the two triangles are on its two sides.
+        if own.len() == 2 && patches[0] == patches[1] {
+            return None;
+        }
+        let mut worst = 0.0f64;
+        let star = self.stars[v as usize].clone();
+        for t in star.into_iter().filter(|t| !beside.contains(t)) {
+            let old = self.triangles[t as usize];
+            let new = old.map(|x| if x == v { w } else { x });
+            let [p, q, r] = self.corners(old);
+            let [a, b, c] = self.corners(new);
+            let (n, m) = ((q - p).cross(r - p), (b - a).cross(c - a));
+            let sides = [(b - a).norm_sq(), (c - b).norm_sq(), (a - c).norm_sq()];
+            let longest = sides.into_iter().fold(0.0, f64::max);
+            let (size, turned) = (m.norm(), n.dot(m));
+            if size < THIN * longest || turned < TURN * n.norm() * size {
+                return None;
+            }
+            let tape = self.tapes[self.leaves[t as usize] as usize];
+            let places = [(a + b + c) / 3.0, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+            for place in places {
+                worst = worst.max(distance(&mut self.solver, tape, place).abs());
+                // NaN is refused, too.
+                if worst.partial_cmp(&self.accuracy) == Some(Ordering::Greater) || worst.is_nan() {
+                    return None;
+                }
+            }
+        }
+        Some(worst)
+    }
+
+    /// The cheapest way for a vertex to go.
+    fn candidate(&mut self, v: u32) -> Option<Candidate> {
+        if self.stars[v as usize].is_empty() {
+            return None;
+        }
+        let mut best: Option<Candidate> = None;
+        for w in self.ring(v) {
+            if let Some(error) = self.error(v, w) {
+                let one = Candidate { error, from: v, into: w, stamp: self.stamps[v as usize] };
+                if best.as_ref().is_none_or(|b| one > *b) {
+                    best = Some(one);
+                }
+            }
+        }
+        best
+    }
+
+    fn collapse(&mut self, v: u32, w: u32) {
+        for t in std::mem::take(&mut self.stars[v as usize]) {
+            let triangle = &mut self.triangles[t as usize];
+            if triangle.contains(&w) {
+                self.alive[t as usize] = false;
+                for x in *triangle {
+                    self.stars[x as usize].retain(|s| *s != t);
+                }
+            } else {
+                triangle.iter_mut().filter(|x| **x == v).for_each(|x| *x = w);
+                let star = &mut self.stars[w as usize];
+                let place = star.partition_point(|s| *s < t);
+                star.insert(place, t);
+            }
+        }
+    }
+
+    fn run(&mut self) {
+        let mut heap = BinaryHeap::new();
+        for v in 0..self.positions.len() as u32 {
+            heap.extend(self.candidate(v));
+        }
+        while let Some(c) = heap.pop() {
+            if self.stamps[c.from as usize] != c.stamp {
+                continue;
+            }
+            // What changed around the goal may forbid it now.
+            if self.error(c.from, c.into) != Some(c.error) {
+                self.stamps[c.from as usize] += 1;
+                heap.extend(self.candidate(c.from));
+                continue;
+            }
+            let ring = self.ring(c.from);
+            self.stamps[c.from as usize] += 1;
+            self.collapse(c.from, c.into);
+            for x in ring {
+                self.stamps[x as usize] += 1;
+                heap.extend(self.candidate(x));
+            }
+        }
+    }
+}
+
+impl Facets {
+    /// The same surface with fewer triangles: middles and sides of triangles stay within `accuracy` of it, by
+    /// |f| / |f'|, where they were. Closed, manifold and oriented as before; no two triangles cut each other
+    /// that did not.
+    ///
+    /// # Errors
+    /// An accuracy that is not above zero.
+    pub fn simplified(&self, accuracy: f64) -> Result<Self, FieldError> {
+        let accuracy = crate::error::positive("accuracy", accuracy)?;
+        let positions = self.mesh.positions();
+        let mut locked = vec![false; positions.len()];
+        let before = crossing_faces(&self.mesh, None).len();
+        for _ in 0..TRIES {
+            let (simple, kept) = self.collapsed(accuracy, &locked)?;
+            let crossings = crossing_faces(&simple.mesh, None);
+            if crossings.len() <= before {
+                return Ok(simple);
+            }
+            // What was moved into these corners, or beside them, stays next time.
+            let mut near = vec![false; positions.len()];
+            for face in crossings.into_iter().flatten() {
+                simple.mesh.faces()[face]
+                    .iter()
+                    .for_each(|&v| near[kept[v as usize] as usize] = true);
+            }
+            let reach = 4.0 * self.step;
+            let marks: Vec<Vec3> =
+                positions.iter().zip(&near).filter(|(_, n)| **n).map(|(p, _)| *p).collect();
+            for (p, lock) in positions.iter().zip(&mut locked) {
+                *lock |= marks.iter().any(|m| m.distance(*p) <= reach);
+            }
+        }
+        Ok(self.clone())
+    }
+
+    /// The facets after all collapses, and the old number of each vertex.
+    fn collapsed(&self, accuracy: f64, locked: &[bool]) -> Result<(Self, Vec<u32>), FieldError> {
+        let positions = self.mesh.positions();
+        let mut triangles = Vec::new();
+        let mut leaves = Vec::new();
+        for (patch, &leaf) in self.mesh.patches().iter().zip(&self.patch_leaves) {
+            for face in &self.mesh.faces()[patch.faces.clone()] {
+                triangles.push([face[0], face[1], face[2]]);
+                leaves.push(leaf as u32);
+            }
+        }
+        let mut stars: Vec<Star> = vec![Star::new(); positions.len()];
+        for (t, corners) in triangles.iter().enumerate() {
+            corners.iter().for_each(|&v| stars[v as usize].push(t as u32));
+        }
+        let mut work = Work {
+            positions,
+            surfaces: &self.surfaces,
+            tapes: self.leaves.iter().map(|l| l.primitive.tape()).collect(),
+            alive: vec![true; triangles.len()],
+            triangles,
+            leaves,
+            stars,
+            stamps: vec![0; positions.len()],
+            locked,
+            solver: vertex::Solver::default(),
+            accuracy,
+        };
+        work.run();
+
+        let mut kept = Vec::new();
+        let mut number = vec![u32::MAX; positions.len()];
+        for v in (0..positions.len()).filter(|&v| !work.stars[v].is_empty()) {
+            number[v] = kept.len() as u32;
+            kept.push(v as u32);
+        }
+        let count = work.triangles.len() as f64;
+        let broken = |_| FieldError::TooFine { boxes: count, limit: count };
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(kept.len()).map_err(broken)?;
+        let mut patch_leaves = Vec::new();
+        for (patch, &leaf) in self.mesh.patches().iter().zip(&self.patch_leaves) {
+            let faces: Vec<[u32; 4]> = patch
+                .faces
+                .clone()
+                .filter(|&t| work.alive[t])
+                .map(|t| {
+                    let [a, b, c] = work.triangles[t].map(|v| number[v as usize]);
+                    [a, b, c, c]
+                })
+                .collect();
+            if !faces.is_empty() {
+                builder.add_faces(patch.info.clone(), faces).map_err(broken)?;
+                patch_leaves.push(leaf);
+            }
+        }
+        let moved = kept.iter().map(|&v| positions[v as usize]).collect();
+        let mesh = Mesh::new(builder.build().into(), moved).map_err(broken)?;
+        let surfaces = kept.iter().map(|&v| self.surfaces[v as usize].clone()).collect();
+        Ok((Self { mesh, surfaces, patch_leaves, ..self.clone() }, kept))
+    }
+}

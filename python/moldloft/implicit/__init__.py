@@ -1,0 +1,113 @@
+"""Implicit solids: primitives by arithmetic, sets, blends, and meshes of their boundaries.
+
+A :class:`Field` is a function of space, negative in the solid, zero on the surface, positive in air.
+A :class:`Set` combines the solid sides of fields by ``|``, ``&``, ``-`` and ``^``. :class:`Facets`
+are its surface as triangles.
+
+>>> from moldloft import implicit as im
+>>> ball = im.sphere((0, 0, 0), 1)
+>>> hole = im.cylinder((0, 0, 0), (0, 0, 1), 0.5)
+>>> bead = im.Set(ball, name="ball") - im.Set(hole, name="hole")
+>>> mass = bead.mass(depth=5)
+>>> low, high = mass.volume_bracket
+>>> low < mass.volume < high
+True
+>>> facets = bead.facets(depth=5)
+>>> facets.closed, [patch.name for patch in facets.patches]
+(True, ['ball', 'hole'])
+"""
+
+from moldloft.implicit.blends import (
+    Blend,
+    check_rail,
+    check_rails,
+    fillet,
+    liming,
+    rounded,
+    setback,
+    transition,
+    zhang,
+)
+from moldloft.implicit.facets import Contour, Facets, FacetPatch, Sheet
+from moldloft.implicit.fields import (
+    Field,
+    atan2,
+    axes,
+    cone,
+    cos,
+    cyclide,
+    cylinder,
+    exp,
+    function,
+    maximum,
+    minimum,
+    plane,
+    s_sqrt,
+    sign,
+    sin,
+    sphere,
+    sqrt,
+    torus,
+)
+from moldloft.implicit.sets import (
+    Attributes,
+    Distance,
+    Hit,
+    Lamp,
+    Leaf,
+    Mass,
+    Nearest,
+    Set,
+    Sun,
+    cuboid,
+    everything,
+    nothing,
+    tetrahedron,
+)
+
+__all__ = [
+    "Attributes",
+    "Blend",
+    "Contour",
+    "Distance",
+    "FacetPatch",
+    "Facets",
+    "Field",
+    "Hit",
+    "Lamp",
+    "Leaf",
+    "Mass",
+    "Nearest",
+    "Set",
+    "Sheet",
+    "Sun",
+    "atan2",
+    "axes",
+    "check_rail",
+    "check_rails",
+    "cone",
+    "cos",
+    "cuboid",
+    "cyclide",
+    "cylinder",
+    "everything",
+    "exp",
+    "fillet",
+    "function",
+    "liming",
+    "maximum",
+    "minimum",
+    "nothing",
+    "plane",
+    "rounded",
+    "s_sqrt",
+    "setback",
+    "sign",
+    "sin",
+    "sphere",
+    "sqrt",
+    "tetrahedron",
+    "torus",
+    "transition",
+    "zhang",
+]

@@ -1,0 +1,350 @@
+"""Implicit functions, and the primitives to make them of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Triple = Sequence[float]
+
+__all__ = ["Field"]
+
+
+def triple(x: Sequence[float] | Floats, what: str) -> list[float]:
+    """Three numbers as a list."""
+    values = [float(v) for v in x]
+    if len(values) != 3:
+        raise ValueError(f"the {what} has three coordinates, found {len(values)}")
+    return values
+
+
+def points_of(points: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
+    """Points as a contiguous array (n, 3), and the shape without the last extent."""
+    array = np.asarray(points, dtype=np.float64)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"points have the shape (…, 3), found {array.shape}")
+    return np.ascontiguousarray(array.reshape(-1, 3)), array.shape[:-1]
+
+
+class Field:
+    """An implicit function f(x, y, z): solid where negative, surface where zero, air where positive.
+
+    Fields are combined by ``+ - *`` with fields and numbers, ``/`` by a number, ``**`` a whole number
+    and the functions of this module; :func:`abs` gives a sheet. They never change.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> x, y, z = im.axes()
+    >>> pipe = y**2 + z**2 - 4
+    >>> pipe((7, 1, 1))
+    -2.0
+    >>> pipe([[0, 2, 0], [0, 0, 3]])
+    array([0., 5.])
+    >>> pipe.gradient((7, 1, 1)), pipe.degree
+    (array([0., 2., 2.]), 2)
+    """
+
+    __array_ufunc__ = None
+    __slots__ = ("_core",)
+
+    def __init__(self, core: _core.Field) -> None:
+        self._core = core
+
+    def __call__(self, points: ArrayLike) -> Any:
+        """The values at points ``(…, 3)``, an array ``(…)``; a float for one point."""
+        flat, shape = points_of(points)
+        values = self._core.values(flat).reshape(shape)
+        return values if shape else float(values)
+
+    def gradient(self, points: ArrayLike) -> Floats:
+        """The exact gradients at points ``(…, 3)``, of the same shape."""
+        flat, shape = points_of(points)
+        return self._core.gradients(flat)[1].reshape(*shape, 3)
+
+    def range(self, low: Triple, high: Triple) -> tuple[float, float]:
+        """Proved bounds of the values over a box, rounded outward."""
+        return self._core.range(triple(low, "low corner"), triple(high, "high corner"))
+
+    @property
+    def degree(self) -> int:
+        """Degree as a polynomial: numbers 0, planes 1, sums the larger, products the sum, functions one
+        more, functions from outside 100."""
+        return self._core.degree
+
+    @property
+    def form(self) -> dict[str, Any]:
+        """What it was made as, with its dimensions.
+
+        >>> from moldloft import implicit as im
+        >>> im.sphere((1, 0, 0), 2).form
+        {'kind': 'sphere', 'centre': [1.0, 0.0, 0.0], 'radius': 2.0}
+        """
+        return self._core.form()
+
+    @property
+    def is_sheet(self) -> bool:
+        """True for the absolute value of a field: a surface without a solid side."""
+        return self._core.is_sheet
+
+    def same(self, other: Field) -> bool:
+        """True when both are the same expression of the same numbers."""
+        return self._core.same(other._core)
+
+    def translated(self, by: Triple) -> Field:
+        """The field moved by a vector."""
+        return self.mapped(np.eye(3), by)
+
+    def turned(self, point: Triple, direction: Triple, angle: float) -> Field:
+        """The field turned about a line, right-handed, by an angle in radians."""
+        return self.mapped(*turn(point, direction, angle))
+
+    def mirrored(self, normal: Triple, point: Triple = (0, 0, 0)) -> Field:
+        """The mirror image in a plane."""
+        return self.mapped(*reflection(normal, point))
+
+    def scaled(self, factor: float, centre: Triple = (0, 0, 0)) -> Field:
+        """The field scaled about a point."""
+        return self.mapped(*scaling(factor, centre))
+
+    def mapped(self, matrix: ArrayLike, shift: Triple = (0, 0, 0)) -> Field:
+        """The field moved by the affine map X -> matrix X + shift."""
+        rows = np.asarray(matrix, dtype=np.float64)
+        if rows.shape != (3, 3):
+            raise ValueError(f"the matrix has the shape (3, 3), found {rows.shape}")
+        return Field(self._core.mapped(rows.tolist(), triple(shift, "shift")))
+
+    def _with(self, other: object, name: str, *, swap: bool = False) -> Any:
+        o = _field(other)
+        if o is None:
+            return NotImplemented
+        a, b = (o, self) if swap else (self, o)
+        return Field(a._core.binary(name, b._core))
+
+    def __add__(self, other: object) -> Any:
+        return self._with(other, "+")
+
+    def __radd__(self, other: object) -> Any:
+        return self._with(other, "+", swap=True)
+
+    def __sub__(self, other: object) -> Any:
+        return self._with(other, "-")
+
+    def __rsub__(self, other: object) -> Any:
+        return self._with(other, "-", swap=True)
+
+    def __mul__(self, other: object) -> Any:
+        return self._with(other, "*")
+
+    def __rmul__(self, other: object) -> Any:
+        return self._with(other, "*")
+
+    def __truediv__(self, other: object) -> Any:
+        return self._with(other, "/")
+
+    def __rtruediv__(self, other: object) -> Any:
+        return self._with(other, "/", swap=True)
+
+    def __pow__(self, exponent: float) -> Field:
+        return Field(self._core.power(float(exponent)))
+
+    def __neg__(self) -> Field:
+        return Field(self._core.unary("-"))
+
+    def __pos__(self) -> Field:
+        return self
+
+    def __abs__(self) -> Field:
+        return Field(self._core.unary("abs"))
+
+    def __repr__(self) -> str:
+        kind = self._core.form()["kind"]
+        word = "field" if kind == "field" else f"{kind} field"
+        return f"<{word} of degree {self.degree}>"
+
+
+def _field(x: object) -> Field | None:
+    if isinstance(x, Field):
+        return x
+    if isinstance(x, bool) or not hasattr(x, "__float__"):
+        return None
+    return Field(_core.Field.real(float(x)))
+
+
+def _required(x: object) -> Field:
+    field = _field(x)
+    if field is None:
+        raise TypeError(f"expected a field or a number, found {type(x).__name__}")
+    return field
+
+
+def turn(point: Triple, direction: Triple, angle: float) -> tuple[Floats, list[float]]:
+    """The map of a turn (Rodrigues' formula)."""
+    d = np.array(triple(direction, "direction"))
+    size = float(np.linalg.norm(d))
+    if not size > 0 or not np.isfinite(size):
+        raise ValueError("the direction of the axis has no length")
+    d /= size
+    cross = np.array([[0, -d[2], d[1]], [d[2], 0, -d[0]], [-d[1], d[0], 0]])
+    matrix = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    p = np.array(triple(point, "point"))
+    return matrix, list(p - matrix @ p)
+
+
+def reflection(normal: Triple, point: Triple) -> tuple[Floats, list[float]]:
+    """The map of a mirror."""
+    n = np.array(triple(normal, "normal"))
+    size = float(np.linalg.norm(n))
+    if not size > 0 or not np.isfinite(size):
+        raise ValueError("the normal of the mirror has no length")
+    n /= size
+    p = np.array(triple(point, "point"))
+    return np.eye(3) - 2 * np.outer(n, n), list(2 * n * (n @ p))
+
+
+def scaling(factor: float, centre: Triple) -> tuple[Floats, list[float]]:
+    """The map of a scaling."""
+    c = np.array(triple(centre, "centre"))
+    return np.eye(3) * float(factor), list(c * (1 - float(factor)))
+
+
+def axes() -> tuple[Field, Field, Field]:
+    """The coordinates x, y and z as fields."""
+    return (
+        plane((1, 0, 0), (0, 0, 0)),
+        plane((0, 1, 0), (0, 0, 0)),
+        plane((0, 0, 1), (0, 0, 0)),
+    )
+
+
+def plane(normal: Triple, point: Triple) -> Field:
+    """The half-space behind a plane: the distance from it, positive on the side of the normal."""
+    return Field(_core.Field.plane(triple(normal, "normal"), triple(point, "point")))
+
+
+def sphere(centre: Triple, radius: float, *, distance: bool = False) -> Field:
+    """The ball ``|X - centre|^2 - radius^2``, or with ``distance`` the distance from its surface."""
+    return Field(_core.Field.sphere(triple(centre, "centre"), float(radius), distance))
+
+
+def cylinder(point: Triple, direction: Triple, radius: float, *, distance: bool = False) -> Field:
+    """The infinite cylinder about the line through a point, or with ``distance`` the distance from it."""
+    p, d = triple(point, "point"), triple(direction, "direction")
+    return Field(_core.Field.cylinder(p, d, float(radius), distance))
+
+
+def cone(apex: Triple, direction: Triple, angle: float) -> Field:
+    """The double cone with a full angle, in radians, at its apex."""
+    return Field(
+        _core.Field.cone(triple(apex, "apex"), triple(direction, "direction"), float(angle))
+    )
+
+
+def torus(centre: Triple, direction: Triple, major: float, minor: float) -> Field:
+    """The torus about an axis."""
+    p, d = triple(centre, "centre"), triple(direction, "direction")
+    return Field(_core.Field.torus(p, d, float(major), float(minor)))
+
+
+def cyclide(
+    centre: Triple, direction: Triple, along: Triple, major: float, minor: float, change: float
+) -> Field:
+    """The Dupin cyclide: a ring whose tube has the radius ``minor - change`` towards ``along`` and
+    ``minor + change`` opposite."""
+    p, d, a = triple(centre, "centre"), triple(direction, "direction"), triple(along, "along")
+    return Field(_core.Field.cyclide(p, d, a, float(major), float(minor), float(change)))
+
+
+def function(
+    value: Callable[[Floats], Floats],
+    *,
+    gradient: Callable[[Floats], Floats] | None = None,
+    range: Callable[[tuple[float, ...], tuple[float, ...]], tuple[float, float]] | None = None,
+    lipschitz: float | None = None,
+) -> Field:
+    """A field that is a Python function.
+
+    Parameters
+    ----------
+    value
+        Takes points ``(n, 3)`` and returns their values ``(n,)``.
+    gradient
+        Takes points ``(n, 3)`` and returns gradients ``(n, 3)``; without it differences are taken.
+    range
+        Takes the low and high corner of a box and returns numbers below and above all values in it.
+        Wide ones cost time, wrong ones correctness.
+    lipschitz
+        Instead of a range: values differ by at most this times the distance of their points. Without
+        either, nothing is known over boxes, and every box of the division is looked at.
+
+    What the function raises, or a wrong shape that it returns, becomes a :class:`moldloft.Error`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from moldloft import implicit as im
+    >>> wave = im.function(lambda p: p[:, 2] - 0.2 * np.sin(p[:, 0]), lipschitz=1.02)
+    >>> sea = im.Set(wave) & im.cuboid((-2, -2, -1), (2, 2, 1))
+    >>> round(sea.mass(depth=4).volume, 2)
+    16.0
+    """
+    if lipschitz is not None and not (np.isfinite(lipschitz) and lipschitz >= 0):
+        raise ValueError(f"a Lipschitz constant is a finite number from 0, found {lipschitz}")
+    return Field(_core.Field.user(value, gradient, range, lipschitz))
+
+
+def _unary(name: str, x: Field) -> Field:
+    return Field(_required(x)._core.unary(name))
+
+
+def sin(x: Field) -> Field:
+    """The sine, of radians."""
+    return _unary("sin", x)
+
+
+def cos(x: Field) -> Field:
+    """The cosine, of radians."""
+    return _unary("cos", x)
+
+
+def exp(x: Field) -> Field:
+    """The exponential."""
+    return _unary("exp", x)
+
+
+def sqrt(x: Field) -> Field:
+    """The square root; zero where the field is negative."""
+    return _unary("sqrt", x)
+
+
+def s_sqrt(x: Field) -> Field:
+    """sgn(f) sqrt|f|. This is no distance: its slope on the surface has no bound."""
+    return _unary("s_sqrt", x)
+
+
+def sign(x: Field) -> Field:
+    """1 where the field is positive, else -1."""
+    return _unary("sign", x)
+
+
+def minimum(a: Field | float, b: Field | float) -> Field:
+    """The smaller of two."""
+    return Field(_required(a)._core.binary("min", _required(b)._core))
+
+
+def maximum(a: Field | float, b: Field | float) -> Field:
+    """The larger of two."""
+    return Field(_required(a)._core.binary("max", _required(b)._core))
+
+
+def atan2(y: Field | float, x: Field | float) -> Field:
+    """The angle of the point (x, y), in (-pi, pi]."""
+    return Field(_required(y)._core.binary("atan2", _required(x)._core))

@@ -1,0 +1,565 @@
+"""Sets: what fields leave solid, combined."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.implicit.facets import Facets
+from moldloft.implicit.fields import (
+    Field,
+    points_of,
+    reflection,
+    scaling,
+    triple,
+    turn,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+    Triple = Sequence[float]
+
+__all__ = ["Attributes", "Distance", "Hit", "Lamp", "Leaf", "Mass", "Nearest", "Set", "Sun"]
+
+USUAL_LIMIT = 2e7
+"""Cells that the surface may pass through, unless asked otherwise."""
+
+
+@dataclass(frozen=True)
+class Attributes:
+    """What a handle says of a set."""
+
+    name: str | None = None
+    """Name of its faces."""
+    colour: int | None = None
+    """Index of a palette colour, 0 to 15."""
+    material: str | None = None
+    """Material."""
+    tolerance: float | None = None
+    """Distance below which two points count as one."""
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A primitive of a set with the attributes that reach it."""
+
+    field: Field
+    """The primitive, negated where a complement reached it."""
+    kind: str
+    """What it was made as."""
+    attributes: Attributes
+    """Its own attributes, completed by those of the sets around it."""
+
+    @property
+    def name(self) -> str:
+        """Its name, or its kind."""
+        return self.attributes.name or self.kind
+
+
+@dataclass(frozen=True)
+class Mass:
+    """Mass properties for density 1: best values, and brackets that are proved."""
+
+    volume: float
+    """Volume."""
+    volume_bracket: tuple[float, float]
+    """Its bounds."""
+    centroid: Floats | None
+    """Centre of mass ``(3,)``; None where there is no volume."""
+    centroid_bracket: Floats
+    """Its bounds, ``(3, 2)``."""
+    inertia: Floats | None
+    """Matrix of inertia about the centroid ``(3, 3)``."""
+    inertia_bracket: Floats
+    """Its bounds, ``(3, 3, 2)``."""
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The nearest point of a surface."""
+
+    point: Floats
+    """Where it is."""
+    distance: float
+    """How far."""
+    at_least: float
+    """No point of the surface is nearer than this; proved."""
+
+
+@dataclass(frozen=True)
+class Distance:
+    """The distance of two sets."""
+
+    distance: float
+    """Distance of the two points; 0 where the sets overlap or touch."""
+    at_least: float
+    """No two points of the sets are nearer than this; proved."""
+    first: Floats
+    """A point of the first set."""
+    second: Floats
+    """A point of the second."""
+
+
+@dataclass(frozen=True)
+class Hit:
+    """Where a ray crosses the surface of a set."""
+
+    t: float
+    """How far along, in lengths of the direction."""
+    point: Floats
+    """Where."""
+    leaf: int
+    """The number of the primitive in :attr:`Set.leaves`."""
+    normal: Floats
+    """Unit normal, from solid to air."""
+    enters: bool
+    """True where the ray enters the solid."""
+
+
+@dataclass(frozen=True)
+class Sun:
+    """Light from afar."""
+
+    direction: Triple
+    """Where it shines to."""
+    colour: Triple = (0.8, 0.8, 0.8)
+    """Linear red, green, blue."""
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """Light from a point."""
+
+    place: Triple
+    """Where it stands."""
+    colour: Triple = (0.8, 0.8, 0.8)
+    """Linear red, green, blue."""
+
+
+Corners = "tuple[list[float], list[float]] | None"
+
+
+def _corners(low: Triple | None, high: Triple | None) -> tuple[list[float], list[float]] | None:
+    if low is None and high is None:
+        return None
+    if low is None or high is None:
+        raise ValueError("a box has two corners: give both low and high, or neither")
+    return triple(low, "low corner"), triple(high, "high corner")
+
+
+class Set:
+    """A set of points: the solid sides of fields under ``|``, ``&``, ``-``, ``^`` and complement (``-``).
+
+    Sets never change and share their parts, so holding on to an operand is all that undo needs.
+
+    Parameters
+    ----------
+    of
+        A field, whose solid side is meant.
+    name, colour, material, tolerance
+        Attributes; they reach every triangle.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> shell = im.Set(im.sphere((0, 0, 0), 2)) - im.Set(im.sphere((0, 0, 0), 1))
+    >>> shell.member([[1.5, 0, 0], [1, 0, 0], [0.5, 0, 0]])
+    array([-1,  0,  1], dtype=int8)
+    """
+
+    __slots__ = ("_core",)
+    __array_ufunc__ = None
+
+    def __init__(
+        self,
+        of: Field | _core.Set,
+        *,
+        name: str | None = None,
+        colour: int | None = None,
+        material: str | None = None,
+        tolerance: float | None = None,
+    ) -> None:
+        core = _core.Set.of_field(of._core) if isinstance(of, Field) else of
+        if not isinstance(core, _core.Set):
+            raise TypeError(f"a set is made of a field, not of {type(of).__name__}")
+        self._core = core
+        if not (name is None and colour is None and material is None and tolerance is None):
+            self._core = self._with(name, colour, material, tolerance)
+
+    def _with(
+        self,
+        name: str | None,
+        colour: int | None,
+        material: str | None,
+        tolerance: float | None,
+    ) -> _core.Set:
+        if colour is not None and colour not in range(16):
+            raise ValueError(f"a palette colour is a whole number from 0 to 15, found {colour}")
+        return self._core.with_attributes(name, colour, material, tolerance)
+
+    def with_attributes(
+        self,
+        *,
+        name: str | None = None,
+        colour: int | None = None,
+        material: str | None = None,
+        tolerance: float | None = None,
+    ) -> Set:
+        """The same set with these attributes; what its parts say of themselves stays."""
+        return Set(self._with(name, colour, material, tolerance))
+
+    # -- combination -----------------------------------------------------------------------
+
+    def _binary(self, other: object, name: str) -> Any:
+        if isinstance(other, Field):
+            other = Set(other)
+        if not isinstance(other, Set):
+            return NotImplemented
+        return Set(self._core.binary(name, other._core))
+
+    def __or__(self, other: object) -> Any:
+        return self._binary(other, "|")
+
+    def __and__(self, other: object) -> Any:
+        return self._binary(other, "&")
+
+    def __sub__(self, other: object) -> Any:
+        return self._binary(other, "-")
+
+    def __xor__(self, other: object) -> Any:
+        return self._binary(other, "^")
+
+    def __neg__(self) -> Set:
+        return Set(self._core.complement())
+
+    def __invert__(self) -> Set:
+        return Set(self._core.complement())
+
+    def thin(self) -> Set:
+        """The faces as sheets, without the inside; of sets whose primitives meet."""
+        return Set(self._core.skin())
+
+    def regularized(self) -> Set:
+        """An equal set without parts that combine to nothing new, such as A | A."""
+        return Set(self._core.regularized())
+
+    def pruned(self, low: Triple, high: Triple) -> Set:
+        """The set as it is inside a box: what is all solid or all air there is left out."""
+        return Set(self._core.pruned(triple(low, "low corner"), triple(high, "high corner")))
+
+    def translated(self, by: Triple) -> Set:
+        """The set moved by a vector."""
+        return self.mapped(np.eye(3), by)
+
+    def turned(self, point: Triple, direction: Triple, angle: float) -> Set:
+        """The set turned about a line, right-handed, by an angle in radians."""
+        return self.mapped(*turn(point, direction, angle))
+
+    def mirrored(self, normal: Triple, point: Triple = (0, 0, 0)) -> Set:
+        """The mirror image in a plane."""
+        return self.mapped(*reflection(normal, point))
+
+    def scaled(self, factor: float, centre: Triple = (0, 0, 0)) -> Set:
+        """The set scaled about a point."""
+        return self.mapped(*scaling(factor, centre))
+
+    def mapped(self, matrix: ArrayLike, shift: Triple = (0, 0, 0)) -> Set:
+        """The set moved by the affine map X -> matrix X + shift."""
+        rows = np.asarray(matrix, dtype=np.float64)
+        if rows.shape != (3, 3):
+            raise ValueError(f"the matrix has the shape (3, 3), found {rows.shape}")
+        return Set(self._core.mapped(rows.tolist(), triple(shift, "shift")))
+
+    # -- questions -------------------------------------------------------------------------
+
+    @property
+    def leaves(self) -> list[Leaf]:
+        """The primitives in order of their first appearance."""
+        out = []
+        for field, facts in self._core.leaves():
+            kind = facts.pop("kind")
+            out.append(Leaf(Field(field), kind, Attributes(**facts)))
+        return out
+
+    @property
+    def operands(self) -> list[Set]:
+        """The two operands of a union or intersection."""
+        return [Set(core) for core in self._core.operands()]
+
+    @property
+    def degree(self) -> int:
+        """The highest degree of its primitives."""
+        return self._core.degree
+
+    @property
+    def is_everything(self) -> bool:
+        """True for the whole of space, known as such."""
+        return self._core.is_everything
+
+    @property
+    def is_nothing(self) -> bool:
+        """True for the empty set, known as such."""
+        return self._core.is_nothing
+
+    def same(self, other: Set) -> bool:
+        """True when both are the same combination with the same attributes."""
+        return self._core.same(other._core)
+
+    def __call__(self, points: ArrayLike) -> Any:
+        """The values at points ``(…, 3)``: minima over unions, maxima over intersections."""
+        flat, shape = points_of(points)
+        values = self._core.values(flat).reshape(shape)
+        return values if shape else float(values)
+
+    def member(self, points: ArrayLike, tolerance: float = 1e-9) -> Any:
+        """-1 in the solid, 0 on the surface, 1 in air, for points ``(…, 3)``.
+
+        A primitive counts as zero where it is at most ``tolerance`` from its surface.
+        """
+        flat, shape = points_of(points)
+        members = self._core.members(flat, float(tolerance)).reshape(shape)
+        return members if shape else int(members)
+
+    def winner(self, points: ArrayLike) -> Any:
+        """The number in :attr:`leaves` of the primitive that decides at each point; -1 for none."""
+        flat, shape = points_of(points)
+        winners = self._core.winners(flat).reshape(shape)
+        return winners if shape else int(winners)
+
+    def range(self, low: Triple, high: Triple) -> tuple[float, float]:
+        """Proved bounds of the values over a box."""
+        return self._core.range(triple(low, "low corner"), triple(high, "high corner"))
+
+    def bounds(self, accuracy: float = 1e-3) -> tuple[Floats, Floats] | None:
+        """A box that is proved to contain the set, ``low, high``; None for an empty set.
+
+        Raises
+        ------
+        Error
+            When the set has no end.
+        """
+        found = self._core.bounds(float(accuracy))
+        return None if found is None else (np.array(found[0]), np.array(found[1]))
+
+    def mass(self, low: Triple | None = None, high: Triple | None = None, *, depth: int = 6) -> Mass:
+        """Volume, centroid and inertia within a box, each as a proved bracket and a best value.
+
+        Parameters
+        ----------
+        low, high
+            The box; found around a set that has an end. Its faces cut the set.
+        depth
+            How often the box is halved; brackets close by a factor of about 4 with each.
+        """
+        facts = self._core.mass(_corners(low, high), int(depth))
+        return Mass(
+            volume=facts["volume"],
+            volume_bracket=facts["volume_bracket"],
+            centroid=None if facts["centroid"] is None else np.array(facts["centroid"]),
+            centroid_bracket=np.array(facts["centroid_bracket"]),
+            inertia=None if facts["inertia"] is None else np.array(facts["inertia"]),
+            inertia_bracket=np.array(facts["inertia_bracket"]),
+        )
+
+    def nearest(
+        self,
+        point: Triple,
+        low: Triple | None = None,
+        high: Triple | None = None,
+        *,
+        accuracy: float | None = None,
+    ) -> Nearest | None:
+        """The point of the surface, in a box, that is nearest to ``point``; None without a surface.
+
+        ``accuracy`` is how much nearer another point may be, by default 1e-6 of the box.
+        """
+        found = self._core.nearest(triple(point, "point"), _corners(low, high), accuracy)
+        if found is None:
+            return None
+        at, distance, at_least = found
+        return Nearest(np.array(at), distance, at_least)
+
+    def distance(
+        self,
+        other: Set | Field,
+        low: Triple | None = None,
+        high: Triple | None = None,
+        *,
+        accuracy: float | None = None,
+    ) -> Distance | None:
+        """How far another set is from this one in a box; None when one of them has no point there.
+
+        ``accuracy`` is how much nearer they may be, by default 1e-5 of the box.
+
+        >>> from moldloft import implicit as im
+        >>> a, b = im.Set(im.sphere((0, 0, 0), 1)), im.Set(im.sphere((3, 4, 0), 1))
+        >>> round(a.distance(b).distance, 6)
+        3.0
+        """
+        o = Set(other) if isinstance(other, Field) else other
+        found = self._core.distance(o._core, _corners(low, high), accuracy)
+        if found is None:
+            return None
+        distance, at_least, first, second = found
+        return Distance(distance, at_least, np.array(first), np.array(second))
+
+    def hits(self, start: Triple, direction: Triple, length: float = 1e3) -> list[Hit]:
+        """Where a ray crosses the surface, in order; ``length`` is how far it goes."""
+        rays = self._core.hits(
+            triple(start, "start"), triple(direction, "direction"), float(length)
+        )
+        return [Hit(t, np.array(p), leaf, np.array(n), enters) for t, p, leaf, n, enters in rays]
+
+    # -- surfaces --------------------------------------------------------------------------
+
+    def facets(
+        self,
+        low: Triple | None = None,
+        high: Triple | None = None,
+        *,
+        depth: int | None = None,
+        accuracy: float | None = None,
+        before: Facets | None = None,
+        limit: float = USUAL_LIMIT,
+    ) -> Facets:
+        """The surface as triangles, sheets, wires and points. Ctrl-C stops it.
+
+        Parameters
+        ----------
+        low, high
+            The box; found around a set that has an end. Where it cuts the set its faces close it.
+        depth
+            Cells of the 2^depth-th part of the longest side; by default 6.
+        accuracy
+            Instead: how far the middles of triangles are from the surface at most, kept by refining.
+        before
+            Facets of a similar set in the same box at the same depth: boxes in which the set did not
+            change are taken over. The result is the same, bit for bit.
+        limit
+            The most cells that the surface may pass through.
+        """
+        if depth is not None and accuracy is not None:
+            raise ValueError("give a depth or an accuracy, not both")
+        old = None if before is None else before._core
+        core = self._core.facets(_corners(low, high), depth, accuracy, float(limit), old)
+        return Facets(core)
+
+    def picture(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        low: Triple | None = None,
+        high: Triple | None = None,
+        *,
+        size: tuple[int, int] = (800, 600),
+        eye: Triple | None = None,
+        centre: Triple | None = None,
+        up: Triple = (0, 0, 1),
+        angle: float = 0.6,
+        lights: Sequence[Sun | Lamp] | None = None,
+        ambient: float = 0.22,
+        shadows: bool = True,
+        shine: float = 0.15,
+        samples: int = 1,
+    ) -> bytes:
+        """A ray-traced picture, a PNG file: exact surfaces with lights, shadows and colours.
+
+        Parameters
+        ----------
+        path
+            Where to write it too.
+        low, high
+            The box that is shown.
+        size
+            Picture points across and down.
+        eye, centre, up
+            From where to where one looks; by default from the front, right and above.
+        angle
+            Angle of view from top to bottom, in radians.
+        lights
+            :class:`Sun` and :class:`Lamp`; by default a sun over the left shoulder and a weak one from
+            the right.
+        ambient
+            Light from everywhere.
+        shadows
+            Whether things throw shadows.
+        shine
+            Strength of highlights, 0 to 1.
+        samples
+            Rays along each side of a picture point.
+        """
+        corners = _corners(low, high) or self._core.around()
+        box = np.array(corners)
+        middle, size_of = box.mean(axis=0), float(np.linalg.norm(box[1] - box[0]))
+        target = np.array(triple(centre, "centre")) if centre is not None else middle
+        away = np.array([-0.62, -0.68, 0.42])
+        away /= np.linalg.norm(away)
+        reach = 0.56 * size_of / np.tan(angle / 2)
+        place = np.array(triple(eye, "eye")) if eye is not None else target + away * reach
+        if lights is None:
+            ahead = (target - place) / np.linalg.norm(target - place)
+            right = np.cross(ahead, np.array(triple(up, "up")))
+            lights = [
+                Sun(tuple(ahead + 0.5 * right - 0.9 * np.array(up)), (0.75, 0.74, 0.7)),
+                Sun(tuple(ahead - 1.2 * right - 0.2 * np.array(up)), (0.16, 0.18, 0.22)),
+            ]
+        rows: list[tuple[list[float] | None, list[float], list[float]]] = []
+        for light in lights:
+            colour = triple(light.colour, "colour")
+            if isinstance(light, Sun):
+                rows.append((triple(light.direction, "direction"), [0.0, 0.0, 0.0], colour))
+            else:
+                rows.append((None, triple(light.place, "place"), colour))
+        png = self._core.picture(
+            corners,
+            [int(size[0]), int(size[1])],
+            (list(place), list(target), triple(up, "up"), float(angle)),
+            rows,
+            [float(ambient)] * 3,
+            [[0xFC, 0xFD, 0xFE], [0xE2, 0xE8, 0xEE]],
+            (shadows, [float(shine), 40.0], int(samples)),
+        )
+        if path is not None:
+            from moldloft.files import Output, commit
+
+            target_path = Path(path)
+            commit(target_path.parent, [Output(target_path.name, png)])
+        return png
+
+    def __repr__(self) -> str:
+        if self.is_everything:
+            return "<set of everything>"
+        if self.is_nothing:
+            return "<empty set>"
+        count = self._core.contents
+        return f"<set of {count} primitive{'s' if count != 1 else ''}>"
+
+
+def everything() -> Set:
+    """All of space."""
+    return Set(_core.Set.everything())
+
+
+def nothing() -> Set:
+    """The empty set."""
+    return Set(_core.Set.nothing())
+
+
+def cuboid(low: Triple, high: Triple) -> Set:
+    """The box between two corners."""
+    return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
+
+
+def tetrahedron(corners: Sequence[Triple]) -> Set:
+    """The tetrahedron of four points, in any order."""
+    points = [triple(p, "corner") for p in corners]
+    if len(points) != 4:
+        raise ValueError(f"a tetrahedron has four corners, found {len(points)}")
+    return Set(_core.Set.tetrahedron(points))
