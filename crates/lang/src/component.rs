@@ -73,7 +73,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Value::Object(key) => Binding::Object(key),
                 value => {
                     let value = self.read(value, m.program[arg.value].span)?;
-                    Binding::Variable { ty: variables::type_of(&value), value, fixed: false }
+                    Binding::variable(variables::type_of(&value), value)
                 }
             };
             let name = m.names[ident.symbol.0 as usize];

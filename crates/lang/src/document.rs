@@ -1,5 +1,5 @@
-use crate::env::{Evaluation, Param};
-use crate::interpreter::{Inputs, Seed};
+use crate::env::{Binding, Evaluation, Param};
+use crate::interpreter::{Inputs, Seed, Settings};
 use crate::module::Modules;
 use crate::place::NumberPath;
 use crate::program::{self, Program};
@@ -7,7 +7,7 @@ use crate::sketch_file::{self, SketchFile};
 use crate::solve::Solved;
 use crate::world::World;
 use indexmap::IndexMap;
-use moldloft_diag::{Diagnostic, Sources};
+use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
 use moldloft_num::Dual4;
@@ -38,6 +38,7 @@ pub struct Document {
     /// The solve sets of the last run.
     pub(crate) solved: Vec<Solved>,
     cancelled: Arc<AtomicBool>,
+    pub(crate) settings: Settings,
 }
 
 /// Where the objects come from.
@@ -104,6 +105,7 @@ impl Document {
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
             solved: Vec::new(),
             cancelled: Arc::default(),
+            settings: Settings::default(),
         }
     }
 
@@ -181,8 +183,13 @@ impl Document {
     ) -> Applied {
         let mut found = Vec::new();
         evaluation.graph.obey(self.cancelled.clone());
-        let inputs =
-            Inputs { overrides: &self.overrides, seed, seeded_objects, cancelled: &self.cancelled };
+        let inputs = Inputs {
+            overrides: &self.overrides,
+            seed,
+            seeded_objects,
+            cancelled: &self.cancelled,
+            settings: self.settings,
+        };
         let sketch = match &self.source {
             Source::Sketch(sketch) => Some(sketch.clone()),
             _ => None,
@@ -392,6 +399,52 @@ impl Document {
         self.registry.add(row);
         self.modules.relink(&self.registry);
         self.run()
+    }
+
+    /// Halves the intervals of all numbers that the program declares by `refined` so often, and
+    /// runs it.
+    ///
+    /// # Errors
+    /// When that is more than [`crate::MOST_REFINED`] times.
+    pub fn refine(&mut self, times: u32) -> Result<Applied, Diagnostic> {
+        if times > crate::MOST_REFINED {
+            return Err(Diagnostic::error("out-of-range", "this is too fine")
+                .expected(format!("a whole number from 0 to {}", crate::MOST_REFINED))
+                .found(times.to_string()));
+        }
+        self.settings.refine = times;
+        Ok(self.run())
+    }
+
+    /// Runs the program with operators applied one after the other to whole arrays: the reference
+    /// that tests compare with.
+    #[doc(hidden)]
+    pub fn with_plain_operators(&mut self) -> Applied {
+        self.settings.plain_operators = true;
+        self.run()
+    }
+
+    /// What the program wrote, by file name; nothing is on the disk yet.
+    pub fn written(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.plain.env.files.written()
+    }
+
+    /// The variables of the program's files: name, type and value, in the order of their names'
+    /// first mention; those of loaded libraries are left out.
+    pub fn variables(&self) -> Vec<(String, Span, Value<f64>)> {
+        let names = (0..self.modules.name_count() as u32).map(crate::module::Name);
+        let mut found = Vec::new();
+        for name in names {
+            let Some(Some(bound)) = self.plain.env.globals.get(name.0 as usize) else { continue };
+            let Binding::Variable { value, .. } = &bound.what else { continue };
+            let of_library = (0..self.modules.len())
+                .map(|k| self.modules.get(k))
+                .any(|m| m.library && m.program.file() == bound.span.file);
+            if !of_library && bound.span.is_known() {
+                found.push((self.modules.text(name).to_string(), bound.span, value.clone()));
+            }
+        }
+        found
     }
 
     /// What the program printed.

@@ -1,4 +1,7 @@
+use crate::files::Files;
+use crate::known::Known;
 use crate::module::{Name, RoutineAt};
+use crate::section::Place;
 use crate::solve::SolveStatus;
 use indexmap::IndexMap;
 use moldloft_diag::Span;
@@ -13,7 +16,11 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub(crate) enum Binding<T: Scalar> {
     /// A variable of a type; `fixed` when its dimensions were declared.
-    Variable { ty: Type, value: Value<T>, fixed: bool },
+    Variable { ty: Type, value: Value<T>, fixed: bool, known: Known },
+    /// A part of a variable of a caller, passed by reference.
+    Reference(Place),
+    /// The arguments that a multiple argument takes.
+    Multiple(Box<Multiple<T>>),
     /// A design parameter, by its number.
     Param(usize),
     /// An object.
@@ -24,6 +31,29 @@ pub(crate) enum Binding<T: Scalar> {
     Instance(Arc<str>),
     /// Its declaration failed and was reported; what uses it stays silent.
     Poisoned,
+}
+
+impl<T: Scalar> Binding<T> {
+    /// A variable whose dimensions follow what is assigned.
+    pub fn variable(ty: Type, value: Value<T>) -> Self {
+        Binding::Variable { ty, value, fixed: false, known: Known::default() }
+    }
+}
+
+/// A multiple argument, read one after the other.
+#[derive(Clone, Debug)]
+pub(crate) struct Multiple<T: Scalar> {
+    pub ty: Type,
+    pub items: Vec<Passed<T>>,
+    /// How many were read by `next`.
+    pub read: usize,
+}
+
+/// An argument as it was passed.
+#[derive(Clone, Debug)]
+pub(crate) enum Passed<T: Scalar> {
+    Value(Value<T>),
+    Place(Place),
 }
 
 /// A binding and where it was made.
@@ -42,20 +72,22 @@ pub(crate) struct Frame<T: Scalar> {
     /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
     pub prefix: Arc<str>,
     pub loops: Vec<Turn>,
+    /// The call that the frame belongs to, and the module it stands in.
+    pub called: Option<(Span, u32)>,
 }
 
 /// A turn of a loop under way.
 #[derive(Clone, Debug)]
 pub(crate) struct Turn {
     /// The loop variable's value as it stands in names; `None` in a `while`.
-    pub label: Option<String>,
+    pub label: Option<f64>,
     /// Unique among the turns of a run.
     pub id: u64,
 }
 
 impl<T: Scalar> Frame<T> {
     pub fn new(global: bool, prefix: Arc<str>) -> Self {
-        Self { locals: Vec::new(), global, prefix, loops: Vec::new() }
+        Self { locals: Vec::new(), global, prefix, loops: Vec::new(), called: None }
     }
 }
 
@@ -126,6 +158,8 @@ pub(crate) struct Environment<T: Scalar> {
     /// Steps and status of the solve sets, once they are solved.
     pub solved: IndexMap<String, (usize, SolveStatus)>,
     pub printed: Vec<String>,
+    /// Files that were opened, and what was written.
+    pub files: Files,
     /// Loaded sketches by the name that their parts begin with.
     pub sketches: Vec<String>,
     /// Numbers and objects of sketches by full name, as spelled and in small letters.
@@ -147,6 +181,7 @@ impl<T: Scalar> Default for Environment<T> {
             solves: Vec::new(),
             solved: IndexMap::new(),
             printed: Vec::new(),
+            files: Files::default(),
             sketches: Vec::new(),
             sketch_members: HashMap::new(),
             stopped: false,

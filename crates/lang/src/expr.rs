@@ -1,11 +1,13 @@
 //! Runs a program: expressions.
 
-use crate::env::{Binding, Bound};
+use crate::arithmetic::is_elementwise;
+use crate::env::{Binding, Bound, Passed};
 use crate::interpreter::{Interpreter, silent};
 use crate::module::Module;
 use crate::ops;
 use crate::place;
-use crate::variables::{self, Place, Selection};
+use crate::section::{Place, Section, Selection};
+use crate::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Real, Vec3};
@@ -13,9 +15,7 @@ use moldloft_registry::{
     Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, arrange, many,
 };
 use moldloft_syntax::number;
-use moldloft_syntax::sdl::{
-    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, List, Step, Subscript, Symbol, UnaryOp,
-};
+use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, List, Subscript, Symbol, UnaryOp};
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
@@ -45,14 +45,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Number(_) | ExprKind::Name(_) => self.expr(m, id),
             ExprKind::Text(text) => Ok(Value::text(&m.program[text])),
             ExprKind::Paren(inner) => self.expr(m, inner),
-            ExprKind::List(items) => {
-                let mut values = Vec::with_capacity(items.len());
-                for &item in &m.program[items] {
-                    values.push(self.expr(m, item)?);
-                }
-                ops::braces(values)
-            }
-            ExprKind::Magnitude(inner) => ops::magnitude(&self.operand(m, inner)?),
+            ExprKind::List(_)
+            | ExprKind::Magnitude(_)
+            | ExprKind::Chain(_)
+            | ExprKind::Unary { op: UnaryOp::Minus | UnaryOp::Plus, .. } => self.arithmetic(m, id),
             ExprKind::Unary { op, operand } => {
                 let value = self.operand(m, operand)?;
                 unary(op, &value)
@@ -63,13 +59,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let holds = if decided { first } else { self.truth(m, right)? };
                 Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
             }
+            ExprKind::Binary { op, .. } if is_elementwise(op) => self.arithmetic(m, id),
             ExprKind::Binary { op, left, right } => {
                 let (a, b) = (self.operand(m, left)?, self.operand(m, right)?);
                 ops::binary(op, &a, &b)
             }
-            ExprKind::Chain(items) => self.chain(m, items),
             ExprKind::Index { base, subs } => self.index(m, id, base, subs),
             ExprKind::Member { base, name, or_dot } => self.member(m, id, base, name, or_dot),
+            ExprKind::Call { callee, args } if self.elementary(m, callee, args).is_some() => {
+                self.arithmetic(m, id)
+            }
             ExprKind::Call { callee, args } => self.call(m, callee, args, span),
             ExprKind::Error => Err(silent()),
         }
@@ -131,6 +130,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn name(&mut self, m: &Module, symbol: Symbol, span: Span) -> Evaluated<T> {
         let name = m.names[symbol.0 as usize];
         let Some(bound) = self.lookup(name) else {
+            if let Some(unit) = crate::files::predeclared(m.program.name(symbol)) {
+                return Ok(Value::Number(T::from(unit)));
+            }
             return Err(self.unknown_name(m, symbol, span));
         };
         match &bound.what {
@@ -142,6 +144,29 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     .note_at(bound.span, "declared here"))
             }
             Binding::Variable { value, .. } => Ok(value.clone()),
+            Binding::Reference(place) => {
+                let text = m.program.name(symbol);
+                let root = self.root(place);
+                let Some(Binding::Variable { value, .. }) = root.map(|b| &b.what) else {
+                    return Err(silent());
+                };
+                if matches!(value, Value::Unset) {
+                    return Err(Diagnostic::error(
+                        "no-value",
+                        format!("`{text}` has no value yet"),
+                    )
+                    .at(span)
+                    .note_at(bound.span, "passed by reference here"));
+                }
+                variables::at_place(value, place).map_err(|d| d.or_at(span))
+            }
+            Binding::Multiple(multiple) => {
+                let mut values = Vec::with_capacity(multiple.items.len());
+                for item in &multiple.items {
+                    values.push(self.passed(item)?);
+                }
+                Ok(Value::list(values))
+            }
             Binding::Param(number) => Ok(Value::Number(self.env.param_values[*number])),
             Binding::Turn { now, turn, family } => {
                 let frame = self.frames.last().expect("there is always a frame");
@@ -157,6 +182,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     .help(format!("name one of its objects, as in {family}.name")))
             }
             Binding::Poisoned => Err(silent()),
+        }
+    }
+
+    /// The value of one of the arguments of a multiple argument.
+    pub fn passed(&self, item: &Passed<T>) -> Evaluated<T> {
+        match item {
+            Passed::Value(value) => Ok(value.clone()),
+            Passed::Place(place) => match self.root(place).map(|b| &b.what) {
+                Some(Binding::Variable { value, .. }) => variables::at_place(value, place),
+                _ => Err(silent()),
+            },
         }
     }
 
@@ -184,34 +220,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 None => diagnostic,
             },
         }
-    }
-
-    fn chain(&mut self, m: &Module, items: List<ChainItem>) -> Evaluated<T> {
-        let mut values = std::collections::HashMap::new();
-        for item in &m.program[items] {
-            if let ChainItem::Operand(expr) = item {
-                values.insert(*expr, self.operand(m, *expr)?);
-            }
-        }
-        let sets = self.has_set(&m.program[items], &values);
-        let grouping = if sets { Grouping::Sets } else { Grouping::Numbers };
-        let mut stack: Vec<Value<T>> = Vec::new();
-        for step in m.program.grouped(items, grouping) {
-            let value = match step {
-                Step::Push(expr) => values[&expr].clone(),
-                Step::Unary(op, span) => {
-                    let operand = stack.pop().ok_or_else(silent)?;
-                    unary(op, &operand).map_err(|d| d.or_at(span))?
-                }
-                Step::Binary(op, span) => {
-                    let right = stack.pop().ok_or_else(silent)?;
-                    let left = stack.pop().ok_or_else(silent)?;
-                    ops::binary(op, &left, &right).map_err(|d| d.or_at(span))?
-                }
-            };
-            stack.push(value);
-        }
-        stack.pop().ok_or_else(silent)
     }
 
     /// The full name of an object that an expression such as `fore[2].leg[3]` spells, when it
@@ -276,13 +284,72 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             return Err(self.no_such_object(&text));
         }
+        // A part of what was passed by reference is read where it stands.
+        if let Some(symbol) = m.program.as_name(base)
+            && let Some(place) = self.place_of(m.names[symbol.0 as usize])
+            && place.section.is_some()
+        {
+            let place = self.indexed(m, place, base, subs)?;
+            let Some(Binding::Variable { value, .. }) = self.root(&place).map(|b| &b.what) else {
+                return Err(silent());
+            };
+            return variables::at_place(value, &place);
+        }
         let value = self.expr(m, base)?;
         let value = match self.opened(value) {
             list @ Value::List(_) => list,
             other => self.read(other, m.program[base].span)?,
         };
-        let section = self.section(m, &value, subs)?;
-        variables::part(&value, &section)
+        let Some(extents) = variables::extents(&value) else {
+            let class = value.class().a();
+            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
+                .expected("a row, grid or list before [")
+                .found(class));
+        };
+        let section = self.section(m, base, &extents, &variables::shape_text(&value), subs)?;
+        variables::part(&value, section)
+    }
+
+    /// A section of a place.
+    fn indexed(
+        &mut self,
+        m: &Module,
+        place: Place,
+        base: ExprId,
+        subs: List<Subscript>,
+    ) -> Result<Place, Diagnostic> {
+        let Some(Binding::Variable { value, .. }) = self.root(&place).map(|b| &b.what) else {
+            return Err(silent());
+        };
+        let (extents, shape) = match place.section {
+            Some(section) => {
+                let ([m, n], count) = section.extents();
+                ([m, n][..count].to_vec(), variables::shape_at(value, &place))
+            }
+            None => match variables::extents(value) {
+                Some(extents) => (extents, variables::shape_text(value)),
+                None if matches!(value, Value::Unset) => {
+                    let text = m.program.slice(m.program[base].span).to_string();
+                    let declared = self.root(&place).map_or(Span::UNKNOWN, |b| b.span);
+                    let message = format!("`{text}` has no value yet");
+                    return Err(
+                        Diagnostic::error("no-value", message).note_at(declared, "declared here")
+                    );
+                }
+                None => (Vec::new(), String::new()),
+            },
+        };
+        if extents.is_empty() {
+            let class = match place.section {
+                Some(_) => "a single element",
+                None => value.class().a(),
+            };
+            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
+                .expected("a row, grid or list before [")
+                .found(class));
+        }
+        let section = self.section(m, base, &extents, &shape, subs)?;
+        place.indexed(section)
     }
 
     /// The objects of an entity list, unread; any other value as it is.
@@ -313,29 +380,43 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .maybe_help(self.run.graph().nearest_name(text).map(|n| format!("did you mean `{n}`?")))
     }
 
-    /// The subscripts as positions, checked against the extents.
-    pub fn section(
+    /// The subscripts as positions, checked against the extents of what stands before them.
+    fn section(
         &mut self,
         m: &Module,
-        value: &Value<T>,
+        base: ExprId,
+        extents: &[usize],
+        shape: &str,
         subs: List<Subscript>,
-    ) -> Result<Vec<Selection>, Diagnostic> {
-        let Some(extents) = variables::extents(value) else {
-            let class = value.class().a();
-            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
-                .expected("a row, grid or list before [")
-                .found(class));
-        };
+    ) -> Result<Section, Diagnostic> {
         if extents.len() != subs.len() {
             return Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
                 .expected(format!("{} subscripts", extents.len()))
-                .found(format!("{} subscripts", subs.len())));
+                .found(format!("{} subscripts", subs.len()))
+                .note(format!("`{}` is {shape}", m.program.slice(m.program[base].span))));
         }
-        let mut section = Vec::new();
-        for (sub, &extent) in m.program[subs].iter().zip(&extents) {
-            section.push(self.selection(m, *sub, extent)?);
+        let mut parts = [Selection::at(0); 2];
+        for (k, (&sub, &extent)) in m.program[subs].iter().zip(extents).enumerate() {
+            parts[k] = self.selection(m, sub, extent).map_err(|d| {
+                if d.id != "outside" {
+                    return d;
+                }
+                let name = m.program.as_name(base).and_then(|symbol| {
+                    let bound = self.lookup(m.names[symbol.0 as usize])?;
+                    Some((m.program.name(symbol), bound.span))
+                });
+                match name {
+                    Some((name, declared)) => {
+                        d.note_at(declared, format!("`{name}` is declared here: {shape}"))
+                    }
+                    None => d.note(format!("the array is {shape}")),
+                }
+            })?;
         }
-        Ok(section)
+        Ok(match subs.len() {
+            1 => Section::Row(parts[0]),
+            _ => Section::Grid(parts[0], parts[1]),
+        })
     }
 
     fn selection(
@@ -358,17 +439,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .found(x.to_string()))
         };
         let (from, to, step) = match sub {
-            Subscript::Whole => {
-                return Ok(Selection { positions: (0..extent).collect(), keeps_dimension: true });
-            }
+            Subscript::Whole => return Ok(Selection::whole(extent)),
             Subscript::At(expr) => {
-                let at = inside(bound(self, Some(expr), 1.0)?)?;
-                return Ok(Selection { positions: vec![at as usize], keeps_dimension: false });
+                return Ok(Selection::at(inside(bound(self, Some(expr), 1.0)?)? as usize));
             }
             Subscript::Range { from, to, step } => {
-                let from = bound(self, from, 1.0)?;
-                let to = bound(self, to, extent as f64)?;
-                (inside(from)?, inside(to)?, bound(self, step, 1.0)?.0)
+                let step = bound(self, step, 1.0)?.0;
+                // A range that goes down begins at the last element.
+                let ends = [1.0, extent as f64];
+                let ends = if step < 0.0 { [ends[1], ends[0]] } else { ends };
+                let from = bound(self, from, ends[0])?;
+                let to = bound(self, to, ends[1])?;
+                (inside(from)?, inside(to)?, step)
             }
         };
         if step.fract() != 0.0 || step == 0.0 || (to - from) as f64 * step < 0.0 {
@@ -376,9 +458,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected("lo:hi with lo <= hi, or a negative step")
                 .found(format!("{}:{}:{step}", from + 1, to + 1)));
         }
-        let count = ((to - from) as f64 / step).floor() as i64;
-        let positions = (0..=count).map(|k| (from + k * step as i64) as usize).collect();
-        Ok(Selection { positions, keeps_dimension: true })
+        let count = ((to - from) as f64 / step).floor() as usize + 1;
+        let step = if count == 1 { 1 } else { step as isize };
+        Ok(Selection { start: from as usize, step, count, keeps: true })
     }
 
     /// The variable, section and component that an assignment's target names.
@@ -388,10 +470,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Paren(inner) => self.place(m, inner),
             ExprKind::Name(symbol) => {
                 let name = m.names[symbol.0 as usize];
-                if self.lookup(name).is_none() {
-                    return Err(self.unknown_name(m, symbol, span));
-                }
-                Ok(Place { name, section: None, component: None })
+                self.place_of(name).ok_or_else(|| self.unknown_name(m, symbol, span))
             }
             ExprKind::Member { base, name, .. } => {
                 let place = self.place(m, base)?;
@@ -407,16 +486,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             ExprKind::Index { base, subs } => {
                 let place = self.place(m, base)?;
-                if place.section.is_some() || place.component.is_some() {
-                    return Err(Diagnostic::error(
-                        "not-assignable",
-                        "subscripts come once, before the component",
-                    )
-                    .at(span));
+                match self.root(&place).map(|bound| (&bound.what, bound.span)) {
+                    Some((Binding::Variable { .. }, _)) => {
+                        self.indexed(m, place, base, subs).map_err(|d| d.or_at(span))
+                    }
+                    Some((Binding::Poisoned, _)) | None => Err(silent()),
+                    Some((_, declared)) => Err(not_a_variable(m, base, declared).at(span)),
                 }
-                let value = self.operand(m, base)?;
-                let section = self.section(m, &value, subs).map_err(|d| d.or_at(span))?;
-                Ok(Place { section: Some(section), ..place })
             }
             _ => Err(Diagnostic::error("not-assignable", "this cannot be assigned to")
                 .at(span)
@@ -443,6 +519,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         let word = m.program.name(name).to_string();
+        // The extents of what was passed by reference are known without reading it.
+        if let Some(symbol) = m.program.as_name(base)
+            && let Some(place) = self.place_of(m.names[symbol.0 as usize])
+            && let Some(section) = place.section
+            && let Some(d) = ["d1", "d2"].iter().position(|d| *d == word)
+        {
+            let (extents, count) = section.extents();
+            if d < count {
+                return Ok(Value::Number(T::from(extents[d] as f64)));
+            }
+        }
         let value = self.expr(m, base)?;
         let object = match value {
             Value::Object(key) => Some(key),
@@ -554,7 +641,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     .help("only a function does: declare it as `function float f(...)`")
             });
         }
-        let Some(row) = m.rows[symbol.0 as usize].clone() else {
+        if let Some(value) = self.builtin(m, symbol, args, span) {
+            return value;
+        }
+        let Some(row) = self.row(m, symbol, span) else {
             return Err(self.unknown_function(m, symbol).at(m.program[callee].span));
         };
         let mut given = Given { positional: Vec::with_capacity(args.len()), named: Vec::new() };
@@ -609,7 +699,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 }
 
-fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Evaluated<T> {
+/// What is said of an assignment to an object or parameter.
+fn not_a_variable(m: &Module, base: ExprId, declared: Span) -> Diagnostic {
+    let text = m.program.slice(m.program[base].span);
+    Diagnostic::error("not-assignable", format!("`{text}` cannot be assigned to"))
+        .found("an object or parameter")
+        .note_at(declared, "declared here")
+        .help("objects are named once; change their data, or use a variable")
+}
+
+pub(crate) fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Evaluated<T> {
     match op {
         UnaryOp::Plus => Ok(value.clone()),
         UnaryOp::Minus => ops::negated(value),

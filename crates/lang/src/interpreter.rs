@@ -1,8 +1,11 @@
 //! Runs a program: statements.
 
-use crate::env::{Binding, Bound, Environment, Frame, Param, Turn};
+use crate::arithmetic::Spare;
+use crate::env::{Binding, Bound, Environment, Frame, Param, Passed, Turn};
+use crate::fused::Tape;
+use crate::known::Known;
 use crate::module::{Loader, Module, Modules, Name, RoutineAt};
-use crate::ops;
+use crate::section::Place;
 use crate::variables::{self, Taken};
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Span, nearest};
@@ -11,7 +14,7 @@ use moldloft_num::trace::Key;
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{
-    AssignOp, ChainItem, Declarator, ExprId, ExprKind, Ident, List, StmtId, StmtKind, Symbol, Type,
+    AssignOp, Declarator, ExprId, ExprKind, Ident, List, StmtId, StmtKind, Symbol, Type,
 };
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -46,13 +49,25 @@ pub(crate) struct Inputs<'a, T: Scalar> {
     pub seeded_objects: &'a HashSet<String>,
     /// Set from outside to stop the run.
     pub cancelled: &'a AtomicBool,
+    /// How the host wants the program run.
+    pub settings: Settings,
+}
+
+/// How a program is run, besides its parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Settings {
+    /// How often the intervals of `refined` numbers are halved.
+    pub refine: u32,
+    /// True to apply operators one after the other, whole arrays at a time: the reference that
+    /// fused passes are tested against.
+    pub plain_operators: bool,
 }
 
 impl<'a, T: Scalar> Inputs<'a, T> {
     /// The same once more.
     pub fn again(&self) -> Inputs<'a, T> {
-        let &Inputs { overrides, seed, seeded_objects, cancelled } = self;
-        Inputs { overrides, seed, seeded_objects, cancelled }
+        let &Inputs { overrides, seed, seeded_objects, cancelled, settings } = self;
+        Inputs { overrides, seed, seeded_objects, cancelled, settings }
     }
 }
 
@@ -99,6 +114,12 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub assigned: HashMap<usize, HashSet<Symbol>>,
     /// Names that are declared somewhere in the main file: for hints at what comes later.
     pub(crate) current: usize,
+    /// Tapes and memory that are not in use.
+    pub tapes: Vec<Tape<T>>,
+    pub spare: Spare<T>,
+    pub plain_operators: bool,
+    /// True once the note on the misprint of 1992 was given.
+    pub misprint_told: bool,
 }
 
 pub(crate) fn silent() -> Diagnostic {
@@ -114,6 +135,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         inputs: Inputs<'a, T>,
     ) -> Self {
         env.globals.resize_with(modules.name_count(), || None);
+        let plain_operators = inputs.settings.plain_operators;
         Self {
             modules,
             loader,
@@ -136,6 +158,10 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             noting_reads: false,
             assigned: HashMap::new(),
             current: 0,
+            tapes: Vec::new(),
+            spare: Spare::default(),
+            plain_operators,
+            misprint_told: false,
         }
     }
 
@@ -161,6 +187,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         if diagnostic.id == SILENT {
             return;
         }
+        let diagnostic = self.at_call(diagnostic);
         self.errors += usize::from(diagnostic.is_error());
         let span = diagnostic.span();
         if self.told.insert((diagnostic.id.clone(), span)) {
@@ -174,6 +201,23 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     .help("mend the first ones, then run again"),
             );
         }
+    }
+
+    /// A fault inside a built-in library is told at the call that led there.
+    fn at_call(&self, mut diagnostic: Diagnostic) -> Diagnostic {
+        let inside = diagnostic.span();
+        let library = |module: u32| self.modules.get(module as usize).library;
+        let of_library = |m: &Module| m.library && m.program.file() == inside.file;
+        if !inside.is_known() || !of_library(self.modules.get(self.current)) {
+            return diagnostic;
+        }
+        let calls = self.frames.iter().rev().filter_map(|frame| frame.called);
+        let Some((call, _)) = calls.into_iter().find(|(_, module)| !library(*module)) else {
+            return diagnostic;
+        };
+        let text = diagnostic.primary.take().map(|label| label.text).unwrap_or_default();
+        let text = if text.is_empty() { "found in the library here".into() } else { text };
+        diagnostic.at(call).note_at(inside, text)
     }
 
     /// Counts the elements of a new value as steps, so that no program eats the machine.
@@ -296,12 +340,53 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         local.or_else(|| self.env.globals.get(name.0 as usize)?.as_ref())
     }
 
-    pub fn lookup_mut(&mut self, name: Name) -> Option<&mut Bound<T>> {
-        let frame = self.frames.last_mut().expect("there is always a frame");
-        if let Some(at) = frame.locals.iter().position(|(n, _)| *n == name) {
-            return Some(&mut frame.locals[at].1);
+    /// The variable that a place is in.
+    pub fn root(&self, place: &Place) -> Option<&Bound<T>> {
+        match place.frame {
+            None => self.env.globals.get(place.name.0 as usize)?.as_ref(),
+            Some(frame) => {
+                let locals = &self.frames.get(frame as usize)?.locals;
+                locals.iter().find(|(n, _)| *n == place.name).map(|(_, bound)| bound)
+            }
         }
-        self.env.globals.get_mut(name.0 as usize)?.as_mut()
+    }
+
+    fn root_mut(&mut self, place: &Place) -> Option<&mut Bound<T>> {
+        match place.frame {
+            None => self.env.globals.get_mut(place.name.0 as usize)?.as_mut(),
+            Some(frame) => {
+                let locals = &mut self.frames.get_mut(frame as usize)?.locals;
+                locals.iter_mut().find(|(n, _)| *n == place.name).map(|(_, bound)| bound)
+            }
+        }
+    }
+
+    /// The whole of what a name means, as a place; that of the caller for one passed by reference.
+    pub fn place_of(&self, name: Name) -> Option<Place> {
+        let at = self.frames.len() - 1;
+        let frame = &self.frames[at];
+        let local = frame.locals.iter().find(|(n, _)| *n == name).map(|(_, bound)| bound);
+        let (bound, frame) = match local {
+            Some(bound) => (bound, Some(at as u32)),
+            None => (self.env.globals.get(name.0 as usize)?.as_ref()?, None),
+        };
+        Some(match &bound.what {
+            Binding::Reference(place) => *place,
+            _ => Place::whole(frame, name),
+        })
+    }
+
+    /// The value that a variable has now, read through references.
+    pub fn peek(&self, bound: &Bound<T>) -> Option<Value<T>> {
+        match &bound.what {
+            Binding::Variable { value, .. } => Some(value.clone()),
+            Binding::Reference(place) => match &self.root(place)?.what {
+                Binding::Variable { value, .. } => variables::at_place(value, place).ok(),
+                _ => None,
+            },
+            Binding::Param(number) => Some(Value::Number(self.env.param_values[*number])),
+            _ => None,
+        }
     }
 
     pub fn statements(&mut self, m: &Module, list: List<StmtId>) -> Flow<T> {
@@ -459,7 +544,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     }
 
     /// A turn of a loop.
-    fn turn(&mut self, m: &Module, label: Option<String>, body: StmtId, span: Span) -> Flow<T> {
+    fn turn(&mut self, m: &Module, label: Option<f64>, body: StmtId, span: Span) -> Flow<T> {
         if self.step(span) {
             return Flow::Stop;
         }
@@ -498,10 +583,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let mut k = 0.0;
         while k <= count {
             let value = from + step * k;
-            let what =
-                Binding::Variable { ty: Type::Float, value: Value::Number(value), fixed: false };
+            let what = Binding::variable(Type::Float, Value::Number(value));
             self.bind(name, variable.span, what);
-            match self.turn(m, Some(number::plain(value.re())), body, span) {
+            match self.turn(m, Some(value.re()), body, span) {
                 Flow::Break => break,
                 Flow::Next | Flow::Continue => {}
                 other => return Ok(other),
@@ -537,9 +621,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             }
             let label =
                 variable.and_then(|symbol| match &self.lookup(m.names[symbol.0 as usize])?.what {
-                    Binding::Variable { value: Value::Number(x), .. } => {
-                        Some(number::plain(x.re()))
-                    }
+                    Binding::Variable { value: Value::Number(x), .. } => Some(x.re()),
                     _ => None,
                 });
             match self.turn(m, label, body, span) {
@@ -564,6 +646,13 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         body: StmtId,
         span: Span,
     ) -> Result<Flow<T>, Diagnostic> {
+        if let Some(symbol) = m.program.as_name(list)
+            && let Some(bound) = self.lookup(m.names[symbol.0 as usize])
+            && let Binding::Multiple(multiple) = &bound.what
+        {
+            let (items, ty) = (multiple.items.clone(), multiple.ty);
+            return self.foreach_passed(m, variable, items, ty, body, span);
+        }
         let value = self.expr(m, list)?;
         let value = self.opened(value);
         let value = match value {
@@ -585,10 +674,37 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         for (k, item) in items.into_iter().enumerate() {
             let what = match item {
                 Value::Object(key) => Binding::Object(key),
-                value => Binding::Variable { ty: variables::type_of(&value), value, fixed: false },
+                value => Binding::variable(variables::type_of(&value), value),
             };
             self.bind(name, variable.span, what);
-            match self.turn(m, Some((k + 1).to_string()), body, span) {
+            match self.turn(m, Some((k + 1) as f64), body, span) {
+                Flow::Break => break,
+                Flow::Next | Flow::Continue => {}
+                other => return Ok(other),
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    /// Walks through a multiple argument: the variable stands for each argument itself.
+    fn foreach_passed(
+        &mut self,
+        m: &Module,
+        variable: Ident,
+        items: Vec<Passed<T>>,
+        ty: Type,
+        body: StmtId,
+        span: Span,
+    ) -> Result<Flow<T>, Diagnostic> {
+        let name = m.names[variable.symbol.0 as usize];
+        for (k, item) in items.into_iter().enumerate() {
+            let what = match item {
+                Passed::Place(place) => Binding::Reference(place),
+                Passed::Value(Value::Object(key)) => Binding::Object(key),
+                Passed::Value(value) => Binding::variable(ty, value),
+            };
+            self.bind(name, variable.span, what);
+            match self.turn(m, Some((k + 1) as f64), body, span) {
                 Flow::Break => break,
                 Flow::Next | Flow::Continue => {}
                 other => return Ok(other),
@@ -637,8 +753,24 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             }
             self.held = held;
         }
-        let value = variables::initial(ty, &dims, value)?;
-        let what = Binding::Variable { ty, value, fixed: !dims.is_empty() };
+        let known = match (&value, &dims[..]) {
+            (Some(_), _) | (_, []) => Known::default(),
+            _ => Known::nothing(dims.iter().product()),
+        };
+        let value = variables::initial(ty, &dims, value).map_err(|d| match item.value {
+            Some(expr) => {
+                let declared =
+                    Span::new(item.name.span.file, item.name.span.start, span_end(m, item));
+                let of = |dims: &[usize]| {
+                    let all: Vec<String> = dims.iter().map(usize::to_string).collect();
+                    format!("{}[{}]", m.program.slice(ty_span), all.join(","))
+                };
+                let found = d.found.clone().unwrap_or_default();
+                self.differing(m, d, [declared, m.program[expr].span], [&of(&dims), &found])
+            }
+            None => d,
+        })?;
+        let what = Binding::Variable { ty, value, fixed: !dims.is_empty(), known };
         let name = m.names[item.name.symbol.0 as usize];
         self.check_free(name, item.name.span, true)?;
         if global && !self.frame().global {
@@ -676,7 +808,10 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let kept = self.own(name).is_some_and(|known| match known.what {
             Binding::Turn { turn: made, .. } => turn == Some(made),
             Binding::Object(_) | Binding::Param(_) | Binding::Instance(_) => true,
-            Binding::Variable { .. } | Binding::Poisoned => false,
+            Binding::Variable { .. }
+            | Binding::Reference(_)
+            | Binding::Multiple(_)
+            | Binding::Poisoned => false,
         });
         if !kept {
             self.bind(name, ident.span, Binding::Poisoned);
@@ -689,7 +824,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let Some(known) = self.own(name) else { return Ok(()) };
         let clash = match &known.what {
             Binding::Poisoned => false,
-            Binding::Variable { .. } => !variable,
+            Binding::Variable { .. } | Binding::Reference(_) | Binding::Multiple(_) => !variable,
             Binding::Turn { .. } | Binding::Instance(_) => variable,
             Binding::Object(_) | Binding::Param(_) => true,
         };
@@ -787,18 +922,25 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         op: AssignOp,
         value: ExprId,
     ) -> Result<(), Diagnostic> {
-        let right = self.expr(m, value)?;
-        let right = self.read(right, m.program[value].span)?;
         let right = match op {
-            AssignOp::Set => right,
-            AssignOp::With(op) => {
-                let old = self.expr(m, target)?;
-                let old = self.read(old, m.program[target].span)?;
-                ops::binary(op, &old, &right).map_err(|d| d.or_at(m.program[value].span))?
+            AssignOp::Set => {
+                let right = self.expr(m, value)?;
+                self.read(right, m.program[value].span)?
             }
+            AssignOp::With(op) => self.updated(m, target, op, value)?,
         };
         let place = self.place(m, target)?;
-        self.store(place, right).map_err(|d| d.or_at(m.program[target].span))
+        let shape = variables::shape_text(&right);
+        self.store(place, right).map_err(|d| {
+            let spans = [target, value].map(|e| m.program[e].span);
+            let to = match self.root(&place).map(|bound| &bound.what) {
+                Some(Binding::Variable { value, .. }) if d.id == "shapes-differ" => {
+                    variables::shape_at(value, &place)
+                }
+                _ => String::new(),
+            };
+            self.differing(m, d, spans, [&to, &shape]).or_at(spans[0])
+        })
     }
 
     fn call_statement(&mut self, m: &Module, expr: ExprId) -> Result<Flow<T>, Diagnostic> {
@@ -842,23 +984,18 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         nearest(word, variables.chain(functions)).map(str::to_string)
     }
 
-    /// True when a chain of operators has a set among its operands. Fields are functions, and grouped as
-    /// numbers are.
-    pub fn has_set(&self, items: &[ChainItem], values: &HashMap<ExprId, Value<T>>) -> bool {
-        items.iter().any(|item| match item {
-            ChainItem::Operand(expr) => matches!(values.get(expr), Some(Value::Set(_))),
-            _ => false,
-        })
-    }
-
-    pub fn store(&mut self, place: variables::Place, value: Value<T>) -> Result<(), Diagnostic> {
-        let name = place.name;
-        let text = self.modules.text(name).clone();
-        let Some(bound) = self.lookup_mut(name) else { return Err(silent()) };
+    pub fn store(&mut self, place: Place, value: Value<T>) -> Result<(), Diagnostic> {
+        let text = self.modules.text(place.name).clone();
+        let Some(bound) = self.root_mut(&place) else { return Err(silent()) };
         match &mut bound.what {
-            Binding::Variable { ty, value: old, fixed } => {
+            Binding::Variable { ty, value: old, fixed, known } => {
                 let taken = Taken { ty: *ty, fixed: *fixed, name: &text };
-                variables::store(taken, old, &place, value)
+                let replaced = variables::store(taken, old, &place, value)?;
+                known.give(place.section, old);
+                if let Some(replaced) = replaced {
+                    self.spare.give(replaced);
+                }
+                Ok(())
             }
             Binding::Poisoned => Err(silent()),
             _ => {
@@ -869,4 +1006,15 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             }
         }
     }
+}
+
+/// Where a declarator's name and dimensions end.
+fn span_end(m: &Module, item: &Declarator) -> u32 {
+    let last = m.program[item.dims].last();
+    // The bracket after the last dimension.
+    last.map_or(item.name.span.end, |&dim| {
+        let end = m.program[dim].span.end;
+        let rest = m.program.text().get(end as usize..).unwrap_or("");
+        end + rest.find(']').map_or(0, |k| k as u32 + 1)
+    })
 }

@@ -107,36 +107,105 @@ macro_rules! row {
     };
 }
 
-macro_rules! unary {
-    ($($name:literal, $doc:literal, $f:expr;)*) => {
-        [$({
-            fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
-                each($name, &args[0], $f)
-            }
-            row!($name, $doc, vec![argument("x", "A number, a row of numbers or a field.")],
-                "assert sin(0) == 0;", body)
-        }),*]
-    };
+/// A function of numbers, element by element.
+#[derive(Clone, Copy)]
+pub(crate) enum Elementary<T> {
+    Unary(fn(T) -> T),
+    Binary(fn(T, T) -> T),
 }
 
-macro_rules! binary {
-    ($($name:literal, $doc:literal, $a:literal, $b:literal, $f:expr;)*) => {
-        [$({
-            fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
-                match crate::sets::functions($name, args) {
-                    Some(field) => field,
-                    None => pairs(&args[0], &args[1], $f),
-                }
-            }
-            row!($name, $doc, vec![argument($a, "A number or a row."), argument($b, "A number or a row.")],
-                "assert hypot(3, 4) == 5;", body)
-        }),*]
+/// The value of an elementary function.
+pub(crate) fn apply<T: Real>(
+    name: &str,
+    f: Elementary<T>,
+    args: &[Value<T>],
+) -> Result<Value<T>, Fault> {
+    match f {
+        Elementary::Unary(f) => each(name, &args[0], f),
+        Elementary::Binary(f) => match crate::sets::functions(name, args) {
+            Some(field) => field,
+            None => pairs(&args[0], &args[1], f),
+        },
+    }
+}
+
+/// Declares the elementary functions: their rows, and the list by which the interpreter takes them
+/// into element-wise passes.
+macro_rules! elementary {
+    (
+        unary { $($u:literal, $u_doc:literal, $u_f:expr;)* }
+        binary { $($b:literal, $b_doc:literal, $x:literal, $y:literal, $b_f:expr;)* }
+    ) => {
+        /// The elementary function of that name.
+        pub(crate) fn elementary<T: Real>(name: &str) -> Option<(&'static str, Elementary<T>)> {
+            Some(match name {
+                $($u => ($u, Elementary::Unary($u_f)),)*
+                $($b => ($b, Elementary::Binary($b_f)),)*
+                _ => return None,
+            })
+        }
+
+        fn elementary_rows() -> Vec<Row> {
+            vec![
+                $({
+                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+                        each($u, &args[0], $u_f)
+                    }
+                    row!($u, $u_doc, vec![argument("x", "A number, a row of numbers or a field.")],
+                        "assert sin(0) == 0;", body)
+                },)*
+                $({
+                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+                        apply($b, Elementary::Binary($b_f), args)
+                    }
+                    let fields =
+                        vec![argument($x, "A number or a row."), argument($y, "A number or a row.")];
+                    row!($b, $b_doc, fields, "assert hypot(3, 4) == 5;", body)
+                },)*
+            ]
+        }
     };
 }
 
 /// A number without derivatives: what the steps of floor and round give.
 fn step<T: Real>(x: T, f: fn(f64) -> f64) -> T {
     T::from(f(x.re()))
+}
+
+elementary! {
+    unary {
+        "sqrt", "Square root.", T::sqrt;
+        "sin", "Sine of an angle in radians.", T::sin;
+        "cos", "Cosine of an angle in radians.", T::cos;
+        "tan", "Tangent of an angle in radians.", T::tan;
+        "asin", "Arc sine, in radians.", T::asin;
+        "acos", "Arc cosine, in radians.", T::acos;
+        "atan", "Arc tangent, in radians.", T::atan;
+        "exp", "Exponential.", T::exp;
+        "log", "Natural logarithm.", T::ln;
+        "log10", "Logarithm to the base 10.", |x: T| x.ln() / T::from(10.0).ln();
+        "sinh", "Hyperbolic sine.", T::sinh;
+        "cosh", "Hyperbolic cosine.", T::cosh;
+        "tanh", "Hyperbolic tangent.", T::tanh;
+        "abs", "Absolute value; of a field its sheet, which has no solid side.", T::abs;
+        "s_sqrt", "sgn(x) sqrt|x|.", |x: T| if x.re() < 0.0 { -(-x).sqrt() } else { x.sqrt() };
+        "floor", "The greatest whole number that is not greater.", |x: T| step(x, f64::floor);
+        "ceil", "The least whole number that is not less.", |x: T| step(x, f64::ceil);
+        "round", "The nearest whole number; halves away from zero.", |x: T| step(x, f64::round);
+        "sign", "-1, 0 or 1.", |x: T| step(x, |x| if x == 0.0 { 0.0 } else { x.signum() });
+        "radians", "An angle given in degrees, in radians.", |x: T| x * (std::f64::consts::PI / 180.0);
+        "degrees", "An angle given in radians, in degrees.", |x: T| x * (180.0 / std::f64::consts::PI);
+    }
+    binary {
+        "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "y", "x", T::atan2;
+        "hypot", "Length of (a, b).", "a", "b", |a: T, b: T| (a * a + b * b).sqrt();
+        "mod", "Remainder of a / b, with the sign of b.", "a", "b", |a: T, b: T| {
+            a - b * T::from((a.re() / b.re()).floor())
+        };
+        "div", "Whole quotient of a / b, rounded down.", "a", "b", |a: T, b: T| {
+            T::from((a.re() / b.re()).floor())
+        };
+    }
 }
 
 fn optional(name: &'static str) -> Field {
@@ -164,39 +233,7 @@ pub fn rows() -> Vec<Row> {
         reduced("sum", args, |a, b| a + b)
     }
     let mut rows = Vec::new();
-    rows.extend(unary! {
-        "sqrt", "Square root.", T::sqrt;
-        "sin", "Sine of an angle in radians.", T::sin;
-        "cos", "Cosine of an angle in radians.", T::cos;
-        "tan", "Tangent of an angle in radians.", T::tan;
-        "asin", "Arc sine, in radians.", T::asin;
-        "acos", "Arc cosine, in radians.", T::acos;
-        "atan", "Arc tangent, in radians.", T::atan;
-        "exp", "Exponential.", T::exp;
-        "log", "Natural logarithm.", T::ln;
-        "log10", "Logarithm to the base 10.", |x: T| x.ln() / T::from(10.0).ln();
-        "sinh", "Hyperbolic sine.", T::sinh;
-        "cosh", "Hyperbolic cosine.", T::cosh;
-        "tanh", "Hyperbolic tangent.", T::tanh;
-        "abs", "Absolute value; of a field its sheet, which has no solid side.", T::abs;
-        "s_sqrt", "sgn(x) sqrt|x|.", |x: T| if x.re() < 0.0 { -(-x).sqrt() } else { x.sqrt() };
-        "floor", "The greatest whole number that is not greater.", |x: T| step(x, f64::floor);
-        "ceil", "The least whole number that is not less.", |x: T| step(x, f64::ceil);
-        "round", "The nearest whole number; halves away from zero.", |x: T| step(x, f64::round);
-        "sign", "-1, 0 or 1.", |x: T| step(x, |x| if x == 0.0 { 0.0 } else { x.signum() });
-        "radians", "An angle given in degrees, in radians.", |x: T| x * (std::f64::consts::PI / 180.0);
-        "degrees", "An angle given in radians, in degrees.", |x: T| x * (180.0 / std::f64::consts::PI);
-    });
-    rows.extend(binary! {
-        "atan2", "Angle of the point (x, y), in radians: atan2(y, x).", "y", "x", T::atan2;
-        "hypot", "Length of (a, b).", "a", "b", |a: T, b: T| (a * a + b * b).sqrt();
-        "mod", "Remainder of a / b, with the sign of b.", "a", "b", |a: T, b: T| {
-            a - b * T::from((a.re() / b.re()).floor())
-        };
-        "div", "Whole quotient of a / b, rounded down.", "a", "b", |a: T, b: T| {
-            T::from((a.re() / b.re()).floor())
-        };
-    });
+    rows.extend(elementary_rows());
     rows.push(row!(
         "min",
         "The least of all numbers given.",

@@ -20,17 +20,25 @@
 //!
 //! Invariant: this crate opens no file; what it reads comes from the host's [`World`].
 
+mod analysis;
+mod arithmetic;
+mod builtins;
 mod component;
 mod convert;
 mod document;
 mod env;
 mod expr;
+mod files;
 mod floating;
+mod format;
+mod fused;
 mod header;
 mod hydro;
 mod interpreter;
 mod intrinsics;
+mod known;
 mod later;
+mod library;
 mod measures;
 mod member;
 mod model_file;
@@ -41,6 +49,7 @@ mod place;
 mod program;
 mod rename;
 mod routine;
+mod section;
 mod sections;
 mod sets;
 pub mod show;
@@ -51,12 +60,15 @@ mod variables;
 mod volume;
 mod world;
 
+pub use analysis::{Completion, CompletionKind};
+pub use builtins::{BUILTINS, Builtin, MOST_REFINED};
 pub use convert::Format;
 pub use document::{Document, Panelled};
 pub use env::Param;
 pub use floating::{AfloatOptions, FloatAnswer, FloatRequest, Immersion};
 pub use hydro::{Options as FloatOptions, named as named_hydrostatics};
 pub use interpreter::MOST_STEPS;
+pub use library::LIBRARIES;
 pub use sections::Section;
 pub use solve::{SolveStatus, Solved};
 pub use volume::Blocked;

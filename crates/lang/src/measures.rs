@@ -41,6 +41,7 @@ impl Document {
             seed: &|_, x| x,
             seeded_objects: &seeded_objects,
             cancelled: &cancelled,
+            settings: self.settings,
         };
         let program = Program {
             modules: &mut self.modules,

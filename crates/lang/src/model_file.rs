@@ -811,11 +811,10 @@ impl<T: Scalar> Producer<'_, '_, T> {
             let Some(&line) = source.names.get(&**modules.text(name)) else { continue };
             let what = match self.outcomes[line] {
                 Some(Outcome::Built(key)) => Binding::Object(key),
-                Some(Outcome::Real) => Binding::Variable {
-                    ty: moldloft_syntax::sdl::Type::Float,
-                    value: Value::Number(self.reals[&line]),
-                    fixed: false,
-                },
+                Some(Outcome::Real) => Binding::variable(
+                    moldloft_syntax::sdl::Type::Float,
+                    Value::Number(self.reals[&line]),
+                ),
                 _ => continue,
             };
             self.env.globals[name.0 as usize] = Some(Bound { span: Span::UNKNOWN, what });
@@ -1226,7 +1225,7 @@ pub(crate) fn bind_objects<T: Scalar>(
             && let Some(&x) = env.numbers.get(&**text)
         {
             let ty = moldloft_syntax::sdl::Type::Float;
-            let what = Binding::Variable { ty, value: Value::Number(x), fixed: false };
+            let what = Binding::variable(ty, Value::Number(x));
             *known = Some(Bound { span: Span::UNKNOWN, what });
         }
     }

@@ -29,6 +29,8 @@ pub(crate) struct Module {
     pub rows: Vec<Option<Arc<Row>>>,
     /// What is wrong with the text of a loaded file; told whenever it is run.
     pub faults: Vec<Diagnostic>,
+    /// True for a library that comes with the program.
+    pub library: bool,
 }
 
 /// All files of a model: parsed once, executed often.
@@ -86,8 +88,14 @@ impl Modules {
         at: Option<usize>,
     ) -> usize {
         let (names, rows) = self.resolve(&program, registry);
-        let module =
-            Arc::new(Module { path: path.into(), program, names, rows, faults: Vec::new() });
+        let module = Arc::new(Module {
+            path: path.into(),
+            program,
+            names,
+            rows,
+            faults: Vec::new(),
+            library: path.starts_with(crate::library::FOLDER),
+        });
         match at {
             Some(at) => {
                 self.modules[at] = module;
@@ -203,11 +211,18 @@ impl Modules {
         span: Span,
         loader: &mut Loader<'_>,
     ) -> Result<usize, Diagnostic> {
+        // A library loads others from beside the user's program first, as the program itself would.
+        let from = if self.modules[from].library { 0 } else { from };
         let from_path = self.modules[from].path.clone();
-        let read = loader
-            .world
-            .read(path, Some(&from_path))
-            .map_err(|e| Diagnostic::error("cannot-read", e.message).at(span).maybe_help(e.help))?;
+        let read = loader.world.read(path, Some(&from_path)).or_else(|error| {
+            crate::library::text(path).ok_or_else(|| {
+                let near = crate::library::near(path);
+                Diagnostic::error("cannot-read", error.message)
+                    .at(span)
+                    .maybe_help(error.help)
+                    .maybe_help(near)
+            })
+        })?;
         if let Some(at) = self.modules.iter().position(|m| m.path == read.name) {
             return Ok(at);
         }

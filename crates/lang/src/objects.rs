@@ -7,6 +7,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::trace::Key;
 use moldloft_registry::{Given, Scalar, arrange};
+use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
 use std::sync::Arc;
 
@@ -171,7 +172,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .at(name.span)
                 .help("use `for (i = 1:n)`"));
             };
-            labels.push(label.as_str());
+            labels.push(number::plain(*label));
         }
         Ok((Some(format!("{family}[{}]", labels.join(","))), Some((family, turn.id))))
     }

@@ -23,17 +23,29 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
         Value::Vectors(a) => Elements::Vectors(a),
         other => {
             let class = other.class().a();
+            let help = match other {
+                Value::Curve(_) => Some(
+                    "a pcurve is only assigned, passed and returned; compute with its points: \
+                     c(t), or distc(c, s) for a row of parameters",
+                ),
+                Value::Surface(_) => Some(
+                    "a psurface is only assigned, passed and returned; compute with its points: \
+                     s(u, v), or dists(s, us, vs)",
+                ),
+                _ => None,
+            };
             return Err(Diagnostic::error(
                 "wrong-operand",
                 format!("`{op}` does not take {class}"),
             )
             .expected("numbers, vectors, or rows and grids of them")
-            .found(class));
+            .found(class)
+            .maybe_help(help));
         }
     })
 }
 
-fn shapes_differ(a: ArrayShape, b: ArrayShape) -> Diagnostic {
+pub(crate) fn shapes_differ(a: ArrayShape, b: ArrayShape) -> Diagnostic {
     Diagnostic::error("shapes-differ", format!("shapes differ: {a} and {b}"))
         .expected("equal shapes, or a single value on one side")
         .found(format!("{a} and {b}"))
@@ -98,14 +110,23 @@ struct Rules<T> {
     dot: bool,
 }
 
-fn power<T: Real>(a: T, b: T) -> T {
-    // Small whole powers by multiplication: exact for whole numbers, defined for negative bases.
+/// The exponent, when it is a small whole number: such powers go by multiplication, exact for whole
+/// numbers and defined for negative bases.
+pub(crate) fn whole_power<T: Real>(b: T) -> Option<i32> {
     let k = b.re();
-    if b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0 {
-        a.powi(k as i32)
-    } else {
-        a.powf(b)
+    (b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0).then_some(k as i32)
+}
+
+pub(crate) fn power<T: Real>(a: T, b: T) -> T {
+    match whole_power(b) {
+        Some(k) => a.powi(k),
+        None => a.powf(b),
     }
+}
+
+/// True for what makes a chain of operators one of sets.
+pub(crate) fn is_set<T: Real>(value: &Value<T>) -> bool {
+    matches!(value, Value::Set(_))
 }
 
 fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {

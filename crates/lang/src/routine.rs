@@ -1,8 +1,9 @@
 //! Runs a program: calls of subroutines and functions.
 
-use crate::env::{Binding, Bound, Frame};
+use crate::env::{Binding, Bound, Frame, Multiple, Passed};
 use crate::interpreter::{Flow, Interpreter, silent};
 use crate::module::{Module, RoutineAt};
+use crate::section::Place;
 use crate::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
@@ -31,29 +32,54 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if instance.is_none() {
             frame.loops = self.frame().loops.clone();
         }
-        let mut returns = Vec::new();
+        frame.called = Some((span, self.current as u32));
+        let mut returned: Vec<(Place, Span)> = Vec::new();
         for (formal, exprs) in formals.iter().zip(ordered) {
             let local = callee.names[formal.name.symbol.0 as usize];
             let what = if formal.multiple {
                 let mut items = Vec::new();
                 for expr in exprs {
-                    items.push(self.argument(m, formal, expr)?);
-                }
-                Binding::Variable { ty: formal.ty.0, value: Value::list(items), fixed: false }
-            } else {
-                let expr = exprs[0];
-                if formal.returned {
-                    returns.push((local, self.place(m, expr)?, m.program[expr].span));
-                }
-                match self.argument(m, formal, expr)? {
-                    Value::Object(key) => Binding::Object(key),
-                    value => {
-                        // A returned argument keeps the shape of what is passed.
-                        Binding::Variable { ty: formal.ty.0, value, fixed: formal.returned }
+                    if let Some(all) = self.multiple(m, expr) {
+                        // A multiple argument is passed on as a whole.
+                        for item in all {
+                            if let (true, Passed::Place(place)) = (formal.returned, &item) {
+                                returned.push((*place, m.program[expr].span));
+                            }
+                            items.push(item);
+                        }
+                    } else if formal.returned {
+                        let place = self.returned(m, &name, formal, expr)?;
+                        returned.push((place, m.program[expr].span));
+                        items.push(Passed::Place(place));
+                    } else {
+                        items.push(Passed::Value(self.argument(m, formal, expr)?));
                     }
+                }
+                Binding::Multiple(Box::new(Multiple { ty: formal.ty.0, items, read: 0 }))
+            } else if formal.returned {
+                let place = self.returned(m, &name, formal, exprs[0])?;
+                returned.push((place, m.program[exprs[0]].span));
+                Binding::Reference(place)
+            } else {
+                match self.argument(m, formal, exprs[0])? {
+                    Value::Object(key) => Binding::Object(key),
+                    value => Binding::variable(formal.ty.0, value),
                 }
             };
             frame.locals.push((local, Bound { span: formal.name.span, what }));
+        }
+        for (k, (place, at)) in returned.iter().enumerate() {
+            if let Some((_, first)) = returned[..k].iter().find(|(p, _)| p.meets(place)) {
+                let text = m.program.slice(*at).trim();
+                return Err(Diagnostic::error(
+                    "overlapping-arguments",
+                    format!("`{text}` overlaps another returned argument of {name}"),
+                )
+                .labelled(*at, "these elements are written twice")
+                .note_at(*first, "and here")
+                .expected("returned arguments without common elements")
+                .help("pass different sections, or a copy of one and assign it afterwards"));
+            }
         }
         if !self.deeper(span) {
             return Err(silent());
@@ -63,20 +89,88 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let outer = std::mem::replace(&mut self.current, at.module);
         let flow = self.statements(&callee, routine.body);
         self.current = outer;
-        let frame = self.frames.pop().expect("pushed above");
+        self.frames.pop();
         self.depth -= 1;
         self.held = held;
-        for (local, place, span) in returns {
-            let bound = frame.locals.iter().find(|(n, _)| *n == local).map(|(_, b)| b);
-            if let Some(Bound { what: Binding::Variable { value, .. }, .. }) = bound {
-                self.store(place, value.clone()).map_err(|d| d.or_at(span))?;
-            }
-        }
         match flow {
-            Flow::Return(value) => Ok(value),
+            Flow::Return(Some(value)) => match routine.result {
+                Some((ty, asked)) if !matches!(ty, Type::Other(_)) => {
+                    variables::converted(ty, value).map(Some).map_err(|d| {
+                        let message = format!("{name} returns another value: {}", d.message);
+                        let mut d = d.or_at(span).note_at(asked, "declared here");
+                        d.message = message;
+                        d
+                    })
+                }
+                _ => Ok(Some(value)),
+            },
+            Flow::Return(None) => Ok(None),
             Flow::Stop => Err(silent()),
             _ => Ok(None),
         }
+    }
+
+    /// The arguments that a name stands for, when it is a multiple argument.
+    pub fn multiple(&self, m: &Module, expr: ExprId) -> Option<Vec<Passed<T>>> {
+        let symbol = m.program.as_name(expr)?;
+        match &self.lookup(m.names[symbol.0 as usize])?.what {
+            Binding::Multiple(multiple) => Some(multiple.items.clone()),
+            _ => None,
+        }
+    }
+
+    /// The place that a returned argument writes to.
+    fn returned(
+        &mut self,
+        m: &Module,
+        name: &str,
+        formal: &Formal,
+        expr: ExprId,
+    ) -> Result<Place, Diagnostic> {
+        let span = m.program[expr].span;
+        let text = m.program.slice(span).trim().to_string();
+        let place = self.place(m, expr).map_err(|d| match &*d.id {
+            "not-assignable" => Diagnostic::error(
+                "not-assignable",
+                format!("`{text}` cannot be returned to: {name} writes to this argument"),
+            )
+            .at(span)
+            .expected("a variable, or a part of one by [...] or .x .y .z")
+            .found("an expression")
+            .note_at(formal.name.span, "declared as returned here"),
+            _ => d,
+        })?;
+        let Some(bound) = self.root(&place) else { return Err(silent()) };
+        let (ty, value) = match &bound.what {
+            Binding::Variable { ty, value, .. } => (*ty, value),
+            Binding::Poisoned => return Err(silent()),
+            _ => {
+                return Err(Diagnostic::error(
+                    "not-assignable",
+                    format!("`{text}` cannot be assigned to, but {name} writes to this argument"),
+                )
+                .at(span)
+                .expected("a variable")
+                .found("an object or parameter")
+                .note_at(formal.name.span, "declared as returned here"));
+            }
+        };
+        let found = variables::type_at(ty, value, &place);
+        let number = |ty: Type| match ty {
+            Type::Int | Type::File => Type::Float,
+            other => other,
+        };
+        let same = number(found) == number(formal.ty.0) || matches!(formal.ty.0, Type::Other(_));
+        if same {
+            return Ok(place);
+        }
+        let (expected, found) = (variables::described(formal.ty.0), variables::described(found));
+        Err(Diagnostic::error("wrong-type", format!("expected {expected}, found {found}"))
+            .at(span)
+            .expected(expected)
+            .found(found)
+            .note_at(formal.ty.1, "asked for here")
+            .note_at(bound.span, "declared here"))
     }
 
     /// The expressions for each formal argument, in order.
@@ -158,9 +252,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return Ok(value);
         }
         let value = self.read(value, span)?;
-        if formal.returned && matches!(value, Value::Unset) {
-            return Ok(value);
-        }
         variables::converted(formal.ty.0, value)
             .map_err(|d| d.or_at(span).note_at(formal.ty.1, "asked for here"))
     }

@@ -1,6 +1,6 @@
 //! Variables: types, sections, and assignment.
 
-use crate::module::Name;
+use crate::section::{Place, Section, picked, put, put_all};
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
@@ -9,23 +9,6 @@ use std::sync::Arc;
 
 /// The most elements of an array.
 const MOST_ELEMENTS: f64 = 1e7;
-
-/// A part of a variable that is assigned to, or passed by reference.
-#[derive(Clone, Debug)]
-pub(crate) struct Place {
-    pub name: Name,
-    /// The subscripts, when there are some.
-    pub section: Option<Vec<Selection>>,
-    /// The component x, y, z as 0, 1, 2.
-    pub component: Option<usize>,
-}
-
-/// What a subscript selects from a dimension: positions from 0, and whether the dimension stays.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Selection {
-    pub positions: Vec<usize>,
-    pub keeps_dimension: bool,
-}
 
 /// What is known of the variable that a value is stored into.
 pub(crate) struct Taken<'a> {
@@ -51,7 +34,7 @@ pub(crate) fn type_of<T: Real>(value: &Value<T>) -> Type {
 }
 
 /// The word of a type and what it holds.
-fn described(ty: Type) -> &'static str {
+pub(crate) fn described(ty: Type) -> &'static str {
     match ty {
         Type::Int => "a whole number",
         Type::Float => "a number",
@@ -75,10 +58,26 @@ fn described(ty: Type) -> &'static str {
 /// When the type holds no such value.
 pub(crate) fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnostic> {
     let wrong = |value: &Value<T>| {
-        let found = value.class().a();
+        let found = match value {
+            Value::Curve(_) => "a parametric curve (pcurve)",
+            Value::Surface(_) => "a parametric surface (psurface)",
+            other => other.class().a(),
+        };
+        let help = match (ty, value) {
+            (Type::Curve, Value::Curve(_)) => Some("take points of it: distc(c, uniform(0, 1, n))"),
+            (Type::Surface, Value::Surface(_)) => Some("take points of it: dists(s, u, v)"),
+            (Type::Pcurve, Value::Vectors(_)) => {
+                Some("put a spline through the points: makecc(c, \"quadratic\", \"arc\")")
+            }
+            (Type::Psurface, Value::Vectors(_)) => {
+                Some("put a spline through the points: makecs(s, \"quadratic\", \"arc\")")
+            }
+            _ => None,
+        };
         Diagnostic::error("wrong-type", format!("expected {}, found {found}", described(ty)))
             .expected(described(ty))
             .found(found)
+            .maybe_help(help)
     };
     Ok(match (ty, value) {
         (Type::Other(_), value) => value,
@@ -88,7 +87,7 @@ pub(crate) fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, 
                 .found(x.re().to_string())
                 .help("declare it as float, or use round(), floor() or ceil()"));
         }
-        (Type::Int | Type::Float, value @ Value::Number(_))
+        (Type::Int | Type::Float | Type::File, value @ Value::Number(_))
         | (Type::String, value @ Value::Text(_))
         | (Type::Vector, value @ Value::Vector(_))
         | (Type::Farray, value @ Value::Numbers(_))
@@ -212,7 +211,9 @@ pub(crate) fn initial<T: Real>(
     Ok(filled)
 }
 
-/// Stores a value into a variable or a part of it.
+/// Stores a value into a variable or a part of it: the whole right side is known before anything is
+/// stored. Gives back the array that was replaced, when a whole one was, so that its memory can be
+/// used again.
 ///
 /// # Errors
 /// When type or shape differ.
@@ -221,12 +222,21 @@ pub(crate) fn store<T: Real>(
     old: &mut Value<T>,
     place: &Place,
     value: Value<T>,
-) -> Result<(), Diagnostic> {
+) -> Result<Option<Value<T>>, Diagnostic> {
     let whole = place.section.is_none() && place.component.is_none();
     let array = matches!(taken.ty, Type::Farray | Type::Curve | Type::Surface);
-    if whole && !(array && (taken.fixed || !is_array(&value))) {
-        *old = converted(taken.ty, value)?;
-        return Ok(());
+    if whole {
+        let alike = match (&*old, &value) {
+            (Value::Numbers(a), Value::Numbers(b)) => a.shape == b.shape,
+            (Value::Vectors(a), Value::Vectors(b)) => a.shape == b.shape,
+            _ => false,
+        };
+        if alike {
+            return Ok(Some(std::mem::replace(old, value)));
+        }
+        if !(array && (taken.fixed || !is_array(&value))) {
+            return Ok(Some(std::mem::replace(old, converted(taken.ty, value)?)));
+        }
     }
     if matches!(old, Value::Unset) {
         return Err(Diagnostic::error(
@@ -235,65 +245,41 @@ pub(crate) fn store<T: Real>(
         )
         .help("declare them, or assign a whole array first"));
     }
-    fill(old, place.section.as_deref(), place.component, value)
+    fill(old, place.section, place.component, value)?;
+    Ok(None)
 }
 
 fn is_array<T: Real>(value: &Value<T>) -> bool {
     matches!(value, Value::Numbers(_) | Value::Vectors(_) | Value::List(_))
 }
 
-/// The flat positions of a section and its shape; `None` for a single element.
-pub(crate) fn positions(
-    shape: ArrayShape,
-    section: Option<&[Selection]>,
-) -> Result<(Vec<usize>, Option<ArrayShape>), Diagnostic> {
-    let (m, n) = match shape {
-        ArrayShape::Row(n) => (None, n),
-        ArrayShape::Grid(m, n) => (Some(m), n),
-    };
-    match (m, section) {
-        (None, None) => Ok(((0..n).collect(), Some(shape))),
-        (Some(m), None) => Ok(((0..m * n).collect(), Some(shape))),
-        (None, Some([a])) => {
-            let kept = a.keeps_dimension.then_some(ArrayShape::Row(a.positions.len()));
-            Ok((a.positions.clone(), kept))
-        }
-        (Some(_), Some([a, b])) => {
-            let flat = a
-                .positions
-                .iter()
-                .flat_map(|i| b.positions.iter().map(move |j| i * n + j))
-                .collect();
-            let (ka, kb) = (a.positions.len(), b.positions.len());
-            let kept = match (a.keeps_dimension, b.keeps_dimension) {
-                (true, true) => Some(ArrayShape::Grid(ka, kb)),
-                (true, false) => Some(ArrayShape::Row(ka)),
-                (false, true) => Some(ArrayShape::Row(kb)),
-                (false, false) => None,
-            };
-            Ok((flat, kept))
-        }
+/// The section, or the whole; checked against the dimensions.
+fn section_of(shape: ArrayShape, section: Option<Section>) -> Result<Section, Diagnostic> {
+    match (shape, section) {
+        (_, None) => Ok(Section::whole(shape)),
+        (ArrayShape::Row(_), Some(s @ Section::Row(_)))
+        | (ArrayShape::Grid(..), Some(s @ Section::Grid(..))) => Ok(s),
         (_, Some(section)) => {
+            let found = if matches!(section, Section::Row(_)) { 1 } else { 2 };
             Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
                 .expected(match shape {
                     ArrayShape::Row(_) => "one subscript, as in c[3]",
                     ArrayShape::Grid(..) => "two subscripts, as in s[3,4]",
                 })
-                .found(format!("{} subscripts", section.len())))
+                .found(format!("{found} subscripts")))
         }
     }
 }
 
-/// Writes `value` into the selected elements (or one component of them): the whole right side is
-/// known before anything is stored.
+/// Writes `value` into the selected elements, or one component of them.
 fn fill<T: Real>(
     old: &mut Value<T>,
-    section: Option<&[Selection]>,
+    section: Option<Section>,
     component: Option<usize>,
     value: Value<T>,
 ) -> Result<(), Diagnostic> {
-    let differ = |to: Option<ArrayShape>, from: ArrayShape| {
-        let to = to.map_or("a single element".to_string(), |s| s.to_string());
+    let differ = |to: Section, from: ArrayShape| {
+        let to = to.shape().map_or("a single element".to_string(), |s| s.to_string());
         Diagnostic::error("shapes-differ", format!("shapes differ: {to} = {from}"))
             .expected(format!("a value of shape {to}, or a single one"))
             .found(from.to_string())
@@ -313,47 +299,53 @@ fn fill<T: Real>(
         Value::List(_) => converted(Type::Curve, value)?,
         other => other,
     };
+    let alike = |section: Section, from: ArrayShape| match section.shape() == Some(from) {
+        true => Ok(()),
+        false => Err(differ(section, from)),
+    };
     match (&mut *old, component) {
         (Value::Numbers(array), None) => {
-            let (at, shape) = positions(array.shape, section)?;
+            let shape = array.shape;
+            let section = section_of(shape, section)?;
             let items = &mut Arc::make_mut(array).items;
             match &value {
-                Value::Number(x) => at.iter().for_each(|&k| items[k] = *x),
-                Value::Numbers(from) if Some(from.shape) == shape => {
-                    at.iter().zip(&from.items).for_each(|(&k, x)| items[k] = *x);
+                Value::Number(x) => put_all(items, shape, section, *x),
+                Value::Numbers(from) => {
+                    alike(section, from.shape)?;
+                    put(items, shape, section, &from.items);
                 }
-                Value::Numbers(from) => return Err(differ(shape, from.shape)),
                 other => return Err(wrong("a number or an farray", other)),
             }
         }
         (Value::Vectors(array), None) => {
-            let (at, shape) = positions(array.shape, section)?;
+            let shape = array.shape;
+            let section = section_of(shape, section)?;
             let planes = &mut Arc::make_mut(array).planes;
             match &value {
                 Value::Vector(v) => {
                     for (plane, x) in planes.iter_mut().zip(v.to_array()) {
-                        at.iter().for_each(|&k| plane[k] = x);
+                        put_all(plane, shape, section, x);
                     }
                 }
-                Value::Vectors(from) if Some(from.shape) == shape => {
+                Value::Vectors(from) => {
+                    alike(section, from.shape)?;
                     for (plane, from) in planes.iter_mut().zip(&from.planes) {
-                        at.iter().zip(from).for_each(|(&k, x)| plane[k] = *x);
+                        put(plane, shape, section, from);
                     }
                 }
-                Value::Vectors(from) => return Err(differ(shape, from.shape)),
                 other => return Err(wrong("a vector, or a row or grid of them", other)),
             }
         }
         (Value::Vectors(array), Some(c)) => {
-            let (at, shape) = positions(array.shape, section)?;
+            let shape = array.shape;
+            let section = section_of(shape, section)?;
             let plane = &mut Arc::make_mut(array).planes[c];
-            let mut put = |k: usize, x: T| plane[k] = x;
             match &value {
-                Value::Number(x) => at.iter().for_each(|&k| put(k, *x)),
-                Value::Numbers(from) if Some(from.shape) == shape => {
-                    at.iter().zip(&from.items).for_each(|(&k, x)| put(k, *x));
+                Value::Number(x) => put_all(plane, shape, section, *x),
+                Value::Numbers(from) => {
+                    alike(section, from.shape)?;
+                    put(plane, shape, section, &from.items);
                 }
-                Value::Numbers(from) => return Err(differ(shape, from.shape)),
                 other => return Err(wrong("a number or an farray", other)),
             }
         }
@@ -384,31 +376,28 @@ fn component_mut<T>(v: &mut Vec3<T>, component: usize) -> &mut T {
 ///
 /// # Errors
 /// When subscripts and dimensions do not go together.
-pub(crate) fn part<T: Real>(
-    value: &Value<T>,
-    section: &[Selection],
-) -> Result<Value<T>, Diagnostic> {
-    fn pick<E: Copy>(items: &[E], at: &[usize]) -> Vec<E> {
-        at.iter().map(|&k| items[k]).collect()
-    }
+pub(crate) fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<T>, Diagnostic> {
     Ok(match value {
-        Value::Numbers(array) => match positions(array.shape, Some(section))? {
-            (at, None) => Value::Number(array.items[at[0]]),
-            (at, Some(shape)) => {
-                Value::Numbers(Arc::new(Array { shape, items: pick(&array.items, &at) }))
+        Value::Numbers(array) => {
+            let section = section_of(array.shape, Some(section))?;
+            let items = picked(&array.items, array.shape, section);
+            match section.shape() {
+                None => Value::Number(items[0]),
+                Some(shape) => Value::Numbers(Arc::new(Array { shape, items })),
             }
-        },
-        Value::Vectors(array) => match positions(array.shape, Some(section))? {
-            (at, None) => Value::Vector(array.at(at[0])),
-            (at, Some(shape)) => {
-                let planes = array.planes.each_ref().map(|plane| pick(plane, &at));
-                Value::Vectors(Arc::new(Vectors { shape, planes }))
+        }
+        Value::Vectors(array) => {
+            let section = section_of(array.shape, Some(section))?;
+            let planes = array.planes.each_ref().map(|p| picked(p, array.shape, section));
+            match section.shape() {
+                None => Value::Vector(Vec3::from(planes.map(|p| p[0]))),
+                Some(shape) => Value::Vectors(Arc::new(Vectors { shape, planes })),
             }
-        },
+        }
         Value::List(items) => match section {
-            [one] if !one.keeps_dimension => items[one.positions[0]].clone(),
-            [some] => Value::list(some.positions.iter().map(|&k| items[k].clone())),
-            _ => {
+            Section::Row(one) if !one.keeps => items[one.start].clone(),
+            Section::Row(some) => Value::list(some.positions().map(|k| items[k].clone())),
+            Section::Grid(..) => {
                 return Err(Diagnostic::error("wrong-subscripts", "a list has one subscript"));
             }
         },
@@ -421,6 +410,71 @@ pub(crate) fn part<T: Real>(
             .found(other.class().a()));
         }
     })
+}
+
+/// The value of a component of vectors; `None` when there is none.
+pub(crate) fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
+    Some(match value {
+        Value::Vector(v) => Value::Number(v[c]),
+        Value::Point(p) => Value::Number(p.xyz[c]),
+        Value::Vectors(a) => {
+            Value::Numbers(Arc::new(Array { shape: a.shape, items: a.planes[c].clone() }))
+        }
+        _ => return None,
+    })
+}
+
+/// What stands in a place of a variable whose value is `root`.
+///
+/// # Errors
+/// When it has no such part.
+pub(crate) fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<T>, Diagnostic> {
+    let value = match place.section {
+        Some(section) => part(root, section)?,
+        None => root.clone(),
+    };
+    match place.component {
+        None => Ok(value),
+        Some(c) => component(&value, c).ok_or_else(|| {
+            Diagnostic::error("not-indexable", format!("{} has no components", value.class().a()))
+        }),
+    }
+}
+
+/// The type of what stands in a place of a variable of type `ty` and value `root`.
+pub(crate) fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
+    let of =
+        |dimensions: usize, vectors: bool| match (vectors && place.component.is_none(), dimensions)
+        {
+            (true, 0) => Type::Vector,
+            (true, 1) => Type::Curve,
+            (true, _) => Type::Surface,
+            (false, 0) => Type::Float,
+            (false, _) => Type::Farray,
+        };
+    let dimensions = |shape: ArrayShape| place.section.unwrap_or(Section::whole(shape)).extents().1;
+    match root {
+        Value::Numbers(a) => of(dimensions(a.shape), false),
+        Value::Vectors(a) => of(dimensions(a.shape), true),
+        Value::Vector(_) => of(0, true),
+        _ => ty,
+    }
+}
+
+/// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `float`.
+pub(crate) fn shape_text<T: Real>(value: &Value<T>) -> String {
+    match value {
+        Value::Numbers(a) => format!("farray{}", a.shape),
+        Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)) => format!("curve{}", a.shape),
+        Value::Vectors(a) => format!("surface{}", a.shape),
+        Value::List(items) => format!("list[{}]", items.len()),
+        other => other.class().name().to_string(),
+    }
+}
+
+/// The type and extents of what stands in a place.
+pub(crate) fn shape_at<T: Real>(root: &Value<T>, place: &Place) -> String {
+    at_place(root, place).map_or_else(|_| shape_text(root), |value| shape_text(&value))
 }
 
 /// The extents of what can be indexed.

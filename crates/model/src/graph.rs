@@ -144,7 +144,7 @@ impl<T: Scalar> Graph<T> {
     }
 
     /// What calls may know besides their arguments.
-    pub(crate) fn context(&self) -> Context {
+    pub fn context(&self) -> Context {
         self.context.clone()
     }
 

@@ -20,7 +20,6 @@ mod reference;
 mod sketch;
 mod value;
 mod work;
-mod world;
 mod write;
 
 use pyo3::prelude::*;

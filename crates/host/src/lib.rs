@@ -1,4 +1,7 @@
-//! Files, as far as a model may see them.
+//! Files, as far as a model may see them: the world of the extension, the command and the language
+//! server.
+//!
+//! Invariant: nothing outside the given folders is read for a model, links resolved.
 
 use moldloft_lang::{ReadError, ReadText, World};
 use std::io::{ErrorKind, Read};

@@ -1,0 +1,269 @@
+//! `format("%12.6f", x)`: numbers as text, by the directives of C.
+
+use moldloft_diag::Diagnostic;
+
+/// What a format is given.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Item {
+    Number(f64),
+    Text(String),
+}
+
+/// The widest field and the most digits.
+const WIDEST: usize = 1_000;
+
+/// The text of `items` by the format, which is used again for what is left over.
+///
+/// # Errors
+/// For directives that do not exist, or items that do not fit them.
+pub(crate) fn format(pattern: &str, items: &[Item]) -> Result<String, Diagnostic> {
+    let pieces = parse(pattern)?;
+    let mut out = String::new();
+    let mut items = items.iter().peekable();
+    let takes = pieces.iter().any(|p| matches!(p, Piece::Directive(_)));
+    loop {
+        for piece in &pieces {
+            match piece {
+                Piece::Text(text) => out.push_str(text),
+                Piece::Directive(d) => match items.next() {
+                    Some(item) => out.push_str(&d.spell(item)?),
+                    // Where values are used up the format ends.
+                    None if !out.is_empty() => return Ok(out),
+                    None => {
+                        return Err(Diagnostic::error(
+                            "missing-argument",
+                            "the format needs a value that is not given",
+                        )
+                        .expected(format!("a value for %{}", d.letter)));
+                    }
+                },
+            }
+        }
+        if items.peek().is_none() {
+            return Ok(out);
+        }
+        if !takes {
+            return Err(Diagnostic::error("too-many-arguments", "the format takes no values")
+                .expected("a directive such as %g for each value"));
+        }
+    }
+}
+
+enum Piece {
+    Text(String),
+    Directive(Directive),
+}
+
+#[derive(Clone, Copy)]
+struct Directive {
+    left: bool,
+    plus: bool,
+    blank: bool,
+    zero: bool,
+    width: usize,
+    precision: Option<usize>,
+    letter: char,
+}
+
+fn parse(pattern: &str) -> Result<Vec<Piece>, Diagnostic> {
+    let mut pieces = Vec::new();
+    let mut text = String::new();
+    let mut chars = pattern.chars().peekable();
+    while let Some(c) = chars.next() {
+        if c != '%' {
+            text.push(c);
+            continue;
+        }
+        let mut d = Directive {
+            left: false,
+            plus: false,
+            blank: false,
+            zero: false,
+            width: 0,
+            precision: None,
+            letter: '%',
+        };
+        while let Some(flag) = chars.next_if(|c| "-+ 0#".contains(*c)) {
+            match flag {
+                '-' => d.left = true,
+                '+' => d.plus = true,
+                ' ' => d.blank = true,
+                '0' => d.zero = true,
+                _ => {}
+            }
+        }
+        let number = |chars: &mut std::iter::Peekable<std::str::Chars<'_>>| {
+            let mut n = 0usize;
+            while let Some(digit) = chars.next_if(char::is_ascii_digit) {
+                n = (n * 10 + digit as usize - '0' as usize).min(WIDEST + 1);
+            }
+            n
+        };
+        d.width = number(&mut chars);
+        if chars.next_if_eq(&'.').is_some() {
+            d.precision = Some(number(&mut chars));
+        }
+        if d.width > WIDEST || d.precision.is_some_and(|p| p > WIDEST) {
+            return Err(Diagnostic::error("wrong-format", "a field is too wide")
+                .expected(format!("at most {WIDEST} characters")));
+        }
+        match chars.next() {
+            Some('%') => text.push('%'),
+            Some(letter @ ('d' | 'i' | 'f' | 'e' | 'g' | 's' | 'E' | 'G')) => {
+                d.letter = letter;
+                pieces.push(Piece::Text(std::mem::take(&mut text)));
+                pieces.push(Piece::Directive(d));
+            }
+            other => {
+                let found = other.map_or("the end of the format".into(), |c| format!("%{c}"));
+                return Err(Diagnostic::error("wrong-format", format!("the format has {found}"))
+                    .expected("%d, %f, %e, %g, %s or %%")
+                    .found(found));
+            }
+        }
+    }
+    pieces.push(Piece::Text(text));
+    Ok(pieces)
+}
+
+impl Directive {
+    fn spell(self, item: &Item) -> Result<String, Diagnostic> {
+        let wrong = |expected: &str, found: String| {
+            Diagnostic::error("wrong-format", format!("%{} takes {expected}", self.letter))
+                .expected(expected.to_string())
+                .found(found)
+        };
+        let digits = self.precision.unwrap_or(6);
+        let body = match (self.letter, item) {
+            ('s', Item::Text(text)) => match self.precision {
+                Some(p) => text.chars().take(p).collect(),
+                None => text.clone(),
+            },
+            ('s', Item::Number(x)) => moldloft_syntax::number::plain(*x),
+            (_, Item::Text(text)) => return Err(wrong("a number", format!("the text \"{text}\""))),
+            ('d' | 'i', Item::Number(x)) => {
+                if x.fract() != 0.0 || x.abs() > 9e15 {
+                    return Err(wrong("a whole number", x.to_string()));
+                }
+                format!("{x:.0}")
+            }
+            ('f', Item::Number(x)) => format!("{x:.digits$}"),
+            ('e' | 'E', Item::Number(x)) => exponential(*x, digits),
+            (_, Item::Number(x)) => general(*x, digits),
+        };
+        let body = match (self.letter, item) {
+            ('s', _) => body,
+            (letter, Item::Number(x)) => {
+                // A zero that rounding made negative is a zero.
+                let zero = !body.bytes().any(|b| (b'1'..=b'9').contains(&b)) && x.is_finite();
+                let body = if zero { body.trim_start_matches('-').to_string() } else { body };
+                let sign = match (body.starts_with('-'), self.plus, self.blank) {
+                    (true, ..) => "",
+                    (_, true, _) => "+",
+                    (_, _, true) => " ",
+                    _ => "",
+                };
+                let body = format!("{sign}{body}");
+                if letter.is_ascii_uppercase() { body.to_uppercase() } else { body }
+            }
+            _ => body,
+        };
+        let missing = self.width.saturating_sub(body.chars().count());
+        let fill = " ".repeat(missing);
+        Ok(if self.left {
+            body + &fill
+        } else if self.zero && self.letter != 's' {
+            let (sign, rest) = match body.strip_prefix(['-', '+', ' ']) {
+                Some(rest) => (&body[..1], rest),
+                None => ("", &body[..]),
+            };
+            format!("{sign}{}{rest}", "0".repeat(missing))
+        } else {
+            fill + &body
+        })
+    }
+}
+
+/// As C writes it: at least two digits of the exponent.
+fn exponential(x: f64, digits: usize) -> String {
+    let text = format!("{x:.digits$e}");
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => {
+            let (sign, number) = match exponent.strip_prefix('-') {
+                Some(number) => ('-', number),
+                None => ('+', exponent),
+            };
+            format!("{mantissa}e{sign}{number:0>2}")
+        }
+        None => text,
+    }
+}
+
+/// `%g`: the shorter form, trailing zeros left out.
+fn general(x: f64, digits: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{}", x + 0.0);
+    }
+    let digits = digits.max(1);
+    let rounded = format!("{:.*e}", digits - 1, x);
+    let exponent: i32 = rounded.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    let text = if exponent < -4 || exponent >= digits as i32 {
+        exponential(x, digits - 1)
+    } else {
+        format!("{x:.*}", (digits as i32 - 1 - exponent).max(0) as usize)
+    };
+    let (mantissa, rest) = match text.split_once('e') {
+        Some((mantissa, rest)) => (mantissa.to_string(), format!("e{rest}")),
+        None => (text, String::new()),
+    };
+    let mantissa = match mantissa.contains('.') {
+        true => mantissa.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => mantissa,
+    };
+    mantissa + &rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(pattern: &str, x: f64) -> String {
+        format(pattern, &[Item::Number(x)]).unwrap()
+    }
+
+    #[test]
+    fn numbers_as_c_writes_them() {
+        assert_eq!(one("%12.6f|", std::f64::consts::PI), "    3.141593|");
+        assert_eq!(one("%-8.2f|", -1.005), "-1.00   |");
+        assert_eq!(one("%+d", 7.0), "+7");
+        assert_eq!(one("%05d", -42.0), "-0042");
+        assert_eq!(one("%.3e", 12345.678), "1.235e+04");
+        assert_eq!(one("%e", 1e-120), "1.000000e-120");
+        assert_eq!(one("%g", 0.0001), "0.0001");
+        assert_eq!(one("%g", 0.00001), "1e-05");
+        assert_eq!(one("%g", 1234567.0), "1.23457e+06");
+        assert_eq!(one("%.10g", 2.6339134382131846), "2.633913438");
+        assert_eq!(one("%.1f", -0.04), "0.0");
+        assert_eq!(one("%s %%", 0.1), "0.1 %");
+        assert_eq!(one("%G", 1e300), "1E+300");
+        let items = [Item::Number(1.0), Item::Number(2.0), Item::Number(3.0)];
+        assert_eq!(format("%g ", &items).unwrap(), "1 2 3 ");
+        assert_eq!(format("%g, %g; ", &items).unwrap(), "1, 2; 3, ");
+        assert_eq!(
+            format("%5s|%-5.2s|", &[Item::Text("ab".into()), Item::Text("abc".into())]).unwrap(),
+            "   ab|ab   |"
+        );
+    }
+
+    #[test]
+    fn faults() {
+        let id = |pattern: &str, items: &[Item]| format(pattern, items).unwrap_err().id.to_string();
+        assert_eq!(id("%q", &[Item::Number(1.0)]), "wrong-format");
+        assert_eq!(id("%", &[]), "wrong-format");
+        assert_eq!(id("%d", &[Item::Number(1.5)]), "wrong-format");
+        assert_eq!(id("%f", &[Item::Text("x".into())]), "wrong-format");
+        assert_eq!(id("%9999f", &[Item::Number(1.0)]), "wrong-format");
+        assert_eq!(id("%f", &[]), "missing-argument");
+        assert_eq!(id("no", &[Item::Number(1.0)]), "too-many-arguments");
+    }
+}

@@ -1,0 +1,531 @@
+//! Element-wise statements in one pass.
+//!
+//! `expression -> tape -> steps -> blocks`
+//!
+//! A tape is the element-wise part of an expression, one instruction for each operation on one
+//! component; what is alike is written once. When it is run, the elements go through it in blocks
+//! that stay in the nearest cache, so that a statement reads its sources once and writes its result
+//! once, whatever the number of its operators.
+//!
+//! Values are those of the operators one after the other, bit for bit: products and sums keep their
+//! order and are rounded each by itself.
+
+use moldloft_num::Real;
+use moldloft_registry::{Array, ArrayShape, Vectors};
+use std::sync::Arc;
+
+/// Plain numbers that go through a tape together: a few pages of registers, within the first cache.
+const BLOCK_PARTS: usize = 512;
+
+/// Where an instruction finds an operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Src {
+    /// A row or grid of numbers.
+    Plane(u16),
+    /// The same number for all elements.
+    Const(u16),
+    /// The result of an instruction.
+    Reg(u16),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Code {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Neg,
+    Abs,
+    Sqrt,
+    /// a * b + c, rounded twice.
+    MulAdd,
+    /// a * b - c
+    MulSub,
+    /// c - a * b
+    SubMul,
+    /// (a * b) * c
+    MulMul,
+    /// A function of one number, by its place in the tape's list.
+    Unary(u16),
+    /// A function of two numbers.
+    Binary(u16),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Instr {
+    code: Code,
+    a: Src,
+    b: Src,
+    c: Src,
+}
+
+/// A source of numbers.
+#[derive(Clone, Debug)]
+enum Plane<T: Real> {
+    Numbers(Arc<Array<T>>),
+    Component(Arc<Vectors<T>>, usize),
+}
+
+impl<T: Real> Plane<T> {
+    #[inline(always)]
+    fn numbers(&self) -> &[T] {
+        match self {
+            Plane::Numbers(a) => &a.items,
+            Plane::Component(a, c) => &a.planes[*c],
+        }
+    }
+}
+
+/// See the head of this file.
+#[derive(Debug)]
+pub(crate) struct Tape<T: Real> {
+    planes: Vec<Plane<T>>,
+    consts: Vec<T>,
+    code: Vec<Instr>,
+    unary: Vec<fn(T) -> T>,
+    binary: Vec<fn(T, T) -> T>,
+    /// Instructions whose results must be finite, in order.
+    checked: Vec<u16>,
+    steps: Vec<Step>,
+    slots: Vec<Vec<T>>,
+    uses: Vec<u16>,
+    homes: Vec<Home>,
+}
+
+/// Where the result of an instruction is kept while the steps are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Home {
+    /// Merged into its only user.
+    Nowhere,
+    Slot(u16),
+    Out(u16),
+}
+
+/// An operand of a step.
+#[derive(Clone, Copy, Debug)]
+enum Operand {
+    Plane(u16),
+    Const(u16),
+    Slot(u16),
+    Out(u16),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    code: Code,
+    a: Operand,
+    b: Operand,
+    c: Operand,
+    to: Home,
+    /// The place in `checked`.
+    check: Option<u16>,
+}
+
+/// The most instructions, sources and constants of a tape; a longer expression goes in parts.
+pub(crate) const LONGEST: usize = 4_000;
+
+impl<T: Real> Default for Tape<T> {
+    fn default() -> Self {
+        Self {
+            planes: Vec::new(),
+            consts: Vec::new(),
+            code: Vec::new(),
+            unary: Vec::new(),
+            binary: Vec::new(),
+            checked: Vec::new(),
+            steps: Vec::new(),
+            slots: Vec::new(),
+            uses: Vec::new(),
+            homes: Vec::new(),
+        }
+    }
+}
+
+/// How far back an instruction is sought that does the same.
+const ALIKE: usize = 64;
+
+impl<T: Real> Tape<T> {
+    /// Empties it and keeps its memory.
+    pub fn clear(&mut self) {
+        self.planes.clear();
+        self.consts.clear();
+        self.code.clear();
+        self.unary.clear();
+        self.binary.clear();
+        self.checked.clear();
+    }
+
+    /// True when it should be run before more is added.
+    pub fn is_long(&self) -> bool {
+        self.code.len() + self.planes.len() + self.consts.len() > LONGEST
+    }
+
+    pub fn constant(&mut self, x: T) -> Src {
+        let known = self.consts.iter().rposition(|c| c.bits_eq(x));
+        let at = known.unwrap_or_else(|| {
+            self.consts.push(x);
+            self.consts.len() - 1
+        });
+        Src::Const(at as u16)
+    }
+
+    pub fn numbers(&mut self, array: &Arc<Array<T>>) -> Src {
+        let same = |p: &Plane<T>| matches!(p, Plane::Numbers(a) if Arc::ptr_eq(a, array));
+        if let Some(at) = self.planes.iter().position(same) {
+            return Src::Plane(at as u16);
+        }
+        self.planes.push(Plane::Numbers(array.clone()));
+        Src::Plane((self.planes.len() - 1) as u16)
+    }
+
+    pub fn vectors(&mut self, array: &Arc<Vectors<T>>) -> [Src; 3] {
+        let same = |p: &Plane<T>| matches!(p, Plane::Component(a, 0) if Arc::ptr_eq(a, array));
+        let at = self.planes.iter().position(same).unwrap_or_else(|| {
+            self.planes.extend((0..3).map(|c| Plane::Component(array.clone(), c)));
+            self.planes.len() - 3
+        });
+        [0, 1, 2].map(|c| Src::Plane((at + c) as u16))
+    }
+
+    fn push(&mut self, instr: Instr) -> Src {
+        let from = self.code.len().saturating_sub(ALIKE);
+        if let Some(at) = self.code[from..].iter().position(|i| *i == instr) {
+            return Src::Reg((from + at) as u16);
+        }
+        self.code.push(instr);
+        Src::Reg((self.code.len() - 1) as u16)
+    }
+
+    pub fn op(&mut self, code: Code, a: Src, b: Src) -> Src {
+        self.push(Instr { code, a, b, c: b })
+    }
+
+    pub fn op1(&mut self, code: Code, a: Src) -> Src {
+        self.push(Instr { code, a, b: a, c: a })
+    }
+
+    /// The function of each element; its results must be finite when `checked`. The number of the
+    /// check comes with it.
+    pub fn unary(&mut self, f: fn(T) -> T, a: Src) -> Src {
+        self.unary.push(f);
+        let code = Code::Unary((self.unary.len() - 1) as u16);
+        let at = self.push(Instr { code, a, b: a, c: a });
+        self.checked.push((self.code.len() - 1) as u16);
+        at
+    }
+
+    pub fn binary(&mut self, f: fn(T, T) -> T, a: Src, b: Src, checked: bool) -> Src {
+        self.binary.push(f);
+        let code = Code::Binary((self.binary.len() - 1) as u16);
+        let at = self.push(Instr { code, a, b, c: b });
+        if checked {
+            self.checked.push((self.code.len() - 1) as u16);
+        }
+        at
+    }
+
+    /// How many checks there are so far.
+    pub fn checks(&self) -> usize {
+        self.checked.len()
+    }
+
+    /// A whole power, by the same multiplications as [`Real::powi`].
+    pub fn powi(&mut self, a: Src, exponent: i32) -> Src {
+        let one = self.constant(T::one());
+        let mut base = if exponent < 0 { self.op(Code::Div, one, a) } else { a };
+        let mut left = exponent.unsigned_abs();
+        let mut power = one;
+        while left > 0 {
+            if left & 1 == 1 {
+                // 1 * x is x for plain numbers; a derivative of minus zero would lose its sign.
+                let skip = power == one && T::PARTS == 1;
+                power = if skip { base } else { self.op(Code::Mul, power, base) };
+            }
+            left >>= 1;
+            if left > 0 {
+                base = self.op(Code::Mul, base, base);
+            }
+        }
+        power
+    }
+
+    /// Makes steps of the instructions that the roots need: products are merged into the sums and
+    /// products that alone use them, results go to as few slots as possible.
+    fn plan(&mut self, roots: &[Src]) {
+        let Self { code, uses, homes, steps, checked, .. } = self;
+        let n = code.len();
+        uses.clear();
+        uses.resize(n, 0);
+        let root_of = |k: usize| roots.iter().position(|r| *r == Src::Reg(k as u16));
+        for root in roots {
+            if let Src::Reg(k) = root {
+                uses[*k as usize] = uses[*k as usize].saturating_add(1);
+            }
+        }
+        // Uses by what is itself used; checked instructions always are.
+        for k in (0..n).rev() {
+            let is_checked = checked.binary_search(&(k as u16)).is_ok();
+            if uses[k] == 0 && !is_checked {
+                continue;
+            }
+            let i = code[k];
+            let operands: &[Src] = match i.code {
+                Code::Neg | Code::Abs | Code::Sqrt | Code::Unary(_) => &[i.a],
+                Code::MulAdd | Code::MulSub | Code::SubMul | Code::MulMul => &[i.a, i.b, i.c],
+                _ => &[i.a, i.b],
+            };
+            for operand in operands {
+                if let Src::Reg(k) = operand {
+                    uses[*k as usize] = uses[*k as usize].saturating_add(1);
+                }
+            }
+        }
+        homes.clear();
+        homes.resize(n, Home::Slot(u16::MAX));
+        for k in 0..n {
+            let i = code[k];
+            // The product that the operand is, when nothing else uses it.
+            let product = |s: Src| match s {
+                Src::Reg(p) => {
+                    let p = p as usize;
+                    let alone = uses[p] == 1 && code[p].code == Code::Mul && root_of(p).is_none();
+                    (alone && homes[p] != Home::Nowhere).then_some(p)
+                }
+                _ => None,
+            };
+            let live = uses[k] > 0 || checked.binary_search(&(k as u16)).is_ok();
+            let merged = match (i.code, product(i.a), product(i.b)) {
+                _ if !live || i.a == i.b => None,
+                (Code::Add, Some(p), _) => Some((Code::MulAdd, p, i.b)),
+                (Code::Add, _, Some(p)) => Some((Code::MulAdd, p, i.a)),
+                (Code::Sub, Some(p), _) => Some((Code::MulSub, p, i.b)),
+                (Code::Sub, _, Some(p)) => Some((Code::SubMul, p, i.a)),
+                (Code::Mul, Some(p), _) => Some((Code::MulMul, p, i.b)),
+                (Code::Mul, _, Some(p)) => Some((Code::MulMul, p, i.a)),
+                _ => None,
+            };
+            if let Some((code_of, p, c)) = merged {
+                homes[p] = Home::Nowhere;
+                code[k] = Instr { code: code_of, a: code[p].a, b: code[p].b, c };
+            }
+            if !live {
+                homes[k] = Home::Nowhere;
+            }
+        }
+        // Slots, freed after the last use.
+        let mut last = vec![0; n];
+        for k in 0..n {
+            if homes[k] != Home::Nowhere {
+                for s in [code[k].a, code[k].b, code[k].c] {
+                    if let Src::Reg(p) = s {
+                        last[p as usize] = k;
+                    }
+                }
+            }
+        }
+        steps.clear();
+        let mut free: Vec<u16> = Vec::new();
+        let mut count = 0;
+        for k in 0..n {
+            if homes[k] == Home::Nowhere {
+                continue;
+            }
+            let i = code[k];
+            homes[k] = match root_of(k) {
+                Some(out) => Home::Out(out as u16),
+                None => Home::Slot(free.pop().unwrap_or_else(|| {
+                    count += 1;
+                    count - 1
+                })),
+            };
+            let operand = |s: Src| match s {
+                Src::Plane(p) => Operand::Plane(p),
+                Src::Const(c) => Operand::Const(c),
+                Src::Reg(r) => match homes[r as usize] {
+                    Home::Slot(s) => Operand::Slot(s),
+                    Home::Out(o) => Operand::Out(o),
+                    Home::Nowhere => unreachable!("merged products have one user"),
+                },
+            };
+            let check = checked.binary_search(&(k as u16)).ok().map(|c| c as u16);
+            let (a, b, c) = (operand(i.a), operand(i.b), operand(i.c));
+            steps.push(Step { code: i.code, a, b, c, to: homes[k], check });
+            let mut freed = [None; 3];
+            for (f, s) in freed.iter_mut().zip([i.a, i.b, i.c]) {
+                if let Src::Reg(p) = s
+                    && last[p as usize] == k
+                    && let Home::Slot(slot) = homes[p as usize]
+                {
+                    *f = Some(slot);
+                }
+            }
+            for (at, f) in freed.into_iter().enumerate() {
+                if let Some(slot) = f
+                    && !freed[..at].contains(&f)
+                {
+                    free.push(slot);
+                }
+            }
+            if uses[k] == 0
+                && let Home::Slot(slot) = homes[k]
+            {
+                free.push(slot);
+            }
+        }
+        let block = block::<T>();
+        while self.slots.len() < count as usize {
+            self.slots.push(vec![T::zero(); block]);
+        }
+    }
+
+    /// The values of the roots, `count` elements each. `take` gives rows of that length to write
+    /// into.
+    ///
+    /// # Errors
+    /// The number of the first check that failed, in the order of the instructions.
+    pub fn run(
+        &mut self,
+        roots: &[Src],
+        shape: ArrayShape,
+        mut take: impl FnMut(usize) -> Vec<T>,
+    ) -> Result<Vec<Vec<T>>, usize> {
+        self.plan(roots);
+        let count = shape.count();
+        let mut outs: Vec<Vec<T>> = roots.iter().map(|_| take(count)).collect();
+        let mut failed: Option<u16> = None;
+        {
+            let Self { planes, consts, unary, binary, steps, slots, .. } = self;
+            let (planes, consts) = (&planes[..], &consts[..]);
+            let (unary, binary) = (&unary[..], &binary[..]);
+            let outs = &mut outs;
+            let failed = &mut failed;
+            let loops = || {
+                let mut lo = 0;
+                while lo < count {
+                    let hi = (lo + block::<T>()).min(count);
+                    for step in steps.iter() {
+                        let held = match step.to {
+                            Home::Slot(s) => &mut slots[s as usize],
+                            Home::Out(o) => &mut outs[o as usize],
+                            Home::Nowhere => unreachable!("only kept results are steps"),
+                        };
+                        // Taken out for the moment, so that operands can be read beside it.
+                        let mut held = std::mem::take(held);
+                        let to = match step.to {
+                            Home::Out(_) => &mut held[lo..hi],
+                            _ => &mut held[..hi - lo],
+                        };
+                        let operand = |o: Operand| match o {
+                            Operand::Plane(p) => In::Row(&planes[p as usize].numbers()[lo..hi]),
+                            Operand::Const(c) => In::Const(consts[c as usize]),
+                            Operand::Slot(s) => In::Row(&slots[s as usize][..hi - lo]),
+                            Operand::Out(o) => In::Row(&outs[o as usize][lo..hi]),
+                        };
+                        let (a, b) = (operand(step.a), operand(step.b));
+                        match step.code {
+                            Code::Add => two(to, a, b, |a, b| a + b),
+                            Code::Sub => two(to, a, b, |a, b| a - b),
+                            Code::Mul => two(to, a, b, |a, b| a * b),
+                            Code::Div => two(to, a, b, |a, b| a / b),
+                            Code::Neg => one(to, a, |a| -a),
+                            Code::Abs => one(to, a, T::abs),
+                            Code::Sqrt => one(to, a, T::sqrt),
+                            Code::MulAdd => three(to, a, b, operand(step.c), |a, b, c| a * b + c),
+                            Code::MulSub => three(to, a, b, operand(step.c), |a, b, c| a * b - c),
+                            Code::SubMul => three(to, a, b, operand(step.c), |a, b, c| c - a * b),
+                            Code::MulMul => three(to, a, b, operand(step.c), |a, b, c| a * b * c),
+                            Code::Unary(f) => one(to, a, unary[f as usize]),
+                            Code::Binary(f) => two(to, a, b, binary[f as usize]),
+                        }
+                        if let Some(check) = step.check
+                            && failed.is_none_or(|first| check < first)
+                            && !to.iter().all(|x| x.is_finite())
+                        {
+                            *failed = Some(check);
+                        }
+                        match step.to {
+                            Home::Slot(s) => slots[s as usize] = held,
+                            Home::Out(o) => outs[o as usize] = held,
+                            Home::Nowhere => {}
+                        }
+                    }
+                    lo = hi;
+                }
+            };
+            pulp::Arch::new().dispatch(loops);
+        }
+        if let Some(check) = failed {
+            return Err(check as usize);
+        }
+        // Roots that are no result of their own: sources, constants, the same result twice.
+        for (k, root) in roots.iter().enumerate() {
+            match *root {
+                Src::Plane(p) => {
+                    outs[k].copy_from_slice(&self.planes[p as usize].numbers()[..count])
+                }
+                Src::Const(c) => outs[k].fill(self.consts[c as usize]),
+                Src::Reg(_) => {
+                    if let Some(first) = roots[..k].iter().position(|r| r == root) {
+                        let (done, rest) = outs.split_at_mut(k);
+                        rest[0].copy_from_slice(&done[first]);
+                    }
+                }
+            }
+        }
+        Ok(outs)
+    }
+}
+
+/// Elements that go through together.
+fn block<T: Real>() -> usize {
+    (BLOCK_PARTS / T::PARTS).max(64)
+}
+
+/// An operand in a block.
+#[derive(Clone, Copy)]
+enum In<'a, T> {
+    Row(&'a [T]),
+    Const(T),
+}
+
+#[inline(always)]
+fn one<T: Real>(to: &mut [T], a: In<'_, T>, f: impl Fn(T) -> T) {
+    match a {
+        In::Row(a) => to.iter_mut().zip(a).for_each(|(t, &a)| *t = f(a)),
+        In::Const(a) => to.fill(f(a)),
+    }
+}
+
+#[inline(always)]
+fn two<T: Real>(to: &mut [T], a: In<'_, T>, b: In<'_, T>, f: impl Fn(T, T) -> T) {
+    match (a, b) {
+        (In::Row(a), In::Row(b)) => {
+            to.iter_mut().zip(a).zip(b).for_each(|((t, &a), &b)| *t = f(a, b));
+        }
+        (In::Row(a), In::Const(b)) => to.iter_mut().zip(a).for_each(|(t, &a)| *t = f(a, b)),
+        (In::Const(a), In::Row(b)) => to.iter_mut().zip(b).for_each(|(t, &b)| *t = f(a, b)),
+        (In::Const(a), In::Const(b)) => to.fill(f(a, b)),
+    }
+}
+
+#[inline(always)]
+fn three<T: Real>(
+    to: &mut [T],
+    a: In<'_, T>,
+    b: In<'_, T>,
+    c: In<'_, T>,
+    f: impl Fn(T, T, T) -> T,
+) {
+    match (a, b, c) {
+        (In::Row(a), In::Row(b), In::Row(c)) => {
+            let rows = a.iter().zip(b).zip(c);
+            to.iter_mut().zip(rows).for_each(|(t, ((&a, &b), &c))| *t = f(a, b, c));
+        }
+        (In::Row(a), In::Row(b), In::Const(c)) => {
+            to.iter_mut().zip(a).zip(b).for_each(|((t, &a), &b)| *t = f(a, b, c));
+        }
+        (In::Row(a), In::Const(b), c) => two(to, In::Row(a), c, |a, c| f(a, b, c)),
+        (In::Const(a), In::Row(b), c) => two(to, In::Row(b), c, |b, c| f(a, b, c)),
+        (In::Const(a), In::Const(b), c) => one(to, c, |c| f(a, b, c)),
+    }
+}
