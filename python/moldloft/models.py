@@ -223,6 +223,38 @@ class Model:
         return self._document.symmetry()
 
     @property
+    def variables(self) -> dict[str, Any]:
+        """The variables of the program by name: floats, texts, arrays.
+
+        Rows of numbers are arrays ``(n,)``, curves ``(n, 3)``, surfaces ``(m, n, 3)``.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("surface s[2, 3] = {0, 0, 1}; farray t = uniform(0, 1, 3);")
+        >>> m.variables["s"].shape, m.variables["t"]
+        ((2, 3, 3), array([0. , 0.5, 1. ]))
+        """
+        return {name: value for name, _, value in self._document.variables()}
+
+    @property
+    def printed(self) -> list[str]:
+        """What the program printed, a line each."""
+        return self._document.printed()
+
+    @property
+    def written(self) -> dict[str, bytes]:
+        """What the program wrote, by file name; ``moldloft run`` puts it on the disk."""
+        return dict(self._document.written())
+
+    def refine(self, times: int) -> None:
+        """Halve the intervals of all sizes that the program declares by ``refined`` so often.
+
+        Coarse grid points recur in fine grids, so that the grids of 0, 1, 2, ... are nested.
+        """
+        self._document.refine(times)
+
+    @property
     def text(self) -> str:
         """The model's text, with direct edits written in. Assigning runs the new text."""
         return self._document.text()
@@ -251,6 +283,9 @@ class Model:
             return value
         if self._document.has(name):
             return Object(self._document, name)
+        variables = self.variables
+        if name in variables:
+            return variables[name]
         near = self._document.similar(name)
         hint = f"; did you mean `{near}`?" if near else ""
         raise UnknownNameError(f"there is no parameter or object `{name}`{hint}")

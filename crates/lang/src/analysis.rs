@@ -421,12 +421,21 @@ impl Document {
         Some((text, mention.span))
     }
 
+    /// What may stand at the end of a line that follows the text, as at a prompt.
+    pub fn completions_of(&mut self, line: &str) -> Vec<Completion> {
+        self.completions_after(line, u32::MAX)
+    }
+
     /// What may stand at a place of the main file: members after a dot, else all names that mean
     /// something there.
     pub fn completions(&mut self, offset: u32) -> Vec<Completion> {
         let Some(m) = self.main_module() else { return Vec::new() };
         let text = m.program.text().clone();
-        let before = text.get(..offset as usize).unwrap_or("");
+        self.completions_after(text.get(..offset as usize).unwrap_or(""), offset)
+    }
+
+    fn completions_after(&mut self, before: &str, offset: u32) -> Vec<Completion> {
+        let Some(m) = self.main_module() else { return Vec::new() };
         let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let stem = before.trim_end_matches(word);
         let prefix = &before[stem.len()..];

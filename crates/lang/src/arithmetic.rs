@@ -50,7 +50,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let value = match self.operated(m, id, &mut work) {
             Ok(Operand::Value(value)) => Ok(value),
             Ok(Operand::Lanes(lanes)) => self.computed(&lanes, &mut work),
-            Err(diagnostic) => Err(diagnostic),
+            Err(diagnostic) => Err(work.earlier(diagnostic)),
         };
         work.tape.clear();
         self.tapes.push(work.tape);
@@ -75,6 +75,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .map_err(|d| d.or_at(spans[1]))?;
             self.value_of(new, &mut work)
         });
+        let value = value.map_err(|d| work.earlier(d));
         work.tape.clear();
         self.tapes.push(work.tape);
         let value = value?;
@@ -453,9 +454,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             if shapes.iter().all(|s| *s == shapes[0]) {
                 let srcs: Vec<Src> = numbers.iter().map(|(_, s)| work.src(s)).collect();
                 let src = match function {
-                    intrinsics::Elementary::Unary(f) => work.tape.unary(f, srcs[0]),
+                    intrinsics::Elementary::Unary(f) => work.tape.unary(f, srcs[0], shapes[0]),
                     intrinsics::Elementary::Binary(f) => {
-                        work.tape.binary(f, srcs[0], srcs[1], true)
+                        work.tape.binary(f, srcs[0], srcs[1], Some(shapes[0]))
                     }
                 };
                 debug_assert_eq!(work.tape.checks(), work.calls.len() + 1);
@@ -552,6 +553,20 @@ pub(crate) struct Work<T: Real> {
 }
 
 impl<T: Real> Work<T> {
+    /// The fault of a check that comes before another fault in the order of the text.
+    fn earlier(&mut self, diagnostic: Diagnostic) -> Diagnostic {
+        if self.calls.is_empty() || diagnostic.id == "not-finite" {
+            return diagnostic;
+        }
+        match self.tape.first_failure() {
+            Some(check) => {
+                let (span, name) = self.calls[check];
+                not_finite(name).at(span)
+            }
+            None => diagnostic,
+        }
+    }
+
     /// An array as rows of the tape.
     fn lanes(&mut self, value: &Value<T>, wanted: bool) -> Option<Lanes> {
         if !wanted || self.tape.is_long() {
@@ -680,7 +695,7 @@ impl<T: Real> Work<T> {
                     Some(k) => self.tape.powi(x, k),
                     None => {
                         let y = self.src(&y);
-                        self.tape.binary(ops::power, x, y, false)
+                        self.tape.binary(ops::power, x, y, None)
                     }
                 })
             }

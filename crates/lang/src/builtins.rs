@@ -27,72 +27,96 @@ pub struct Builtin {
     pub signature: &'static str,
     /// What it does, in one line.
     pub doc: &'static str,
-}
-
-const fn builtin(name: &'static str, signature: &'static str, doc: &'static str) -> Builtin {
-    Builtin { name, signature, doc }
+    /// A program that calls it and runs by itself.
+    pub example: &'static str,
 }
 
 /// All built-in functions, in the order of the reference.
 pub const BUILTINS: [Builtin; 14] = [
-    builtin(
-        "format",
-        "format(pattern, ...)",
-        "Text of numbers by the directives of C: format(\"%12.6f\", x).",
-    ),
-    builtin(
-        "open",
-        "open(name, mode)",
-        "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit.",
-    ),
-    builtin("close", "close(f)", "Closes a file."),
-    builtin(
-        "write",
-        "write(f, ...)",
-        "Writes values to a file: a point or number on each line, the first index of a grid fastest.",
-    ),
-    builtin(
-        "read",
-        "read(f, ...)",
-        "Reads numbers into variables or parts of them; a string takes the rest of the line.",
-    ),
-    builtin(
-        "more",
-        "more(c)",
-        "Whether a multiple argument, or a file, has something that was not read yet.",
-    ),
-    builtin("next", "next(c)", "The next of a multiple argument."),
-    builtin(
-        "rewind",
-        "rewind(c)",
-        "Goes back to the first of a multiple argument, or to the beginning of a file.",
-    ),
-    builtin("count", "count(c)", "How many arguments a multiple argument has."),
-    builtin(
-        "isset",
-        "isset(a[i])",
-        "Whether a variable, or all of a part of it, was given a value.",
-    ),
-    builtin(
-        "check_edges",
-        "check_edges(s)",
-        "Stops with the place and the gap when the four edges of a surface are not set or do not meet.",
-    ),
-    builtin(
-        "refined",
-        "refined(n)",
-        "n points, or more when the run is refined: intervals double, so that coarse points recur.",
-    ),
-    builtin(
-        "refined_step",
-        "refined_step(ds)",
-        "A step per index that goes with refined(n): it halves when intervals double.",
-    ),
-    builtin(
-        "refinement",
-        "refinement()",
-        "Into how many parts each interval of refined(n) is cut: 1, 2, 4, ...",
-    ),
+    Builtin {
+        name: "format",
+        signature: "format(pattern, ...)",
+        doc: "Text of numbers by the directives of C; the pattern is used again for what is left over.",
+        example: "assert format(\"%6.2f|%d\", 2.5, 3) == \"  2.50|3\";",
+    },
+    Builtin {
+        name: "open",
+        signature: "open(name, mode)",
+        doc: "Opens a text file to read (\"r\"), write (\"w\") or append (\"a\"); open(7, name) chooses the unit.",
+        example: "file f = open(\"a.txt\", \"w\"); write(f, 1, {2, 3, 4}); close(f);",
+    },
+    Builtin {
+        name: "close",
+        signature: "close(f)",
+        doc: "Closes a file.",
+        example: "open(7, \"a.txt\"); close(7);",
+    },
+    Builtin {
+        name: "write",
+        signature: "write(f, ...)",
+        doc: "Writes values to a file: a point or number on each line, the first index of a grid fastest.",
+        example: "write(stdout, \"two points\", {{1, 2, 3}, {4, 5, 6}});",
+    },
+    Builtin {
+        name: "read",
+        signature: "read(f, ...)",
+        doc: "Reads numbers into variables or parts of them; a string takes the rest of the line.",
+        example: "open(7, \"a.txt\"); write(7, {1, 2, 3}); close(7); file f = open(\"a.txt\", \"r\"); vector v; read(f, v); assert v.z == 3;",
+    },
+    Builtin {
+        name: "more",
+        signature: "more(c)",
+        doc: "Whether a multiple argument, or a file, has something that was not read yet.",
+        example: "function float total(float x...) { float s = 0; while (more(x)) s += next(x); return s; } assert total(1, 2) == 3;",
+    },
+    Builtin {
+        name: "next",
+        signature: "next(c)",
+        doc: "The next of a multiple argument.",
+        example: "function float second(float x...) { next(x); return next(x); } assert second(1, 2) == 2;",
+    },
+    Builtin {
+        name: "rewind",
+        signature: "rewind(c)",
+        doc: "Goes back to the first of a multiple argument, or to the beginning of a file.",
+        example: "function float first(float x...) { next(x); rewind(x); return next(x); } assert first(1, 2) == 1;",
+    },
+    Builtin {
+        name: "count",
+        signature: "count(c)",
+        doc: "How many arguments a multiple argument has.",
+        example: "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;",
+    },
+    Builtin {
+        name: "isset",
+        signature: "isset(a[i])",
+        doc: "Whether a variable, or all of a part of it, was given a value.",
+        example: "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);",
+    },
+    Builtin {
+        name: "check_edges",
+        signature: "check_edges(s)",
+        doc: "Stops with the place and the gap when the four edges of a surface are not set or do not meet.",
+        example: "surface s[3,3] = {0, 0, 0}; check_edges(s);",
+    },
+    Builtin {
+        name: "refined",
+        signature: "refined(n)",
+        doc: "n points, or more when the run is refined: intervals double, so that coarse points recur.",
+        example: "farray s = uniform(0, 1, refined(5));",
+    },
+    Builtin {
+        name: "refined_step",
+        signature: "refined_step(ds)",
+        doc: "A step per index that goes with refined(n): it halves when intervals double.",
+        example: "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));",
+    },
+    Builtin {
+        name: "refinement",
+        signature: "refinement()",
+        doc: "Into how many parts each interval of refined(n) is cut: 1, 2, 4, ...",
+        example: "assert refinement() >= 1;",
+    },
 ];
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
@@ -181,7 +205,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     self.charge(&value, m.program[arg].span)?;
                 }
                 if unit == STANDARD_OUTPUT || unit == 0 {
-                    self.env.printed.extend(text.lines().map(str::to_string));
+                    for line in text.lines() {
+                        self.print(line.to_string(), span)?;
+                    }
                     return Ok(Value::Unset);
                 }
                 self.env.files.write(unit, &text).map(|()| Value::Unset)

@@ -7,7 +7,7 @@ use crate::sketch_file::{self, SketchFile};
 use crate::solve::Solved;
 use crate::world::World;
 use indexmap::IndexMap;
-use moldloft_diag::{Diagnostic, Sources, Span};
+use moldloft_diag::{Diagnostic, Sources};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
 use moldloft_num::Dual4;
@@ -429,22 +429,23 @@ impl Document {
         self.plain.env.files.written()
     }
 
-    /// The variables of the program's files: name, type and value, in the order of their names'
-    /// first mention; those of loaded libraries are left out.
-    pub fn variables(&self) -> Vec<(String, Span, Value<f64>)> {
+    /// The variables that the program's own files declare: name, type with extents, and value.
+    pub fn variables(&self) -> Vec<(String, String, Value<f64>)> {
         let names = (0..self.modules.name_count() as u32).map(crate::module::Name);
         let mut found = Vec::new();
         for name in names {
             let Some(Some(bound)) = self.plain.env.globals.get(name.0 as usize) else { continue };
             let Binding::Variable { value, .. } = &bound.what else { continue };
-            let of_library = (0..self.modules.len())
-                .map(|k| self.modules.get(k))
-                .any(|m| m.library && m.program.file() == bound.span.file);
-            if !of_library && bound.span.is_known() {
-                found.push((self.modules.text(name).to_string(), bound.span, value.clone()));
+            let modules = (0..self.modules.len()).map(|k| self.modules.get(k));
+            let of_library =
+                modules.clone().any(|m| m.library && m.program.file() == bound.span.file);
+            if !of_library && bound.span.is_known() && !matches!(value, Value::Unset) {
+                let shape = crate::variables::shape_text(value);
+                found.push((bound.span, self.modules.text(name).to_string(), shape, value.clone()));
             }
         }
-        found
+        found.sort_by_key(|(span, ..)| (span.file.0, span.start));
+        found.into_iter().map(|(_, name, shape, value)| (name, shape, value)).collect()
     }
 
     /// What the program printed.

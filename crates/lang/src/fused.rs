@@ -84,8 +84,8 @@ pub(crate) struct Tape<T: Real> {
     code: Vec<Instr>,
     unary: Vec<fn(T) -> T>,
     binary: Vec<fn(T, T) -> T>,
-    /// Instructions whose results must be finite, in order.
-    checked: Vec<u16>,
+    /// Instructions whose results must be finite, in order, and their shapes.
+    checked: Vec<(u16, ArrayShape)>,
     steps: Vec<Step>,
     slots: Vec<Vec<T>>,
     uses: Vec<u16>,
@@ -204,22 +204,22 @@ impl<T: Real> Tape<T> {
         self.push(Instr { code, a, b: a, c: a })
     }
 
-    /// The function of each element; its results must be finite when `checked`. The number of the
-    /// check comes with it.
-    pub fn unary(&mut self, f: fn(T) -> T, a: Src) -> Src {
+    /// The function of each element; its results must be finite.
+    pub fn unary(&mut self, f: fn(T) -> T, a: Src, shape: ArrayShape) -> Src {
         self.unary.push(f);
         let code = Code::Unary((self.unary.len() - 1) as u16);
         let at = self.push(Instr { code, a, b: a, c: a });
-        self.checked.push((self.code.len() - 1) as u16);
+        self.checked.push(((self.code.len() - 1) as u16, shape));
         at
     }
 
-    pub fn binary(&mut self, f: fn(T, T) -> T, a: Src, b: Src, checked: bool) -> Src {
+    /// The function of each pair of elements; its results must be finite when there is a shape.
+    pub fn binary(&mut self, f: fn(T, T) -> T, a: Src, b: Src, checked: Option<ArrayShape>) -> Src {
         self.binary.push(f);
         let code = Code::Binary((self.binary.len() - 1) as u16);
         let at = self.push(Instr { code, a, b, c: b });
-        if checked {
-            self.checked.push((self.code.len() - 1) as u16);
+        if let Some(shape) = checked {
+            self.checked.push(((self.code.len() - 1) as u16, shape));
         }
         at
     }
@@ -227,6 +227,17 @@ impl<T: Real> Tape<T> {
     /// How many checks there are so far.
     pub fn checks(&self) -> usize {
         self.checked.len()
+    }
+
+    /// The first check that fails, when nothing but the checks is asked for.
+    pub fn first_failure(&mut self) -> Option<usize> {
+        let mut shapes: Vec<ArrayShape> = Vec::new();
+        for (_, shape) in &self.checked {
+            if !shapes.contains(shape) {
+                shapes.push(*shape);
+            }
+        }
+        shapes.into_iter().filter_map(|shape| self.run(&[], shape, |_| Vec::new()).err()).min()
     }
 
     /// A whole power, by the same multiplications as [`Real::powi`].
@@ -251,8 +262,12 @@ impl<T: Real> Tape<T> {
 
     /// Makes steps of the instructions that the roots need: products are merged into the sums and
     /// products that alone use them, results go to as few slots as possible.
-    fn plan(&mut self, roots: &[Src]) {
+    fn plan(&mut self, roots: &[Src], shape: ArrayShape) {
         let Self { code, uses, homes, steps, checked, .. } = self;
+        let check_of = |k: usize| {
+            let at = checked.binary_search_by_key(&(k as u16), |c| c.0).ok()?;
+            (checked[at].1 == shape).then_some(at as u16)
+        };
         let n = code.len();
         uses.clear();
         uses.resize(n, 0);
@@ -264,8 +279,7 @@ impl<T: Real> Tape<T> {
         }
         // Uses by what is itself used; checked instructions always are.
         for k in (0..n).rev() {
-            let is_checked = checked.binary_search(&(k as u16)).is_ok();
-            if uses[k] == 0 && !is_checked {
+            if uses[k] == 0 && check_of(k).is_none() {
                 continue;
             }
             let i = code[k];
@@ -293,7 +307,7 @@ impl<T: Real> Tape<T> {
                 }
                 _ => None,
             };
-            let live = uses[k] > 0 || checked.binary_search(&(k as u16)).is_ok();
+            let live = uses[k] > 0 || check_of(k).is_some();
             let merged = match (i.code, product(i.a), product(i.b)) {
                 _ if !live || i.a == i.b => None,
                 (Code::Add, Some(p), _) => Some((Code::MulAdd, p, i.b)),
@@ -347,7 +361,7 @@ impl<T: Real> Tape<T> {
                     Home::Nowhere => unreachable!("merged products have one user"),
                 },
             };
-            let check = checked.binary_search(&(k as u16)).ok().map(|c| c as u16);
+            let check = check_of(k);
             let (a, b, c) = (operand(i.a), operand(i.b), operand(i.c));
             steps.push(Step { code: i.code, a, b, c, to: homes[k], check });
             let mut freed = [None; 3];
@@ -389,7 +403,7 @@ impl<T: Real> Tape<T> {
         shape: ArrayShape,
         mut take: impl FnMut(usize) -> Vec<T>,
     ) -> Result<Vec<Vec<T>>, usize> {
-        self.plan(roots);
+        self.plan(roots, shape);
         let count = shape.count();
         let mut outs: Vec<Vec<T>> = roots.iter().map(|_| take(count)).collect();
         let mut failed: Option<u16> = None;

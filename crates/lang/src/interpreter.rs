@@ -30,6 +30,9 @@ const MOST_HINTS: usize = 100;
 /// The most elements of all arrays that are declared at a time.
 const MOST_HELD: usize = 50_000_000;
 
+/// The most bytes of all printed lines.
+const MOST_PRINTED: usize = 64 << 20;
+
 /// Statements, expressions and calls nest at most this deep while running.
 pub(crate) const DEEPEST: u32 = 2_500;
 
@@ -120,6 +123,10 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub plain_operators: bool,
     /// True once the note on the misprint of 1992 was given.
     pub misprint_told: bool,
+    /// True while a library routine is left because of an error in it.
+    pub abandoned: bool,
+    /// Bytes that were printed.
+    printed: usize,
 }
 
 pub(crate) fn silent() -> Diagnostic {
@@ -162,6 +169,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             spare: Spare::default(),
             plain_operators,
             misprint_told: false,
+            abandoned: false,
+            printed: 0,
         }
     }
 
@@ -177,6 +186,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let outer = std::mem::replace(&mut self.current, at);
         let flow = self.statements(&module, module.program.body());
         self.current = outer;
+        self.abandoned = false;
         match flow {
             Flow::Stop => Flow::Stop,
             _ => Flow::Next,
@@ -406,10 +416,16 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
         let flow = self.statement_of(m, id, stmt.kind, stmt.span).unwrap_or_else(|diagnostic| {
             self.report(diagnostic.or_at(stmt.span));
+            // A library routine does not go on after an error: what follows would only be its echo.
+            self.abandoned |= m.library;
             Flow::Next
         });
         self.depth -= 1;
-        if self.env.stopped { Flow::Stop } else { flow }
+        match flow {
+            _ if self.env.stopped => Flow::Stop,
+            _ if self.abandoned && m.library => Flow::Return(None),
+            flow => flow,
+        }
     }
 
     fn statement_of(
@@ -475,7 +491,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     let value = self.read(value, m.program[expr].span)?;
                     words.push(crate::show::plain(&value));
                 }
-                self.env.printed.push(words.join(" "));
+                self.print(words.join(" "), span)?;
             }
             StmtKind::Assert { condition, message } => self.assert(m, condition, message)?,
             StmtKind::Load(path) => {
@@ -502,6 +518,25 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             StmtKind::Routine(_) | StmtKind::Error => {}
         }
         Ok(Flow::Next)
+    }
+
+    /// Keeps a printed line.
+    ///
+    /// # Errors
+    /// When the program has printed too much; that was reported, and the run is over.
+    pub fn print(&mut self, line: String, span: Span) -> Result<(), Diagnostic> {
+        self.printed += line.len() + 24;
+        if self.printed > MOST_PRINTED {
+            self.stop(
+                Diagnostic::error("too-much-output", "the program prints too much")
+                    .at(span)
+                    .expected(format!("at most {} MB", MOST_PRINTED >> 20))
+                    .help("write large results to a file: open(\"name\", \"w\")"),
+            );
+            return Err(silent());
+        }
+        self.env.printed.push(line);
+        Ok(())
     }
 
     fn condition(&mut self, m: &Module, expr: ExprId) -> Result<bool, Diagnostic> {
@@ -737,7 +772,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     let value = this.expr(m, expr)?;
                     this.read(value, span)
                 })?;
-                let value = variables::converted(ty, value).map_err(|d| d.or_at(span))?;
+                // A single value fills a dimensioned array.
+                let value = match dims.is_empty() {
+                    true => variables::converted(ty, value).map_err(|d| d.or_at(span))?,
+                    false => value,
+                };
                 Some(crate::sets::called(ty, value, m.program.name(item.name.symbol)))
             }
             None => None,
@@ -757,6 +796,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             (Some(_), _) | (_, []) => Known::default(),
             _ => Known::nothing(dims.iter().product()),
         };
+        let shape = value.as_ref().map(variables::shape_of);
         let value = variables::initial(ty, &dims, value).map_err(|d| match item.value {
             Some(expr) => {
                 let declared =
@@ -765,8 +805,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     let all: Vec<String> = dims.iter().map(usize::to_string).collect();
                     format!("{}[{}]", m.program.slice(ty_span), all.join(","))
                 };
-                let found = d.found.clone().unwrap_or_default();
-                self.differing(m, d, [declared, m.program[expr].span], [&of(&dims), &found])
+                let found = shape.map_or(String::new(), |s| s.to_string());
+                let span = m.program[expr].span;
+                self.differing(m, d, [declared, span], [&of(&dims), &found]).or_at(span)
             }
             None => d,
         })?;
@@ -930,7 +971,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             AssignOp::With(op) => self.updated(m, target, op, value)?,
         };
         let place = self.place(m, target)?;
-        let shape = variables::shape_text(&right);
+        let shape = variables::shape_of(&right);
         self.store(place, right).map_err(|d| {
             let spans = [target, value].map(|e| m.program[e].span);
             let to = match self.root(&place).map(|bound| &bound.what) {
@@ -939,7 +980,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 }
                 _ => String::new(),
             };
-            self.differing(m, d, spans, [&to, &shape]).or_at(spans[0])
+            self.differing(m, d, spans, [&to, &shape.to_string()]).or_at(spans[0])
         })
     }
 

@@ -92,6 +92,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.frames.pop();
         self.depth -= 1;
         self.held = held;
+        if callee.library && std::mem::take(&mut self.abandoned) {
+            // Told already; a caller in the library is left as well.
+            self.abandoned = m.library;
+            return Err(silent());
+        }
         match flow {
             Flow::Return(Some(value)) => match routine.result {
                 Some((ty, asked)) if !matches!(ty, Type::Other(_)) => {

@@ -461,15 +461,40 @@ pub(crate) fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type
     }
 }
 
-/// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `float`.
-pub(crate) fn shape_text<T: Real>(value: &Value<T>) -> String {
-    match value {
-        Value::Numbers(a) => format!("farray{}", a.shape),
-        Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)) => format!("curve{}", a.shape),
-        Value::Vectors(a) => format!("surface{}", a.shape),
-        Value::List(items) => format!("list[{}]", items.len()),
-        other => other.class().name().to_string(),
+/// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `number`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Shape {
+    Numbers(ArrayShape),
+    Vectors(ArrayShape),
+    List(usize),
+    Other(Class),
+}
+
+impl std::fmt::Display for Shape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Shape::Numbers(shape) => write!(f, "farray{shape}"),
+            Shape::Vectors(shape @ ArrayShape::Row(_)) => write!(f, "curve{shape}"),
+            Shape::Vectors(shape) => write!(f, "surface{shape}"),
+            Shape::List(n) => write!(f, "list[{n}]"),
+            Shape::Other(class) => f.write_str(class.name()),
+        }
     }
+}
+
+/// The type and extents of a value.
+pub(crate) fn shape_of<T: Real>(value: &Value<T>) -> Shape {
+    match value {
+        Value::Numbers(a) => Shape::Numbers(a.shape),
+        Value::Vectors(a) => Shape::Vectors(a.shape),
+        Value::List(items) => Shape::List(items.len()),
+        other => Shape::Other(other.class()),
+    }
+}
+
+/// The same in words.
+pub(crate) fn shape_text<T: Real>(value: &Value<T>) -> String {
+    shape_of(value).to_string()
 }
 
 /// The type and extents of what stands in a place.

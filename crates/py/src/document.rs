@@ -233,6 +233,39 @@ impl PyDocument {
         Ok(dict)
     }
 
+    /// What the program printed, a line each.
+    fn printed(&self, py: Python<'_>) -> Vec<String> {
+        self.lock(py).printed().to_vec()
+    }
+
+    /// What the program wrote: names and contents; nothing is on the disk yet.
+    fn written<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyBytes>)> {
+        let document = self.lock(py);
+        document.written().map(|(name, bytes)| (name.to_owned(), PyBytes::new(py, bytes))).collect()
+    }
+
+    /// Halves the intervals of all numbers that the program declares by `refined` so often.
+    fn refine(&self, py: Python<'_>, times: u32) -> PyResult<()> {
+        self.long_checked(py, move |d| d.refine(times).map(drop).map_err(|e| vec![e]))
+    }
+
+    /// The variables of the program: name, type with extents, and value.
+    fn variables<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Vec<(String, String, Bound<'py, PyAny>)>> {
+        let variables = self.lock(py).variables();
+        let data = |(name, shape, value): (String, String, Value<f64>)| {
+            Ok((name, shape, to_python(py, &value)?))
+        };
+        variables.into_iter().map(data).collect()
+    }
+
+    /// The words that may stand at the end of the text followed by `line`.
+    fn complete(&self, py: Python<'_>, line: &str) -> Vec<String> {
+        self.lock(py).completions_of(line).into_iter().map(|c| c.word).collect()
+    }
+
     fn rename(&self, py: Python<'_>, old: String, new: String) -> PyResult<()> {
         self.long_checked(py, move |d| d.rename(&old, &new).map(drop).map_err(|e| vec![e]))
     }

@@ -7,7 +7,26 @@ use pyo3::types::PyDict;
 /// All kinds and functions with their classes and arguments, in the order of the reference.
 #[pyfunction]
 pub fn reference(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    moldloft_lang::registry().rows().map(|row| describe(py, row)).collect()
+    let registry = moldloft_lang::registry();
+    let rows = registry.rows().map(|row| describe(py, row));
+    rows.chain(moldloft_lang::BUILTINS.iter().map(|b| describe_builtin(py, b))).collect()
+}
+
+/// A function that is part of the language itself; its signature says what it takes.
+fn describe_builtin<'py>(
+    py: Python<'py>,
+    builtin: &moldloft_lang::Builtin,
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("name", builtin.name)?;
+    dict.set_item("class", "value")?;
+    dict.set_item("is_kind", false)?;
+    dict.set_item("summary", builtin.doc)?;
+    dict.set_item("doc", format!("{}\n\nCalled as `{}`.", builtin.doc, builtin.signature))?;
+    dict.set_item("fields", Vec::<Bound<'py, PyDict>>::new())?;
+    dict.set_item("columns", py.None())?;
+    dict.set_item("example", builtin.example)?;
+    Ok(dict)
 }
 
 fn describe<'py>(py: Python<'py>, row: &Row) -> PyResult<Bound<'py, PyDict>> {

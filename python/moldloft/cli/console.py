@@ -58,13 +58,25 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a folder besides the model's own from which it may load; may be repeated",
     )
+    parser.add_argument(
+        "--refine",
+        metavar="TIMES",
+        type=int,
+        default=0,
+        help="halve the intervals of sizes declared by refined() so often, by default 0",
+    )
 
 
 def open_model(options: argparse.Namespace) -> Model:
     """The model of the arguments, with the values of ``--set``."""
+    from moldloft.errors import Error
     from moldloft.models import load
 
     model = load(options.model, library=options.library, strict=False)
+    if options.refine:
+        if options.refine < 0:
+            raise Error("error: --refine takes a whole number of at least 0")
+        model.refine(options.refine)
     if options.set and not model._document.has_errors():
         model.set(dict(options.set))
     return model

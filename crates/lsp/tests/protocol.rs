@@ -1,0 +1,267 @@
+//! Speaks the protocol to the program itself.
+
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+struct Client {
+    child: Child,
+    input: Option<ChildStdin>,
+    output: BufReader<ChildStdout>,
+    asked: u64,
+}
+
+const URI: &str = "file:///nowhere/hull%20one.sdl";
+
+impl Client {
+    fn start() -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_moldloft-lsp"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the server starts");
+        let input = child.stdin.take();
+        let output = BufReader::new(child.stdout.take().unwrap());
+        let mut client = Self { child, input, output, asked: 0 };
+        let answer = client.ask("initialize", json!({"capabilities": {}}));
+        assert_eq!(answer["serverInfo"]["name"], "moldloft-lsp");
+        assert_eq!(answer["capabilities"]["hoverProvider"], true);
+        client.tell("initialized", json!({}));
+        client
+    }
+
+    fn send(&mut self, message: &Value) {
+        let text = message.to_string();
+        let input = self.input.as_mut().unwrap();
+        write!(input, "Content-Length: {}\r\n\r\n{text}", text.len()).unwrap();
+        input.flush().unwrap();
+    }
+
+    fn tell(&mut self, method: &str, params: Value) {
+        self.send(&json!({"jsonrpc": "2.0", "method": method, "params": params}));
+    }
+
+    fn next(&mut self) -> Value {
+        let mut length = 0;
+        loop {
+            let mut line = String::new();
+            self.output.read_line(&mut line).unwrap();
+            if line.trim().is_empty() {
+                break;
+            }
+            if let Some(n) = line.strip_prefix("Content-Length: ") {
+                length = n.trim().parse().unwrap();
+            }
+        }
+        let mut bytes = vec![0; length];
+        self.output.read_exact(&mut bytes).unwrap();
+        serde_json::from_slice(&bytes).unwrap()
+    }
+
+    fn answer(&mut self, method: &str, params: Value) -> Value {
+        self.asked += 1;
+        let id = self.asked;
+        self.send(&json!({"jsonrpc": "2.0", "id": id, "method": method, "params": params}));
+        let answer = self.next();
+        assert_eq!(answer["id"], id, "{answer}");
+        answer
+    }
+
+    fn ask(&mut self, method: &str, params: Value) -> Value {
+        let answer = self.answer(method, params);
+        assert!(answer.get("error").is_none(), "{answer}");
+        answer["result"].clone()
+    }
+
+    fn at(&mut self, method: &str, line: u64, character: u64) -> Value {
+        let place = json!({"line": line, "character": character});
+        self.ask(method, json!({"textDocument": {"uri": URI}, "position": place}))
+    }
+
+    /// The diagnostics of the text after it was opened or changed.
+    fn open(&mut self, text: &str) -> Vec<Value> {
+        let item = json!({"uri": URI, "languageId": "sdl", "version": 1, "text": text});
+        self.tell("textDocument/didOpen", json!({"textDocument": item}));
+        self.published()
+    }
+
+    fn change(&mut self, version: u64, changes: Value) -> Vec<Value> {
+        let id = json!({"uri": URI, "version": version});
+        self.tell("textDocument/didChange", json!({"textDocument": id, "contentChanges": changes}));
+        self.published()
+    }
+
+    fn published(&mut self) -> Vec<Value> {
+        let message = self.next();
+        assert_eq!(message["method"], "textDocument/publishDiagnostics", "{message}");
+        assert_eq!(message["params"]["uri"], URI);
+        message["params"]["diagnostics"].as_array().unwrap().clone()
+    }
+}
+
+impl Drop for Client {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+const TEXT: &str = "\
+load \"stdsubs.sdl\"
+param float r = 2 in [1, 3]; # é
+curve c[5];
+arc(c, 0, PI, r);
+AbsPoint P(r, 0, 0);
+# Twice a number.
+function float twice(float x) { float y = 2*x; return y; }
+float x = twice(c[1].x);
+";
+
+fn words(completions: &Value) -> Vec<String> {
+    let items = completions["items"].as_array().unwrap();
+    items.iter().map(|i| i["label"].as_str().unwrap().to_string()).collect()
+}
+
+#[test]
+fn a_session() {
+    let mut client = Client::start();
+    assert_eq!(client.open(TEXT), Vec::<Value>::new());
+
+    // Hover tells shape and value.
+    let hover = client.at("textDocument/hover", 3, 4);
+    let said = hover["contents"]["value"].as_str().unwrap();
+    assert!(said.contains("curve[5] c") && said.contains("x from -2 to 2"), "{said}");
+    assert_eq!(hover["range"]["start"], json!({"line": 3, "character": 4}));
+    let said = client.at("textDocument/hover", 3, 1)["contents"]["value"].to_string();
+    assert!(
+        said.contains("subroutine arc(returned curve c") && said.contains("radius r"),
+        "{said}"
+    );
+    let said = client.at("textDocument/hover", 1, 12)["contents"]["value"].to_string();
+    assert!(said.contains("param r = 2 in [1, 3]"), "{said}");
+    let said = client.at("textDocument/hover", 4, 2)["contents"]["value"].to_string();
+    assert!(said.contains("AbsPoint("), "{said}");
+    let said = client.at("textDocument/hover", 7, 12)["contents"]["value"].to_string();
+    assert!(said.contains("Twice a number"), "{said}");
+    assert_eq!(client.at("textDocument/hover", 0, 2), Value::Null);
+
+    // Definition: in the text, and in a library.
+    let there = client.at("textDocument/definition", 7, 17);
+    assert_eq!(there["uri"], URI);
+    assert_eq!(there["range"]["start"], json!({"line": 2, "character": 6}));
+    let there = client.at("textDocument/definition", 3, 1);
+    let path = there["uri"].as_str().unwrap();
+    assert!(path.ends_with("/moldloft-libraries/stdsubs.sdl"), "{path}");
+    let file = std::fs::read_to_string(path.strip_prefix("file://").unwrap()).unwrap();
+    let line = there["range"]["start"]["line"].as_u64().unwrap() as usize;
+    assert!(file.lines().nth(line).unwrap().starts_with("subroutine arc("));
+
+    // Completion: names, kinds, library routines, members.
+    let all = words(&client.at("textDocument/completion", 8, 0));
+    for word in ["c", "x", "r", "P", "arc", "transfinite", "AbsPoint", "d_tanh", "format", "curve"]
+    {
+        assert!(all.iter().any(|w| w == word), "{word} is not among the completions");
+    }
+    assert!(!all.iter().any(|w| w == "y"), "y is local to its routine");
+    let inside = words(&client.at("textDocument/completion", 6, 53));
+    assert!(inside.iter().any(|w| w == "y"), "{inside:?}");
+    let members = words(&client.at("textDocument/completion", 7, 21));
+    assert_eq!(members, ["x", "y", "z"]);
+
+    // Rename keeps to its scope: the argument x is another name than the variable.
+    let place = json!({"line": 7, "character": 6});
+    let id = json!({"uri": URI});
+    let ask = json!({"textDocument": id, "position": place, "newName": "width"});
+    let edits = client.ask("textDocument/rename", ask)["changes"][URI].clone();
+    assert_eq!(edits.as_array().unwrap().len(), 1, "{edits}");
+    let place = json!({"line": 2, "character": 6});
+    let ask = json!({"textDocument": id, "position": place, "newName": "circle"});
+    let edits = client.ask("textDocument/rename", ask)["changes"][URI].clone();
+    assert_eq!(edits.as_array().unwrap().len(), 3, "{edits}");
+    for (new, says) in [
+        ("1x", "is no name"),
+        ("for", "is no name"),
+        ("x", "means something"),
+        ("sqrt", "means something"),
+    ] {
+        let ask = json!({"textDocument": id, "position": place, "newName": new});
+        let answer = client.answer("textDocument/rename", ask);
+        assert!(answer["error"]["message"].as_str().unwrap().contains(says), "{answer}");
+    }
+    let ask =
+        json!({"textDocument": id, "position": {"line": 3, "character": 1}, "newName": "bow"});
+    let answer = client.answer("textDocument/rename", ask);
+    assert!(answer["error"]["message"].as_str().unwrap().contains("not declared in this file"));
+    assert_eq!(client.at("textDocument/references", 2, 6).as_array().unwrap().len(), 3);
+
+    // Formatting and symbols.
+    let ask = json!({"textDocument": id, "options": {}});
+    let edits = client.ask("textDocument/formatting", ask.clone());
+    assert!(edits.as_array().unwrap().len() <= 1, "{edits}");
+    let symbols = client.ask("textDocument/documentSymbol", ask);
+    let names: Vec<&str> =
+        symbols.as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["r", "c", "P", "twice", "x"]);
+
+    // Unknown methods are refused, unknown notices passed over.
+    assert_eq!(
+        client.answer("textDocument/foo", json!({"textDocument": id}))["error"]["code"],
+        -32601
+    );
+    client.tell("$/whatever", json!({}));
+    assert_eq!(client.ask("shutdown", Value::Null), Value::Null);
+    client.tell("exit", Value::Null);
+    assert!(client.child.wait().unwrap().success());
+}
+
+#[test]
+fn diagnostics_come_as_one_types() {
+    let mut client = Client::start();
+    client.open("curve a[3], b[4];\n");
+    // An insertion at the end.
+    let at = json!({"line": 1, "character": 0});
+    let found =
+        client.change(2, json!([{"range": {"start": at, "end": at}, "text": "a = a + b;\n"}]));
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0]["code"], "shapes-differ");
+    let message = found[0]["message"].as_str().unwrap();
+    assert!(message.starts_with("shapes differ: `a` is curve[3], `b` is curve[4]"), "{message}");
+    assert_eq!(found[0]["range"]["start"], json!({"line": 1, "character": 4}));
+    assert_eq!(found[0]["range"]["end"], json!({"line": 1, "character": 5}));
+    let related = found[0]["relatedInformation"].as_array().unwrap();
+    assert_eq!(related.len(), 3, "{related:?}");
+    assert_eq!(related[0]["location"]["uri"], URI);
+    // Several changes in one notice, then the text as a whole.
+    let word = json!({"start": {"line": 1, "character": 8}, "end": {"line": 1, "character": 9}});
+    let found = client.change(
+        3,
+        json!([{"range": word, "text": "a"}, {"range": {"start": at, "end": at}, "text": "a = ;"}]),
+    );
+    assert!(found.iter().all(|d| d["code"] == "unexpected-token"), "{found:?}");
+    assert_eq!(client.change(4, json!([{"text": "float x = 1;"}])), Vec::<Value>::new());
+    // A text without a file, broken in every way.
+    for text in [
+        "",
+        "}",
+        "(((",
+        "\u{feff}",
+        "load \"nothing.sdl\"",
+        "subroutine f(",
+        "\"",
+        "a.",
+        "for (",
+        "𝄞",
+    ] {
+        client.change(5, json!([{"text": text}]));
+        for character in 0..=text.chars().count() as u64 {
+            for method in ["hover", "completion", "definition", "references"] {
+                client.at(&format!("textDocument/{method}"), 0, character);
+            }
+        }
+    }
+    client.tell("textDocument/didClose", json!({"textDocument": {"uri": URI}}));
+    assert_eq!(client.published(), Vec::<Value>::new());
+    client.input = None;
+    let status = client.child.wait().unwrap();
+    assert!(!status.success(), "an end without shutdown is told");
+}

@@ -1,0 +1,70 @@
+"""``moldloft lsp``: the language server, for editors.
+
+The server is a program of its own, ``moldloft-lsp``; this finds it and hands over to it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from moldloft.errors import Error
+
+__all__ = ["add", "run", "server"]
+
+_NAME = "moldloft-lsp" + (".exe" if os.name == "nt" else "")
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    parser.add_argument(
+        "--stdio", action="store_true", help="speak on standard input and output (always so)"
+    )
+    parser.add_argument(
+        "--where", action="store_true", help="print the path of the server and leave"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Becomes the server."""
+    path = server()
+    if options.where:
+        print(path)
+        return 0
+    if os.name == "nt":
+        return subprocess.run([str(path)], check=False).returncode
+    sys.stdout.flush()
+    os.execv(path, [str(path)])
+
+
+def server() -> Path:
+    """The path of the server: ``MOLDLOFT_LSP``, beside this Python, in a checkout, on the path.
+
+    Raises
+    ------
+    Error
+        When it is nowhere; the message says how to build it.
+    """
+    given = os.environ.get("MOLDLOFT_LSP")
+    if given:
+        if not Path(given).is_file():
+            raise Error(f"error: MOLDLOFT_LSP names `{given}`, which is no file")
+        return Path(given)
+    checkout = Path(__file__).resolve().parents[3]
+    target = Path(os.environ.get("CARGO_TARGET_DIR", checkout / "target"))
+    candidates = [Path(sys.executable).parent / _NAME]
+    candidates += [target / profile / _NAME for profile in ("release", "debug")]
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate
+    found = shutil.which(_NAME)
+    if found:
+        return Path(found)
+    raise Error(
+        "error: the language server moldloft-lsp is not installed\n"
+        "help: build it with `cargo install --path crates/lsp` in a checkout of Moldloft"
+    )

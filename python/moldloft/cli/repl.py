@@ -1,0 +1,257 @@
+"""``moldloft repl``: talk to the language line by line.
+
+The lines are a program that is run again at each of them: only what changed is computed. A line that
+has errors is told and left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+from moldloft.cli.eval import as_text
+from moldloft.errors import Error, ModelError
+from moldloft.models import Model, load, loads
+
+__all__ = ["Session", "add", "run"]
+
+_HISTORY_LENGTH = 2_000
+_MOST_ITEMS = 8
+_HELP = """\
+A statement (curve c[5];), a call (arc(c, 0, PI, 1);) or an expression (c[5].x).
+Blocks go on over lines until their brackets close.
+:vars      the variables and their shapes
+:text      the program so far
+:undo      takes back the last line
+:save FILE writes the program
+:quit      ends (so does Ctrl-D)"""
+
+
+class Session:
+    """A program that grows line by line.
+
+    Examples
+    --------
+    >>> session = Session()
+    >>> session.run("curve c[3]; c[3] = {2, 4, 0};")
+    []
+    >>> session.run("c[3]/2")
+    ['{1, 2, 0}']
+    >>> session.run("print c.d1, 7")
+    ['3 7']
+    """
+
+    def __init__(self, model: Model | None = None) -> None:
+        self.model = model or loads("", name="session.sdl")
+        self._before: list[str] = []
+
+    def run(self, entry: str) -> list[str]:
+        """The lines that an entry shows.
+
+        Raises
+        ------
+        ModelError
+            When it has errors; it is left out then.
+        """
+        if not entry.strip():
+            return []
+        document = self.model._document
+        expression = entry.strip().rstrip(";")
+        try:
+            return [shown(document.eval(expression))]
+        except ModelError as error:
+            if _is_expression(expression, error):
+                raise
+        text = document.text()
+        printed = len(document.printed())
+        start = text if not text or text.endswith("\n") else text + "\n"
+        # A statement is closed for whoever forgot it.
+        closed = entry if entry.rstrip().endswith((";", "}")) else entry.rstrip() + ";"
+        known = {(d.id, d.message) for d in document.diagnostics()}
+        document.set_text(start + closed + "\n")
+        if document.has_errors():
+            diagnostics = document.diagnostics()
+            new = [d for d in diagnostics if (d.id, d.message) not in known]
+            told = "\n".join(str(d) for d in new or diagnostics)
+            document.set_text(text)
+            raise ModelError(told, new or diagnostics)
+        self._before.append(text)
+        new = [d for d in document.diagnostics() if (d.id, d.message) not in known]
+        return document.printed()[printed:] + [str(d).rstrip() for d in new]
+
+    def undo(self) -> bool:
+        """Takes back the last entry; false when there is none."""
+        if not self._before:
+            return False
+        self.model._document.set_text(self._before.pop())
+        return True
+
+    def variables(self) -> list[str]:
+        """A line for each variable."""
+        return [f"{name}: {shape}" for name, shape, _ in self.model._document.variables()]
+
+
+def _is_expression(text: str, error: ModelError) -> bool:
+    """Whether the text was meant as an expression, so that its error is the one to show."""
+    ids = {d.id for d in error.diagnostics}
+    syntax = {"unexpected-token", "missing-semicolon", "unclosed-bracket", "not-a-value"}
+    words = text.replace("(", " ").split()
+    if not words or ids & syntax or "=" in text.replace("==", "").replace("<=", ""):
+        return False
+    return "no-value" not in ids
+
+
+def shown(value: Any) -> str:
+    """The value in at most a few lines.
+
+    >>> import numpy as np
+    >>> shown(np.arange(100.0))
+    '{0, 1, 2, 3, 4, 5, 6, 7, ...} farray[100]'
+    """
+    shape = getattr(value, "shape", ())
+    if len(shape) == 1 and shape[0] > _MOST_ITEMS:
+        return as_text(value[:_MOST_ITEMS])[:-1] + f", ...}} farray[{shape[0]}]"
+    if len(shape) == 2 and shape[1] == 3 and shape[0] > _MOST_ITEMS:
+        return as_text(value[:_MOST_ITEMS])[:-1] + f", ...}} curve[{shape[0]}]"
+    if len(shape) == 3 and shape[0] * shape[1] > _MOST_ITEMS:
+        flat = value.reshape(-1, 3)[:_MOST_ITEMS]
+        return as_text(flat)[:-1] + f", ...}} surface[{shape[0]},{shape[1]}]"
+    return as_text(value)
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    parser.add_argument("program", metavar="PROGRAM", nargs="?", help="a program to begin with")
+    parser.add_argument(
+        "--library", metavar="DIR", action="append", default=[], help="a folder to load from"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Reads, runs and shows until the end of the input."""
+    if options.program:
+        model = load(options.program, library=options.library, strict=False)
+    else:
+        model = loads("", name="session.sdl", library=options.library)
+    session = Session(model)
+    terminal = sys.stdin.isatty()
+    failed = False
+    for diagnostic in model.diagnostics:
+        print(str(diagnostic), file=sys.stderr)
+    with _line_editor(session) if terminal else contextlib.nullcontext():
+        if terminal:
+            print("moldloft repl: :help lists the commands, :quit ends", file=sys.stderr)
+        while True:
+            try:
+                entry = _read(terminal)
+            except EOFError:
+                break
+            except KeyboardInterrupt:
+                print(file=sys.stderr)
+                continue
+            if entry.strip() in (":quit", ":q"):
+                break
+            try:
+                lines = _command(session, entry.strip())
+                for line in session.run(entry) if lines is None else lines:
+                    print(line)
+            except Error as error:
+                failed = True
+                print(str(error).rstrip(), file=sys.stderr)
+    return 1 if failed and not terminal else 0
+
+
+def _command(session: Session, entry: str) -> list[str] | None:
+    if not entry.startswith(":"):
+        return None
+    word, _, rest = entry.partition(" ")
+    if word in (":help", ":h"):
+        return _HELP.splitlines()
+    if word == ":vars":
+        return session.variables()
+    if word == ":text":
+        return session.model.text.splitlines()
+    if word == ":undo":
+        return [] if session.undo() else ["there is nothing to take back"]
+    if word == ":save" and rest.strip():
+        from pathlib import Path
+
+        from moldloft.files import Output, commit
+
+        path = Path(rest.strip())
+        commit(path.parent, [Output(path.name, session.model.text.encode())])
+        return [f"wrote {path}"]
+    raise Error(f"error: there is no command `{word}`; :help lists them")
+
+
+def _read(terminal: bool) -> str:
+    """An entry: lines until all brackets are closed."""
+    entry = ""
+    while True:
+        if terminal:
+            line = input("... " if entry else "> ")
+        else:
+            line = sys.stdin.readline()
+            if not line:
+                if entry:
+                    return entry
+                raise EOFError
+            line = line.rstrip("\r\n")
+        entry += line + "\n"
+        if _open_brackets(entry) <= 0:
+            return entry
+
+
+def _open_brackets(text: str) -> int:
+    """How many brackets are open at the end of a text.
+
+    >>> _open_brackets("for (i = 1:3) {"), _open_brackets('print "{"; # (')
+    (1, 0)
+    """
+    depth = 0
+    for line in text.splitlines():
+        quoted = False
+        previous = ""
+        for c in line:
+            if c == '"' and previous != "\\":
+                quoted = not quoted
+            elif not quoted:
+                if c == "#":
+                    break
+                depth += (c in "([{") - (c in ")]}")
+            previous = c
+    return depth
+
+
+@contextlib.contextmanager
+def _line_editor(session: Session) -> Iterator[None]:
+    """History and completion, where the platform has them."""
+    try:
+        import readline
+    except ImportError:
+        yield
+        return
+    from moldloft.cli.journal import state_folder
+
+    path = state_folder().with_name("repl-history")
+    with contextlib.suppress(OSError):
+        readline.read_history_file(path)
+    readline.set_history_length(_HISTORY_LENGTH)
+
+    def complete(_: str, number: int) -> str | None:
+        line = readline.get_line_buffer()[: readline.get_endidx()]
+        found = session.model._document.complete(line)
+        return found[number] if number < len(found) else None
+
+    readline.set_completer_delims(" \t\n()[]{},;=+-*/^|&<>!.:\"")
+    readline.set_completer(complete)
+    readline.parse_and_bind("tab: complete")
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            readline.write_history_file(path)

@@ -1,0 +1,64 @@
+"""``moldloft run``: a program that prints and writes its own files."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from moldloft.cli.console import add_model, open_model, print_json, report
+from moldloft.errors import FileError
+
+__all__ = ["add", "run"]
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    add_model(parser)
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="DIR",
+        default=".",
+        help="folder for the files that the program writes, by default here",
+    )
+    parser.add_argument("--json", action="store_true", help="one object: lines printed, files")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Runs the program; its files are written when it has no errors."""
+    model = open_model(options)
+    failed = model._document.has_errors()
+    report(model.diagnostics)
+    if not options.json:
+        for line in model.printed:
+            print(line)
+    written = [] if failed else _write(Path(options.output), model.written)
+    if options.json:
+        files = [{"path": str(path), "bytes": path.stat().st_size} for path in written]
+        diagnostics = [d.to_dict() for d in model.diagnostics]
+        data = {"ok": not failed, "printed": model.printed, "files": files}
+        print_json(data | {"diagnostics": diagnostics})
+    elif failed and model.written:
+        print(f"{options.model}: errors; nothing was written")
+    else:
+        for path in written:
+            print(f"wrote {path} ({path.stat().st_size} bytes)")
+    return 1 if failed else 0
+
+
+def _write(folder: Path, files: dict[str, bytes]) -> list[Path]:
+    from moldloft.files import Output, commit
+
+    # A link inside the folder must not lead out of it.
+    root = folder.resolve()
+    for name in files:
+        if not (folder / name).resolve().is_relative_to(root):
+            raise FileError(f"error: cannot write `{name}`: a link leads out of `{folder}`")
+    by_folder: dict[Path, list[Output]] = {}
+    for name, data in files.items():
+        path = folder / name
+        by_folder.setdefault(path.parent, []).append(Output(path.name, data))
+    written: list[Path] = []
+    for parent, outputs in by_folder.items():
+        written += commit(parent, outputs)
+    return written

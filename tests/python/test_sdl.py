@@ -1,0 +1,165 @@
+"""The array language from outside: run, eval, repl, the language server, files, derivatives."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import moldloft
+from moldloft.cli import main
+from moldloft.cli.repl import Session
+from moldloft.errors import ModelError
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "missile"
+
+
+def command(*arguments: str, text: str = "") -> subprocess.CompletedProcess[str]:
+    """Runs the command in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "moldloft", *arguments],
+        input=text,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+
+
+def test_run_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program = tmp_path / "p.sdl"
+    program.write_text(
+        'curve c[2] = {1, 2, 3}; print "hello", c.d1;\n'
+        'file f = open("sub/points.txt", "w"); write(f, c); close(f);\n'
+    )
+    out = tmp_path / "out"
+    assert main(["run", str(program), "-o", str(out)]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("hello 2\nwrote ")
+    assert (out / "sub" / "points.txt").read_text() == "1 2 3\n1 2 3\n"
+    assert main(["run", str(program), "-o", str(out), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["ok"] and data["printed"] == ["hello 2"] and data["files"][0]["bytes"] == 12
+
+
+def test_run_with_errors_writes_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "p.sdl"
+    program.write_text('file f = open("a.txt", "w"); write(f, 1); close(f); print nothing;')
+    assert main(["run", str(program), "-o", str(tmp_path / "out")]) == 1
+    captured = capsys.readouterr()
+    assert "unknown-name" in captured.err and "nothing was written" in captured.out
+    assert not (tmp_path / "out").exists()
+
+
+def test_run_does_not_follow_links_out_of_the_folder(tmp_path: Path) -> None:
+    program = tmp_path / "p.sdl"
+    program.write_text('file f = open("link/a.txt", "w"); write(f, 1); close(f);')
+    out, elsewhere = tmp_path / "out", tmp_path / "elsewhere"
+    out.mkdir()
+    elsewhere.mkdir()
+    (out / "link").symlink_to(elsewhere)
+    assert main(["run", str(program), "-o", str(out)]) == 1
+    assert list(elsewhere.iterdir()) == []
+
+
+def test_eval_of_arrays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program = tmp_path / "p.sdl"
+    program.write_text(
+        "surface body[60,20] = {1, 2, 3}; vector a = {1, 0, 0}, b = {0, 2, 0}; curve c[3] = a;"
+    )
+    arguments = ["body[60,1]", "|a .* b|", "c[2:].x", "body[ ,1].d1"]
+    assert main(["eval", str(program), *arguments]) == 0
+    assert capsys.readouterr().out.split("\n") == ["{1, 2, 3}", "2", "{1, 1}", "60", ""]
+
+
+def test_arrays_in_python() -> None:
+    model = moldloft.loads(
+        "param float r = 2; curve c[3]; c = {r*uniform(0, 1, 3), r^2*uniform(1, 1, 3), uniform(0, 0, 3)};"
+        "surface s[2, 3]; s[1,] = c; s[2,] = 2*c;"
+    )
+    assert model["s"].shape == (2, 3, 3)
+    np.testing.assert_array_equal(model["c"], [[0, 4, 0], [1, 4, 0], [2, 4, 0]])
+    assert model.derivative("c[3]", "r").tolist() == [1, 4, 0]
+    assert set(model.variables) == {"c", "s"}
+
+
+@pytest.mark.parametrize("name", ["half", "finned"])
+def test_examples_run(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program = str(EXAMPLES / f"{name}.sdl")
+    assert main(["run", program, "-o", str(tmp_path)]) == 0
+    assert "body" in capsys.readouterr().out
+    coarse = moldloft.load(program)
+    points = np.loadtxt(tmp_path / f"{name}.txt")
+    body = coarse["body"]
+    np.testing.assert_array_equal(
+        points[: body.shape[0] * body.shape[1]], body.transpose(1, 0, 2).reshape(-1, 3)
+    )
+    # Grids of a family are nested.
+    assert main(["eval", program, "--refine", "1", "--json", "body"]) == 0
+    fine = np.array(json.loads(capsys.readouterr().out)[0])
+    tolerance = 1e-12
+    assert np.abs(fine[::2, ::2] - body).max() < tolerance
+
+
+def test_repl() -> None:
+    session = Session()
+    assert session.run('load "stdsubs.sdl"') == []
+    assert session.run("curve c[3]") == []
+    assert session.run("arc(c, 0, PI_d2, 2)") == []
+    assert session.run("c[1]") == ["{2, 0, 0}"]
+    assert session.run("|c[3] - c[1]|")[0].startswith("2.828")
+    assert session.run("uniform(0, 1, 100)")[0].endswith("farray[100]")
+    assert session.run("for (i = 1:2) print i;") == ["1", "2"]
+    assert session.run("print 3") == ["3"]
+    with pytest.raises(ModelError, match="shapes differ"):
+        session.run("c = uniform(0, 1, 4)*{1, 0, 0}")
+    with pytest.raises(ModelError, match="there is no"):
+        session.run("nothing + 1")
+    assert session.variables() == ["c: curve[3]"]
+    # A line with errors is left out; one can be taken back.
+    assert session.run("c[1].x") == ["2"]
+    assert session.run("c[1].x = 7") == []
+    assert session.run("c[1].x") == ["7"]
+    assert session.undo() and session.run("c[1].x") == ["2"]
+    found = session.model._document.complete("transf")
+    assert found == ["transfinite"]
+    assert session.model._document.complete("c[1].") == ["x", "y", "z"]
+
+
+def test_repl_reads_a_stream() -> None:
+    text = "float x = 2\nx + 1\nsubroutine f(returned float y) {\n  y = 3;\n}\nf(x)\nx\n:vars\n:quit\n"
+    done = command("repl", text=text)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split("\n") == ["3", "3", "x: number", ""]
+    failed = command("repl", text="y\n")
+    assert failed.returncode == 1 and "unknown-name" in failed.stderr
+
+
+def test_files_outside_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "secret.txt").write_text("1 2 3")
+    folder = tmp_path / "model"
+    folder.mkdir()
+    program = folder / "p.sdl"
+    program.write_text('file f = open("../secret.txt", "r");')
+    assert main(["run", str(program), "-o", str(tmp_path / "out")]) == 1
+    assert "outside the model's folders" in capsys.readouterr().err
+    for path in ["/tmp/x.txt", "../x.txt"]:
+        program.write_text(f'file f = open("{path}", "w");')
+        assert main(["run", str(program), "-o", str(tmp_path / "out")]) == 1
+        assert "outside-folder" in capsys.readouterr().err
+
+
+def test_wrong_use(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["run"]) == 2
+    assert main(["run", str(tmp_path / "none.sdl")]) == 1
+    program = tmp_path / "p.sdl"
+    program.write_text("float x = refined(3);")
+    assert main(["run", str(program), "--refine", "99"]) == 1
+    assert main(["run", str(program), "--refine", "-1"]) == 1
+    capsys.readouterr()
