@@ -634,7 +634,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return self.call_value(m, value, args, m.program[callee].span);
         }
         if let Some(&routine) = self.env.routines.get(&name) {
+            let errors = self.error_count();
             let value = self.call_routine(m, routine, args, None, span)?;
+            if value.is_none() && self.error_count() > errors {
+                // Why there is none was told.
+                return Err(silent());
+            }
             return value.ok_or_else(|| {
                 let text = m.program.name(symbol);
                 Diagnostic::error("no-value", format!("`{text}` returns no value"))

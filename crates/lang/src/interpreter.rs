@@ -1006,6 +1006,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .help("`moldloft doc --list` lists all kinds")
     }
 
+    /// How many errors there are so far.
+    pub fn error_count(&self) -> usize {
+        self.errors
+    }
+
     /// True while hints are worth a search.
     pub fn hints(&self) -> bool {
         self.errors < MOST_HINTS
