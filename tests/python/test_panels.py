@@ -113,3 +113,21 @@ def test_the_command_tells_all_of_it(tmp_path, capsys: pytest.CaptureFixture[str
     assert main(["check", str(path), "--quality"]) == 0
     told = capsys.readouterr()
     assert "divisions-contradict" in told.out + told.err
+
+
+def test_model_files_keep_what_is_said_of_panels():
+    text = (
+        "AbsPoint a(0, 0, 0); AbsPoint b(1, 0, 0); AbsPoint c(0, 2, 0); AbsPoint d(1, 2, 0);"
+        "Line ab(a, b); Line cd(c, d);"
+        'RuledSurf plate(ab, cd, size = {0.1, 0}, spacing = {"cosine", 1.2},'
+        ' tags = {"wetted", "bottom"}, attributes = "A:Note(left)");'
+    )
+    model = moldloft.loads(text)
+    file = model.convert("ms2")
+    assert "A:Size(0.1 auto) A:Spacing(cosine 1.2) A:Tags(wetted bottom) A:Note(left)" in file
+    again = moldloft.loads(file, name="plate.ms2")
+    assert np.array_equal(again.mesh().vertices, model.mesh().vertices)
+    assert again.mesh().patches[0].tags == model.mesh().patches[0].tags
+    back = again.convert("sdl")
+    assert 'size = {0.1, 0}, spacing = {"cosine", 1.2}, tags = {"wetted", "bottom"}' in back
+    assert 'attributes = "A:Note(left)"' in back

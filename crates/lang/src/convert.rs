@@ -10,6 +10,7 @@ use crate::header;
 use crate::model_file::{
     ModelFileSource, Sorted, bare, identifier, is_layer, is_real, plain_name, spelled, system_name,
 };
+use crate::panel_attributes;
 use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
 use moldloft_registry::{Class, Field, Head, Panels, Spacing, Unit, Value};
@@ -593,6 +594,9 @@ impl<'a> ToModelFile<'a> {
         let layer = format!("A:Layer({})", head.layer);
         if is_layer(&layer) && !tells_layer(attributes) {
             let _ = write!(out, " {layer}");
+        }
+        if let Some(panels) = &head.panels {
+            out += &panel_attributes::written(panels);
         }
         if !attributes.is_empty() {
             let _ = write!(out, " {attributes}");

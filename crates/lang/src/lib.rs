@@ -45,6 +45,7 @@ mod model_file;
 mod module;
 mod objects;
 mod ops;
+mod panel_attributes;
 mod place;
 mod program;
 mod rename;

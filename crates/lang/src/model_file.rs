@@ -7,6 +7,7 @@
 use crate::env::{Binding, Bound, Environment, Evaluation, Param};
 use crate::interpreter::Inputs;
 use crate::module::{Module, Modules};
+use crate::panel_attributes;
 use crate::place::{self, NumberPath};
 use crate::program::{NotLiteral, Program};
 use moldloft_diag::{Diagnostic, FileId, Span};
@@ -432,26 +433,23 @@ impl ModelFileSource {
                 errors.push(place::unplaced(&fault).at(span));
             }
         }
-        for attribute in &sorted.attributes {
-            if let FieldKind::Attribute { name, value } = attribute.kind
-                && self.model.slice(name) == "Layer"
-                && let Ok(layer) = self.model.slice(value).trim().parse::<u8>()
-            {
-                head.layer = layer.into();
+        let mut rest: Vec<&str> = Vec::new();
+        for (k, attribute) in sorted.attributes.iter().enumerate() {
+            let text = self.written(attribute);
+            if let FieldKind::Attribute { name, value } = attribute.kind {
+                let (name, value) = (self.model.slice(name), self.model.slice(value));
+                if let ("Layer", Ok(layer)) = (name, value.trim().parse::<u8>()) {
+                    head.layer = layer.into();
+                }
+                // What the head has by itself need not be kept as text.
+                if k == 0 && is_layer(text) || panel_attributes::read(&mut head, name, value) {
+                    continue;
+                }
             }
+            rest.push(text);
         }
-        head.attributes = self.attributes_text(sorted);
+        head.attributes = (!rest.is_empty()).then(|| rest.join(" ").into());
         head
-    }
-
-    /// The attributes as one text, without a layer in front, which the head has by itself.
-    fn attributes_text(&self, sorted: &Sorted) -> Option<Arc<str>> {
-        let texts: Vec<&str> = sorted.attributes.iter().map(|f| self.written(f)).collect();
-        let rest = match texts.first() {
-            Some(first) if is_layer(first) => &texts[1..],
-            _ => &texts[..],
-        };
-        (!rest.is_empty()).then(|| rest.join(" ").into())
     }
 
     /// Where the fault of an object lies.

@@ -1,0 +1,76 @@
+//! What model files have no column for: the size, spacing and tags of panels, as attributes.
+//!
+//! `A:Size(0.5 0)`, `A:Spacing(cosine 1.2)`, `A:Tags(wetted keel)`; along u, then v, with `auto`
+//! where nothing is said. An attribute of these names that says something else is kept as it is.
+
+use moldloft_registry::{Head, Panels, Value};
+use std::fmt::Write;
+
+/// The attributes of a model file's line that say what a head says of its panels.
+pub(crate) fn written(panels: &Panels) -> String {
+    let mut out = String::new();
+    if panels.size.iter().any(Option::is_some) {
+        let [u, v] = panels.size.map(|s| s.map_or("auto".into(), |s| s.to_string()));
+        let _ = write!(out, " A:Size({u} {v})");
+    }
+    if panels.spacing.iter().any(Option::is_some) {
+        let spelled = panels.spacing.map(|s| s.map_or("auto".into(), |s| s.spelled()));
+        let [u, v] = spelled.map(|s| s.replace('"', ""));
+        let _ = write!(out, " A:Spacing({u} {v})");
+    }
+    if !panels.tags.is_empty() {
+        let _ = write!(out, " A:Tags({})", panels.tags.join(" "));
+    }
+    out
+}
+
+/// Takes over what an attribute says of panels; false when it says nothing of them.
+pub(crate) fn read(head: &mut Head, name: &str, text: &str) -> bool {
+    let argument = match name {
+        "Size" => "size",
+        "Spacing" => "spacing",
+        "Tags" => "tags",
+        _ => return false,
+    };
+    let words = text.split_whitespace().map(|word| match word.parse::<f64>() {
+        Ok(x) if name != "Tags" => Value::<f64>::Number(x),
+        _ => Value::text(word),
+    });
+    let value = Value::list(words);
+    let counts = matches!(&value, Value::List(items) if name == "Tags" || items.len() == 2);
+    counts && head.set(argument, &value).is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldloft_registry::Class;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let mut head = Head::of(Class::Surface);
+        let words = |words: &[&str]| Value::<f64>::list(words.iter().map(|w| Value::text(w)));
+        head.set("size", &Value::list([Value::Number(0.5), Value::Number(0.0)])).unwrap();
+        let spacing = [Value::<f64>::text("cosine"), Value::Number(1.25)];
+        head.set("spacing", &Value::list(spacing)).unwrap();
+        head.set("tags", &words(&["wetted", "keel"])).unwrap();
+        let text = written(head.panels.as_ref().unwrap());
+        assert_eq!(text, " A:Size(0.5 auto) A:Spacing(cosine 1.25) A:Tags(wetted keel)");
+        let mut again = Head::of(Class::Surface);
+        for part in text.trim().trim_end_matches(')').split(") ") {
+            let (name, value) = part.trim_start_matches("A:").split_once('(').unwrap();
+            assert!(read(&mut again, name, value));
+        }
+        assert_eq!(again.panels, head.panels);
+    }
+
+    #[test]
+    fn others_of_the_name_are_left_alone() {
+        let mut head = Head::of(Class::Surface);
+        for (name, text) in [("Size", "big"), ("Spacing", "1 2 3"), ("Size", "-1 2"), ("Note", "x")]
+        {
+            assert!(!read(&mut head, name, text), "{name}({text})");
+        }
+        assert_eq!(head, Head::of(Class::Surface));
+    }
+}
