@@ -129,5 +129,6 @@ def test_model_files_keep_what_is_said_of_panels():
     assert np.array_equal(again.mesh().vertices, model.mesh().vertices)
     assert again.mesh().patches[0].tags == model.mesh().patches[0].tags
     back = again.convert("sdl")
+    assert "divisions = {0, 8}" in back
     assert 'size = {0.1, 0}, spacing = {"cosine", 1.2}, tags = {"wetted", "bottom"}' in back
     assert 'attributes = "A:Note(left)"' in back

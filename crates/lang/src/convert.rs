@@ -580,7 +580,12 @@ impl<'a> ToModelFile<'a> {
     fn head(&self, head: &Head, class: Class) -> String {
         let mut out = format!(" {} {}", head.colour, head.visible);
         // 0 leaves a count to the neighbours.
-        let ([nu, nv], [mu, mv]) = (head.divisions, head.subdivisions);
+        let ([mut nu, mut nv], [mu, mv]) = (head.divisions, head.subdivisions);
+        if let Some(panels) = head.panels.as_ref().filter(|_| !head.divided) {
+            // A size counts where no number is stated.
+            nu = if panels.size[0].is_some() { 0 } else { nu };
+            nv = if panels.size[1].is_some() { 0 } else { nv };
+        }
         let _ = match class.dimension() {
             Some(1) if self.legacy && mu == Head::of(class).subdivisions[0] => {
                 write!(out, " {nu}")
