@@ -7,8 +7,9 @@
 
 use crate::document::{Document, Source};
 use crate::header;
-use crate::model_file::{
-    ModelFileSource, Sorted, bare, identifier, is_layer, is_real, plain_name, spelled, system_name,
+use crate::model_file::{ModelFileSource, Sorted};
+use crate::model_file_names::{
+    bare, identifier, is_layer, is_real, plain_name, spelled, system_name,
 };
 use crate::panel_attributes;
 use moldloft_diag::Diagnostic;

@@ -42,6 +42,8 @@ mod library;
 mod measures;
 mod member;
 mod model_file;
+mod model_file_formula;
+mod model_file_names;
 mod module;
 mod objects;
 mod ops;

@@ -4,14 +4,14 @@
 //! field of the line is which argument. Parents may stand below their children in the file: the
 //! objects are declared in an order in which they do not.
 
-use crate::env::{Binding, Bound, Environment, Evaluation, Param};
+use crate::env::{Environment, Evaluation};
 use crate::interpreter::Inputs;
-use crate::module::{Module, Modules};
+use crate::model_file_names::{degrees, is_layer, is_real, system_name, words};
 use crate::panel_attributes;
 use crate::place::{self, NumberPath};
 use crate::program::{NotLiteral, Program};
 use moldloft_diag::{Diagnostic, FileId, Span};
-use moldloft_model::{Applied, Declaration, Extent, Graph, Object, Run};
+use moldloft_model::{Applied, Declaration, Extent, Object, Run};
 use moldloft_num::trace::Key;
 use moldloft_registry::{
     Class, Fault, Field, Given, Head, Registry, Row, Scalar, Unit, Value, arrange,
@@ -19,7 +19,6 @@ use moldloft_registry::{
 use moldloft_syntax::model_file::{
     self, Field as Written, FieldKind, Fields, ModelFile, NumberId, Object as Line,
 };
-use moldloft_syntax::number;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -35,7 +34,7 @@ pub(crate) struct ModelFileSource {
     model: ModelFile,
     lines: Vec<Line>,
     /// The first object of each name, by its place in `lines`.
-    names: HashMap<Box<str>, usize>,
+    pub names: HashMap<Box<str>, usize>,
 }
 
 /// A number of the file that an argument is.
@@ -82,14 +81,14 @@ struct Root {
 }
 
 /// Why a field has no value.
-enum Trouble {
+pub(crate) enum Trouble {
     /// What is wrong with it.
     Wrong(Box<Diagnostic>),
     /// It refers to an object that is missing because of this root.
     Blocked { root: usize, span: Span },
 }
 
-fn wrong(diagnostic: Diagnostic) -> Trouble {
+pub(crate) fn wrong(diagnostic: Diagnostic) -> Trouble {
     Trouble::Wrong(Box::new(diagnostic))
 }
 
@@ -263,7 +262,7 @@ impl ModelFileSource {
         sorted
     }
 
-    fn written(&self, field: &Written) -> &str {
+    pub fn written(&self, field: &Written) -> &str {
         self.model.slice(field.span)
     }
 
@@ -527,17 +526,17 @@ impl ModelFileSource {
 }
 
 /// Makes the objects of an [`Extent::Whole`] application.
-struct Producer<'a, 'g, T: Scalar> {
-    source: &'a ModelFileSource,
-    registry: &'a Registry,
-    host: Program<'a>,
-    env: &'a mut Environment<T>,
+pub(crate) struct Producer<'a, 'g, T: Scalar> {
+    pub source: &'a ModelFileSource,
+    pub registry: &'a Registry,
+    pub host: Program<'a>,
+    pub env: &'a mut Environment<T>,
     /// The numbers of variables and formulas, by their place in the file.
-    reals: HashMap<usize, T>,
-    inputs: Inputs<'a, T>,
-    run: &'a mut Run<'g, T>,
+    pub reals: HashMap<usize, T>,
+    pub inputs: Inputs<'a, T>,
+    pub run: &'a mut Run<'g, T>,
     /// By the place of the object in the file.
-    outcomes: Vec<Option<Outcome>>,
+    pub outcomes: Vec<Option<Outcome>>,
     roots: Vec<Root>,
     /// How often a nearest name was looked for, which takes long in large models.
     suggestions: usize,
@@ -714,141 +713,6 @@ impl<T: Scalar> Producer<'_, '_, T> {
     }
 
     /// The number of a variable or formula.
-    fn real(&mut self, line: &Line, sorted: &Sorted) -> Result<T, Trouble> {
-        let source = self.source;
-        let (entity, name) = (source.model.slice(line.entity), source.model.slice(line.name));
-        let fields = &sorted.head;
-        let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
-        if entity == "Formula" {
-            let Some(written) = fields.iter().find(|f| f.kind == FieldKind::Formula) else {
-                return Err(wrong(
-                    Diagnostic::error("missing-field", format!("`{name}` needs an expression"))
-                        .at(end)
-                        .expected("an expression in brackets: Formula area [length*beam];"),
-                ));
-            };
-            return self.formula(written);
-        }
-        let slash = fields.iter().position(|f| f.kind == FieldKind::Slash);
-        let numbers = |fields: &[Written]| -> Vec<f64> {
-            let number = |f: &Written| match f.kind {
-                FieldKind::Number(id) => Some(source.model[id].value),
-                _ => None,
-            };
-            fields.iter().filter_map(number).collect()
-        };
-        let mut data = numbers(slash.map_or(&fields[..], |at| &fields[at + 1..]));
-        // Without a slash, colour and visibility may stand in front.
-        if slash.is_none() && data.len() == 5 {
-            data.drain(..2);
-        }
-        let (default, range) = match data[..] {
-            [value] => (value, None),
-            [value, low, high] if low <= high => (value, Some((low, high))),
-            _ => {
-                return Err(wrong(
-                    Diagnostic::error("missing-field", format!("`{name}` needs a value"))
-                        .at(end)
-                        .expected("a value, or a value and its range: Variable beam 5 3 7;")
-                        .found(format!("{} numbers", data.len())),
-                ));
-            }
-        };
-        let x = self.inputs.overrides.get(name).copied().unwrap_or(default);
-        if let Some((low, high)) = range
-            && !(low..=high).contains(&x)
-        {
-            return Err(wrong(
-                Diagnostic::error("out-of-range", format!("`{name}` = {x} is out of its range"))
-                    .at(line.name)
-                    .expected(format!("a number from {low} to {high}"))
-                    .found(x.to_string()),
-            ));
-        }
-        let value = (self.inputs.seed)(name, T::from(x));
-        self.env.params.push(Param {
-            name: name.to_string(),
-            value: value.re(),
-            default,
-            range,
-            is_int: false,
-            span: line.name,
-        });
-        self.env.param_values.push(value);
-        Ok(value)
-    }
-
-    /// The value of `=name` or `[expression]`, in the names of the file.
-    fn formula(&mut self, written: &Written) -> Result<T, Trouble> {
-        let source = self.source;
-        let spelled = source.written(written);
-        for (_, word) in words(spelled) {
-            let outcome = source.names.get(word).and_then(|&at| self.outcomes[at]);
-            if let Some(Outcome::Missing(root)) = outcome {
-                return Err(Trouble::Blocked { root, span: written.span });
-            }
-        }
-        let bad = |message: String| {
-            wrong(
-                Diagnostic::error("bad-formula", format!("the formula `{spelled}`: {message}"))
-                    .at(written.span)
-                    .expected("a number computed from variables, formulas and objects above it"),
-            )
-        };
-        let (program, expr, found) =
-            moldloft_syntax::sdl::parse_expr(bare(spelled).to_string(), source.model.file());
-        if let Some(first) = found.iter().find(|d| d.is_error()) {
-            return Err(bad(first.message.clone()));
-        }
-        let modules = &mut *self.host.modules;
-        let at = modules.add_expression(program, self.registry);
-        let module = modules.get(at).clone();
-        self.env.globals.clear();
-        self.env.globals.resize_with(modules.name_count(), || None);
-        for &name in &module.names {
-            let Some(&line) = source.names.get(&**modules.text(name)) else { continue };
-            let what = match self.outcomes[line] {
-                Some(Outcome::Built(key)) => Binding::Object(key),
-                Some(Outcome::Real) => Binding::variable(
-                    moldloft_syntax::sdl::Type::Float,
-                    Value::Number(self.reals[&line]),
-                ),
-                _ => continue,
-            };
-            self.env.globals[name.0 as usize] = Some(Bound { span: Span::UNKNOWN, what });
-        }
-        let mut told = Vec::new();
-        let loader = crate::module::Loader {
-            world: self.host.world,
-            registry: self.registry,
-            sources: &mut *self.host.sources,
-            diagnostics: &mut told,
-        };
-        let mut interpreter = crate::interpreter::Interpreter::new(
-            modules,
-            loader,
-            &mut *self.run,
-            &mut *self.env,
-            self.inputs.again(),
-        );
-        interpreter.current = at;
-        // Only what nests deep needs a stack of its own.
-        let nests = spelled.bytes().filter(|b| b"([{^-!".contains(b)).count() > 8;
-        let mut evaluate = || interpreter.operand(&module, expr);
-        let value = if nests { crate::program::with_stack(evaluate) } else { evaluate() };
-        drop(module);
-        self.host.modules.remove_expression(at);
-        self.env.globals.clear();
-        match value {
-            Ok(Value::Number(x)) if x.is_finite() => Ok(x),
-            Ok(other) => Err(bad(format!("it is {}, not a finite number", other.class().a()))),
-            Err(diagnostic) if diagnostic.id == crate::interpreter::SILENT => {
-                Err(bad("it depends on something that failed".into()))
-            }
-            Err(diagnostic) => Err(bad(diagnostic.message.clone())),
-        }
-    }
-
     /// The value of a column.
     fn value(&mut self, field: &Field, written: &Written) -> Result<Value<T>, Trouble> {
         if !field.many {
@@ -1037,33 +901,6 @@ impl Root {
     }
 }
 
-/// True for the words of numbers without objects.
-pub(crate) fn is_real(entity: &str) -> bool {
-    matches!(entity, "Variable" | "Formula")
-}
-
-/// A formula without its `=` or brackets.
-pub(crate) fn bare(formula: &str) -> &str {
-    let inside = formula.strip_prefix('[').map(|f| f.strip_suffix(']').unwrap_or(f));
-    inside.unwrap_or_else(|| formula.trim_start_matches('=')).trim()
-}
-
-/// The words of a formula that may be names, with where they begin; not what follows a point.
-pub(crate) fn words(formula: &str) -> impl Iterator<Item = (usize, &str)> {
-    let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let mut at = 0;
-    std::iter::from_fn(move || {
-        let begin = at + formula[at..].find(word)?;
-        let length = formula[begin..].find(|c| !word(c)).unwrap_or(formula.len() - begin);
-        at = begin + length;
-        Some((begin, &formula[begin..at]))
-    })
-    .filter(move |(begin, word)| {
-        let member = formula[..*begin].ends_with('.');
-        !member && word.starts_with(|c: char| !c.is_ascii_digit())
-    })
-}
-
 fn radians<T: Scalar>(degrees: T) -> T {
     degrees * (std::f64::consts::PI / 180.0)
 }
@@ -1118,118 +955,4 @@ fn divisions(class: Class, fields: &[Written]) -> Result<Vec<Part>, &'static str
 
 fn is_pair(field: &Written) -> bool {
     matches!(field.kind, FieldKind::Pair(..))
-}
-
-/// True for `A:Layer(3)`, spelled as the writer does.
-pub(crate) fn is_layer(attribute: &str) -> bool {
-    let number = attribute.strip_prefix("A:Layer(").and_then(|rest| rest.strip_suffix(')'));
-    number.is_some_and(|n| n.parse::<u8>().is_ok_and(|layer| layer > 0 && layer.to_string() == n))
-}
-
-/// The plane "y=0" of the name `*Y=0`.
-pub(crate) fn system_name(text: &str) -> Option<String> {
-    let plane = text.strip_prefix('*')?.to_ascii_lowercase();
-    matches!(&*plane, "x=0" | "y=0" | "z=0").then_some(plane)
-}
-
-/// The angle in degrees: the shortest decimal that reads back as these very radians.
-pub(crate) fn degrees(radians: f64) -> f64 {
-    let near = radians.to_degrees();
-    let shortest = (0..17).filter_map(|digits| format!("{near:.digits$e}").parse::<f64>().ok());
-    let neighbours = [near.next_up(), near.next_down()];
-    let exact = |x: &f64| x.to_radians() == radians;
-    shortest.chain(neighbours).find(exact).unwrap_or(near)
-}
-
-/// The name of an object as an identifier of the language; [`plain_name`] takes it back.
-///
-/// A character that no identifier has becomes `_x2d_`, its code in hexadecimal digits; so do the
-/// first letter of a reserved word and a `_` that would look like the beginning of such a code.
-pub(crate) fn identifier(name: &str) -> String {
-    let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let code = |c: char| format!("_x{:02x}_", u32::from(c));
-    let mut out = String::with_capacity(name.len());
-    for (at, c) in name.char_indices() {
-        let rest = &name[at + c.len_utf8()..];
-        let like_code = c == '_'
-            && rest.strip_prefix('x').is_some_and(|rest| {
-                let after = rest.trim_start_matches(|c| matches!(c, '0'..='9' | 'a'..='f'));
-                let ends = after.starts_with('_') || after.starts_with(|c| !word(c));
-                rest.len() - after.len() >= 2 && ends
-            });
-        if !word(c) || like_code || (at == 0 && c.is_ascii_digit()) {
-            out.push_str(&code(c));
-        } else {
-            out.push(c);
-        }
-    }
-    let may_be_reserved = !out.is_empty() && out.bytes().all(|b| b.is_ascii_lowercase());
-    if may_be_reserved && !stands_as_name(&out) {
-        let first = out.remove(0);
-        out.insert_str(0, &code(first));
-    }
-    out
-}
-
-fn stands_as_name(word: &str) -> bool {
-    use moldloft_syntax::sdl;
-    if matches!(word, "param" | "assert" | "field" | "set" | "in") {
-        return false;
-    }
-    let (program, expr, found) = sdl::parse_expr(word.to_string(), FileId(0));
-    found.is_empty() && program.as_name(expr).is_some()
-}
-
-/// The name that became this identifier.
-pub(crate) fn plain_name(identifier: &str) -> String {
-    let mut out = String::with_capacity(identifier.len());
-    let mut rest = identifier;
-    while let Some(at) = rest.find("_x") {
-        out.push_str(&rest[..at]);
-        let digits = &rest[at + 2..];
-        let length = digits.find(|c| !matches!(c, '0'..='9' | 'a'..='f')).unwrap_or(digits.len());
-        let c = u32::from_str_radix(&digits[..length], 16).ok().and_then(char::from_u32);
-        match c {
-            Some(c) if length >= 2 && digits[length..].starts_with('_') => {
-                out.push(c);
-                rest = &digits[length + 1..];
-            }
-            _ => {
-                out.push('_');
-                rest = &rest[at + 1..];
-            }
-        }
-    }
-    out + rest
-}
-
-/// Lets an expression find the objects that a model file made, by their names or by the
-/// identifiers that stand for them.
-pub(crate) fn bind_objects<T: Scalar>(
-    modules: &Modules,
-    expression: &Module,
-    graph: &Graph<T>,
-    env: &mut Environment<T>,
-) {
-    env.globals.resize_with(modules.name_count(), || None);
-    for &name in &expression.names {
-        let text = modules.text(name);
-        let known = &mut env.globals[name.0 as usize];
-        if known.is_none()
-            && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
-        {
-            *known = Some(Bound { span: Span::UNKNOWN, what: Binding::Object(key) });
-        } else if known.is_none()
-            && let Some(&x) = env.numbers.get(&**text)
-        {
-            let ty = moldloft_syntax::sdl::Type::Float;
-            let what = Binding::variable(ty, Value::Number(x));
-            *known = Some(Bound { span: Span::UNKNOWN, what });
-        }
-    }
-}
-
-/// A number as model files spell it.
-pub(crate) fn spelled(value: f64, unit: Unit) -> String {
-    number::plain(if unit == Unit::Angle { degrees(value) } else { value })
 }

@@ -100,7 +100,7 @@ impl Program<'_> {
         let at = self.modules.add_expression(program, self.registry);
         let module = self.modules.get(at).clone();
         let Evaluation { graph, env } = evaluation;
-        crate::model_file::bind_objects(self.modules, &module, graph, env);
+        crate::model_file_formula::bind_objects(self.modules, &module, graph, env);
         let stopped = std::mem::take(&mut env.stopped);
         let loader = Loader {
             world: self.world,

@@ -166,7 +166,7 @@ impl SketchFile {
         let name = &drawn.object.name;
         let chosen =
             if self.objects.len() == 1 && stem.eq_ignore_ascii_case(name) { stem } else { name };
-        crate::model_file::identifier(chosen)
+        crate::model_file_names::identifier(chosen)
     }
 }
 

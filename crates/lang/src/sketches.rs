@@ -62,7 +62,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             self.drawn(drawn, &prefix, &values, site);
             // Found under its own name as well, and in small letters: sketches do not tell them apart.
-            let own = crate::model_file::identifier(&drawn.object.name);
+            let own = crate::model_file_names::identifier(&drawn.object.name);
             for alias in [&prefix, &prefix.to_ascii_lowercase(), &own] {
                 let name = self.modules.name(alias);
                 self.env.globals.resize_with(self.modules.name_count(), || None);
