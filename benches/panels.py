@@ -1,6 +1,8 @@
 """A parameter is changed and the panels are asked for again, from Python: milliseconds a change.
 
-The hull of the yacht at 100 x 200 panels, and 30 patches of about 20 000 panels that share curves.
+The hull of the yacht at 100 x 200 panels, 30 patches of about 20 000 panels that share curves, and
+the platform and the whole yacht, whose snakes are projections and intersections, as they are and
+finer.
 Run with `python benches/panels.py`. The aim is 16 ms, a picture's time.
 """
 
@@ -8,6 +10,7 @@ from __future__ import annotations
 
 import gc
 import itertools
+import re
 import statistics
 import time
 from pathlib import Path
@@ -16,7 +19,8 @@ import numpy as np
 
 import moldloft
 
-HULL = Path(__file__).parent.parent / "examples" / "sailboat" / "hull.sdl"
+EXAMPLES = Path(__file__).parent.parent / "examples"
+HULL = EXAMPLES / "sailboat" / "hull.sdl"
 CHANGES = 60
 
 
@@ -34,6 +38,15 @@ def patches(count: int = 30, nu: int = 33, nv: int = 20) -> str:
         divisions = f"{{{nu}, {nv}}}" if k == 0 else f"{{0, {nv}}}"
         lines.append(f"RuledSurf S{k}(c{k}, c{k + 1}, divisions = {divisions});")
     return "\n".join(lines)
+
+
+def finer(text: str, times: int) -> str:
+    """The text with more divisions."""
+
+    def more(found: re.Match[str]) -> str:
+        return f"divisions = {{{int(found[1]) * times}, {int(found[2]) * times}}}"
+
+    return re.sub(r"divisions = \{(\d+), (\d+)\}", more, text)
 
 
 def measure(name: str, model: moldloft.Model, param: str, values: list[float]) -> None:
@@ -64,6 +77,14 @@ def main() -> None:
     text = patches().replace("param float swell", "param float all").replace("(0, 0, ", "(0, all, ")
     text = text.replace("swell", "all")
     measure("30 patches, all change", moldloft.loads(text), "all", [0.9, 1.1, 1.2])
+    for path, param, values, times in (
+        ("platform/platform.sdl", "leg_radius", [7.5, 8.5, 9.0], (1, 2)),
+        ("sailboat/yacht.sdl", "beam", [9.5, 10.0, 10.5], (1, 4)),
+    ):
+        for k in times:
+            text = finer((EXAMPLES / path).read_text(), k)
+            name = Path(path).stem + (f", divisions x {k}" if k > 1 else "")
+            measure(name, moldloft.loads(text), param, values)
 
 
 if __name__ == "__main__":

@@ -30,11 +30,13 @@ if TYPE_CHECKING:
     from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model, Param, load, loads
     from moldloft.objects import Object
+    from moldloft.searches import Branch, Intersection, NearestPoints
     from moldloft.sketches import Sketch, SketchError
 
 __all__ = [
     "Block",
     "Blocks",
+    "Branch",
     "Builder",
     "Diagnostic",
     "Error",
@@ -43,9 +45,11 @@ __all__ = [
     "FileError",
     "HydrostaticTable",
     "Hydrostatics",
+    "Intersection",
     "Mesh",
     "Model",
     "ModelError",
+    "NearestPoints",
     "Object",
     "Param",
     "Patch",
@@ -87,6 +91,9 @@ _HOMES = {
     "model": "moldloft.builder",
     "param": "moldloft.builder",
     "Object": "moldloft.objects",
+    "Branch": "moldloft.searches",
+    "Intersection": "moldloft.searches",
+    "NearestPoints": "moldloft.searches",
     "Sketch": "moldloft.sketches",
     "SketchError": "moldloft.sketches",
     "fair": "moldloft.fairing",

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from moldloft._core import Document
     from moldloft.fairing.surface import Look
+    from moldloft.searches import Intersection, NearestPoints
 
     Floats = NDArray[np.float64]
 
@@ -157,6 +158,83 @@ class Object:
         from moldloft.fairing.surface import Look, _parameters
 
         return Look(self._document.look(self.name, _parameters(u), _parameters(v)))
+
+    def nearest(self, points: ArrayLike) -> NearestPoints:
+        """The points of a curve or surface that are nearest to given ones, all at once.
+
+        The first call on a shape prepares it for searches (milliseconds); later calls, of any
+        number of points, use that until the shape changes. The answers do not depend on each other.
+
+        Parameters
+        ----------
+        points
+            Array of shape ``(…, 3)``.
+
+        Returns
+        -------
+        NearestPoints
+            Parameters, feet, distances and statuses.
+
+        Raises
+        ------
+        ModelError
+            When the object is no curve or surface, the shape is not ``(…, 3)``, or a number is
+            not finite.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); Line edge(A, B);")
+        >>> near = m["edge"].nearest([[0.5, 1, 0], [5, 0, 0]])
+        >>> near.parameters, near.distances
+        (array([0.25, 1.  ]), array([1., 3.]))
+        >>> near.statuses.tolist()
+        ['ok', 'edge-clamped']
+        """
+        from moldloft.searches import nearest
+
+        return nearest(self, points)
+
+    def intersect(self, other: Object | str | tuple[ArrayLike, ArrayLike]) -> Intersection:
+        """What a curve or surface has in common with another, or with a plane.
+
+        Two surfaces, or a surface and a plane, cross in branches; a curve meets the other in
+        points. All branches longer than 2 % of the size are found that cross at an angle somewhere,
+        and all points where a curve crosses; on shapes that are no B-splines up to the third degree
+        this is as right as cubic pieces near them are.
+
+        Parameters
+        ----------
+        other
+            A curve, surface or plane of this model or another, a plane as ``(point, normal)``, or
+            as text like ``"z=0.5"``.
+
+        Returns
+        -------
+        Intersection
+            Branches and points; empty, and false, when there is nothing in common.
+
+        Raises
+        ------
+        ModelError
+            When one of the two is something else, or a plane has no normal.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads('''
+        ... AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 2);
+        ... Line l(A, B); Line m(C, D); RuledSurf S(l, m); Line up(A, D);
+        ... ''')
+        >>> cut = m["S"].intersect("z=1")
+        >>> len(cut.branches), cut.branches[0].ends
+        (1, ('edge', 'edge'))
+        >>> m["up"].intersect(([0, 1.5, 0], [0, 1, 0])).points
+        array([[2. , 1.5, 1. ]])
+        """
+        from moldloft.searches import intersect
+
+        return intersect(self, other)
 
     def delete(self) -> None:
         """Removes the object from the model and its text; refused while others depend on it."""

@@ -5,11 +5,25 @@
 mod common;
 
 use common::{Random, bumpy};
-use moldloft_locate::NearestSurface;
-use moldloft_num::{Order, Surface, Vec3};
+use moldloft_locate::branches::{Branches, CutSurface};
+use moldloft_locate::march::Crossing;
+use moldloft_locate::{NearestSurface, by_place};
+use moldloft_num::{Order, Plane, Surface, Vec3};
 use std::time::Instant;
 
+/// Seconds of this thread's processor time, which other programs do not add to; of the clock where
+/// the system does not tell.
+fn seconds(begin: Instant) -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let ns = text.and_then(|t| t.split(' ').next()?.parse::<f64>().ok());
+    ns.map_or_else(|| begin.elapsed().as_secs_f64(), |ns| ns * 1e-9)
+}
+
+/// How often an intersection is made for one figure.
+const REPEATS: usize = 20;
+
 fn main() {
+    let begin = Instant::now();
     let s = bumpy(20, 7);
     let start = Instant::now();
     let prepared = NearestSurface::new(&s);
@@ -28,13 +42,37 @@ fn main() {
         })
         .collect();
     for (name, points) in [("near", near), ("anywhere", wide)] {
+        let points: Vec<Vec3> = by_place(&points).into_iter().map(|k| points[k as usize]).collect();
         // The least of several runs: what else the machine does only adds.
         let run = |_| {
-            let start = Instant::now();
+            let start = seconds(begin);
             let sum: f64 = points.iter().map(|p| prepared.nearest(&s, *p).distance).sum();
-            (start.elapsed().as_secs_f64() / points.len() as f64, sum)
+            ((seconds(begin) - start) / points.len() as f64, sum)
         };
         let (each, sum) = (0..7).map(run).fold((f64::INFINITY, 0.0), |a, b| (a.0.min(b.0), b.1));
         println!("{name}: {:.2} us a point (sum of distances {sum})", each * 1e6);
+    }
+    let other = bumpy(20, 8);
+    let z = Plane { point: Vec3::of(0.0, 0.0, 0.5), normal: Vec3::of(0.0, 0.0, 1.0) };
+    let [first, second] = [CutSurface::new(&s), CutSurface::new(&other)];
+    for (name, crossing, second) in [
+        ("a plane", Crossing::with_plane(&s, z), None),
+        ("a second such surface", Crossing::with_surface(&s, &other), Some(&second)),
+    ] {
+        let timed = |work: &dyn Fn() -> Branches| {
+            let (start, mut found) = (seconds(begin), Branches::default());
+            for _ in 0..REPEATS {
+                found = work();
+            }
+            ((seconds(begin) - start) / REPEATS as f64 * 1e3, found)
+        };
+        let (ms, found) = timed(&|| crossing.branches_in(&first, second));
+        let (cold, _) = timed(&|| crossing.branches());
+        let stations: usize = found.branches.iter().map(|b| b.stations.len()).sum();
+        println!(
+            "{name}: {} branches of {stations} points, complete {}: {ms:.2} ms prepared, {cold:.2} ms not",
+            found.branches.len(),
+            found.complete
+        );
     }
 }

@@ -483,6 +483,32 @@ impl<'a> Search<'a> {
     }
 }
 
+/// An order in which points near each other come after one another, so that what a search reads is
+/// still at hand: along a curve of Morton through the box around them (Morton 1966).
+pub fn by_place(points: &[Vec3]) -> Vec<u32> {
+    let finite = points.iter().copied().filter(|p| p.is_finite());
+    let around = Box3::around(finite);
+    let side = around.high - around.low;
+    let cell = |x: f64, low: f64, side: f64| -> u64 {
+        let share = if side > 0.0 { (x - low) / side } else { 0.0 };
+        // Ten bits; NaN goes to 0.
+        let mut k = (share * 1024.0).clamp(0.0, 1023.0) as u64;
+        k = (k | k << 16) & 0x0300_00ff;
+        k = (k | k << 8) & 0x0300_f00f;
+        k = (k | k << 4) & 0x030c_30c3;
+        (k | k << 2) & 0x0924_9249
+    };
+    let key = |p: &Vec3| {
+        cell(p.x, around.low.x, side.x)
+            | cell(p.y, around.low.y, side.y) << 1
+            | cell(p.z, around.low.z, side.z) << 2
+    };
+    let mut keys: Vec<u64> =
+        points.iter().enumerate().map(|(k, p)| key(p) << 32 | k as u64).collect();
+    keys.sort_unstable();
+    keys.into_iter().map(|k| k as u32).collect()
+}
+
 /// A curve prepared for many nearest-point questions; see [`NearestSurface`].
 #[derive(Clone, Debug)]
 pub struct NearestCurve {

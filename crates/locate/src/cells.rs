@@ -9,10 +9,12 @@
 
 use crate::pieces::Patch;
 use crate::tree::{Boxes, SurfaceTree};
-use moldloft_num::{Box3, Surface, Vec3};
+use moldloft_num::{Box3, Order, SurfJet, Surface, Vec3};
 
-/// Pieces are halved until they bend by less than this share of their length …
+/// Pieces are halved until they bend by less than this share of their length, for nearest points
+/// and for intersections …
 const BEND: f64 = 0.06;
+const COARSE_BEND: f64 = 0.12;
 
 /// … but into no more cells than this, each and altogether.
 const MOST_HALVINGS: u32 = 6;
@@ -152,18 +154,22 @@ impl Flat {
 }
 
 impl Bent {
-    fn new(cell: &Patch, x: &[Vec3; 16], piece: u32, place: [[f64; 2]; 2]) -> Self {
+    fn new(cell: &Patch, x: &[Vec3; 16], piece: u32, place: [[f64; 2]; 2], full: bool) -> Self {
         let (s, t) = (derivative(x, 0), derivative(x, 1));
         let (ss, st, tt) = (derivative(&s, 0), derivative(&s, 1), derivative(&t, 1));
         let third =
             [derivative(&ss, 0), derivative(&ss, 1), derivative(&st, 1), derivative(&tt, 1)];
         // The third derivatives of |X - p|^2 / 2 without their parts X''' . (X - p).
-        let fixed = [
-            3.0 * most_product(&ss, &s),
-            2.0 * most_product(&st, &s) + most_product(&ss, &t),
-            2.0 * most_product(&st, &t) + most_product(&tt, &s),
-            3.0 * most_product(&tt, &t),
-        ];
+        let fixed = if full {
+            [
+                3.0 * most_product(&ss, &s),
+                2.0 * most_product(&st, &s) + most_product(&ss, &t),
+                2.0 * most_product(&st, &t) + most_product(&tt, &s),
+                3.0 * most_product(&tt, &t),
+            ]
+        } else {
+            [f64::INFINITY; 4]
+        };
         let reach = (1..16).map(|k| x[k].norm()).sum();
         let [[a, b], [c, d]] = place;
         Bent {
@@ -200,6 +206,21 @@ impl Piece {
         out
     }
 
+    /// Position and first derivatives at (s, t).
+    #[inline]
+    pub fn first(&self, s: f64, t: f64) -> [Vec3; 3] {
+        let mut out = [Vec3::zero(); 3];
+        for i in (0..4).rev() {
+            let c = &self.powers[i * 4..i * 4 + 4];
+            let f = ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
+            let d = (c[3] * (3.0 * t) + c[2] * 2.0) * t + c[1];
+            out[1] = out[1] * s + out[0];
+            out[0] = out[0] * s + f;
+            out[2] = out[2] * s + d;
+        }
+        out
+    }
+
     /// The surface's parameters at (s, t).
     #[inline]
     pub fn place(&self, s: f64, t: f64) -> [f64; 2] {
@@ -218,12 +239,19 @@ impl Piece {
 }
 
 impl Cells {
-    /// Cuts a surface up.
+    /// Cuts a surface up for nearest points.
     pub fn new(surface: &dyn Surface<f64>) -> Self {
-        Self::of(SurfaceTree::new(surface))
+        Self::cut(surface, BEND, true)
     }
 
-    fn of(tree: SurfaceTree) -> Self {
+    /// Cuts a surface up for intersections, into larger cells without the bounds that only nearest
+    /// points need.
+    pub fn coarse(surface: &dyn Surface<f64>) -> Self {
+        Self::cut(surface, COARSE_BEND, false)
+    }
+
+    fn cut(surface: &dyn Surface<f64>, bend: f64, full: bool) -> Self {
+        let tree = SurfaceTree::new(surface);
         let mut pieces = Vec::with_capacity(tree.patches.len());
         let mut cells: Vec<(Patch, u32, [[f64; 2]; 2])> = Vec::new();
         for (k, patch) in tree.patches.iter().enumerate() {
@@ -233,7 +261,7 @@ impl Cells {
             while let Some((part, place, halvings)) = stack.pop() {
                 let [lu, lv] = part.lengths();
                 let longest = lu.max(lv);
-                let enough = part.bend() <= BEND * lu.min(lv).max(0.25 * longest);
+                let enough = part.bend() <= bend * lu.min(lv).max(0.25 * longest);
                 if enough || halvings >= MOST_HALVINGS || cells.len() + stack.len() >= MOST_CELLS {
                     cells.push((part, k as u32, place));
                     continue;
@@ -256,10 +284,55 @@ impl Cells {
             let (part, piece, place) = &cells[k as usize];
             let x = patch_powers(part);
             flats.push(Flat::new(part, &x));
-            bents.push(Bent::new(part, &x, *piece, *place));
+            bents.push(Bent::new(part, &x, *piece, *place, full));
         }
         let forks = forks(&boxes);
         Self { tree, pieces, flats, bents, forks }
+    }
+}
+
+/// The pieces as one surface, where they are the surface itself, to rounding.
+pub(crate) struct Polynomials<'a> {
+    cells: &'a Cells,
+    /// Where pieces begin along u and v; the first is minus infinity.
+    starts: [Vec<f64>; 2],
+}
+
+impl Cells {
+    /// The pieces as a surface, if they are a grid of exact ones.
+    pub fn polynomials(&self) -> Option<Polynomials<'_>> {
+        let pieces = &self.pieces;
+        let columns = pieces.iter().take_while(|p| p.uv[0] == pieces[0].uv[0]).count();
+        let rows = pieces.len() / columns;
+        let grid = rows * columns == pieces.len()
+            && pieces.iter().enumerate().all(|(k, p)| {
+                p.uv == [pieces[k / columns * columns].uv[0], pieces[k % columns].uv[1]]
+            });
+        if !(grid && self.tree.exact) {
+            return None;
+        }
+        let mut us: Vec<f64> = (0..rows).map(|k| pieces[k * columns].uv[0][0]).collect();
+        let mut vs: Vec<f64> = (0..columns).map(|k| pieces[k].uv[1][0]).collect();
+        (us[0], vs[0]) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        Some(Polynomials { cells: self, starts: [us, vs] })
+    }
+}
+
+impl Surface<f64> for Polynomials<'_> {
+    fn jet(&self, u: f64, v: f64, order: Order) -> SurfJet<f64> {
+        let [us, vs] = &self.starts;
+        let span = |starts: &[f64], x: f64| starts.partition_point(|s| *s <= x).max(1) - 1;
+        let piece = &self.cells.pieces[span(us, u) * vs.len() + span(vs, v)];
+        let [[a, b], [c, d]] = piece.uv;
+        let (by_u, by_v) = (2.0 / (b - a), 2.0 / (d - c));
+        let (s, t) = ((u - a) * by_u - 1.0, (v - c) * by_v - 1.0);
+        if order == Order::Second {
+            let [p, s, t, ss, st, tt] = piece.jet(s, t);
+            let (uu, uv, vv) = (ss * (by_u * by_u), st * (by_u * by_v), tt * (by_v * by_v));
+            return SurfJet { p, u: s * by_u, v: t * by_v, uu, uv, vv };
+        }
+        let [p, s, t] = piece.first(s, t);
+        SurfJet { p, u: s * by_u, v: t * by_v, ..SurfJet::default() }
     }
 }
 

@@ -49,6 +49,9 @@ pub fn refined<T: Real, const N: usize, F: Implicit<T, N>>(
     t: T,
 ) -> Option<[T; N]> {
     let plain = q.map(T::from);
+    if T::PARTS == 1 {
+        return Some(plain);
+    }
     let rest = f.at::<T>(plain, t).map(|r| r - r.re());
     if rest.iter().all(|r| r.is_constant()) {
         return Some(plain);

@@ -9,7 +9,7 @@
 //! scalar so); derivatives follow from the solution by the implicit function theorem
 //! ([`implicit`]).
 //!
-//! What is claimed of completeness is stated in [`pieces`] and [`roots`].
+//! What is claimed of completeness is stated in [`pieces`], [`roots`] and [`branches`].
 //!
 //! Invariant: this crate knows no entity, no registry and no file.
 
@@ -17,7 +17,9 @@
 #![allow(clippy::result_large_err)]
 
 mod batch;
+pub mod branches;
 mod cells;
+pub mod common;
 pub mod implicit;
 pub mod march;
 mod nearest;
@@ -28,7 +30,7 @@ mod report;
 pub mod roots;
 mod tree;
 
-pub use batch::{Nearest, NearestCurve, NearestSurface};
+pub use batch::{Nearest, NearestCurve, NearestSurface, by_place};
 pub use nearest::{nearest_in_curve, nearest_in_surface, nearest_on_curve, nearest_on_surface};
 pub use newton::{ACCURACY, LONGEST_STEP, MOST_STEPS, OUTSIDE, Range, Walk, newton};
 pub use plain::{PlainCurve, PlainSurface};

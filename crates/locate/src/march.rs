@@ -2,18 +2,15 @@
 //!
 //! A point of the intersection has the unknowns (u, v) on the first surface and, on a second
 //! surface, (p, r). A step goes along the tangent n1 x n2 and is corrected by Newton's method in
-//! the plane across it. Branches end at the edges of the surfaces, or come back to their start.
+//! the plane across it. Branches end at the edges of the surfaces, or come back to their start. An
+//! edge at which a surface is joined to its own opposite edge (the seam of a cylinder) is no end: the
+//! branch goes on from the opposite edge, with two stations at one place there.
 //!
-//! All branches are found from seeds: the pieces of both shapes are subdivided while their boxes
-//! meet, until they bend by less than a twentieth of their size; Newton's method from the middle of
-//! each pair that is left gives a seed, and every seed that no branch passes starts one. A branch
-//! that crosses such a pair at an angle cannot be missed; a closed one smaller than the pieces, or a
-//! mere touch, can.
+//! How all branches are found is told in [`crate::branches`].
 
 use crate::implicit::solve;
 use crate::newton::{OUTSIDE, Range, newton};
-use crate::pieces::{Patch, meet, size_of};
-use crate::tree::SurfaceTree;
+use crate::pieces::size_of;
 use moldloft_num::{Box3, Field, Order, Plane, SurfJet, Surface, Vec3, slope_scale};
 
 /// Unknowns of a point of an intersection: (u, v, p, r), the last two 0 for a plane.
@@ -39,6 +36,8 @@ pub struct Crossing<'a> {
     pub other: Other<'a>,
     /// The length that accuracies are shares of.
     pub size: f64,
+    /// For each unknown, whether its 0 and 1 are one seam of a closed surface.
+    pub closed: [bool; 4],
 }
 
 /// A point of an intersection.
@@ -91,24 +90,38 @@ impl Branch {
 /// The most steps of a branch.
 const MOST_STATIONS: usize = 20_000;
 
+/// A place at which the sine of the angle is less than this begins no branch.
+pub(crate) const TANGENT: f64 = 1e-5;
+
 /// Cosine of the largest turn between neighbours: 0.2 rad.
 const LARGEST_TURN: f64 = 0.98;
 
 impl<'a> Crossing<'a> {
     /// A surface and a plane.
     pub fn with_plane(first: &'a dyn Surface<f64>, plane: Plane<f64>) -> Self {
-        Self { first, other: Other::Plane(plane), size: size_by_samples(first) }
+        let size = size_by_samples(first);
+        let [u, v] = closed_sides(first, size);
+        Self { first, other: Other::Plane(plane), size, closed: [u, v, false, false] }
     }
 
     /// Two surfaces.
     pub fn with_surface(first: &'a dyn Surface<f64>, second: &'a dyn Surface<f64>) -> Self {
         let size = size_by_samples(first).min(size_by_samples(second));
-        Self { first, other: Other::Surface(second), size }
+        let ([u, v], [p, r]) = (closed_sides(first, size), closed_sides(second, size));
+        Self { first, other: Other::Surface(second), size, closed: [u, v, p, r] }
     }
 
     /// A surface and the zero set of an implicit function.
     pub fn with_level(first: &'a dyn Surface<f64>, field: &'a dyn Field<f64>) -> Self {
-        Self { first, other: Other::Level(field), size: size_by_samples(first) }
+        let size = size_by_samples(first);
+        let [u, v] = closed_sides(first, size);
+        Self { first, other: Other::Level(field), size, closed: [u, v, false, false] }
+    }
+
+    /// For single points of an intersection of which the size is known: no branch can be followed
+    /// across a seam.
+    pub fn local(first: &'a dyn Surface<f64>, other: Other<'a>, size: f64) -> Self {
+        Self { first, other, size, closed: [false; 4] }
     }
 
     /// The number of unknowns.
@@ -170,6 +183,12 @@ impl<'a> Crossing<'a> {
         self.solved(guess, |_, j| (d.dot(j.p - x), [d.dot(j.u), d.dot(j.v), 0.0, 0.0]))
     }
 
+    /// The same from a guess that is good, as a rule: some plain Newton steps before damped ones.
+    pub fn across_near(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Unknowns> {
+        let settled = self.settled(guess, x, d).map(|s| s.q);
+        settled.or_else(|| self.across(guess, x, d))
+    }
+
     /// The point of the intersection at which unknown `k` has a value, near `guess`.
     pub fn at_line(&self, guess: Unknowns, k: usize, value: f64) -> Option<Unknowns> {
         let size = self.size;
@@ -204,8 +223,18 @@ impl<'a> Crossing<'a> {
 
     /// The point with its tangent; `None` where the shapes are tangent.
     pub fn station(&self, q: Unknowns) -> Option<Station> {
-        let (j, k, a, b) = self.normals(q);
-        let d = a.cross(b);
+        let (j, k, _, b) = self.normals(q);
+        self.station_of(q, &j, k.as_ref(), b)
+    }
+
+    fn station_of(
+        &self,
+        q: Unknowns,
+        j: &SurfJet<f64>,
+        k: Option<&SurfJet<f64>>,
+        normal: Vec3,
+    ) -> Option<Station> {
+        let d = j.normal().cross(normal);
         let sine = d.norm();
         if sine < 1e-7 {
             return None;
@@ -215,12 +244,65 @@ impl<'a> Crossing<'a> {
             let m = [[s.u.norm_sq(), s.u.dot(s.v)], [s.u.dot(s.v), s.v.norm_sq()]];
             solve(&m, [tangent.dot(s.u), tangent.dot(s.v)])
         };
-        let [u, v] = along(&j)?;
+        let [u, v] = along(j)?;
         let [p, r] = match k {
-            Some(k) => along(&k)?,
+            Some(k) => along(k)?,
             None => [0.0; 2],
         };
         Some(Station { q, rate: [u, v, p, r], x: j.p, tangent })
+    }
+
+    /// A few plain Newton steps from a good guess towards the point in the plane through `x` across
+    /// `d`; `None` when they do not settle at once.
+    pub(crate) fn settled(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Station> {
+        let mut q = guess;
+        let goal = 1e-13 * self.size;
+        for round in 0..6 {
+            let goal = if round < 5 { goal } else { 10.0 * goal };
+            let j = self.first.jet(q[0], q[1], Order::First);
+            match self.other {
+                Other::Plane(plane) => {
+                    let n = plane.normal;
+                    let r = [plane.distance(j.p), d.dot(j.p - x)];
+                    if r[0].abs().max(r[1].abs()) <= goal {
+                        return self.station_of(q, &j, None, n);
+                    }
+                    let step = solve(&[[n.dot(j.u), n.dot(j.v)], [d.dot(j.u), d.dot(j.v)]], r)?;
+                    q = [q[0] - step[0], q[1] - step[1], 0.0, 0.0];
+                }
+                Other::Level(field) => {
+                    let (f, g) = field.value_and_gradient(j.p);
+                    let scale = slope_scale(g);
+                    let r = [f * scale, d.dot(j.p - x)];
+                    let n = g * scale;
+                    if r[0].abs().max(r[1].abs()) <= goal {
+                        return self.station_of(q, &j, None, n.normalized()?);
+                    }
+                    let step = solve(&[[n.dot(j.u), n.dot(j.v)], [d.dot(j.u), d.dot(j.v)]], r)?;
+                    q = [q[0] - step[0], q[1] - step[1], 0.0, 0.0];
+                }
+                Other::Surface(second) => {
+                    let k = second.jet(q[2], q[3], Order::First);
+                    let (gap, off) = (j.p - k.p, d.dot(j.p - x));
+                    if gap.norm().max(off.abs()) <= goal {
+                        return self.station_of(q, &j, Some(&k), k.normal());
+                    }
+                    // The second surface's plane cuts the plane across: two unknowns are left.
+                    let n = k.u.cross(k.v);
+                    let m = [[n.dot(j.u), n.dot(j.v)], [d.dot(j.u), d.dot(j.v)]];
+                    let [du, dv] = solve(&m, [n.dot(gap), off])?;
+                    let rest = gap - j.u * du - j.v * dv;
+                    let m = [[k.u.norm_sq(), k.u.dot(k.v)], [k.u.dot(k.v), k.v.norm_sq()]];
+                    let [dp, dr] = solve(&m, [k.u.dot(rest), k.v.dot(rest)])?;
+                    q = [q[0] - du, q[1] - dv, q[2] + dp, q[3] + dr];
+                }
+            }
+            let most = if round == 0 { 0.5 } else { 0.1 };
+            if !(0..4).all(|k| (q[k] - guess[k]).abs() < most) {
+                return None;
+            }
+        }
+        None
     }
 
     /// One way from a station until an edge, the start, or a place of contact.
@@ -228,16 +310,27 @@ impl<'a> Crossing<'a> {
         let n = self.unknowns();
         let mut all = vec![start];
         let mut step = self.size / 48.0;
+        // The way since the last seam, for guesses of the second order.
+        let mut since = 0;
         while all.len() < MOST_STATIONS {
             let last = *all.last().expect("it begins with one");
             // Not more than a tenth of a surface at once.
             let fastest = last.rate[..n].iter().fold(0.0_f64, |a, r| a.max(r.abs()));
             step = step.min(0.1 / fastest);
             let tangent = last.tangent * sign;
-            let guess: Unknowns = std::array::from_fn(|k| last.q[k] + sign * step * last.rate[k]);
+            let mut guess: Unknowns =
+                std::array::from_fn(|k| last.q[k] + sign * step * last.rate[k]);
+            if since > 0 {
+                let before = &all[all.len() - 2];
+                let share = 0.5 * step * step / last.x.distance(before.x);
+                for k in 0..n {
+                    guess[k] += sign * share * (last.rate[k] - before.rate[k]);
+                }
+            }
+            let x = last.x + tangent * step;
             let next = self
-                .across(guess, last.x + tangent * step, last.tangent)
-                .and_then(|q| self.station(q))
+                .settled(guess, x, last.tangent)
+                .or_else(|| self.across(guess, x, last.tangent).and_then(|q| self.station(q)))
                 .filter(|s| {
                     s.tangent.dot(last.tangent) > LARGEST_TURN && s.x.distance(last.x) < 1.5 * step
                 });
@@ -250,16 +343,23 @@ impl<'a> Crossing<'a> {
             };
             let out = |q: Unknowns| q[..n].iter().any(|x| *x < -1e-12 || *x > 1.0 + 1e-12);
             if out(next.q) {
-                if let Some((station, end)) = self.edge_between(&last, &next) {
-                    if station.x.distance(last.x) > 1e-12 * self.size {
-                        all.push(station);
+                let Some((station, end)) = self.edge_between(&last, &next) else {
+                    step *= 0.5;
+                    if step < 1e-8 * self.size {
+                        return (all, End::Lost);
                     }
-                    return (all, end);
+                    continue;
+                };
+                if station.x.distance(last.x) > 1e-12 * self.size {
+                    all.push(station);
                 }
-                step *= 0.5;
-                if step < 1e-8 * self.size {
-                    return (all, End::Lost);
+                let Some(beyond) = self.beyond_seam(&station, end) else { return (all, end) };
+                if all.len() > 2 && self.same_place(&beyond, &start) {
+                    all.push(start);
+                    return (all, End::Closed);
                 }
+                all.push(beyond);
+                since = 0;
                 continue;
             }
             if all.len() > 2 {
@@ -278,11 +378,32 @@ impl<'a> Crossing<'a> {
             }
             let turn = next.tangent.dot(last.tangent);
             all.push(next);
-            if turn > 0.997 {
+            since += 1;
+            if turn > 0.992 {
                 step = (1.5 * step).min(self.size / 24.0);
             }
         }
         (all, End::Lost)
+    }
+
+    /// Where a branch that comes to an edge goes on, if the edge is a seam.
+    fn beyond_seam(&self, at: &Station, end: End) -> Option<Station> {
+        let End::Edge { unknown, value } = end else { return None };
+        if !self.closed[unknown] {
+            return None;
+        }
+        let mut q = at.q;
+        q[unknown] = 1.0 - value;
+        let mut q = self.at_line(q, unknown, 1.0 - value)?;
+        q[unknown] = 1.0 - value;
+        let station = self.station(q)?;
+        let near = station.x.distance(at.x) <= 1e-7 * self.size;
+        (near && station.tangent.dot(at.tangent) > 0.0).then_some(station)
+    }
+
+    fn same_place(&self, a: &Station, b: &Station) -> bool {
+        let same = (0..4).all(|k| (a.q[k] - b.q[k]).abs() < 1e-6);
+        same && a.x.distance(b.x) <= 1e-7 * self.size
     }
 
     /// The first edge between two stations, the second of which is outside.
@@ -317,7 +438,8 @@ impl<'a> Crossing<'a> {
 
     /// The whole branch through a point of the intersection, in the direction n1 x n2.
     pub fn branch(&self, seed: Unknowns) -> Option<Branch> {
-        let start = self.station(seed)?;
+        // Shapes that touch cross at such angles within the rounding of the place.
+        let start = self.station(seed).filter(|_| self.direction(seed).norm() >= TANGENT)?;
         let (mut forward, end) = self.walk(start, 1.0);
         if end == End::Closed {
             return Some(Branch { stations: forward, ends: [End::Closed; 2] });
@@ -344,141 +466,17 @@ impl<'a> Crossing<'a> {
         q[..n].iter().all(|x| *x >= -OUTSIDE && *x <= 1.0 + OUTSIDE).then_some(q)
     }
 
-    /// True when the branch passes the point.
-    pub fn passes(&self, branch: &Branch, q: Unknowns) -> bool {
-        let x = self.first.jet(q[0], q[1], Order::Zero).p;
-        branch.stations.windows(2).any(|pair| {
-            let (a, b) = (&pair[0], &pair[1]);
-            let chord = b.x - a.x;
-            let length = chord.norm_sq();
-            let share = (x - a.x).dot(chord) / length;
-            if !(-0.05..=1.05).contains(&share) {
-                return false;
-            }
-            let off = (x - a.x - chord * share).norm_sq();
-            if off > 0.04 * length {
-                return false;
-            }
-            // The branch's own point across from it.
-            let guess = std::array::from_fn(|k| a.q[k] + share * (b.q[k] - a.q[k]));
-            match self.across(guess, x, a.tangent) {
-                Some(own) => {
-                    let y = self.first.jet(own[0], own[1], Order::Zero).p;
-                    y.distance(x) <= 1e-7 * self.size
-                }
-                None => off <= 1e-8 * length,
-            }
-        })
-    }
-
-    /// All branches, in the order of their seeds.
-    pub fn branches(&self) -> Vec<Branch> {
-        let first = SurfaceTree::new(self.first);
-        match self.other {
-            Other::Plane(_) | Other::Level(_) => self.branches_in(&first, None),
-            Other::Surface(second) => self.branches_in(&first, Some(&SurfaceTree::new(second))),
+    /// The branch's own point across from `x`, between two neighbouring stations; `None` when it is
+    /// not there.
+    pub(crate) fn between(&self, a: &Station, b: &Station, x: Vec3) -> Option<Vec3> {
+        let chord = b.x - a.x;
+        let share = (x - a.x).dot(chord) / chord.norm_sq();
+        if !(-0.05..=1.05).contains(&share) {
+            return None;
         }
-    }
-
-    /// All branches of shapes that were cut up before.
-    pub fn branches_in(&self, first: &SurfaceTree, second: Option<&SurfaceTree>) -> Vec<Branch> {
-        let mut found: Vec<Branch> = Vec::new();
-        let mut pairs = 0usize;
-        let mut stack: Vec<(Patch, Option<Patch>)> = Vec::new();
-        for patch in &first.patches {
-            match (self.other, second) {
-                (Other::Surface(_), Some(second)) => {
-                    let near = second.meeting(&patch.bounds());
-                    stack.extend(
-                        near.into_iter().map(|k| (*patch, Some(second.patches[k as usize]))),
-                    );
-                }
-                _ => stack.push((*patch, None)),
-            }
-            while let Some((a, b)) = stack.pop() {
-                pairs += 1;
-                if pairs > 200_000 || found.len() > 1_000 {
-                    return found;
-                }
-                if !self.may_meet(&a, b.as_ref()) {
-                    continue;
-                }
-                let (la, lb) = (a.lengths(), b.map_or([0.0; 2], |b| b.lengths()));
-                let flat = |p: &Patch, l: [f64; 2]| p.bend() <= 0.05 * l[0].max(l[1]);
-                let small = la[0].max(la[1]) < 1e-4 * self.size;
-                let even = self.evenly_met(&a, la[0].max(la[1]));
-                if flat(&a, la) && even && b.as_ref().is_none_or(|b| flat(b, lb)) || small {
-                    if let Some(q) = self.seed(&a, b.as_ref())
-                        && !found.iter().any(|branch| self.passes(branch, q))
-                    {
-                        found.extend(self.branch(q).filter(|b| b.stations.len() > 1));
-                    }
-                    continue;
-                }
-                let longest = la[0].max(la[1]).max(lb[0]).max(lb[1]);
-                match b {
-                    Some(b) if lb[0].max(lb[1]) == longest && !flat(&b, lb) || flat(&a, la) => {
-                        let halves = b.halves(usize::from(lb[1] > lb[0]));
-                        stack.extend(halves.map(|half| (a, Some(half))));
-                    }
-                    _ => {
-                        let halves = a.halves(usize::from(la[1] > la[0]));
-                        stack.extend(halves.map(|half| (half, b)));
-                    }
-                }
-            }
-        }
-        found
-    }
-
-    /// True when a level has nearly one normal over a patch of that length, so that it crosses it once.
-    fn evenly_met(&self, a: &Patch, length: f64) -> bool {
-        let Other::Level(field) = self.other else { return true };
-        let [u, v] = a.middle();
-        let (_, g, h) = field.second_order(self.first.jet(u, v, Order::Zero).p);
-        let bend = h.iter().map(|row| row.norm_sq()).sum::<f64>();
-        bend * length * length <= 0.06 * g.norm_sq()
-    }
-
-    fn may_meet(&self, a: &Patch, b: Option<&Patch>) -> bool {
-        match (self.other, b) {
-            (Other::Level(field), _) => {
-                let mut around = a.bounds();
-                let slack = Vec3::of(a.slack, a.slack, a.slack);
-                around.low -= slack;
-                around.high += slack;
-                field.bounds(&around).is_none_or(|[low, high]| low <= 0.0 && high >= 0.0)
-            }
-            (Other::Plane(plane), _) => {
-                let mut low = f64::INFINITY;
-                let mut high = f64::NEG_INFINITY;
-                for p in &a.net {
-                    let d = plane.distance(*p);
-                    (low, high) = (low.min(d), high.max(d));
-                }
-                low <= a.slack && high >= -a.slack
-            }
-            (_, Some(b)) => meet(&a.bounds(), &b.bounds()),
-            _ => false,
-        }
-    }
-
-    /// A point of the intersection in or near the pair.
-    fn seed(&self, a: &Patch, b: Option<&Patch>) -> Option<Unknowns> {
-        let [u, v] = a.middle();
-        let [p, r] = b.map_or([0.0; 2], Patch::middle);
-        let guess = [u, v, p, r];
-        let d = self.direction(guess).normalized()?;
-        let x = self.first.jet(u, v, Order::Zero).p;
-        let q = self.across(guess, x, d)?;
-        let inside = |q: f64, [a, b]: [f64; 2]| {
-            let reach = 0.5 * (b - a);
-            q >= (a - reach).max(-OUTSIDE) && q <= (b + reach).min(1.0 + OUTSIDE)
-        };
-        let near = inside(q[0], a.uv[0])
-            && inside(q[1], a.uv[1])
-            && b.is_none_or(|b| inside(q[2], b.uv[0]) && inside(q[3], b.uv[1]));
-        near.then_some(q)
+        let guess = std::array::from_fn(|k| a.q[k] + share * (b.q[k] - a.q[k]));
+        let own = self.across_near(guess, x, a.tangent)?;
+        Some(self.first.jet(own[0], own[1], Order::Zero).p)
     }
 }
 
@@ -487,4 +485,24 @@ fn size_by_samples(surface: &dyn Surface<f64>) -> f64 {
     let mut x = [Vec3::zero(); 25];
     surface.grid(&ts, &ts, &mut x, None);
     size_of(&Box3::around(x))
+}
+
+/// Whether the sides v = const at 0 and 1 of a surface are one line, and those u = const: whether u
+/// and v run round. A side that is one point all along, a pole, does not count.
+fn closed_sides(surface: &dyn Surface<f64>, size: f64) -> [bool; 2] {
+    const N: usize = 9;
+    let ts: [f64; N] = std::array::from_fn(|k| k as f64 / (N - 1) as f64);
+    let ends = [0.0, 1.0];
+    let (mut by_u, mut by_v) = ([Vec3::zero(); 2 * N], [Vec3::zero(); 2 * N]);
+    surface.grid(&ends, &ts, &mut by_u, None);
+    surface.grid(&ts, &ends, &mut by_v, None);
+    let near = |a: Vec3, b: Vec3| a.distance(b) <= 1e-9 * size;
+    let joined = |pair: &dyn Fn(usize) -> [Vec3; 2]| {
+        let [first, _] = pair(0);
+        (0..N).all(|k| {
+            let [a, b] = pair(k);
+            near(a, b)
+        }) && (0..N).any(|k| !near(pair(k)[0], first))
+    };
+    [joined(&|k| [by_u[k], by_u[N + k]]), joined(&|k| [by_v[2 * k], by_v[2 * k + 1]])]
 }

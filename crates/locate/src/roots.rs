@@ -16,10 +16,10 @@ use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Surface, Vec3};
 const MOST_PAIRS: usize = 100_000;
 
 /// Pieces this flat, as a share of their length, hold one root at most.
-const FLAT: f64 = 0.05;
+pub(crate) const FLAT: f64 = 0.05;
 
 /// A contact whose sine of the angle is below this is tangent.
-const TANGENT: f64 = 1e-6;
+pub(crate) const TANGENT: f64 = 1e-6;
 
 /// Residuals of contacts that no transversal root explains, as a share of the size.
 const TOUCH: f64 = 1e-10;
@@ -103,7 +103,11 @@ fn size_of_surface(surface: &dyn Surface<f64>) -> f64 {
 }
 
 /// A walk from a start that was given, as a solution; `None` when it found nothing.
-fn taken<const N: usize>(walk: &Walk<N>, start: &[f64], sine: f64) -> Option<Solution<N>> {
+pub(crate) fn taken<const N: usize>(
+    walk: &Walk<N>,
+    start: &[f64],
+    sine: f64,
+) -> Option<Solution<N>> {
     if !walk.found {
         return None;
     }
@@ -120,7 +124,7 @@ fn taken<const N: usize>(walk: &Walk<N>, start: &[f64], sine: f64) -> Option<Sol
 }
 
 /// What to do when there is no start or it led nowhere: all roots, the one nearest to the start.
-fn from_all<const N: usize>(
+pub(crate) fn from_all<const N: usize>(
     all: Roots<N>,
     start: Option<&[f64]>,
     choose: impl Fn(&Roots<N>) -> Option<usize>,
@@ -213,7 +217,7 @@ pub fn all_on_level(curve: &dyn Curve<f64>, level: &Level<'_>) -> Roots<1> {
 }
 
 /// Collects roots: brings candidates together, drops those found twice.
-struct Search<const N: usize> {
+pub(crate) struct Search<const N: usize> {
     size: f64,
     pairs: usize,
     roots: Vec<Root<N>>,
@@ -222,12 +226,12 @@ struct Search<const N: usize> {
 }
 
 impl<const N: usize> Search<N> {
-    fn new(size: f64, slack: &[f64; N]) -> Self {
+    pub fn new(size: f64, slack: &[f64; N]) -> Self {
         Self { size, pairs: 0, roots: Vec::new(), closest: None, slack: *slack }
     }
 
     /// Counts a pair; true when there were too many.
-    fn exhausted(&mut self) -> bool {
+    pub fn exhausted(&mut self) -> bool {
         self.pairs += 1;
         self.pairs > MOST_PAIRS || self.roots.len() > 2_000
     }
@@ -239,7 +243,7 @@ impl<const N: usize> Search<N> {
     }
 
     /// Takes the result of an iteration that began in the cell, if it ended in or near it.
-    fn offer(
+    pub fn offer(
         &mut self,
         walk: &Walk<N>,
         cell: [[f64; 2]; N],
@@ -282,7 +286,7 @@ impl<const N: usize> Search<N> {
         }
     }
 
-    fn finish(mut self) -> Roots<N> {
+    pub fn finish(mut self) -> Roots<N> {
         let complete = self.pairs <= MOST_PAIRS && self.roots.len() <= 2_000;
         self.roots.sort_by(|a, b| {
             let pairs = a.at.iter().zip(&b.at);

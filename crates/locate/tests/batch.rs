@@ -3,7 +3,9 @@
 mod common;
 
 use common::{Random, Sphere, brute, bumpy};
-use moldloft_locate::{NearestCurve, NearestSurface, Status, nearest_on_curve, nearest_on_surface};
+use moldloft_locate::{
+    NearestCurve, NearestSurface, Status, by_place, nearest_on_curve, nearest_on_surface,
+};
 use moldloft_num::{Curve, Order, Surface, Vec3};
 use moldloft_spline::{BSplineCurve, BSplineSurface, KnotVector};
 
@@ -313,4 +315,19 @@ fn the_single_search_agrees_with_the_batch() {
     }
     let (d, _) = brute(&s, Vec3::of(1.0, 1.0, 2.0), 100);
     assert!((prepared.nearest(&s, Vec3::of(1.0, 1.0, 2.0)).distance - d).abs() < 1e-9);
+}
+
+#[test]
+fn the_order_by_place_has_every_point_once() {
+    let mut random = Random(31);
+    let mut points: Vec<Vec3> =
+        (0..500).map(|_| Vec3::of(random.next(), random.next(), random.next())).collect();
+    points[7].x = f64::NAN;
+    let mut order = by_place(&points);
+    let step = |pair: &[u32]| points[pair[0] as usize].distance(points[pair[1] as usize]);
+    let steps = order.windows(2).map(step).filter(|d| d.is_finite());
+    assert!(steps.sum::<f64>() / 499.0 < 0.25, "neighbours are near each other");
+    order.sort_unstable();
+    assert!(order.into_iter().eq(0..500));
+    assert!(by_place(&[]).is_empty());
 }

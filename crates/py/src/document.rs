@@ -7,6 +7,7 @@ use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
 use crate::mesh::PyMesh;
 use crate::portrait::portrait;
+use crate::search::Searches;
 use crate::value::to_python;
 use crate::work::interruptible;
 use crate::write;
@@ -41,6 +42,8 @@ pub struct PyDocument {
     cancel: Arc<AtomicBool>,
     /// True once the model may call Python: a run then needs Python's lock on another thread.
     calls_python: AtomicBool,
+    /// Shapes prepared for searches.
+    searches: Mutex<Searches>,
 }
 
 type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
@@ -48,7 +51,8 @@ type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
 impl PyDocument {
     fn new(document: Document) -> Self {
         let cancel = document.cancel_handle();
-        Self { inner: Arc::new(Mutex::new(document)), cancel, calls_python: AtomicBool::new(false) }
+        let inner = Arc::new(Mutex::new(document));
+        Self { inner, cancel, calls_python: AtomicBool::new(false), searches: Mutex::default() }
     }
 
     fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Document> {
@@ -82,13 +86,22 @@ impl PyDocument {
     }
 
     /// The value of an object, without holding on to the document.
-    fn value(&self, py: Python<'_>, name: &str) -> PyResult<Value<f64>> {
+    pub(crate) fn value(&self, py: Python<'_>, name: &str) -> PyResult<Value<f64>> {
         let document = self.lock(py);
         let object = object_named(&document, name)?;
         match object.value() {
             Some(value) => Ok(value.clone()),
             None => Err(model_error(&document.diagnostics(), document.sources())),
         }
+    }
+
+    pub(crate) fn searches(&self) -> &Mutex<Searches> {
+        &self.searches
+    }
+
+    /// What stops long work.
+    pub(crate) fn cancel_handle(&self) -> &Arc<AtomicBool> {
+        &self.cancel
     }
 
     fn surface_of(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceRef<f64>> {
@@ -611,7 +624,7 @@ fn similar(document: &Document, name: &str) -> Option<String> {
     moldloft_diag::nearest(name, params.chain(objects)).map(str::to_owned)
 }
 
-fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr {
+pub(crate) fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr {
     plain_error(format!("{takes}, but `{name}` is {}", found.class().a()))
 }
 

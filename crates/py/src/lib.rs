@@ -17,6 +17,7 @@ mod implicit;
 mod mesh;
 mod portrait;
 mod reference;
+mod search;
 mod sketch;
 mod value;
 mod work;
@@ -45,6 +46,8 @@ mod _core {
     use crate::mesh::PyMesh;
     #[pymodule_export]
     use crate::reference::reference;
+    #[pymodule_export]
+    use crate::search::{intersect, intersect_plane, nearest};
     #[pymodule_export]
     use crate::sketch::{PySketch, sketch_reference};
     #[pymodule_export]

@@ -245,11 +245,8 @@ fn derivatives_by_every_number_equal_central_differences() {
                         |h: f64| ladder.entry(h.to_bits()).or_insert_with(|| moved(h).unwrap())[at];
                     let centred = ridders(along, step);
                     let d = (x.eps[direction] - centred).abs();
-                    // The second derivative by t of a cut comes from polynomials that end where the
-                    // search stepped: differences of it are noisy, itself it is not.
-                    let limit = if row.name == "IntSnake" { 1e-3 } else { 2e-7 };
                     assert!(
-                        d <= limit * size,
+                        d <= 2e-7 * size,
                         "{name}, literal {literal}, sample {at}: {} and {centred}",
                         x.eps[direction]
                     );

@@ -1,18 +1,16 @@
 //! Snakes along which a surface meets a plane or another surface.
 
 use super::arguments::{Onto, Target};
-use super::equations::PlainField;
+use super::cut::{Cut, NODES, Piece, Second, derived, node, polynomial, powers_of, to_powers};
 use super::outcome::no_intersection;
 use crate::arguments::Magnet;
-use moldloft_locate::implicit::{Implicit, jets, refined, solve};
+use moldloft_locate::implicit::{Implicit, refined, solve};
 use moldloft_locate::march::{Branch, Crossing, End, Other, Station, Unknowns};
 use moldloft_locate::{PlainSurface, Report, Status};
 use moldloft_num::trace::Trace;
-use moldloft_num::{
-    Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, slope_scale, solve_dense,
-};
+use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, slope_scale};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldRef, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
 };
 
 /// The curve along which a surface meets a plane or another surface, as a snake of the first; its
@@ -22,8 +20,12 @@ use moldloft_registry::{
 /// that comes nearest to its middle, and others are reported. The snake runs along n1 x n2, the
 /// product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
 /// lie on the intersection and give it their identity there, so that patches join. A closed branch
-/// begins at the place nearest to the magnet. Each point of it is solved for by itself, so it lies
-/// on both.
+/// begins at the place nearest to the magnet, or to S(0.3, 0.4) without one. Each point of it is
+/// solved for by itself, so it lies on both. Across the seam of a closed surface it runs on: its place
+/// on the surface goes over from u = 1 to u = 0 there.
+///
+/// All branches longer than 2 % of the size are found that cross at an angle somewhere. Where the
+/// shapes only touch there is none.
 #[derive(Kind)]
 #[kind(
     class = Snake,
@@ -50,246 +52,116 @@ pub struct IntSnake<T: Real> {
 impl<T: Real> Build<T> for IntSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, target, start, end, point } = self;
-        let (other, second_start) = match target {
-            Target::Plane(plane) => {
-                let point = point.map_or(plane.point, |p| p.xyz);
-                (Second::Plane(Plane { point, normal: plane.normal }), None)
-            }
-            Target::Surface(onto) => {
-                let start = onto.from();
-                (Second::Surface(onto.surface), start)
-            }
-            Target::Field(field) => (Second::Field(field), None),
-            Target::Curve(_) | Target::Point(_) => {
-                return Err(Fault::new(
-                    "wrong-class",
-                    "a surface is cut by a plane, a surface or a field",
-                )
-                .expected("a plane, a surface, a magnet or a field")
-                .found("a curve or a point")
-                .in_field(1));
-            }
-        };
-        for (field, magnet) in [(2, &start), (3, &end)] {
-            if let Some(magnet) = magnet {
-                let named = magnet.surface.key.is_some() || surface.surface.key.is_some();
-                let same = if named {
-                    magnet.surface.key == surface.surface.key
-                } else {
-                    magnet.surface.same(&surface.surface)
-                };
-                if !same {
-                    return Err(Fault::new("wrong-surface", "the end lies on another surface")
-                        .expected("a magnet or ring of the surface that is cut")
-                        .found("one of another surface")
-                        .related(magnet.key, "lies on another surface")
-                        .related(magnet.surface.key, "is its surface")
-                        .in_field(field));
-                }
-            }
-        }
-        let keys = [start.as_ref().and_then(|m| m.key), end.as_ref().and_then(|m| m.key)];
-        let (shape, found) = traced(&surface, other, second_start, [start, end], context)?;
-        let closed = shape.closed;
-        let trace = match (keys, closed) {
-            // A closed snake ends where it begins.
-            ([Some(k), None], true) => Trace::Own([Some(k); 2]),
-            _ => Trace::Own(keys),
-        };
-        let shape = Cut { trace, ..shape };
+        let (shape, found) = cut(&surface, target, [start, end], point, context)?;
         let nesting = context.nesting;
         Ok(Value::Curve(CurveRef::snake(shape, surface.surface, nesting).with_found(found)))
     }
 }
 
-/// What the surface is cut by.
-#[derive(Clone)]
-enum Second<T: Real> {
-    Plane(Plane<T>),
-    Surface(SurfaceRef<T>),
-    Field(FieldRef<T>),
+/// The curve in space along which a surface meets a plane, another surface or the zero set of a
+/// field, as [`IntSnake`], for where it is no matter on which surface it lies.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    columns = "relabel surface target start end",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 2); AbsPoint D(4, 3, 1); \
+               Line l(A, B); Line m(C, D); RuledSurf S(l, m); XPlane x(2.5); IntCurve c(S, x); \
+               AbsBead b(c, 0.5);"
+)]
+pub struct IntCurve<T: Real> {
+    /// The surface, or a magnet of it near the branch that is meant.
+    surface: Onto<T>,
+    /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
+    target: Target<T>,
+    /// Where it begins: a magnet or ring of the intersection.
+    start: Option<Magnet<T>>,
+    /// Where it ends.
+    end: Option<Magnet<T>>,
+    /// For a plane: the parallel plane through this point is meant.
+    point: Option<Point<T>>,
 }
 
-/// The second shape in plain numbers, for as long as a search lasts.
-enum PlainSecond<'a, T: Real> {
-    Plane(Plane<f64>),
-    Surface(PlainSurface<'a, T>),
-    Field(PlainField<'a, T>),
+impl<T: Real> Build<T> for IntCurve<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { surface, target, start, end, point } = self;
+        let (shape, found) = cut(&surface, target, [start, end], point, context)?;
+        Ok(Value::Curve(CurveRef::new(InSpace(shape), context.nesting).with_found(found)))
+    }
 }
 
-impl<T: Real> Second<T> {
-    fn plain(&self) -> PlainSecond<'_, T> {
-        match self {
-            Second::Plane(plane) => {
-                PlainSecond::Plane(Plane { point: plane.point.re(), normal: plane.normal.re() })
+/// A cut that is not known as a curve on its surface.
+struct InSpace<T: Real>(Cut<T>);
+
+impl<T: Real> Curve<T> for InSpace<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        self.0.jet(t, order)
+    }
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        self.0.grid(ts, out);
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.0.breaks()
+    }
+    fn trace(&self) -> Trace<T> {
+        self.0.trace()
+    }
+}
+
+/// The cut of a surface, from the arguments of both kinds.
+fn cut<T: Real>(
+    surface: &Onto<T>,
+    target: Target<T>,
+    [start, end]: [Option<Magnet<T>>; 2],
+    point: Option<Point<T>>,
+    context: &Context,
+) -> Result<(Cut<T>, Found), Fault> {
+    let (other, second_start) = match target {
+        Target::Plane(plane) => {
+            let point = point.map_or(plane.point, |p| p.xyz);
+            (Second::Plane(Plane { point, normal: plane.normal }), None)
+        }
+        Target::Surface(onto) => {
+            let start = onto.from();
+            (Second::Surface(onto.surface), start)
+        }
+        Target::Field(field) => (Second::Field(field), None),
+        Target::Curve(_) | Target::Point(_) => {
+            return Err(Fault::new(
+                "wrong-class",
+                "a surface is cut by a plane, a surface or a field",
+            )
+            .expected("a plane, a surface, a magnet or a field")
+            .found("a curve or a point")
+            .in_field(1));
+        }
+    };
+    for (field, magnet) in [(2, &start), (3, &end)] {
+        if let Some(magnet) = magnet {
+            let named = magnet.surface.key.is_some() || surface.surface.key.is_some();
+            let same = if named {
+                magnet.surface.key == surface.surface.key
+            } else {
+                magnet.surface.same(&surface.surface)
+            };
+            if !same {
+                return Err(Fault::new("wrong-surface", "the end lies on another surface")
+                    .expected("a magnet or ring of the surface that is cut")
+                    .found("one of another surface")
+                    .related(magnet.key, "lies on another surface")
+                    .related(magnet.surface.key, "is its surface")
+                    .in_field(field));
             }
-            Second::Surface(surface) => PlainSecond::Surface(PlainSurface(&**surface)),
-            Second::Field(field) => PlainSecond::Field(PlainField(field)),
         }
     }
-
-    fn name(&self) -> &'static str {
-        match self {
-            Second::Plane(_) => "plane",
-            Second::Surface(_) => "other surface",
-            Second::Field(_) => "field",
-        }
-    }
-}
-
-impl<T: Real> PlainSecond<'_, T> {
-    fn other(&self) -> Other<'_> {
-        match self {
-            PlainSecond::Plane(plane) => Other::Plane(*plane),
-            PlainSecond::Surface(surface) => Other::Surface(surface),
-            PlainSecond::Field(field) => Other::Level(field),
-        }
-    }
-}
-
-/// Points of a piece that its polynomial goes through.
-const NODES: usize = 7;
-
-/// A stretch of the intersection with a polynomial near it: the place is the point of the
-/// intersection across from the polynomial's.
-#[derive(Clone, Debug)]
-struct Piece<T> {
-    /// Length along the snake at which it begins, and its own length.
-    begin: T,
-    length: T,
-    /// Powers of 2 x - 1, with x the share of the piece.
-    powers: Vec<Vec3<T>>,
-    /// The unknowns at the nodes, where iterations begin.
-    places: [Unknowns; NODES],
-}
-
-/// X(t) = S(w(t)) on both shapes.
-struct Cut<T: Real> {
-    trace: Trace<T>,
-    first: SurfaceRef<T>,
-    second: Second<T>,
-    pieces: Vec<Piece<T>>,
-    total: T,
-    size: f64,
-    closed: bool,
-}
-
-/// Nodes on [0, 1]: both ends, denser towards them (Chebyshev and Lobatto).
-fn node(k: usize) -> f64 {
-    0.5 - 0.5 * Real::cos(k as f64 * std::f64::consts::PI / (NODES - 1) as f64)
-}
-
-/// The matrix from values at the nodes to powers of 2 x - 1.
-fn to_powers() -> [[f64; NODES]; NODES] {
-    std::array::from_fn(|column| {
-        let mut matrix: Vec<f64> = (0..NODES)
-            .flat_map(|k| (0..NODES).map(move |p| (2.0 * node(k) - 1.0).powi(p as i32)))
-            .collect();
-        let mut unit: [f64; NODES] = std::array::from_fn(|k| f64::from(u8::from(k == column)));
-        solve_dense(&mut matrix, &mut unit).expect("the nodes are different");
-        unit
-    })
-}
-
-fn powers_of<T: Real>(matrix: &[[f64; NODES]; NODES], values: &[Vec3<T>; NODES]) -> Vec<Vec3<T>> {
-    let power =
-        |p: usize| (0..NODES).fold(Vec3::zero(), |sum, k| sum + values[k] * T::from(matrix[k][p]));
-    (0..NODES).map(power).collect()
-}
-
-/// Value and derivative by x of a polynomial in powers of 2 x - 1.
-fn polynomial<T: Real, J: Jet<T>>(powers: &[Vec3<T>], x: J) -> [Vec3<J>; 2] {
-    let y = x * 2.0 - 1.0;
-    let (mut value, mut slope) = (Vec3::<J>::zero(), Vec3::<J>::zero());
-    for p in powers.iter().rev() {
-        slope = slope * y + value;
-        value = value * y + p.map(J::fixed);
-    }
-    [value, slope * J::from(2.0)]
-}
-
-/// A point of both shapes across from a polynomial's.
-struct Across<'a, T: Real> {
-    first: &'a SurfaceRef<T>,
-    powers: &'a [Vec3<T>],
-}
-
-impl<T: Real> Across<'_, T> {
-    fn level<J: Jet<T>>(&self, point: Vec3<J>, x: J) -> J {
-        let [c, d] = polynomial(self.powers, x);
-        d.dot(point - c)
-    }
-    fn gradient(&self, j: &moldloft_num::SurfJet<T>, x: T) -> [T; 2] {
-        let [_, d] = polynomial::<T, T>(self.powers, x);
-        [d.dot(j.u), d.dot(j.v)]
-    }
-}
-
-struct AcrossPlane<'a, T: Real>(Across<'a, T>, &'a Plane<T>);
-
-impl<T: Real> Implicit<T, 2> for AcrossPlane<'_, T> {
-    fn at<J: Jet<T>>(&self, [u, v]: [J; 2], x: J) -> [J; 2] {
-        let p = self.0.first.at(u, v);
-        let fixed = |a: Vec3<T>| a.map(J::fixed);
-        [fixed(self.1.normal).dot(p - fixed(self.1.point)), self.0.level(p, x)]
-    }
-    fn jacobian(&self, [u, v]: [T; 2], x: T) -> [[T; 2]; 2] {
-        let j = self.0.first.jet(u, v, Order::First);
-        [[self.1.normal.dot(j.u), self.1.normal.dot(j.v)], self.0.gradient(&j, x)]
-    }
-}
-
-struct AcrossField<'a, T: Real>(Across<'a, T>, &'a FieldRef<T>);
-
-impl<T: Real> Implicit<T, 2> for AcrossField<'_, T> {
-    fn at<J: Jet<T>>(&self, [u, v]: [J; 2], x: J) -> [J; 2] {
-        let p = self.0.first.at(u, v);
-        [self.1.at(p), self.0.level(p, x)]
-    }
-    fn jacobian(&self, [u, v]: [T; 2], x: T) -> [[T; 2]; 2] {
-        let j = self.0.first.jet(u, v, Order::First);
-        let g = self.1.value_and_gradient(j.p).1;
-        let g = g * T::from(slope_scale(g.re()));
-        [[g.dot(j.u), g.dot(j.v)], self.0.gradient(&j, x)]
-    }
-}
-
-struct AcrossSurface<'a, T: Real>(Across<'a, T>, &'a SurfaceRef<T>);
-
-impl<T: Real> Implicit<T, 4> for AcrossSurface<'_, T> {
-    fn at<J: Jet<T>>(&self, [u, v, p, r]: [J; 4], x: J) -> [J; 4] {
-        let point = self.0.first.at(u, v);
-        let gap = point - self.1.at(p, r);
-        [gap.x, gap.y, gap.z, self.0.level(point, x)]
-    }
-    fn jacobian(&self, [u, v, p, r]: [T; 4], x: T) -> [[T; 4]; 4] {
-        let j = self.0.first.jet(u, v, Order::First);
-        let k = self.1.jet(p, r, Order::First);
-        let c = [j.u, j.v, -k.u, -k.v].map(Vec3::to_array);
-        let row = |a: usize| [c[0][a], c[1][a], c[2][a], c[3][a]];
-        let [gu, gv] = self.0.gradient(&j, x);
-        [row(0), row(1), row(2), [gu, gv, T::zero(), T::zero()]]
-    }
-}
-
-/// Unknowns with their derivatives by the parameter of a polynomial.
-fn derived<T: Real>(
-    first: &SurfaceRef<T>,
-    second: &Second<T>,
-    powers: &[Vec3<T>],
-    q: Unknowns,
-    x: T,
-    order: Order,
-) -> Option<[[T; 2]; 3]> {
-    let across = Across { first, powers };
-    match second {
-        Second::Plane(plane) => jets(&AcrossPlane(across, plane), [q[0], q[1]], x, order),
-        Second::Field(field) => jets(&AcrossField(across, field), [q[0], q[1]], x, order),
-        Second::Surface(surface) => {
-            let all = jets(&AcrossSurface(across, surface), q, x, order)?;
-            Some(all.map(|[u, v, ..]| [u, v]))
-        }
-    }
+    let keys = [start.as_ref().and_then(|m| m.key), end.as_ref().and_then(|m| m.key)];
+    let (shape, found) = traced(surface, other, second_start, [start, end], context)?;
+    let closed = shape.closed;
+    let trace = match (keys, closed) {
+        // A closed snake ends where it begins.
+        ([Some(k), None], true) => Trace::Own([Some(k); 2]),
+        _ => Trace::Own(keys),
+    };
+    Ok((Cut { trace, ..shape }, found))
 }
 
 /// The end of a branch at an edge: unknown `k` stays, the others follow.
@@ -347,6 +219,16 @@ fn edge_point<T: Real>(
     }
 }
 
+fn touching(x: Vec3) -> Fault {
+    Fault::new(
+        "tangent-contact",
+        "the shapes touch without crossing: there is no intersection curve",
+    )
+    .expected("shapes that cross at an angle")
+    .found(format!("a touch at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z))
+    .help("move one of them until they cross")
+}
+
 fn lost(why: &str) -> Fault {
     Fault::new("tangent-contact", "the intersection cannot be followed: the shapes touch there")
         .expected("shapes that cross at an angle all along")
@@ -377,7 +259,8 @@ fn traced<T: Real>(
     let branch = match seed.and_then(|q| crossing.branch(q)) {
         Some(branch) => branch,
         None => {
-            let mut all = crossing.branches();
+            let found = crossing.branches();
+            let mut all = found.branches;
             let from = given.unwrap_or([0.5, 0.5]);
             let away = |b: &Branch| {
                 let d = |q: &Unknowns| (q[0] - from[0]).powi(2) + (q[1] - from[1]).powi(2);
@@ -385,6 +268,9 @@ fn traced<T: Real>(
             };
             let chosen = (0..all.len()).min_by(|&a, &b| away(&all[a]).total_cmp(&away(&all[b])));
             let Some(chosen) = chosen else {
+                if let Some(touch) = found.touches.first() {
+                    return Err(touching(touch.x).in_field(1));
+                }
                 let x = plain.jet(from[0], from[1], Order::Zero).p;
                 let residual = match crossing.other {
                     Other::Plane(plane) => plane.distance(x).abs(),
@@ -471,6 +357,10 @@ fn refined_stations<T: Real>(
 ) -> Vec<Station> {
     let mut out = vec![stations[0]];
     for pair in stations.windows(2) {
+        if at_seam(&pair[0], &pair[1]) {
+            out.push(pair[1]);
+            continue;
+        }
         let mut open = vec![(pair[1], 0)];
         while let Some((b, halvings)) = open.pop() {
             let a = out[out.len() - 1];
@@ -573,7 +463,11 @@ fn set_up<T: Real>(
     let whole = closed && places[1].is_none();
     if closed {
         branch.stations.pop();
-        if let Some((i, station)) = places[0] {
+        let first_place = match (onto.start, &ends[0]) {
+            (None, None) => nearest_station(crossing, &branch.stations, middle(first).re()),
+            _ => places[0],
+        };
+        if let Some((i, station)) = first_place {
             let count = branch.stations.len();
             branch.stations.rotate_left((i + 1) % count);
             branch.stations.insert(0, station);
@@ -627,22 +521,26 @@ fn set_up<T: Real>(
             return Err(lost("a place where they are tangent").in_field(1));
         }
     }
-    // Breaks of the surfaces between stations become stations, so that pieces are smooth.
+    // Joints of the surfaces between stations become stations, so that pieces are smooth.
     let lines: Vec<(usize, f64)> = {
         let mut lines = Vec::new();
         let mut add = |at: usize, [us, vs]: [Vec<f64>; 2]| {
             lines.extend(us.into_iter().map(|x| (at, x)));
             lines.extend(vs.into_iter().map(|x| (at + 1, x)));
         };
-        add(0, first.breaks());
+        add(0, first.joints());
         if let Second::Surface(surface) = &second {
-            add(2, surface.breaks());
+            add(2, surface.joints());
         }
         lines
     };
     let mut stations = vec![branch.stations[0]];
     for pair in branch.stations.windows(2) {
         let (a, b) = (&pair[0], &pair[1]);
+        if at_seam(a, b) {
+            stations.push(*b);
+            continue;
+        }
         let mut between: Vec<(f64, usize, f64)> = lines
             .iter()
             .filter(|(k, x)| (a.q[*k] - x) * (b.q[*k] - x) < 0.0)
@@ -694,11 +592,13 @@ fn set_up<T: Real>(
     };
     let matrix = to_powers();
     let stations = refined_stations(first, &second, crossing, &matrix, stations);
-    let mut pieces = Vec::with_capacity(stations.len() - 1);
+    // Nothing lies between the two stations at a seam.
+    let pairs: Vec<&[Station]> = stations.windows(2).filter(|p| !at_seam(&p[0], &p[1])).collect();
+    let mut pieces = Vec::with_capacity(pairs.len());
     let mut sum = T::zero();
     let mut offsets = [T::zero(); 2];
-    let count = stations.len() - 1;
-    for (i, pair) in stations.windows(2).enumerate() {
+    let count = pairs.len();
+    for (i, pair) in pairs.into_iter().enumerate() {
         let (a, b) = (&pair[0], &pair[1]);
         let guide = guide(&matrix, a, b);
         let at = |s: f64, order: Order| -> Option<([CurveJet<T>; 2], Unknowns)> {
@@ -766,6 +666,19 @@ fn set_up<T: Real>(
             offsets[0] = (level - level.re()) * (-1.0 / slope);
             offsets[1] = offsets[0];
         }
+        if i == 0 && whole && ends[0].is_none() && onto.start.is_none() {
+            // The branch begins where (X - M) . T is zero, the derivative of which by the length is
+            // 1 + (X - M) . k with the curvature k.
+            let ([[x, d, dd], _], _) = at(node(0), Order::Second).ok_or_else(failed)?;
+            let (away, tangent) = (x - middle(first), d / d.norm());
+            let (t, dd) = (tangent.re(), dd.re());
+            let curvature = (dd - t * t.dot(dd)) / d.re().norm_sq();
+            let slope = 1.0 + away.re().dot(curvature);
+            if slope.abs() > 1e-9 {
+                let level = away.dot(tangent);
+                offsets = [(level - level.re()) * (-1.0 / slope); 2];
+            }
+        }
         pieces.push(Piece {
             begin: sum,
             length,
@@ -787,6 +700,61 @@ fn set_up<T: Real>(
         size: crossing.size,
         closed: whole,
     })
+}
+
+/// True for the two stations at a seam: one place, an unknown of which is 0 here and 1 there.
+fn at_seam(a: &Station, b: &Station) -> bool {
+    (0..4).any(|k| (a.q[k] - b.q[k]).abs() > 0.5)
+}
+
+/// The place that a closed branch begins nearest to when nothing else is said: one that is beside
+/// the symmetries that surfaces have, so that as a rule one place of the branch is the nearest.
+fn middle<T: Real>(first: &SurfaceRef<T>) -> Vec3<T> {
+    first.jet(T::from(0.3), T::from(0.4), Order::Zero).p
+}
+
+/// The place of a closed branch nearest to `m`, between which stations it is and itself; the last
+/// station is not the first again.
+fn nearest_station(
+    crossing: &Crossing<'_>,
+    stations: &[Station],
+    m: Vec3,
+) -> Option<(usize, Station)> {
+    let n = stations.len();
+    let along = |s: &Station| (s.x - m).dot(s.tangent);
+    let k = (0..n).min_by(|&a, &b| {
+        stations[a].x.distance(m).total_cmp(&stations[b].x.distance(m)).then(a.cmp(&b))
+    })?;
+    let i = if along(&stations[k]) > 0.0 { (k + n - 1) % n } else { k };
+    let (mut a, mut b) = (stations[i], stations[(i + 1) % n]);
+    if at_seam(&a, &b) {
+        return Some((i, a));
+    }
+    let (mut f, mut g) = (along(&a), along(&b));
+    if f > 0.0 || g < 0.0 {
+        return Some((i, a));
+    }
+    for round in 0..80 {
+        if b.x.distance(a.x) <= 1e-13 * crossing.size {
+            break;
+        }
+        // False position, and halving when that is slow.
+        let share = if round % 3 == 2 || g == f { 0.5 } else { (-f / (g - f)).clamp(0.0, 1.0) };
+        let x = a.x + (b.x - a.x) * share;
+        let guess = std::array::from_fn(|k| a.q[k] + share * (b.q[k] - a.q[k]));
+        let d = (b.x - a.x).normalized()?;
+        let mut s = crossing.station(crossing.across_near(guess, x, d)?)?;
+        if s.tangent.dot(a.tangent) < 0.0 {
+            s.tangent = -s.tangent;
+            s.rate = s.rate.map(|r| -r);
+        }
+        let h = along(&s);
+        if h.abs() <= 1e-14 * crossing.size {
+            return Some((i, s));
+        }
+        if h < 0.0 { (a, f) = (s, h) } else { (b, g) = (s, h) }
+    }
+    Some((i, a))
 }
 
 /// The plane in which a closed branch begins: through the magnet, across n1 x n2 there.
@@ -855,57 +823,5 @@ fn push_apart(branch: &mut Branch, station: Station) {
         branch.stations[count - 1] = station;
     } else {
         branch.stations.push(station);
-    }
-}
-
-impl<T: Real> Cut<T> {
-    fn place(&self, t: T, order: Order) -> CurveJet<T> {
-        let s = self.total * t;
-        let k = self.pieces.partition_point(|p| p.begin.re() <= s.re()).saturating_sub(1);
-        let piece = &self.pieces[k];
-        let x = (s - piece.begin) / piece.length;
-        let plain = x.re();
-        let [c, d] = polynomial::<T, T>(&piece.powers, T::from(plain)).map(Vec3::re);
-        let near = (0..NODES)
-            .min_by(|&a, &b| (node(a) - plain).abs().total_cmp(&(node(b) - plain).abs()))
-            .expect("there are nodes");
-        let guess = guess(&piece.places, near, plain);
-        let first = PlainSurface(&*self.first);
-        let second = self.second.plain();
-        let other = second.other();
-        let crossing = Crossing { first: &first, other, size: self.size };
-        let q = crossing.across(guess, c, d / d.norm()).unwrap_or(guess);
-        let all = derived(&self.first, &self.second, &piece.powers, q, x, order);
-        let [w, dw, ddw] =
-            all.unwrap_or([[T::from(q[0]), T::from(q[1])], [T::zero(); 2], [T::zero(); 2]]);
-        let rate = self.total / piece.length;
-        let flat = |[u, v]: [T; 2], by: T| Vec3::new(u * by, v * by, T::zero());
-        [flat(w, T::one()), flat(dw, rate), flat(ddw, rate * rate)]
-    }
-}
-
-/// The unknowns between two nodes, linearly.
-fn guess(places: &[Unknowns; NODES], near: usize, x: f64) -> Unknowns {
-    let other = if x > node(near) && near + 1 < NODES || near == 0 { near + 1 } else { near - 1 };
-    let share = (x - node(near)) / (node(other) - node(near));
-    std::array::from_fn(|k| places[near][k] + share * (places[other][k] - places[near][k]))
-}
-
-impl<T: Real> Curve<T> for Cut<T> {
-    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        super::on_surface_jet(&self.first, self.place(t, order), order)
-    }
-
-    fn breaks(&self) -> Vec<f64> {
-        let share = |p: &Piece<T>| p.begin.re() / self.total.re();
-        self.pieces[1..].iter().map(share).collect()
-    }
-
-    fn trace(&self) -> Trace<T> {
-        self.trace.clone()
-    }
-
-    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
-        Some(self.place(t, order))
     }
 }

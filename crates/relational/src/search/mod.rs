@@ -4,7 +4,10 @@
 
 mod arguments;
 mod beads;
+mod cut;
 mod equations;
+mod geodesic;
+mod int_point;
 mod intersect_snake;
 mod magnets;
 mod outcome;
@@ -13,7 +16,9 @@ mod project_snake;
 
 pub use arguments::Onto;
 pub use beads::{IntBead, IntRing, ProjBead, ProjRing, ProxBead, ProxRing, XYZBead, XYZRing};
-pub use intersect_snake::IntSnake;
+pub use geodesic::GeoSnake;
+pub use int_point::IntPoint;
+pub use intersect_snake::{IntCurve, IntSnake};
 pub use magnets::{IntMagnet, ProjMagnet, ProxMagnet, TanMagnet, XYZMagnet};
 pub use points::ProjPoint;
 pub use project_snake::{ProjCurve, ProjSnake};

@@ -350,8 +350,20 @@ impl<T: Real> Path<T> {
         let after = self.nodes.partition_point(|node| node.t < plain).min(self.nodes.len() - 1);
         let node = &self.nodes[after];
         let before = &self.nodes[after.saturating_sub(1)];
-        let near = if plain - before.t < node.t - plain { before } else { node };
-        let guess = std::array::from_fn(|k| near.q[k] + near.rate[k] * (plain - near.t));
+        // The cubic of both nodes is so near that one step of the iteration does.
+        let span = node.t - before.t;
+        let guess = if span > 0.0 {
+            let x = (plain - before.t) / span;
+            let y = 1.0 - x;
+            std::array::from_fn(|k| {
+                before.q[k] * (y * y * (1.0 + 2.0 * x))
+                    + before.rate[k] * (span * y * y * x)
+                    + node.q[k] * (x * x * (3.0 - 2.0 * x))
+                    - node.rate[k] * (span * x * x * y)
+            })
+        } else {
+            std::array::from_fn(|k| node.q[k] + node.rate[k] * (plain - node.t))
+        };
         let q = self.root(plain, guess).unwrap_or(guess);
         let Some(all) = self.derived(q, t, order) else {
             return [
@@ -377,6 +389,15 @@ struct Projected<T: Real> {
 impl<T: Real> Curve<T> for Projected<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         super::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
+    }
+
+    /// Place by place, as single ones: each begins at the cubic of the nodes on both sides of it, so
+    /// that its bits do not depend on the others.
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        for (out, &t) in out.iter_mut().zip(ts) {
+            let [w, ..] = self.path.place(T::from(t), Order::Zero);
+            *out = self.path.surface.jet(w.x, w.y, Order::Zero).p;
+        }
     }
 
     /// Those of the curve, and where the projection crosses those of the surface.

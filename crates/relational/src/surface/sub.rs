@@ -2,7 +2,9 @@ use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
 use moldloft_num::trace::{Edge, Edges, Key};
-use moldloft_num::{Bi1, Jet, Real, SurfaceFormula, Vec3, lift_curve, line_crossings};
+use moldloft_num::{
+    Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
+};
 use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
@@ -57,10 +59,15 @@ impl<T: Real> Build<T> for SubSurf<T> {
                 .in_field(0));
         }
         let shape = match <[Side<T>; 2]>::try_from(sides) {
-            Ok(ends) => Patch { surface, layout: Layout::Between(ends) },
+            Ok(ends) => {
+                let corners = [Vec3::zero(); 4];
+                Patch { surface, layout: Layout::Between(ends), corners }
+            }
             Err(sides) => {
                 check_corners(&sides)?;
-                Patch { surface, layout: Layout::Round(sides) }
+                let (south, north) = (&sides[0], &sides[2]);
+                let corners = [end(south, 0.0), end(south, 1.0), end(north, 0.0), end(north, 1.0)];
+                Patch { surface, layout: Layout::Round(sides), corners }
             }
         };
         shape.check_folds()?;
@@ -79,6 +86,8 @@ enum Layout<T: Real> {
 struct Patch<T: Real> {
     surface: SurfaceRef<T>,
     layout: Layout<T>,
+    /// The ends of the edges v = 0 and v = 1, first those of the one.
+    corners: [Vec3<T>; 4],
 }
 
 /// The place (u, v, 0) on the surface at the parameter `t` of a side.
@@ -110,23 +119,53 @@ const TRIALS: usize = 8;
 impl<T: Real> Patch<T> {
     /// The place on the surface.
     fn inside<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        self.blended(u, v, self.along_u(u), self.along_v(v))
+    }
+
+    /// The places on the edges v = 0 and v = 1.
+    fn along_u<J: Jet<T>>(&self, u: J) -> [Vec3<J>; 2] {
+        match &self.layout {
+            Layout::Between([first, last]) => [place(first, u), place(last, u)],
+            Layout::Round(sides) => [place(&sides[0], u), place(&sides[2], u)],
+        }
+    }
+
+    /// The places on the edges u = 0 and u = 1, of a patch that has sides there.
+    fn along_v<J: Jet<T>>(&self, v: J) -> [Vec3<J>; 2] {
+        match &self.layout {
+            Layout::Between(_) => [Vec3::zero(); 2],
+            Layout::Round(sides) => {
+                let west = match sides.get(3) {
+                    Some(west) => place(west, v),
+                    None => self.corners[0].map(J::fixed),
+                };
+                [west, place(&sides[1], v)]
+            }
+        }
+    }
+
+    /// The place inside, from those on the edges at its u and v.
+    fn blended<J: Jet<T>>(
+        &self,
+        u: J,
+        v: J,
+        [south, north]: [Vec3<J>; 2],
+        [west, east]: [Vec3<J>; 2],
+    ) -> Vec3<J> {
         let (a, b) = (-u + 1.0, -v + 1.0);
-        let sides = match &self.layout {
-            Layout::Between([first, last]) => return place(first, u) * b + place(last, u) * v,
-            Layout::Round(sides) => sides,
-        };
-        let [south, east, north] = [&sides[0], &sides[1], &sides[2]];
-        let fixed = |p: Vec3<T>| p.map(J::fixed);
-        let corner = |side, t| fixed(end(side, t));
-        let west = match sides.get(3) {
-            Some(west) => place(west, v),
-            None => corner(south, 0.0),
-        };
-        let across = place(south, u) * b + place(north, u) * v;
-        let along = west * a + place(east, v) * u;
-        let low = corner(south, 0.0) * a + corner(south, 1.0) * u;
-        let high = corner(north, 0.0) * a + corner(north, 1.0) * u;
+        let across = south * b + north * v;
+        if matches!(self.layout, Layout::Between(_)) {
+            return across;
+        }
+        let [p, q, r, s] = self.corners.map(|p| p.map(J::fixed));
+        let along = west * a + east * u;
+        let (low, high) = (p * a + q * u, r * a + s * u);
         across + along - (low * b + high * v)
+    }
+
+    fn position<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        let w = self.inside(u, v);
+        self.surface.at(w.x, w.y)
     }
 }
 
@@ -134,10 +173,17 @@ impl<T: Real> Patch<T> {
     /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
     fn check_folds(&self) -> Result<(), Fault> {
         let mut all = Vec::with_capacity((TRIALS + 1) * (TRIALS + 1));
+        let at = |k: usize| T::from(k as f64 / TRIALS as f64);
+        let sides: Vec<_> = (0..=TRIALS)
+            .map(|k| {
+                let (s, t) = Bi1::parameters(at(k), at(k));
+                (self.along_u(s), self.along_v(t))
+            })
+            .collect();
         for (i, j) in (0..=TRIALS).flat_map(|i| (0..=TRIALS).map(move |j| (i, j))) {
             let (u, v) = (i as f64 / TRIALS as f64, j as f64 / TRIALS as f64);
-            let (s, t) = Bi1::parameters(T::from(u), T::from(v));
-            let w = self.inside(s, t);
+            let (s, t) = Bi1::parameters(at(i), at(j));
+            let w = self.blended(s, t, sides[i].0, sides[j].1);
             let det = w.x.u.re() * w.y.v.re() - w.x.v.re() * w.y.u.re();
             all.push((det, u, v));
         }
@@ -166,12 +212,50 @@ impl<T: Real> Patch<T> {
     }
 }
 
-impl<T: Real> SurfaceFormula for Patch<T> {
-    type Scalar = T;
+impl<T: Real> Surface<T> for Patch<T> {
+    fn jet(&self, u: T, v: T, order: Order) -> SurfJet<T> {
+        surface_jet_of!(self, Self::position, u, v, order)
+    }
 
-    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
-        let w = self.inside(u, v);
-        self.surface.at(w.x, w.y)
+    /// As point by point, with the places on the sides found once a row and once a column.
+    fn grid(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        points: &mut [Vec3<T>],
+        mut normals: Option<&mut [Vec3<T>]>,
+    ) {
+        if let Some(normals) = normals.as_deref_mut() {
+            let rows: Vec<_> =
+                us.iter().map(|&u| Bi1::parameters(T::from(u), T::zero()).0).collect();
+            let columns: Vec<_> =
+                vs.iter().map(|&v| Bi1::parameters(T::zero(), T::from(v)).1).collect();
+            let along_v: Vec<_> = columns.iter().map(|&v| self.along_v(v)).collect();
+            for (i, &u) in rows.iter().enumerate() {
+                let along_u = self.along_u(u);
+                for (j, &v) in columns.iter().enumerate() {
+                    let w = self.blended(u, v, along_u, along_v[j]);
+                    let x = self.surface.at(w.x, w.y);
+                    let jet = SurfJet {
+                        p: x.map(|a| a.f),
+                        u: x.map(|a| a.u),
+                        v: x.map(|a| a.v),
+                        ..SurfJet::default()
+                    };
+                    points[i * vs.len() + j] = jet.p;
+                    normals[i * vs.len() + j] = jet.normal();
+                }
+            }
+            return;
+        }
+        let along_v: Vec<_> = vs.iter().map(|&v| self.along_v(T::from(v))).collect();
+        for (i, &u) in us.iter().enumerate() {
+            let along_u = self.along_u(T::from(u));
+            for (j, &v) in vs.iter().enumerate() {
+                let w = self.blended(T::from(u), T::from(v), along_u, along_v[j]);
+                points[i * vs.len() + j] = self.surface.jet(w.x, w.y, Order::Zero).p;
+            }
+        }
     }
 
     fn breaks(&self) -> [Vec<f64>; 2] {
@@ -193,7 +277,7 @@ impl<T: Real> SurfaceFormula for Patch<T> {
 
     /// Those of the patch's own lines, and of the surface, which lie across them.
     fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
-        let own = line_crossings(&SurfaceFormula::breaks(self), path, spans);
+        let own = line_crossings(&self.breaks(), path, spans);
         let mut finer = spans.to_vec();
         finer.extend(&own);
         finer.sort_by(f64::total_cmp);

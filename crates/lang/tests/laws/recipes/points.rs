@@ -37,6 +37,25 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             1 => format!("{{{}}}", p.curves::<2>().join(", ")),
             _ => format!("{{{}}}", p.surface()),
         },
+        "IntPoint" => {
+            let sheet = p.sheet();
+            let (a, b) = (p.number(1.0, 3.0), p.number(0.4, 1.6));
+            let along = p.object("YPlane", &format!("{b}*w"));
+            match p.random.below(2) {
+                0 => format!("{sheet}, {}, {along}", p.object("XPlane", &format!("{a}*w"))),
+                _ => {
+                    let [c, d, e, f] =
+                        [(1.3, 0.0, -1), (1.6, 3.0, -1), (2.2, 0.0, 1), (1.9, 3.0, 1)]
+                            .map(|(x, y, z)| p.object("AbsPoint", &format!("{x}*w, {y}, {z}")));
+                    let (l, m) = (
+                        p.object("Line", &format!("{c}, {d}")),
+                        p.object("Line", &format!("{e}, {f}")),
+                    );
+                    let wall = p.object("RuledSurf", &format!("{l}, {m}, visible = 0"));
+                    format!("{wall}, {along}, {sheet}")
+                }
+            }
+        }
         "ArcLenBead" => {
             let curve = p.curve();
             format!("{}, 0.01*w", p.bead(&curve))

@@ -69,6 +69,10 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let last = p.object("LineSnake", &format!("{b}, {c}"));
             format!("{{{first}, {last}}}")
         }
+        "GeoSnake" => {
+            let sheet = p.sheet();
+            format!("{}, {}", p.magnet(&sheet), p.magnet(&sheet))
+        }
         "IntSnake" => {
             let sheet = p.sheet();
             match p.random.below(2) {

@@ -1,0 +1,360 @@
+//! Geodesics between two magnets.
+//!
+//! A path X(t) = S(w(t)) is a geodesic run evenly when its second derivative is normal to the
+//! surface: S_u . X'' = S_v . X'' = 0. X is the polynomial through its places at Chebyshev's nodes, and
+//! the equations are asked for at the inner ones (collocation; Trefethen 2000, Spectral Methods in
+//! MATLAB, chapters 6 and 7). They need no more than second derivatives of the surface for Newton's
+//! method, and so for the exact derivatives of its solution.
+
+use crate::arguments::{Magnet, common_surface};
+use crate::snake::OnSurface;
+use moldloft_num::trace::Trace;
+use moldloft_num::{CurveFormula, Jet, Order, Real, SurfJet, Vec3, solve_dense};
+use moldloft_registry::{
+    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, SurfaceRef, Value,
+};
+
+/// Numbers of spans between nodes that are tried until the path no longer changes.
+const SPANS: [usize; 5] = [8, 16, 24, 36, 54];
+
+/// A path that changes by less than this in u and v is taken.
+const SETTLED: f64 = 1e-11;
+
+/// Steps of Newton's method.
+const MOST_STEPS: usize = 60;
+
+/// How far outside of the surface a path may run, in u and v.
+const OUTSIDE: f64 = 1e-9;
+
+/// The shortest way on a surface between two magnets, or more exactly a geodesic: a curve that turns
+/// neither left nor right on the surface. It is run evenly, so t is the share of its length.
+///
+/// Of several geodesics it is the one that Newton's method leads to from the straight line of the
+/// parameter plane: on surfaces that are not bent much between the magnets, the shortest. It does not
+/// run across the seam of a closed surface; put the seam elsewhere for that.
+#[derive(Kind)]
+#[kind(
+    class = Snake,
+    columns = "relabel m1 m2",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
+               AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
+               AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.8); GeoSnake s(p, q);"
+)]
+pub struct GeoSnake<T: Real> {
+    /// Where it begins.
+    m1: Magnet<T>,
+    /// Where it ends, on the same surface.
+    m2: Magnet<T>,
+}
+
+impl<T: Real> Build<T> for GeoSnake<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { m1, m2 } = self;
+        let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
+        let surface = common_surface(&items, Fault::in_field)?;
+        let ends = [m1.uv, m2.uv];
+        let plain = ends.map(|w| w.map(|x| x.re()));
+        let (gap, iterations, nodes) = solved(&surface, plain)?;
+        let path = Path::new(&surface, ends, &nodes)?;
+        let found = Found {
+            status: FoundStatus::Ok,
+            residual: gap,
+            iterations: iterations as u32,
+            start: plain.as_flattened().to_vec(),
+            last: plain.as_flattened().to_vec(),
+            alternatives: Vec::new(),
+            advice: "",
+        };
+        let trace = Trace::Own([m1.key, m2.key]);
+        let shape = OnSurface { surface: surface.clone(), path, trace };
+        Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting).with_found(found)))
+    }
+}
+
+/// The angle of node k of n spans; the node is at t = (1 - cos) / 2.
+fn angle(k: usize, n: usize) -> f64 {
+    std::f64::consts::PI * k as f64 / n as f64
+}
+
+fn node(k: usize, n: usize) -> f64 {
+    0.5 - 0.5 * Real::cos(angle(k, n))
+}
+
+/// The matrix that takes values at the nodes to second derivatives by t there.
+fn second_derivatives(n: usize) -> Vec<f64> {
+    let m = n + 1;
+    let x: Vec<f64> = (0..m).map(|k| node(k, n)).collect();
+    let weight = |k: usize| {
+        let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        if k == 0 || k == n { 0.5 * sign } else { sign }
+    };
+    let mut d = vec![0.0; m * m];
+    for i in 0..m {
+        let mut sum = 0.0;
+        for j in (0..m).filter(|&j| j != i) {
+            d[i * m + j] = weight(j) / weight(i) / (x[i] - x[j]);
+            sum += d[i * m + j];
+        }
+        // Derivatives of a constant are zero.
+        d[i * m + i] = -sum;
+    }
+    let mut dd = vec![0.0; m * m];
+    for i in 0..m {
+        for j in 0..m {
+            dd[i * m + j] = (0..m).map(|k| d[i * m + k] * d[k * m + j]).sum();
+        }
+    }
+    dd
+}
+
+/// The equations at the inner nodes and their matrix by the inner places, in the order u, v of each.
+fn equations<T: Real>(
+    surface: &SurfaceRef<T>,
+    places: &[[T; 2]],
+    dd: &[f64],
+    with_matrix: bool,
+) -> (Vec<T>, Vec<T>) {
+    let m = places.len();
+    let inner = m - 2;
+    let order = if with_matrix { Order::Second } else { Order::First };
+    let jets: Vec<SurfJet<T>> = places.iter().map(|&[u, v]| surface.jet(u, v, order)).collect();
+    let mut rest = Vec::with_capacity(2 * inner);
+    let mut matrix = if with_matrix { vec![T::zero(); 4 * inner * inner] } else { Vec::new() };
+    for k in 1..m - 1 {
+        let bend = (0..m).fold(Vec3::zero(), |sum, j| sum + jets[j].p * T::from(dd[k * m + j]));
+        let own = [jets[k].u, jets[k].v];
+        rest.extend(own.map(|d| d.dot(bend)));
+        if !with_matrix {
+            continue;
+        }
+        for (a, d) in own.into_iter().enumerate() {
+            let row = (2 * (k - 1) + a) * 2 * inner;
+            for j in 1..m - 1 {
+                let share = T::from(dd[k * m + j]);
+                matrix[row + 2 * (j - 1)] = d.dot(jets[j].u) * share;
+                matrix[row + 2 * (j - 1) + 1] = d.dot(jets[j].v) * share;
+            }
+            let (by_u, by_v) =
+                if a == 0 { (jets[k].uu, jets[k].uv) } else { (jets[k].uv, jets[k].vv) };
+            matrix[row + 2 * (k - 1)] += by_u.dot(bend);
+            matrix[row + 2 * (k - 1) + 1] += by_v.dot(bend);
+        }
+    }
+    (rest, matrix)
+}
+
+/// The places of a path at other nodes, by the barycentric formula.
+fn resampled(places: &[[f64; 2]], n: usize) -> Vec<[f64; 2]> {
+    let m = places.len();
+    (0..=n)
+        .map(|k| {
+            let t = node(k, n);
+            let (mut sum, mut total) = ([0.0; 2], 0.0);
+            for (j, place) in places.iter().enumerate() {
+                let gap = t - node(j, m - 1);
+                if gap == 0.0 {
+                    return *place;
+                }
+                let sign = if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+                let share = if j == 0 || j == m - 1 { 0.5 * sign } else { sign } / gap;
+                sum = [sum[0] + share * place[0], sum[1] + share * place[1]];
+                total += share;
+            }
+            sum.map(|x| x / total)
+        })
+        .collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |a, x| a.max(x.abs()))
+}
+
+/// The plain places at the nodes: how far the last refinement moved them, steps, places.
+fn solved<T: Real>(
+    surface: &SurfaceRef<T>,
+    [from, to]: [[f64; 2]; 2],
+) -> Result<(f64, usize, Vec<[f64; 2]>), Fault> {
+    let at = |[u, v]: [f64; 2]| surface.jet(T::from(u), T::from(v), Order::Zero).p.re();
+    if at(from).distance(at(to)) == 0.0 {
+        return Err(Fault::new("coincident-points", "the geodesic has no length")
+            .expected("two magnets in different places")
+            .found("one place")
+            .in_field(1));
+    }
+    let mut places: Vec<[f64; 2]> = vec![from, to];
+    let mut steps = 0;
+    let mut moved = f64::INFINITY;
+    for n in SPANS {
+        let before = if places.len() == 2 {
+            let line = |k: usize| {
+                let t = node(k, n);
+                [0, 1].map(|a| from[a] * (1.0 - t) + to[a] * t)
+            };
+            (0..=n).map(line).collect()
+        } else {
+            resampled(&places, n)
+        };
+        let Some((next, used)) = newton(surface, before.clone(), n) else { break };
+        steps += used;
+        let change = next
+            .iter()
+            .zip(&before)
+            .flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]])
+            .fold(0.0_f64, |a, x| a.max(x.abs()));
+        let first = places.len() == 2;
+        places = next;
+        if !first {
+            moved = change;
+        }
+        if moved <= SETTLED {
+            break;
+        }
+    }
+    if places.len() == 2 {
+        return Err(Fault::new("no-convergence", "no geodesic was found between the magnets")
+            .expected("magnets with a smooth stretch of the surface between them")
+            .found("an iteration from the straight line in u and v that came to no end")
+            .help("put magnets between them, and join the geodesics by PolySnake"));
+    }
+    let out = places.iter().flatten().any(|x| *x < -OUTSIDE || *x > 1.0 + OUTSIDE);
+    if out {
+        let span = |a: usize| {
+            let all = places.iter().map(|p| p[a]);
+            let (low, high) =
+                (all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max));
+            format!("{low:.4} .. {high:.4}")
+        };
+        return Err(Fault::new("leaves-surface", "the geodesic leaves the surface")
+            .expected("a geodesic with u and v in 0 .. 1")
+            .found(format!("u in {}, v in {}", span(0), span(1)))
+            .help("move the magnets away from the edge, or make the surface larger"));
+    }
+    Ok((moved, steps, places))
+}
+
+/// Newton's method at n spans, halving steps that do not help; `None` when it does not settle.
+fn newton<T: Real>(
+    surface: &SurfaceRef<T>,
+    mut places: Vec<[f64; 2]>,
+    n: usize,
+) -> Option<(Vec<[f64; 2]>, usize)> {
+    let dd = second_derivatives(n);
+    let lifted =
+        |places: &[[f64; 2]]| -> Vec<[T; 2]> { places.iter().map(|p| p.map(T::from)).collect() };
+    let plain = |all: Vec<T>| -> Vec<f64> { all.into_iter().map(|x| x.re()).collect() };
+    let (rest, matrix) = equations(surface, &lifted(&places), &dd, true);
+    let (mut rest, mut matrix) = (plain(rest), plain(matrix));
+    for step in 1..=MOST_STEPS {
+        let mut by = rest.clone();
+        solve_dense(&mut matrix, &mut by).ok()?;
+        let length = largest(&by);
+        if !length.is_finite() {
+            return None;
+        }
+        let mut share = (0.25 / length).min(1.0);
+        let mut better = false;
+        for _ in 0..12 {
+            let next: Vec<[f64; 2]> = (0..=n)
+                .map(|k| match k {
+                    0 => places[0],
+                    _ if k == n => places[n],
+                    _ => [0, 1].map(|a| places[k][a] - share * by[2 * (k - 1) + a]),
+                })
+                .collect();
+            let (r, m) = equations(surface, &lifted(&next), &dd, true);
+            let (r, m) = (plain(r), plain(m));
+            // Near the solution rounding decides, and the full step is right.
+            if largest(&r) < largest(&rest) || length < 1e-9 {
+                (places, rest, matrix) = (next, r, m);
+                better = true;
+                break;
+            }
+            share *= 0.5;
+        }
+        if length <= 1e-13 {
+            return Some((places, step));
+        }
+        if !better {
+            // As far as rounding lets it.
+            return (length <= 1e-7).then_some((places, step));
+        }
+    }
+    None
+}
+
+/// The path in the parameter plane: the straight line and t (1 - t) p(t), with a polynomial p in
+/// Chebyshev's of the second kind, so that its ends are the magnets' places to the bit.
+struct Path<T: Real> {
+    ends: [[T; 2]; 2],
+    coefficients: Vec<[T; 2]>,
+}
+
+impl<T: Real> Path<T> {
+    fn new(surface: &SurfaceRef<T>, ends: [[T; 2]; 2], plain: &[[f64; 2]]) -> Result<Self, Fault> {
+        let n = plain.len() - 1;
+        let places = derived(surface, ends, plain).ok_or_else(super::outcome::tangent)?;
+        let [from, to] = ends;
+        // p at node k is what is beyond the line over sin^2 / 4; its coefficients follow from the
+        // orthogonality of sines.
+        let coefficient = |j: usize| {
+            (1..n).fold([T::zero(); 2], |sum, k| {
+                let (t, theta) = (node(k, n), angle(k, n));
+                let factor = 8.0 / n as f64 * Real::sin((j + 1) as f64 * theta) / Real::sin(theta);
+                [0, 1].map(|a| {
+                    let line = from[a] * (1.0 - t) + to[a] * t;
+                    sum[a] + (places[k][a] - line) * factor
+                })
+            })
+        };
+        Ok(Self { ends, coefficients: (0..n - 1).map(coefficient).collect() })
+    }
+}
+
+/// The places with what they owe to the model's parameters: one step of Newton's method in T, of
+/// which the real part is left out.
+fn derived<T: Real>(
+    surface: &SurfaceRef<T>,
+    [from, to]: [[T; 2]; 2],
+    plain: &[[f64; 2]],
+) -> Option<Vec<[T; 2]>> {
+    let n = plain.len() - 1;
+    let mut places: Vec<[T; 2]> = plain.iter().map(|p| p.map(T::from)).collect();
+    (places[0], places[n]) = (from, to);
+    if T::PARTS == 1 {
+        return Some(places);
+    }
+    let dd = second_derivatives(n);
+    let (rest, _) = equations(surface, &places, &dd, false);
+    let mut by: Vec<T> = rest.into_iter().map(|r| r - r.re()).collect();
+    if by.iter().any(|r| !r.is_constant()) {
+        let at: Vec<[T; 2]> = plain.iter().map(|p| p.map(T::from)).collect();
+        let (_, matrix) = equations(surface, &at, &dd, true);
+        let mut matrix: Vec<T> = matrix.into_iter().map(|x| T::from(x.re())).collect();
+        solve_dense(&mut matrix, &mut by).ok()?;
+        for k in 1..n {
+            places[k] = [0, 1].map(|a| places[k][a] - by[2 * (k - 1) + a]);
+        }
+    }
+    Some(places)
+}
+
+impl<T: Real> CurveFormula for Path<T> {
+    type Scalar = T;
+
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        // In y = cos(theta) of the nodes, which runs from 1 to -1.
+        let y = t * -2.0 + 1.0;
+        let s = -t + 1.0;
+        let bump = t * s;
+        let [u, v] = [0, 1].map(|a| {
+            // Clenshaw's recursion for U_j.
+            let (mut b1, mut b2) = (J::zero(), J::zero());
+            for c in self.coefficients.iter().rev() {
+                (b1, b2) = (J::fixed(c[a]) + y * b1 * 2.0 - b2, b1);
+            }
+            let [from, to] = [self.ends[0][a], self.ends[1][a]];
+            s.scaled(from) + t.scaled(to) + bump * b1
+        });
+        Vec3::new(u, v, J::zero())
+    }
+}
