@@ -90,6 +90,41 @@ def test_vtp_by_pyvista(hull, tmp_path):
     assert mesh.area == pytest.approx(ours.area, rel=1e-3)
 
 
+def test_fields_for_viewers(tmp_path):
+    """A tube of radius 2 with a plane disc as its end: curvatures outside of it are known."""
+    model = moldloft.loads("""
+    AbsPoint A(2, 0, 0); AbsPoint B(2, 0, 3); AbsPoint O(0, 0, 0); AbsPoint P(0, 0, 3);
+    Line side(A, B); Line axis(O, P); Line spoke(O, A);
+    RevSurf tube(side, axis, 0, 6.283185307179586, divisions = {6, 24});
+    RevSurf end(spoke, axis, 0, 6.283185307179586, divisions = {4, 24});
+    """)
+    (path,) = model.write(tmp_path / "tube.vtp")
+    whole = pyvista.read(path)
+    names = {"gaussian_curvature", "mean_curvature", "largest_curvature", "smallest_curvature"}
+    assert names | {"isophote", "zebra", "normal"} <= set(whole.point_data)
+    for path in model.write(tmp_path / "tube.vts"):
+        if path.suffix == ".vtm":
+            continue
+        grid = pyvista.read(path)
+        on_end = path.name.endswith("end.vts")
+        round_ = np.hypot(*grid.points.T[:2]) > 1e-9
+        bend = np.stack([grid[n] for n in ("largest_curvature", "smallest_curvature")], axis=1)
+        sizes = np.sort(np.abs(bend[round_]), axis=1)
+        assert np.abs(sizes - ([0, 0] if on_end else [0, 0.5])).max() < 1e-12
+        assert np.abs(grid["gaussian_curvature"][round_]).max() < 1e-12
+        lengths = np.linalg.norm(grid["normal"][round_], axis=1)
+        assert lengths == pytest.approx(1.0)
+        if on_end:
+            assert np.isnan(grid["gaussian_curvature"][~round_]).all() and (~round_).any()
+            assert np.abs(grid["isophote"][round_]) == pytest.approx(1.0)
+            assert "eta_y" in grid.point_data
+        else:
+            assert "eta_y" not in grid.point_data
+            # u and v are in their places: normals point along the radius.
+            across = grid.points[:, :2] / 2
+            assert np.abs((grid["normal"][:, :2] * across).sum(axis=1)) == pytest.approx(1.0)
+
+
 def test_vts_by_pyvista(box, tmp_path):
     paths = box.write(tmp_path / "box.vts")
     grids = [pyvista.read(path) for path in paths if path.suffix == ".vts"]

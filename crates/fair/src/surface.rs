@@ -84,6 +84,48 @@ pub fn zebra(look: &Look, view: Vec3<f64>, axis: Vec3<f64>, stripes: f64) -> f64
     if Real::sin(stripes * angle) >= 0.0 { 1.0 } else { -1.0 }
 }
 
+impl Look {
+    /// The same seen from the other side: the normal turned round, and with it the signs of the mean
+    /// and the principal curvatures.
+    pub fn turned(&self) -> Self {
+        let Curvatures { gaussian, mean, principal: [k1, k2] } = self.curvatures;
+        let curvatures = Curvatures { gaussian, mean: -mean, principal: [-k2, -k1] };
+        Self { point: self.point, normal: -self.normal, curvatures }
+    }
+}
+
+/// Numbers at the points of a mesh, for viewers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// The name that viewers show.
+    pub name: &'static str,
+    /// Numbers per point: 1, or 3 of a vector.
+    pub components: usize,
+    /// The numbers, point by point; NaN where the surface is singular.
+    pub values: Vec<f64>,
+}
+
+/// What viewers show of a surface: curvatures, the isophotes of light along +z, zebra stripes of a
+/// view along +z round the x axis (eight to a turn), normals.
+pub fn fields(looks: &[Option<Look>]) -> Vec<Field> {
+    let (x, z) = (Vec3::of(1.0, 0.0, 0.0), Vec3::of(0.0, 0.0, 1.0));
+    let numbers = |name, of: &dyn Fn(&Look) -> f64| Field {
+        name,
+        components: 1,
+        values: looks.iter().map(|l| l.as_ref().map_or(f64::NAN, of)).collect(),
+    };
+    let normal = |l: &Option<Look>| l.as_ref().map_or([f64::NAN; 3], |l| l.normal.to_array());
+    vec![
+        numbers("gaussian_curvature", &|l| l.curvatures.gaussian),
+        numbers("mean_curvature", &|l| l.curvatures.mean),
+        numbers("largest_curvature", &|l| l.curvatures.principal[0]),
+        numbers("smallest_curvature", &|l| l.curvatures.principal[1]),
+        numbers("isophote", &|l| isophote(l, z)),
+        numbers("zebra", &|l| zebra(l, z, x, 8.0)),
+        Field { name: "normal", components: 3, values: looks.iter().flat_map(normal).collect() },
+    ]
+}
+
 /// A point of the orthotomic surface p + k ((x - p) . n) n; singular where K = 0.
 pub fn orthotomic(look: &Look, p: Vec3<f64>, k: f64) -> Vec3<f64> {
     p + look.normal * (k * (look.point - p).dot(look.normal))

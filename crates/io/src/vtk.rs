@@ -76,6 +76,77 @@ fn strings<'a>(name: &str, values: impl ExactSizeIterator<Item = &'a str>) -> St
     out + "</Array>\n"
 }
 
+/// Numbers at points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// The name of the array.
+    pub name: String,
+    /// Numbers per point.
+    pub components: usize,
+    /// The numbers, point by point. NaN stands for none.
+    pub values: Vec<f64>,
+}
+
+/// The fields of a structured patch, point (i, j) of its block at `i * nv + j`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchFields {
+    /// The patch's name.
+    pub patch: String,
+    /// Its fields.
+    pub fields: Vec<Field>,
+}
+
+/// The `PointData` element of arrays already added.
+fn point_data(arrays: &str) -> String {
+    if arrays.is_empty() { String::new() } else { format!("<PointData>\n{arrays}</PointData>\n") }
+}
+
+/// The fields of patches as fields of the mesh's vertices. A vertex of several patches has the mean
+/// of their numbers; one of none that has the field, NaN.
+fn by_vertex(mesh: &Mesh, fields: &[PatchFields]) -> Vec<Field> {
+    let count = mesh.positions().len();
+    let mut out: Vec<(Field, Vec<u32>)> = Vec::new();
+    for own in fields {
+        let patch = mesh.patches().iter().find(|p| p.info.name == own.patch);
+        let Some(block) = patch.and_then(|p| p.block.as_ref()) else { continue };
+        for field in &own.fields {
+            let parts = field.components;
+            if field.values.len() != parts * block.vertices.len() {
+                continue;
+            }
+            let at = out.iter().position(|(f, _)| f.name == field.name && f.components == parts);
+            let at = at.unwrap_or_else(|| {
+                let (name, values) = (field.name.clone(), vec![0.0; parts * count]);
+                out.push((Field { name, components: parts, values }, vec![0; count]));
+                out.len() - 1
+            });
+            let (sum, times) = &mut out[at];
+            // A pole stands several times in its block.
+            let mut seen: Vec<(u32, usize)> =
+                block.vertices.iter().enumerate().map(|(k, &v)| (v, k)).collect();
+            seen.sort_unstable();
+            seen.dedup_by_key(|(v, _)| *v);
+            for (vertex, k) in seen {
+                let values = &field.values[k * parts..(k + 1) * parts];
+                if values.iter().all(|x| x.is_finite()) {
+                    let vertex = vertex as usize;
+                    times[vertex] += 1;
+                    for (s, x) in sum.values[vertex * parts..].iter_mut().zip(values) {
+                        *s += x;
+                    }
+                }
+            }
+        }
+    }
+    let mean = |(mut field, times): (Field, Vec<u32>)| {
+        for (values, &n) in field.values.chunks_mut(field.components).zip(&times) {
+            values.iter_mut().for_each(|x| *x = if n == 0 { f64::NAN } else { *x / f64::from(n) });
+        }
+        field
+    };
+    out.into_iter().map(mean).collect()
+}
+
 /// The `.vtp` file: panels with the cell array `patch` (index of the patch), a cell array `tag NAME`
 /// of ones and zeros for each tag that some patch was given, and the field arrays `patch_name` and
 /// `patch_tag`, one string per patch.
@@ -83,14 +154,19 @@ fn strings<'a>(name: &str, values: impl ExactSizeIterator<Item = &'a str>) -> St
 /// # Errors
 /// Positions that are not finite.
 pub fn polydata(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
-    polydata_with(mesh, &Strands::default())
+    polydata_with(mesh, &Strands::default(), &[])
 }
 
-/// As [`polydata`], with points as vertex cells and polylines as line cells, whose `patch` is -1.
+/// As [`polydata`], with points as vertex cells and polylines as line cells, whose `patch` is -1. The
+/// fields of patches are point arrays; where patches meet they are the mean of both.
 ///
 /// # Errors
 /// As [`polydata`].
-pub fn polydata_with(mesh: &Mesh, strands: &Strands) -> Result<Vec<u8>, WriteError> {
+pub fn polydata_with(
+    mesh: &Mesh,
+    strands: &Strands,
+    fields: &[PatchFields],
+) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
     let mut used = vec![false; mesh.positions().len()];
     mesh.faces().iter().flatten().for_each(|&v| used[v as usize] = true);
@@ -138,9 +214,16 @@ pub fn polydata_with(mesh: &Mesh, strands: &Strands) -> Result<Vec<u8>, WriteErr
         let offset = data.add_integers(std::iter::repeat_n(0, loose).chain(cells));
         tags += &array("Int64", &xml(&format!("tag {name}")), 1, offset);
     }
+    let mut arrays = String::new();
+    for field in by_vertex(mesh, fields) {
+        // Points of strands lie on no surface.
+        let none = std::iter::repeat_n(f64::NAN, field.components * (count - first as usize));
+        let offset = data.add_reals(field.values.iter().copied().chain(none));
+        arrays += &array("Float64", &xml(&field.name), field.components, offset);
+    }
     let body = format!(
         "<PolyData>\n<FieldData>\n{}{}</FieldData>\n<Piece NumberOfPoints=\"{}\" \
-         NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n\
+         NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n{}\
          <CellData Scalars=\"patch\">\n{}{tags}</CellData>\n<Points>\n{}</Points>\n{}{}<Polys>\n{}{}</Polys>\n\
          </Piece>\n</PolyData>\n",
         strings("patch_name", mesh.patches().iter().map(|p| p.info.name.as_str())),
@@ -149,6 +232,7 @@ pub fn polydata_with(mesh: &Mesh, strands: &Strands) -> Result<Vec<u8>, WriteErr
         dots.len(),
         wires.len(),
         mesh.faces().len(),
+        point_data(&arrays),
         array("Int64", "patch", 1, patch),
         array("Float64", "Points", 3, points),
         cells("Verts", dots.is_empty(), verts),
@@ -169,39 +253,63 @@ fn cells(name: &str, none: bool, [connectivity, offsets]: [usize; 2]) -> String 
     format!("<{name}>\n{a}{b}</{name}>\n")
 }
 
-/// The `.vts` file of one grid, whose vertices come u fastest, then v.
+/// The `.vts` file of one grid, whose vertices come u fastest, then v, as those of the fields.
 fn structured(
     positions: &[Vec3],
     size: [usize; 3],
     vertices: impl Iterator<Item = u32>,
     label: &str,
     name: &str,
+    fields: &[Field],
 ) -> Vec<u8> {
     let points = vertices.flat_map(|v| positions[v as usize].to_array());
     let mut data = Appended::default();
     let points = data.add_reals(points);
+    let mut arrays = String::new();
+    for field in fields {
+        let offset = data.add_reals(field.values.iter().copied());
+        arrays += &array("Float64", &xml(&field.name), field.components, offset);
+    }
     let [nu, nv, nw] = size.map(|n| n - 1);
     let extent = format!("0 {nu} 0 {nv} 0 {nw}");
     let body = format!(
         "<StructuredGrid WholeExtent=\"{extent}\">\n<FieldData>\n{}</FieldData>\n\
-         <Piece Extent=\"{extent}\">\n<Points>\n{}</Points>\n</Piece>\n</StructuredGrid>\n",
+         <Piece Extent=\"{extent}\">\n{}<Points>\n{}</Points>\n</Piece>\n</StructuredGrid>\n",
         strings(label, [name].into_iter()),
+        point_data(&arrays),
         array("Float64", "Points", 3, points),
     );
     data.file("StructuredGrid", &body)
 }
 
 /// The structured patches as files: `stem.vts` for one; for several `stem.vtm`, which is first and
-/// names the others, and `stem-1-name.vts`, `stem-2-name.vts` and so on.
+/// names the others, and `stem-1-name.vts`, `stem-2-name.vts` and so on. Fields are point arrays.
 ///
 /// # Errors
 /// [`WriteError::NoGrid`] when some patch has no grid; positions that are not finite.
-pub fn structured_files(mesh: &Mesh, stem: &str) -> Result<Vec<NamedFile>, WriteError> {
+pub fn structured_files(
+    mesh: &Mesh,
+    stem: &str,
+    fields: &[PatchFields],
+) -> Result<Vec<NamedFile>, WriteError> {
     check_positions(mesh, f64::MAX)?;
     let grids = crate::plot3d::blocks(mesh)?;
     let one = |&(name, b): &(&str, &moldloft_mesh::Block)| {
         let vertices = (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| b.at(i, j)));
-        let bytes = structured(mesh.positions(), [b.nu, b.nv, 1], vertices, "patch_name", name);
+        let own = fields.iter().filter(|f| f.patch == name).flat_map(|f| &f.fields);
+        let fit = own.filter(|f| f.values.len() == f.components * b.vertices.len());
+        // Ours run along v first.
+        let turned = |f: &Field| {
+            let one = |(i, j): (usize, usize)| {
+                let at = (i * b.nv + j) * f.components;
+                f.values[at..at + f.components].iter().copied()
+            };
+            let places = (0..b.nv).flat_map(|j| (0..b.nu).map(move |i| (i, j)));
+            Field { values: places.flat_map(one).collect(), ..f.clone() }
+        };
+        let own: Vec<Field> = fit.map(turned).collect();
+        let size = [b.nu, b.nv, 1];
+        let bytes = structured(mesh.positions(), size, vertices, "patch_name", name, &own);
         (name.to_string(), bytes)
     };
     Ok(indexed(grids.iter().map(one).collect(), stem))
@@ -221,7 +329,7 @@ fn vertices(block: &HexBlock) -> impl Iterator<Item = u32> + '_ {
 pub fn block_files(blocks: &Blocks, stem: &str) -> Result<Vec<NamedFile>, WriteError> {
     check_blocks(blocks, f64::MAX)?;
     let one = |b: &HexBlock| {
-        let bytes = structured(blocks.positions(), b.size, vertices(b), "block_name", &b.name);
+        let bytes = structured(blocks.positions(), b.size, vertices(b), "block_name", &b.name, &[]);
         (b.name.clone(), bytes)
     };
     Ok(indexed(blocks.blocks().iter().map(one).collect(), stem))
@@ -325,7 +433,7 @@ mod tests {
     #[test]
     fn grids_become_files() {
         let mesh = two_patches();
-        let error = structured_files(&mesh, "hull").unwrap_err();
+        let error = structured_files(&mesh, "hull", &[]).unwrap_err();
         assert_eq!(error, WriteError::NoGrid { patches: vec!["lid".into()] });
         let mut b = TopologyBuilder::new();
         b.add_vertices(6).unwrap();
@@ -333,13 +441,55 @@ mod tests {
             b.add_block(PatchInfo::new(name), 3, 2, (0..6).collect(), false).unwrap();
         }
         let grid = Mesh::new(b.build().into(), mesh.positions()[..6].to_vec()).unwrap();
-        let files = structured_files(&grid, "hull").unwrap();
+        let files = structured_files(&grid, "hull", &[]).unwrap();
         let names: Vec<_> = files.iter().map(|f| f.name.as_str()).collect();
         assert_eq!(names, ["hull.vtm", "hull-1-fore___aft.vts", "hull-2-b_c.vts"]);
         assert!(String::from_utf8(files[0].bytes.clone()).unwrap().contains("fore &amp; aft"));
         // u fastest: the second point is vertex 2.
         assert_eq!(reals(&files[1].bytes, 0)[3..6], [1.0, 0.0, 0.0]);
     }
+
+    /// Two patches of six vertices that share a column: their numbers stand in their own files as
+    /// they are, and in the common one as means.
+    #[test]
+    fn fields_of_patches_are_point_arrays() {
+        let mut b = TopologyBuilder::new();
+        b.add_vertices(9).unwrap();
+        b.add_block(PatchInfo::new("fore"), 2, 3, (0..6).collect(), false).unwrap();
+        b.add_block(PatchInfo::new("aft"), 2, 3, (3..9).collect(), true).unwrap();
+        let positions = (0..9).map(|k| Vec3::of((k / 3) as f64, (k % 3) as f64, 0.0)).collect();
+        let mesh = Mesh::new(b.build().into(), positions).unwrap();
+        let field = |name: &str, components, values: Vec<f64>| Field {
+            name: name.into(),
+            components,
+            values,
+        };
+        let of = |patch: &str, fields| PatchFields { patch: patch.into(), fields };
+        let fore = field("bend", 1, (0..6).map(f64::from).collect());
+        let aft = field("bend", 1, vec![13.0, f64::NAN, 15.0, 1.0, 1.0, 1.0]);
+        let arrow = field("arrow", 3, (0..18).map(f64::from).collect());
+        let wrong = field("wrong", 1, vec![1.0]);
+        let all = [of("fore", vec![fore, wrong]), of("aft", vec![aft, arrow]), of("mast", vec![])];
+        let whole = polydata_with(&mesh, &Strands::default(), &all).unwrap();
+        let text = String::from_utf8_lossy(&whole).into_owned();
+        let offset = |text: &str, name: &str| -> usize {
+            let at = text.find(&format!("Name=\"{name}\"")).unwrap();
+            let (_, rest) = text[at..].split_once("offset=\"").unwrap();
+            rest.split('"').next().unwrap().parse().unwrap()
+        };
+        let bend = reals(&whole, offset(&text, "bend"));
+        assert_eq!(bend, [0.0, 1.0, 2.0, 8.0, 4.0, 10.0, 1.0, 1.0, 1.0]);
+        let arrow = reals(&whole, offset(&text, "arrow"));
+        assert!(arrow[..9].iter().all(|x| x.is_nan()) && arrow[9..12] == [0.0, 1.0, 2.0]);
+        assert!(!text.contains("wrong"));
+        let files = structured_files(&mesh, "hull", &all).unwrap();
+        let text = String::from_utf8_lossy(&files[1].bytes).into_owned();
+        // u fastest in the file, v in the block.
+        let bend = reals(&files[1].bytes, offset(&text, "bend"));
+        assert_eq!(bend, [0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
+        assert!(!text.contains("arrow"));
+    }
+
     #[test]
     fn blocks_become_files() {
         let blocks = crate::fixtures::two_bricks();

@@ -98,8 +98,8 @@ pub fn files(
         "3mf" => threemf::write(mesh, stem, threemf_unit(metres), patch_colour).map(one),
         "ply" => ply::write(mesh).map(one),
         "glb" => gltf::write(mesh, stem, metres, patch_colour).map(one),
-        "vtp" => vtk::polydata_with(mesh, &strands).map(one),
-        "vts" => vtk::structured_files(mesh, stem),
+        "vtp" => vtk::polydata_with(mesh, &strands, &looks(document)?).map(one),
+        "vts" => vtk::structured_files(mesh, stem, &looks(document)?),
         "p3d" => plot3d::write(mesh, plot3d::Layout::Stream).map(one),
         _ => {
             let message = format!("there is no format `{format}`");
@@ -140,6 +140,21 @@ fn threemf_unit(metres: f64) -> &'static str {
     ];
     let found = UNITS.into_iter().find(|(size, _)| (size - metres).abs() < 1e-9 * metres);
     found.map_or("meter", |(_, name)| name)
+}
+
+/// What viewers show of the surfaces, for VTK's files.
+fn looks(document: &mut Document) -> Outcome<Vec<vtk::PatchFields>> {
+    let told = document.patch_fields().map_err(|d| vec![d])?;
+    let field = |f: moldloft_fair::surface::Field| vtk::Field {
+        name: f.name.into(),
+        components: f.components,
+        values: f.values,
+    };
+    let patch = |p: moldloft_lang::PatchFields| vtk::PatchFields {
+        patch: p.patch,
+        fields: p.fields.into_iter().map(field).collect(),
+    };
+    Ok(told.into_iter().map(patch).collect())
 }
 
 fn cannot_write(format: &str, error: &WriteError) -> Vec<Diagnostic> {

@@ -243,6 +243,20 @@ impl Panelling {
         Some(self.gathered(&points, &self.body_points(graph)?))
     }
 
+    /// Of each structured patch, in the order of the topology's: its surface, and (u, v) of each
+    /// vertex of its block; `None` when a surface has no value.
+    pub fn parameters(&self, graph: &Graph<f64>) -> Option<Vec<(SurfaceRef<f64>, Vec<[f64; 2]>)>> {
+        let known = Known::new(graph, &self.skeleton, &self.names);
+        let meshed = (0..self.skeleton.frames.len()).filter(|&k| self.skeleton.frames[k].meshed);
+        meshed
+            .map(|patch| {
+                let edge = |k: usize| along_edge(k, patch as u32, &known);
+                let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
+                Some((known.surfaces[patch].clone()?, spread::parameters(&edges)))
+            })
+            .collect()
+    }
+
     /// The mesh, evaluated with the scalar of `graph`.
     pub fn mesh<T: Scalar>(&self, graph: &Graph<T>) -> Option<Mesh<T>> {
         Mesh::new(self.topology().clone(), self.positions(graph)?).ok()

@@ -120,12 +120,7 @@ pub(super) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4])
         surface.grid(&real(south), &real(west), &mut points, None);
         return points;
     }
-    let mut uv = Vec::with_capacity(nu * nv);
-    for i in 0..nu {
-        for j in 0..nv {
-            uv.push(crossing(south[i], north[i], west[j], east[j]));
-        }
-    }
+    let uv = parameters(edges);
     if uv.iter().flatten().all(|x| x.is_constant()) {
         let real: Vec<[f64; 2]> = uv.iter().map(|p| p.map(T::re)).collect();
         surface.scattered(&real, &mut points);
@@ -135,6 +130,17 @@ pub(super) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4])
         }
     }
     points
+}
+
+/// The parameters of the points of a patch whose edges have their divisions at `edges`.
+pub(super) fn parameters<T: Real>([south, east, north, west]: &[Vec<T>; 4]) -> Vec<[T; 2]> {
+    let mut uv = Vec::with_capacity(south.len() * west.len());
+    for i in 0..south.len() {
+        for j in 0..west.len() {
+            uv.push(crossing(south[i], north[i], west[j], east[j]));
+        }
+    }
+    uv
 }
 
 /// Where the line from (a, 0) to (b, 1) meets that from (0, c) to (1, d), in the unit square.

@@ -187,7 +187,7 @@ impl PyFacets {
         let refused = |name: &'static str| strands.refused(name).map_err(plain_error);
         let bytes = match format {
             "obj" => obj::write_with(mesh, strands),
-            "vtp" => vtk::polydata_with(mesh, strands),
+            "vtp" => vtk::polydata_with(mesh, strands, &[]),
             "stl" => {
                 refused("stl")?;
                 stl::write(mesh, stem)
