@@ -393,6 +393,18 @@ class Spline:
     def least_squares(
         points: NDArray[np.float64], degree: int, count: int, spaced: str, closed: bool
     ) -> tuple[Spline, NDArray[np.float64], float, float]: ...
+    @staticmethod
+    def fit(
+        points: NDArray[np.float64],
+        degree: int,
+        count: int,
+        form: str,
+        knots: NDArray[np.float64] | None,
+        weights: NDArray[np.float64] | None,
+        period: float | None,
+        spaced: str,
+        at: NDArray[np.float64] | None,
+    ) -> tuple[Spline, NDArray[np.float64], float, float]: ...
     @property
     def degree(self) -> int: ...
     @property

@@ -738,3 +738,32 @@ def test_long_work_hears_ctrl_c():
         for _ in range(100):
             moldloft.fair(points, 1e-3, measure="jumps")
     assert time.monotonic() - started < 60
+
+
+def test_ctrl_c_leaves_nothing_behind(tmp_path):
+    import os
+    import signal
+    import subprocess
+    import time
+
+    if os.name == "nt":
+        pytest.skip("signals")
+    n = 150_000
+    points = np.column_stack([np.arange(n) * 0.01, np.sin(np.arange(n) * 1e-3)])
+    points[:, 1] += 1e-3 * np.random.default_rng(1).random(n)
+    path = tmp_path / "long.csv"
+    np.savetxt(path, points, delimiter=",")
+    command = [sys.executable, "-m", "moldloft", "fair", str(path), "--tol", "1e-3"]
+    process = subprocess.Popen(
+        [*command, "--measure", "jumps", "-o", "out.csv", "--plot", "out.png"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    assert process.returncode == 130, (process.returncode, err)
+    assert "Traceback" not in err and out == ""
+    assert [p.name for p in tmp_path.iterdir()] == ["long.csv"]

@@ -75,6 +75,8 @@ pub enum FairError {
         /// The largest amount by which one of them is missed.
         miss: f64,
     },
+    /// A curve runs against the neighbour that it should run on from.
+    TurnsBack,
     /// A solver met a matrix that it could not factor.
     Singular,
     /// The problem is larger than the direct solver takes on.
@@ -136,6 +138,9 @@ impl fmt::Display for FairError {
             }
             Self::Squares => {
                 write!(f, "a sum of lengths has no steps of single points: take the optimum")
+            }
+            Self::TurnsBack => {
+                write!(f, "the curve runs back from its neighbour at their common end: a cusp")
             }
             Self::Singular => write!(f, "the equations have no unique solution"),
             Self::TooLarge { needed, allowed } => {

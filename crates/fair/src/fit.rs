@@ -221,6 +221,47 @@ pub fn fit(
     Ok(Fit { space, points: control, parameters, largest, rms })
 }
 
+/// The spline of a given space, rational with these weights of its control points, nearest to data
+/// points at given parameters: through them when there are as many. The weights stay as they are, so
+/// the fit is linear: the homogeneous curve through points times their denominator.
+///
+/// # Errors
+/// As [`fit`]; [`FairError::Weight`], [`FairError::Count`] of the weights.
+pub fn fit_rational(
+    space: Space,
+    points: &[Vec3<f64>],
+    parameters: Vec<f64>,
+    weights: &[f64],
+) -> Result<Fit, FairError> {
+    let (expected, actual) = (space.count(), weights.len());
+    if expected != actual {
+        return Err(FairError::Count { what: "weights", expected, actual });
+    }
+    if let Some(index) = weights.iter().position(|w| !w.is_finite() || *w <= 0.0) {
+        return Err(FairError::Weight { index, weight: weights[index] });
+    }
+    let rows = values(&space, &parameters);
+    let under = |k: usize| {
+        let (columns, factors) = rows.row(k);
+        columns.iter().zip(factors).map(|(&c, x)| weights[c as usize] * x).sum::<f64>()
+    };
+    let totals: Vec<f64> = (0..rows.len()).map(under).collect();
+    let raised: Vec<_> = points.iter().zip(&totals).map(|(&p, &w)| p * w).collect();
+    // Distances of the curve itself count, not those of its homogeneous form.
+    let counts: Vec<f64> = totals.iter().map(|w| 1.0 / (w * w)).collect();
+    let mut fitted = fit(space, &raised, parameters, &counts)?;
+    let away = |(k, p): (usize, &Vec3<f64>)| {
+        (rows.apply(k, &fitted.points) * (1.0 / totals[k]) - *p).norm()
+    };
+    let distances: Vec<f64> = points.iter().enumerate().map(away).collect();
+    fitted.largest = distances.iter().copied().fold(0.0, f64::max);
+    fitted.rms = (distances.iter().map(|d| d * d).sum::<f64>() / points.len() as f64).sqrt();
+    for (c, w) in fitted.points.iter_mut().zip(weights) {
+        *c = *c * (1.0 / w);
+    }
+    Ok(fitted)
+}
+
 /// The basis functions at parameters, as rows over the control points.
 fn values(space: &Space, parameters: &[f64]) -> Rows {
     let mut rows = Rows::new();
@@ -276,7 +317,7 @@ pub fn fit_with<T: Real>(fit: &Fit, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, 
         .collect();
     let problem = squares(rows, vec![[0.0; 3]; offsets.len()], frozen);
     let still = solver::solve(&problem, 0.0, 0.0, 0.0)?;
-    for (c, x) in control.iter_mut().zip(solver::respond(&problem, &still, &offsets, &[])?) {
+    for (c, x) in control.iter_mut().zip(solver::respond(&problem, &still, &offsets, &[], &[])?) {
         *c += Vec3::from(x);
     }
     Ok(control)

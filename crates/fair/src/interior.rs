@@ -19,7 +19,7 @@ const SHOWS: f64 = 1e-7;
 const MOST_IDLE: usize = 6;
 
 /// The same as long as the conditions are not met.
-const MOST_TRIALS: usize = 14;
+const MOST_TRIALS: usize = 12;
 
 /// Once the complementarity is this share of the certified gap, the rest of the gap is rounding.
 const ROUNDING: f64 = 1e-3;
@@ -72,6 +72,13 @@ impl<const D: usize> Direction<D> {
             y: none,
             nu: Vec::new(),
         }
+    }
+
+    /// A sum is finite when its terms are, unless they are far beyond any use.
+    fn is_finite(&self) -> bool {
+        let pair = |p: &Pair<D>| p.0 + p.1.iter().sum::<f64>();
+        let cones: f64 = self.u.iter().chain(&self.y).map(pair).sum();
+        (cones + self.x.as_flattened().iter().sum::<f64>()).is_finite()
     }
 }
 
@@ -453,6 +460,7 @@ impl<'a, const D: usize> State<'a, D> {
         solution: &Solution,
         offsets: &[[T; 3]],
         radii: &[T],
+        values: &[T],
     ) -> Result<Vec<[T; 3]>, FairError> {
         let zero = [T::zero(); D];
         let count = self.order.place.len();
@@ -492,7 +500,7 @@ impl<'a, const D: usize> State<'a, D> {
             push(&self.measure, k, force);
         }
         let flat = if let Some(active) = &solution.active {
-            self.answer(&mut band, active, &right, radii)
+            self.answer(&mut band, active, &right, radii, values)
         } else {
             for c in 0..limits {
                 let (rows, k) = self.rows_of(c);
@@ -502,6 +510,9 @@ impl<'a, const D: usize> State<'a, D> {
             self.assemble(&mut band);
             band.factor();
             band.solve_any(right.as_flattened_mut());
+            if !self.conditions.is_empty() {
+                Schur::new(&self, &band).answer(values, right.as_flattened_mut());
+            }
             right
         };
         let pick = |&at: &u32| {
@@ -585,6 +596,24 @@ impl Schur {
         }
         nu
     }
+
+    /// The same for a direction of numbers of any kind, whose conditions should come to `wanted`.
+    pub fn answer<T: Real>(&self, wanted: &[T], x: &mut [T]) -> Vec<T> {
+        let short = |(row, &wanted): (&Vec<f64>, &T)| {
+            row.iter().zip(&*x).fold(T::zero(), |s, (a, b)| s + *b * *a) - wanted
+        };
+        let mut nu: Vec<T> = self.rows.iter().zip(wanted).map(short).collect();
+        let mut matrix: Vec<T> = self.matrix.iter().map(|&a| T::from(a)).collect();
+        if moldloft_num::solve_dense(&mut matrix, &mut nu).is_err() {
+            return vec![T::zero(); nu.len()];
+        }
+        for (column, nu) in self.columns.iter().zip(&nu) {
+            for (x, y) in x.iter_mut().zip(column) {
+                *x -= *nu * *y;
+            }
+        }
+        nu
+    }
 }
 
 /// See [`crate::solver::solve`].
@@ -622,6 +651,10 @@ pub(crate) fn solve<const D: usize>(
         let centring = (1.0 - reach).powi(3);
         state.direction(&band, &dense, centring * mu, Some(&affine), &mut corrected);
         let longest = state.longest(&corrected);
+        if !corrected.is_finite() {
+            // The matrix has no digits left: what was reached before stands.
+            break;
+        }
         state.step(&corrected, (longest * 0.99).min(1.0));
         let missed = state.misses().into_iter().fold(0.0, f64::max);
         let (value, gap) = state.certificate();

@@ -41,7 +41,7 @@ impl End {
 
     /// How many control points stand still so that the end is kept. A clamped spline's first k
     /// points fix k - 1 derivatives; on other knots `degree` points hold the end's whole germ.
-    fn points(self, clamped: bool, degree: usize) -> usize {
+    pub(crate) fn points(self, clamped: bool, degree: usize) -> usize {
         match self {
             End::Free => 0,
             End::Points(k) => k,

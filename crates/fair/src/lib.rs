@@ -73,6 +73,7 @@
 mod band;
 mod breaks;
 mod certificate;
+mod condition;
 mod cone;
 mod deviation;
 mod entity;
@@ -86,6 +87,7 @@ mod levels;
 mod limit;
 mod local;
 mod measure;
+mod net_condition;
 pub mod network;
 mod optimum;
 mod polish;
@@ -101,10 +103,11 @@ mod testing;
 
 pub use breaks::{Finding, findings, with_findings};
 pub use certificate::{Certificate, ball_gap};
+pub use condition::{Condition, joined};
 pub use deviation::{Deviation, certified, deviation};
 pub use entity::rows;
 pub use error::FairError;
-pub use fit::{Fit, Spacing, fit, fit_with, interpolate, least_squares, parameters};
+pub use fit::{Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters};
 pub use job::{End, Job};
 pub use jump::Jumps;
 pub use levels::levels;
@@ -115,7 +118,7 @@ pub use local::{
 };
 pub use measure::{Measure, Norm, value};
 pub use network::{Network, NetworkMode, NetworkReport, Strand};
-pub use optimum::{Bound, Condition, Optimum, OptimumOptions, optimum, optimum_with};
+pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};
 pub use report::{Mode, Numbers, Report, numbers, report};
 pub use rows::Rows;
 pub use sharp::{Sharp, interpolate_sharp};

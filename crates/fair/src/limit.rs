@@ -1,5 +1,5 @@
 use crate::FairError;
-use moldloft_num::Vec3;
+use moldloft_num::{Real, Vec3};
 
 /// In which directions control points may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +113,37 @@ impl Limit {
             }
         }
         .pick(here)
+    }
+}
+
+impl Motion {
+    /// The part of a displacement that the motion allows within a radius, for numbers that carry
+    /// derivatives.
+    pub(crate) fn allowed<T: Real>(&self, away: Vec3<T>, radius: T) -> Vec3<T> {
+        let within = |way: Vec3<T>| {
+            if way.norm_sq().re() > radius.re() * radius.re() {
+                way * (radius / way.norm())
+            } else {
+                way
+            }
+        };
+        let clamped = |x: T| {
+            if x.re() > radius.re() {
+                radius
+            } else if x.re() < -radius.re() {
+                -radius
+            } else {
+                x
+            }
+        };
+        let along = |d: Vec3<f64>| away.x * d.x + away.y * d.y + away.z * d.z;
+        let times = |d: Vec3<f64>, way: T| Vec3::new(way * d.x, way * d.y, way * d.z);
+        match *self {
+            Motion::Ball => within(away),
+            Motion::Box => away.map(clamped),
+            Motion::Along(d) => times(d, clamped(along(d))),
+            Motion::Across(d) => within(away - times(d, along(d))),
+        }
     }
 }
 

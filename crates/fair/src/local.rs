@@ -380,8 +380,7 @@ pub fn sweeps(job: &Job, measure: Measure, count: usize) -> Result<Vec<Vec3<f64>
 }
 
 /// The points after the steps of a log, with numbers that carry derivatives: which points moved is
-/// as it was, where they went follows the input. The limits must be balls; real parts are the bits
-/// of the log.
+/// as it was, where they went follows the input; real parts are the bits of the log.
 ///
 /// # Errors
 /// [`FairError`] as for [`local`].
@@ -417,13 +416,7 @@ pub fn replay_from_with<T: Real>(
         let form: Vec3<T> =
             entries.fold(Vec3::zero(), |s, (&c, &a)| s + now[c as usize].map(|x| x * a));
         let wanted = now[j] - form.map(|x| x / steps.own[j]);
-        let away = wanted - points[j];
-        let radius = tolerances[j];
-        let moved = if away.norm_sq().re() > radius.re() * radius.re() {
-            points[j] + away * (radius / away.norm())
-        } else {
-            wanted
-        };
+        let moved = points[j] + job.limit.motion.allowed(wanted - points[j], tolerances[j]);
         now[j] = moved + Vec3::lifted(step.to - moved.re());
         // The sum may round in the last bit: the log decides.
         let off = step.to - now[j].re();

@@ -126,6 +126,36 @@ impl Network {
         Ok(self)
     }
 
+    /// The net with rims that keep what neighbours share with it: at u = 0 and 1, then at v = 0 and
+    /// 1. On clamped knots the position is one row of points, tangents are two and curvature three;
+    /// these do not move by a bit, in the joint optimum and in passes. Rims of a closed direction are
+    /// none.
+    ///
+    /// # Errors
+    /// [`FairError::Count`] when the network is no net.
+    pub fn with_rims(mut self, rims: [[End; 2]; 2]) -> Result<Self, FairError> {
+        let Some([su, sv]) = &self.net else {
+            return Err(FairError::Count { what: "directions of a net", expected: 2, actual: 0 });
+        };
+        let (nu, nv) = (su.count(), sv.count());
+        let rows = |space: &Space, [low, high]: [End; 2]| {
+            let of = |end: End| end.points(space.is_clamped(), space.degree());
+            let some = if space.is_closed() { [0, 0] } else { [of(low), of(high)] };
+            some.map(|k| k.min(space.count()))
+        };
+        let ([u0, u1], [v0, v1]) = (rows(su, rims[0]), rows(sv, rims[1]));
+        let still = |i: usize, j: usize| i < u0 || i >= nu - u1 || j < v0 || j >= nv - v1;
+        self.kept.extend((0..nu * nv).filter(|k| still(k / nv, k % nv)));
+        self.kept.sort_unstable();
+        self.kept.dedup();
+        Ok(self)
+    }
+
+    /// The spaces of a net and its weights.
+    pub(crate) fn net_parts(&self) -> Option<(&[Space; 2], Option<&[f64]>)> {
+        self.net.as_ref().map(|spaces| (spaces, self.weights.as_deref()))
+    }
+
     /// Refuses what cannot be faired.
     ///
     /// # Errors
@@ -226,7 +256,7 @@ impl Network {
     }
 
     /// The same for points that carry derivatives, whose real parts are those of the network: which
-    /// knots are chosen is as it is for the real parts. The limits must be balls.
+    /// knots are chosen is as it is for the real parts.
     ///
     /// # Errors
     /// As [`Network::passes`].
@@ -378,7 +408,7 @@ impl Network {
         points: &[Vec3<T>],
         tolerances: &[T],
     ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
-        self.parts(measure, bound, Vec::new(), accuracy)?.solve_with(points, tolerances)
+        self.parts(measure, bound, Vec::new(), accuracy)?.solve_with(points, tolerances, &[])
     }
 
     fn parts(
@@ -454,59 +484,6 @@ impl Network {
         BSplineSurface::new(ku, kv, net, weights).map_err(|_| FairError::Singular)
     }
 
-    /// The volume between the faired and the original surface of a net is zero to first order, so
-    /// that a hull keeps its displacement: the sum over the control points of their moves times the
-    /// integral of their basis function along S_u x S_v.
-    ///
-    /// # Errors
-    /// As [`Network::surface`].
-    pub fn volume_condition(&self) -> Result<Condition, FairError> {
-        let surface = self.surface(&self.points)?;
-        let Some(spaces) = &self.net else { return Err(FairError::Singular) };
-        let [u, v] = spaces.each_ref().map(|space| {
-            let (start, end) = space.domain();
-            let mut out = Vec::new();
-            for k in space.spans() {
-                let (a, b) = (space.knot(k), space.knot(k + 1));
-                for (x, w) in GAUSS {
-                    let t = 0.5 * (a + b) + 0.5 * (b - a) * x;
-                    let basis = space.basis(k, t);
-                    let columns: Vec<usize> = space.columns(k).collect();
-                    let share = (t - start) / (end - start);
-                    let weight = 0.5 * (b - a) * w / (end - start);
-                    out.push((share, weight, columns, basis.rows[0].to_vec()));
-                }
-            }
-            out
-        });
-        let count = spaces[1].count();
-        let mut slope = vec![Vec3::zero(); self.points.len()];
-        for (s, ws, cu, fu) in &u {
-            for (t, wt, cv, fv) in &v {
-                let jet = surface.jet(*s, *t, moldloft_num::Order::First);
-                let flux = jet.u.cross(jet.v) * (ws * wt);
-                let mut entries = Vec::with_capacity(cu.len() * cv.len());
-                for (&i, &x) in cu.iter().zip(fu) {
-                    for (&j, &y) in cv.iter().zip(fv) {
-                        let at = i * count + j;
-                        entries.push((at, x * y * self.weights.as_ref().map_or(1.0, |w| w[at])));
-                    }
-                }
-                let total: f64 = match &self.weights {
-                    None => 1.0,
-                    Some(_) => entries.iter().map(|e| e.1).sum(),
-                };
-                for (at, x) in entries {
-                    slope[at] += flux * (x / total);
-                }
-            }
-        }
-        let entries: Vec<_> = slope.into_iter().enumerate().collect();
-        let mut condition = Condition { entries, value: 0.0 };
-        condition.value = condition.at(&self.points);
-        Ok(condition)
-    }
-
     /// The largest displacement of the surface of a net on a grid of about four samples to a span;
     /// for other networks the largest move of a point.
     pub fn sampled(&self, points: &[Vec3<f64>]) -> f64 {
@@ -522,14 +499,6 @@ impl Network {
         largest(&grid)
     }
 }
-
-/// The rule of Gauss and Legendre with four points, on [-1, 1].
-const GAUSS: [(f64, f64); 4] = [
-    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    (-0.339_981_043_584_856_3, 0.652_145_154_862_546_2),
-    (0.339_981_043_584_856_3, 0.652_145_154_862_546_2),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-];
 
 /// What a fairing did to a network, for reports.
 #[derive(Clone, Debug, PartialEq)]

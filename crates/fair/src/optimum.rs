@@ -1,8 +1,9 @@
 //! The fairest curve within the limits, with a proof.
 
+use crate::condition::{AXES, across};
 use crate::job::End;
 use crate::solver::{self, Bounds, Problem, V};
-use crate::{Certificate, FairError, Job, Limit, Measure, Motion, Norm, Rows, Space};
+use crate::{Certificate, Condition, FairError, Job, Limit, Measure, Motion, Norm, Rows};
 use moldloft_num::{Order, Real, Vec3};
 
 /// What the tolerance is a bound on.
@@ -13,179 +14,6 @@ pub enum Bound {
     /// Each Bézier point of the displacement stays small, which bounds the displacement of the
     /// curve everywhere and leaves the control points more room.
     Bezier,
-}
-
-/// A linear condition on the control points: the sum of factor . point over the entries is `value`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Condition {
-    /// Control points and factors.
-    pub entries: Vec<(usize, Vec3<f64>)>,
-    /// What the sum must be.
-    pub value: f64,
-}
-
-const AXES: [Vec3<f64>; 3] = [
-    Vec3 { x: 1.0, y: 0.0, z: 0.0 },
-    Vec3 { x: 0.0, y: 1.0, z: 0.0 },
-    Vec3 { x: 0.0, y: 0.0, z: 1.0 },
-];
-
-impl Condition {
-    /// The left side at `points`.
-    pub fn at(&self, points: &[Vec3<f64>]) -> f64 {
-        self.entries.iter().map(|(i, f)| f.dot(points[*i])).sum()
-    }
-
-    /// A derivative (order 0 to 2) of the polynomial curve at `t` takes a value: three conditions.
-    pub fn derivative(space: &Space, t: f64, order: Order, value: Vec3<f64>) -> Vec<Self> {
-        let (k, t) = space.locate(t);
-        let basis = space.basis(k, t);
-        let row = &basis.rows[order as usize];
-        let entry = |axis: Vec3<f64>| -> Vec<_> {
-            space.columns(k).zip(row.iter()).map(|(c, &b)| (c, axis * b)).collect()
-        };
-        AXES.iter().map(|&a| Self { entries: entry(a), value: a.dot(value) }).collect()
-    }
-
-    /// The curve passes through a point at `t`.
-    pub fn point(space: &Space, t: f64, through: Vec3<f64>) -> Vec<Self> {
-        Self::derivative(space, t, Order::Zero, through)
-    }
-
-    /// The curve's tangent at `t` is parallel to a direction: two conditions.
-    pub fn tangent(space: &Space, t: f64, direction: Vec3<f64>) -> Vec<Self> {
-        let (k, t) = space.locate(t);
-        let basis = space.basis(k, t);
-        let (a, b) = across(direction);
-        let entry = |axis: Vec3<f64>| -> Vec<_> {
-            space.columns(k).zip(basis.rows[1].iter()).map(|(c, &x)| (c, axis * x)).collect()
-        };
-        [a, b].into_iter().map(|axis| Self { entries: entry(axis), value: 0.0 }).collect()
-    }
-
-    /// The sum of all control points stays: the centroid of a closed uniform curve.
-    pub fn centroid(points: &[Vec3<f64>]) -> Vec<Self> {
-        AXES.iter()
-            .map(|&a| {
-                let entries: Vec<_> = (0..points.len()).map(|i| (i, a)).collect();
-                let mut condition = Self { entries, value: 0.0 };
-                condition.value = condition.at(points);
-                condition
-            })
-            .collect()
-    }
-
-    /// The area that the curve sweeps round the origin in the plane of `normal` keeps its value to
-    /// first order: area is quadratic in the control points, its slope is taken at `points`.
-    pub fn area(space: &Space, points: &[Vec3<f64>], normal: Vec3<f64>) -> Self {
-        // d/dp and d/dp' of (n . (p x p')) / 2.
-        Self::integral(space, points, |p, d| (d.cross(normal) * 0.5, normal.cross(p) * 0.5))
-    }
-
-    /// The volume that the curve sweeps when it turns about an axis through the origin keeps its
-    /// value to first order: pi times the integral of r^2 along the axis, r the distance from it.
-    pub fn revolution(space: &Space, points: &[Vec3<f64>], axis: Vec3<f64>) -> Self {
-        let axis = axis.normalized().unwrap_or(Vec3::of(1.0, 0.0, 0.0));
-        Self::integral(space, points, |p, d| {
-            let across = p - axis * p.dot(axis);
-            let pi = std::f64::consts::PI;
-            (across * (2.0 * pi * d.dot(axis)), axis * (pi * across.norm_sq()))
-        })
-    }
-
-    /// The integral over the parameter of something that depends on position and first derivative
-    /// keeps its value to first order; `slopes` are its derivatives by both. Exact for polynomials of
-    /// degree 15 in the parameter.
-    fn integral(
-        space: &Space,
-        points: &[Vec3<f64>],
-        slopes: impl Fn(Vec3<f64>, Vec3<f64>) -> (Vec3<f64>, Vec3<f64>),
-    ) -> Self {
-        let mut slope = vec![Vec3::zero(); points.len()];
-        for k in space.spans() {
-            let (a, b) = (space.knot(k), space.knot(k + 1));
-            // The 8-point rule is exact to degree 15; x x x' has degree 2p - 1.
-            let (half, mid) = (0.5 * (b - a), 0.5 * (a + b));
-            let mut nodes = Vec::with_capacity(8);
-            moldloft_num::gauss_legendre(-1.0, 1.0, |x: f64| {
-                nodes.push(x);
-                0.0
-            });
-            for (at, &x) in nodes.iter().enumerate() {
-                // The weight of a node is the rule applied to its own unit function.
-                let mut seen = 0;
-                let w = moldloft_num::gauss_legendre(-1.0, 1.0, |_: f64| {
-                    seen += 1;
-                    if seen == at + 1 { 1.0 } else { 0.0 }
-                }) * half;
-                let basis = space.basis(k, mid + half * x);
-                let mut p = [Vec3::zero(); 2];
-                for (j, c) in space.columns(k).enumerate() {
-                    p[0] += points[c] * basis.rows[0][j];
-                    p[1] += points[c] * basis.rows[1][j];
-                }
-                let (by_value, by_slope) = slopes(p[0], p[1]);
-                for (j, c) in space.columns(k).enumerate() {
-                    slope[c] +=
-                        by_value * (w * basis.rows[0][j]) + by_slope * (w * basis.rows[1][j]);
-                }
-            }
-        }
-        let entries: Vec<_> = slope.into_iter().enumerate().collect();
-        let mut condition = Self { entries, value: 0.0 };
-        condition.value = condition.at(points);
-        condition
-    }
-
-    /// The curve meets a neighbour with continuous curvature at its clamped end: `rows` are the
-    /// neighbour's last three Bézier points, from far to near (the near one is the common point),
-    /// and b1 = p + beta (p - a1), b2 - 2 b1 + p = beta^2 (p - 2 a1 + a2) + gamma (b1 - p), where
-    /// the own first three Bézier points are p, b1, b2. Linear once beta and gamma are fixed, which
-    /// are read off the original. `at_end` says at which end of the own curve.
-    ///
-    /// # Errors
-    /// [`FairError::Singular`] when the neighbour's Bézier points give no direction.
-    pub fn seam(
-        space: &Space,
-        points: &[Vec3<f64>],
-        [a2, a1, p]: [Vec3<f64>; 3],
-        at_end: bool,
-    ) -> Result<Vec<Self>, FairError> {
-        let rows = space.bezier(None);
-        let row = |k: usize| -> Vec<(usize, f64)> {
-            let k = if at_end { rows.len() - 1 - k } else { k };
-            let (c, f) = rows.row(k);
-            c.iter().map(|&c| c as usize).zip(f.iter().copied()).collect()
-        };
-        let own = |k: usize| row(k).iter().fold(Vec3::zero(), |s, &(c, f)| s + points[c] * f);
-        let back = p - a1;
-        if back.norm_sq() == 0.0 {
-            return Err(FairError::Singular);
-        }
-        let (b1, b2) = (own(1), own(2));
-        let beta = (b1 - p).dot(back) / back.norm_sq();
-        let curve = (p - a1 * 2.0 + a2) * (beta * beta);
-        let first = back * beta;
-        let rest = (b2 - b1 * 2.0 + p) - curve;
-        let gamma = if first.norm_sq() > 0.0 { rest.dot(first) / first.norm_sq() } else { 0.0 };
-        let wanted = [p, p + first, curve + first * gamma + (p + first) * 2.0 - p];
-        let mut out = Vec::new();
-        for (k, target) in wanted.into_iter().enumerate() {
-            for axis in AXES {
-                let entries = row(k).into_iter().map(|(c, f)| (c, axis * f)).collect();
-                out.push(Self { entries, value: axis.dot(target) });
-            }
-        }
-        Ok(out)
-    }
-}
-
-/// Two unit vectors across a direction.
-fn across(direction: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
-    let d = direction.normalized().unwrap_or(Vec3::of(0.0, 0.0, 1.0));
-    let a = d.perpendicular();
-    let a = a.normalized().unwrap_or(Vec3::of(1.0, 0.0, 0.0));
-    (a, d.cross(a))
 }
 
 /// How to look for the optimum.
@@ -283,9 +111,10 @@ pub fn optimum(job: &Job, options: &OptimumOptions) -> Result<Optimum, FairError
 }
 
 /// The same for numbers that carry derivatives: `points` and `tolerances` (per control point) have
-/// the real parts of the job, whose curve is polynomial and has no weights. Derivatives follow from
-/// the conditions of optimality by the implicit function theorem; real parts are the bits of
-/// [`optimum`].
+/// the real parts of the job, whose curve is polynomial and has no weights, `targets` those of the
+/// values of the options' conditions (empty when these are constant). Derivatives follow from the
+/// conditions of optimality by the implicit function theorem; real parts are the bits of
+/// [`optimum`]. Factors of conditions are taken as constant.
 ///
 /// # Errors
 /// As [`optimum`].
@@ -294,8 +123,9 @@ pub fn optimum_with<T: Real>(
     options: &OptimumOptions,
     points: &[Vec3<T>],
     tolerances: &[T],
+    targets: &[T],
 ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
-    Parts::of(job, options)?.solve_with(points, tolerances)
+    Parts::of(job, options)?.solve_with(points, tolerances, targets)
 }
 
 /// What curves, nets and networks have in common.
@@ -347,19 +177,21 @@ impl<'a> Parts<'a> {
         Ok(self.solved(&frame, &problem)?.0)
     }
 
-    /// The optimum with the numbers or their derivatives of `points` and `tolerances` (per control
-    /// point), whose real parts are those of the job. The real parts of the result are the bits of
+    /// The optimum with the numbers or their derivatives of `points`, `tolerances` (per control
+    /// point) and `targets` (per condition of the caller's; empty when constant), whose real parts are those of the job. The real parts of the result are the bits of
     /// [`Parts::solve`].
     pub fn solve_with<T: Real>(
         &self,
         points: &[Vec3<T>],
         tolerances: &[T],
+        targets: &[T],
     ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
         let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
         let (optimum, solution) = self.solved(&frame, &problem)?;
         let constant = |p: &Vec3<T>| p.to_array().iter().all(|c| c.is_constant());
-        let still = points.iter().all(constant) && tolerances.iter().all(|t| t.is_constant());
+        let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
+        let still = points.iter().all(constant) && fixed(tolerances) && fixed(targets);
         if still {
             let lifted = optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
             return Ok((lifted, optimum));
@@ -395,7 +227,20 @@ impl<'a> Parts<'a> {
                 set.map_or(T::zero(), |c| tolerances[c] - T::from(tolerances[c].re()))
             })
             .collect();
-        let answers = solver::respond(&problem, &solution, &offsets, &radii)?;
+        // What is kept moves with the points; what is aimed at does not.
+        let value = |(k, condition): (usize, &Condition)| {
+            if k < self.own {
+                return T::zero();
+            }
+            let target = targets.get(k - self.own);
+            let aim = target.map_or(T::zero(), |&t| t - T::from(t.re()));
+            condition.entries.iter().fold(aim, |aim, (i, f)| {
+                let c = changes[*i];
+                aim - (c.x * f.x + c.y * f.y + c.z * f.z)
+            })
+        };
+        let values: Vec<T> = self.conditions.iter().enumerate().map(value).collect();
+        let answers = solver::respond(&problem, &solution, &offsets, &radii, &values)?;
         let faired = (0..points.len()).map(|i| {
             let mut p = Vec3::lifted(optimum.points[i]) + changes[i];
             for (a, x) in frame.axes.iter().zip(answers[i]) {
@@ -425,7 +270,9 @@ impl<'a> Parts<'a> {
         let solution = solver::solve(problem, self.accuracy, floor, margin)?;
         let points = self.moved(frame, &solution.x);
         let count = self.conditions.len();
-        let missed: Vec<usize> = (0..count).filter(|&k| solution.misses[k] > 1e-7).collect();
+        // What is no number is missed.
+        let met = |k: usize| solution.misses[k] <= 1e-7;
+        let missed: Vec<usize> = (0..count).filter(|&k| !met(k)).collect();
         if !missed.is_empty() {
             let off = |k: &usize| {
                 let condition = &self.conditions[*k];

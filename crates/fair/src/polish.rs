@@ -205,7 +205,7 @@ impl<const D: usize> State<'_, D> {
     }
 
     /// How the displacements answer to small changes of the measure's offsets (as forces on points,
-    /// `right`) and of the radii: the saddle point's linear equations, refined to rounding. Changes
+    /// `right`), of the radii and of the conditions' `values`: the saddle point's linear equations, refined to rounding. Changes
     /// have zero real parts.
     pub(crate) fn answer<T: Real>(
         &self,
@@ -213,6 +213,7 @@ impl<const D: usize> State<'_, D> {
         active: &Active,
         right: &[[T; D]],
         radii: &[T],
+        values: &[T],
     ) -> Vec<[T; D]> {
         let p = self.p;
         let h = diagonal(&self.measure, self.unknowns());
@@ -222,6 +223,7 @@ impl<const D: usize> State<'_, D> {
                 STIFF * own_stiffness(&self.limit_rows, c as usize / self.groups(), &h);
         }
         self.assemble_active(band, active, &self.x, &rho);
+        let dense = Schur::new(self, band);
         let zero = [T::zero(); D];
         let apply = |rows: &Rows, k: usize, x: &[[T; D]]| {
             let (columns, factors) = rows.row(k);
@@ -254,6 +256,7 @@ impl<const D: usize> State<'_, D> {
         let along = |n: &V<D>, s: &[T; D]| (0..D).fold(T::zero(), |t, r| t + s[r] * n[r]);
         let mut x = vec![zero; self.unknowns()];
         let mut forces = vec![T::zero(); limits.len()];
+        let mut nu = vec![T::zero(); self.conditions.len()];
         for _ in 0..5 {
             // What is still unbalanced.
             let mut rest: Vec<[T; D]> = right.to_vec();
@@ -282,7 +285,18 @@ impl<const D: usize> State<'_, D> {
                 spread(rows, k, push, &mut rest);
                 short.push(left);
             }
+            let mut left = values.to_vec();
+            for ((condition, nu), left) in self.conditions.iter().zip(&nu).zip(&mut left) {
+                for (i, factor) in &condition.entries {
+                    for r in 0..D {
+                        rest[*i][r] -= *nu * factor[r];
+                        *left -= x[*i][r] * factor[r];
+                    }
+                }
+            }
             band.solve_any(rest.as_flattened_mut());
+            let more = dense.answer(&left, rest.as_flattened_mut());
+            nu.iter_mut().zip(more).for_each(|(nu, more)| *nu += more);
             let step = rest;
             for (((c, n, _), force), left) in limits.iter().zip(&mut forces).zip(short) {
                 let (rows, k) = self.rows_of(*c);

@@ -200,9 +200,9 @@ pub(crate) fn solve(
     }
 }
 
-/// How the displacements answer to small changes of the offsets (per measure row) and radii (per
-/// limit): the implicit function theorem at the solution, where each cone resists with its
-/// stiffness. The changes are numbers with a zero real part. Conditions must be none.
+/// How the displacements answer to small changes of the offsets (per measure row), the radii (per
+/// limit) and the values of the conditions: the implicit function theorem at the solution, where
+/// each cone resists with its stiffness. The changes are numbers with a zero real part.
 ///
 /// # Errors
 /// [`FairError::TooLarge`].
@@ -211,11 +211,12 @@ pub(crate) fn respond<T: Real>(
     solution: &Solution,
     offsets: &[[T; 3]],
     radii: &[T],
+    values: &[T],
 ) -> Result<Vec<[T; 3]>, FairError> {
     let order = Order::of(p);
     match p.dimension {
-        0 | 1 => State::<1>::new(p, order).respond(solution, offsets, radii),
-        2 => State::<2>::new(p, order).respond(solution, offsets, radii),
-        _ => State::<3>::new(p, order).respond(solution, offsets, radii),
+        0 | 1 => State::<1>::new(p, order).respond(solution, offsets, radii, values),
+        2 => State::<2>::new(p, order).respond(solution, offsets, radii, values),
+        _ => State::<3>::new(p, order).respond(solution, offsets, radii, values),
     }
 }

@@ -94,3 +94,32 @@ fn bad_data_are_refused() {
     );
     assert_eq!(weight, Err(FairError::Weight { index: 0, weight: 0.0 }));
 }
+
+/// A circle from its own points: with the weights of the rational quadratic circle the fit is exact.
+#[test]
+fn rational_fits_keep_their_weights() {
+    let knots = [0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 1.0].to_vec();
+    let space = Space::open(moldloft_spline::KnotVector::new(2, knots).unwrap()).unwrap();
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let weights = [1.0, half, 1.0, half, 1.0];
+    let exact = [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (-1.0, 0.0)]
+        .map(|(x, y)| Vec3::of(x, y, 0.0));
+    for count in [5, 40] {
+        let at: Vec<f64> = (0..count).map(|k| k as f64 / (count - 1) as f64).collect();
+        let data: Vec<_> =
+            at.iter().map(|&t| shape::sample_at(&space, &exact, Some(&weights), t).point).collect();
+        let fit = fit_rational(space.clone(), &data, at, &weights).unwrap();
+        assert!(fit.largest < 1e-14, "{}", fit.largest);
+        for (p, q) in fit.points.iter().zip(&exact) {
+            assert!((*p - *q).norm() < 1e-12);
+        }
+        let refused = fit_rational(space.clone(), &data, fit.parameters.clone(), &[1.0; 4]);
+        assert_eq!(
+            refused.unwrap_err(),
+            FairError::Count { what: "weights", expected: 5, actual: 4 }
+        );
+        let refused =
+            fit_rational(space.clone(), &data, fit.parameters, &[1.0, 1.0, 0.0, 1.0, 1.0]);
+        assert_eq!(refused.unwrap_err(), FairError::Weight { index: 2, weight: 0.0 });
+    }
+}

@@ -203,6 +203,101 @@ fn knuckle_lines_stay_and_are_sharp() {
     assert_eq!((fault.id, fault.place.map(|p| p.field)), ("out-of-range", Some(6)));
 }
 
+/// Rims that keep curvature are those of the surface before, to the bit; corners alone are not.
+#[test]
+fn rims_keep_what_they_are_asked_to() {
+    let points = hull();
+    let make = |tolerance: f64, rims: Value<f64>, mode: &str| {
+        let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points.clone())));
+        let named = vec![("rims", rims), ("mode", Value::text(mode))];
+        match call("FairSurf", vec![grid, number(tolerance)], named) {
+            Ok(Value::Surface(s)) => s,
+            other => panic!("{other:?}"),
+        }
+    };
+    let before = make(0.0, Value::text("corners"), "optimum");
+    // Edges v = 0, u = 1, v = 1, u = 0 at a place of their own, and the derivative across.
+    let sides = |s: &moldloft_registry::SurfaceRef<f64>| {
+        [(0.4, 0.0), (1.0, 0.4), (0.4, 1.0), (0.0, 0.4)].map(|(u, v)| {
+            let j = s.jet(u, v, Order::Second);
+            if v == 0.0 || v == 1.0 { [j.p, j.v, j.vv] } else { [j.p, j.u, j.uu] }
+        })
+    };
+    let was = sides(&before);
+    for mode in ["optimum", "faithful"] {
+        for (word, kept) in [("corners", 0), ("position", 1), ("tangent", 2), ("curvature", 3)] {
+            let after = make(2e-2, Value::text(word), mode);
+            let is = sides(&after);
+            for (a, b) in is.iter().zip(&was) {
+                for k in 0..3 {
+                    assert_eq!(a[k].bits_eq(b[k]), k < kept, "{mode} {word} {k}");
+                }
+            }
+            let inner = |s: &moldloft_registry::SurfaceRef<f64>| s.jet(0.5, 0.5, Order::Zero).p;
+            assert!((inner(&after) - inner(&before)).norm() > 1e-5, "{mode} {word}");
+        }
+    }
+    let words = ["position", "corners", "corners", "curvature"].map(Value::text);
+    let is = sides(&make(2e-2, Value::list(words), "optimum"));
+    let same = |e: usize, k: usize| is[e][k].bits_eq(was[e][k]);
+    assert!(same(0, 0) && !same(0, 1) && !same(1, 0) && !same(2, 0));
+    assert!((0..3).all(|k| same(3, k)));
+    for rims in [Value::text("loose"), Value::list([Value::text("position")]), number(1.0)] {
+        let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points.clone())));
+        let fault = call("FairSurf", vec![grid, number(0.1)], vec![("rims", rims)]).unwrap_err();
+        assert_eq!(fault.place.map(|p| p.field), Some(9), "{fault:?}");
+    }
+}
+
+/// The faithful mode of a network: within the tolerance, in one direction, with derivatives, and
+/// other than the optimum.
+#[test]
+fn networks_can_be_faired_curve_by_curve() {
+    let points = hull();
+    let words = |up: bool| {
+        let along = ("along", Value::Vector(Vec3::of(0.0, 1.0, 0.0)));
+        let mode = vec![("mode", Value::text("faithful")), ("passes", Value::Number(2.0))];
+        if up { mode.into_iter().chain([along]).collect() } else { mode }
+    };
+    for up in [false, true] {
+        let make = |points: &[Vec3<f64>]| {
+            curves(call("FairNet", vec![lists(points), number(2e-3)], words(up)).unwrap())
+        };
+        let net = make(&points);
+        for i in 0..9 {
+            for j in 0..7 {
+                let (a, b) = (j as f64 / 6.0, i as f64 / 8.0);
+                let p = net[i].jet(a, Order::Zero)[0];
+                assert!((p - net[9 + j].jet(b, Order::Zero)[0]).norm() < 1e-12);
+                let moved = p - points[7 * i + j];
+                assert!(moved.norm() <= 2e-3 * (1.0 + 1e-9));
+                assert!(!up || (moved.x.abs() < 1e-12 && moved.z.abs() < 1e-12));
+            }
+        }
+        let best = curves(call("FairNet", vec![lists(&points), number(2e-3)], vec![]).unwrap());
+        let at = |n: &[CurveRef<f64>]| n[4].jet(0.4, Order::Zero)[0];
+        assert!((at(&net) - at(&best)).norm() > 1e-6);
+        let k = 7 * 4 + 2;
+        let mut dual: Vec<Vec3<Dual4>> = points.iter().map(|&p| Vec3::lifted(p)).collect();
+        dual[k].y = Dual4::seeded(points[k].y, 0);
+        let mut named = vec![("mode", Value::text("faithful")), ("passes", number(2.0))];
+        if up {
+            named.push(("along", Value::Vector(Vec3::lifted(Vec3::of(0.0, 1.0, 0.0)))));
+        }
+        let exact = curves(call("FairNet", vec![lists(&dual), number(2e-3)], named).unwrap());
+        let got = exact[4].jet(Dual4::from(0.4), Order::Zero)[0];
+        assert!(got.re().bits_eq(at(&net)));
+        let moved = |by: f64| {
+            let mut p = points.clone();
+            p[k].y += by;
+            at(&make(&p))
+        };
+        let wanted = (moved(1e-9) - moved(-1e-9)) * 0.5e9;
+        let off = (got.map(|x| x.eps[0]) - wanted).norm();
+        assert!(off < 1e-4 * (1.0 + wanted.norm()), "{up} {got:?} {wanted:?}");
+    }
+}
+
 #[test]
 fn faults_of_networks_name_their_argument() {
     let points = hull();
@@ -221,5 +316,7 @@ fn faults_of_networks_name_their_argument() {
     let keep = vec![("keep", Value::text("all"))];
     assert_eq!(fault(Value::list([good.clone()]), keep).0, "unknown-name");
     let along = vec![("along", Value::Vector(Vec3::zero()))];
-    assert_eq!(fault(Value::list([good]), along), ("zero-direction", Some(5), None));
+    assert_eq!(fault(Value::list([good.clone()]), along), ("zero-direction", Some(5), None));
+    let mode = vec![("mode", Value::text("slow"))];
+    assert_eq!(fault(Value::list([good]), mode), ("unknown-name", Some(7), None));
 }

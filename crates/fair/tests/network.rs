@@ -200,3 +200,64 @@ fn reports_of_all_ways() {
     }
     assert!(wider.measure[1] < joint.measure[1] && joint.measure[1] < swept.measure[1]);
 }
+
+/// Points, tangents, normals, area and volume of nets, rational ones too; contradictions are named.
+#[test]
+fn surfaces_keep_conditions() {
+    let mut random = Random(12);
+    for weighted in [false, true] {
+        let (nu, nv) = (9, 8);
+        let spaces = [Space::clamped(3, nu).unwrap(), Space::clamped(2, nv).unwrap()];
+        let points: Vec<_> = (0..nu * nv)
+            .map(|k| {
+                let (x, y) = ((k / nv) as f64, (k % nv) as f64);
+                Vec3::of(x, y, 0.2 * (x * y * 0.1).sin() + 0.05 * random.unit())
+            })
+            .collect();
+        let weights = weighted.then(|| (0..nu * nv).map(|_| 1.0 + 0.5 * random.unit()).collect());
+        let limit = Limit::ball(nu * nv, 0.25).unwrap();
+        let net = Network::net(spaces.clone(), points.clone(), weights.clone(), limit).unwrap();
+        let before = net.surface(&points).unwrap();
+        let solve =
+            |conditions| net.optimum(Measure::Second, Bound::ControlPoints, conditions, 1e-9);
+        let area = |points: &[Vec3<f64>]| {
+            let s = net.surface(points).unwrap();
+            let mut sum = 0.0;
+            for (i, j) in (0..200).flat_map(|i| (0..200).map(move |j| (i, j))) {
+                let at = [i, j].map(|k| (f64::from(k) + 0.5) / 200.0);
+                let jet = moldloft_num::Surface::jet(&s, at[0], at[1], moldloft_num::Order::First);
+                sum += jet.u.cross(jet.v).norm() / 4e4;
+            }
+            sum
+        };
+        let free = solve(vec![]).unwrap().points;
+        let kept = solve(vec![net.area_condition().unwrap()]).unwrap().points;
+        let (was, drift) = (area(&points), [&free, &kept].map(|p| (area(p) - area(&points)).abs()));
+        // To first order: the curvature of the area is left.
+        assert!(drift[0] > 2e-4 * was && drift[1] < 0.5 * drift[0], "{was} {drift:?}");
+        let at = [0.37, 0.61];
+        let jet =
+            |s: &dyn moldloft_num::Surface<f64>| s.jet(at[0], at[1], moldloft_num::Order::First);
+        let through = jet(&before).p + Vec3::of(0.0, 0.0, 0.03);
+        let normal = Vec3::of(0.0, -0.02, 1.0);
+        let mut all = net.point_condition(at, through).unwrap();
+        all.extend(net.normal_condition(at, normal).unwrap());
+        all.extend(net.tangent_condition(at, 1, Vec3::of(0.05, 1.0, 0.02)).unwrap());
+        let faired = net.surface(&solve(all).unwrap().points).unwrap();
+        let here = jet(&faired);
+        assert!((here.p - through).norm() < 1e-10, "{:?}", here.p - through);
+        let n = here.u.cross(here.v).normalized().unwrap();
+        assert!(n.cross(normal).norm() < 1e-9, "{n:?}");
+        let v = here.v.normalized().unwrap();
+        assert!(v.cross(Vec3::of(0.05, 1.0, 0.02)).norm() < 1e-9, "{v:?}");
+        let mut both = net.point_condition(at, through).unwrap();
+        both.extend(net.point_condition(at, through + Vec3::of(0.0, 0.0, 0.01)).unwrap());
+        let refused = solve(both).unwrap_err();
+        let FairError::Contradiction { conditions, .. } = refused else { panic!("{refused:?}") };
+        assert!(conditions.contains(&2) || conditions.contains(&5), "{conditions:?}");
+        let far = net.point_condition(at, through + Vec3::of(0.0, 0.0, 1.0)).unwrap();
+        assert!(matches!(solve(far), Err(FairError::Contradiction { .. })));
+    }
+    let web = Network::new(vec![Vec3::zero(); 3], vec![], Limit::ball(3, 1.0).unwrap()).unwrap();
+    assert!(web.area_condition().is_err() && web.clone().with_rims([[End::Free; 2]; 2]).is_err());
+}

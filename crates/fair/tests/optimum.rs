@@ -223,6 +223,30 @@ fn conditions_hold_and_contradictions_are_named() {
     assert!(result.certificate.value > best(&job, Measure::Second).certificate.value);
 }
 
+/// Two points at one place of the curve contradict each other however near they are, and the
+/// numbers that come of it are never handed out.
+#[test]
+fn no_contradiction_passes() {
+    for f in [f2a(), f2b(), f3()] {
+        let job = job(&f);
+        for (t, apart) in [(28.5, 1e-1), (20.0, 1e-4), (7.25, 1e-5), (28.5, 1e-3)] {
+            let at = shape::sample_at(&job.space, &f.points, None, t).point;
+            for bound in [Bound::ControlPoints, Bound::Bezier] {
+                let mut options = OptimumOptions { bound, ..OptimumOptions::of(Measure::Second) };
+                for y in [0.0, apart] {
+                    let there = at + Vec3::of(0.0, y, 0.0);
+                    options.conditions.extend(Condition::point(&job.space, t, there));
+                }
+                let result = optimum(&job, &options);
+                let Err(FairError::Contradiction { conditions, .. }) = result else {
+                    panic!("{} {t} {apart} {bound:?}: {result:?}", f.name)
+                };
+                assert!(conditions.contains(&1) || conditions.contains(&4), "{conditions:?}");
+            }
+        }
+    }
+}
+
 /// Free, position, tangent and curvature ends of a spline with simple end knots.
 #[test]
 fn ends_are_kept_as_asked() {

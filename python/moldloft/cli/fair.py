@@ -12,7 +12,7 @@ from moldloft.cli.console import Progress, assignment, print_json
 from moldloft.errors import Error, FairingError
 
 if TYPE_CHECKING:
-    from moldloft.fairing import Fairing, NetworkFairing, SurfaceFairing
+    from moldloft.fairing import Fairing, NetworkFairing, Spline, SurfaceFairing
     from moldloft.fairing.files import GridFile, PointFile
 
     Result = Fairing | SurfaceFairing | NetworkFairing
@@ -51,7 +51,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="points are control points (the default for files), are moved themselves, or lie on "
         "the curve before it is faired",
     )
-    parser.add_argument("--closed", action="store_true", help="the last point joins the first")
+    parser.add_argument(
+        "--closed", action="store_true", help="the last point joins the first; of surfaces along u"
+    )
+    parser.add_argument("--closed-v", action="store_true", help="a surface is closed along v")
     parser.add_argument(
         "--mode",
         choices=["optimum", "faithful", "literal", "vertex", "sweeps", "levels"],
@@ -81,7 +84,26 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="what open ends keep: free, position, tangent, curvature or a number of points; of a "
         "network corners, ends or none",
     )
-    parser.add_argument("--degree", type=int, default=3, help="polynomial degree, by default 3")
+    parser.add_argument(
+        "--rims",
+        metavar="WORD|u0=WORD,..",
+        default="corners",
+        help="what rims of a surface keep: corners, position, tangent or curvature; of all, or of "
+        "some, as in u0=curvature,v1=position",
+    )
+    parser.add_argument(
+        "--degree",
+        metavar="P[,Q]",
+        type=_degrees,
+        default=3,
+        help="polynomial degree, by default 3; of surfaces one or two",
+    )
+    parser.add_argument(
+        "--knots", metavar="FILE", help="knots of the curve: numbers that do not fall"
+    )
+    parser.add_argument(
+        "--weights", metavar="FILE", help="weights of a rational curve, one per control point"
+    )
     parser.add_argument(
         "--along",
         metavar="X,Y[,Z]",
@@ -89,22 +111,34 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="points move in this direction only, as in 0,1 for offsets at fixed stations",
     )
     parser.add_argument("--box", action="store_true", help="limit each coordinate by itself")
-    for word, what in (("through", "passes through X,Y[,Z]"), ("tangent", "runs along X,Y[,Z]")):
+    for word, place, what in (
+        ("through", "T", "the curve passes through X,Y[,Z] at T, or the surface at U,V"),
+        ("tangent", "T", "the curve runs along X,Y[,Z] at T"),
+        ("normal", "U,V", "the surface's normal at U,V is along X,Y,Z"),
+    ):
         parser.add_argument(
             f"--{word}",
-            metavar="T=X,Y[,Z]",
+            metavar=f"{place}=X,Y[,Z]",
             type=_condition,
             action="append",
             default=[],
-            help=f"the curve {what} at parameter T in [0, 1]; may be repeated",
+            help=f"{what}, parameters in [0, 1]; may be repeated",
         )
+    parser.add_argument(
+        "--join",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="points of a curve that begins or ends where this one does, which runs on from it "
+        "with the same tangent and curvature (both fitted: --as fit); may be repeated",
+    )
     parser.add_argument(
         "--keep",
         choices=["area", "volume", "centroid"],
         action="append",
         default=[],
         help="keep the area, the volume (of revolution about x; of a surface that between it and "
-        "the original) or the centroid, to first order",
+        "the original) or, of curves, the centroid, to first order",
     )
     parser.add_argument("--spacing", choices=["chord", "centripetal", "uniform"], default="chord")
     parser.add_argument(
@@ -150,15 +184,24 @@ def _vector(text: str) -> list[float]:
     return vector
 
 
-def _condition(text: str) -> tuple[float, list[float]]:
-    t, equals, vector = text.partition("=")
+def _condition(text: str) -> tuple[list[float], list[float]]:
+    place, equals, vector = text.partition("=")
     try:
-        at = float(t)
+        at = [float(t) for t in place.split(",")]
     except ValueError:
-        at = float("nan")
-    if not equals or not 0 <= at <= 1:
-        raise argparse.ArgumentTypeError(f"`{text}` is not of the form T=X,Y with T in [0, 1]")
+        at = []
+    if not equals or len(at) not in (1, 2) or not all(0 <= t <= 1 for t in at):
+        raise argparse.ArgumentTypeError(
+            f"`{text}` is not of the form T=X,Y (of surfaces U,V=X,Y,Z) with T in [0, 1]"
+        )
     return at, _vector(vector)
+
+
+def _degrees(text: str) -> int | tuple[int, int]:
+    words = text.split(",")
+    if len(words) > 2 or not all(w.isdigit() for w in words):
+        raise argparse.ArgumentTypeError(f"`{text}` is no degree, nor two of them")
+    return int(words[0]) if len(words) == 1 else (int(words[0]), int(words[1]))
 
 
 def _places(text: str, count: int | None = None, what: str = "--breaks") -> list[int]:
@@ -272,7 +315,40 @@ class _Source(abc.ABC):
         """Writes the result; the path that it was written to."""
 
 
-def _curve_options(options: argparse.Namespace, count: int) -> dict[str, Any]:
+def _numbers(path: str | None) -> list[float] | None:
+    """The numbers of a file, in their order, with the line of one that is none."""
+    if path is None:
+        return None
+    from moldloft.fairing.files import read_numbers
+
+    return read_numbers(path)
+
+
+def _joined(options: argparse.Namespace, role: str) -> list[Spline]:
+    """The curves that this one runs on from."""
+    from moldloft.fairing import Spline
+    from moldloft.fairing.files import read_points
+
+    out = []
+    for name in options.join:
+        points = read_points(name).points
+        if role == "fit":
+            out.append(Spline.interpolate(points, degree=options.degree, spacing=options.spacing))
+        else:
+            out.append(Spline(points, degree=options.degree, clamped=False))
+    return out
+
+
+def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[str, Any]:
+    for name, given in (
+        ("--rims", options.rims != "corners"),
+        ("--normal", options.normal),
+        ("--closed-v", options.closed_v),
+        ("--degree with two numbers", not isinstance(options.degree, int)),
+        ("u and v", any(len(at) > 1 for at, _ in [*options.through, *options.tangent])),
+    ):
+        if given:
+            raise Error(f"error: {name}: for surfaces only")
     passes = options.passes
     steps = options.steps
     if passes is not None and steps is None:
@@ -291,8 +367,11 @@ def _curve_options(options: argparse.Namespace, count: int) -> dict[str, Any]:
         "fixed": _places(options.fixed, count, "--fixed"),
         "ends": _ends(options),
         "motion": _motion(options),
-        "through": options.through,
-        "tangents": options.tangent,
+        "through": [(at[0], v) for at, v in options.through],
+        "tangents": [(at[0], v) for at, v in options.tangent],
+        "joins": _joined(options, role),
+        "knots": _numbers(options.knots),
+        "weights": _numbers(options.weights),
         "keep": options.keep,
         "spacing": options.spacing,
         "count": options.count,
@@ -333,9 +412,10 @@ class _Points(_Source):
             self.said.append("the last point repeats the first and is not counted twice")
             points = points[:-1]
             self.closing = True
-        chosen = _curve_options(options, len(points))
+        role = options.role or "control"
+        chosen = _curve_options(options, len(points), role)
         try:
-            result = fair(points, options.tol, as_=options.role or "control", **chosen)
+            result = fair(points, options.tol, as_=role, **chosen)
         except FairingError as error:
             raise self._placed(error) from error
         return result
@@ -351,6 +431,28 @@ class _Points(_Source):
     def _network(self, options: argparse.Namespace) -> NetworkFairing:
         from moldloft.fairing import network
 
+        for name, given in (
+            ("--as", options.role not in (None, "points")),
+            ("--closed", options.closed or options.closed_v),
+            ("--bound curve", options.bound == "curve"),
+            ("--breaks auto", options.breaks == "auto"),
+            ("--through", options.through),
+            ("--tangent", options.tangent),
+            ("--normal", options.normal),
+            ("--keep", options.keep),
+            ("--join", options.join),
+            ("--rims", options.rims != "corners"),
+            ("--count", options.count),
+            ("--knots", options.knots),
+            ("--weights", options.weights),
+            ("--log", options.log),
+            ("--degree with two numbers", not isinstance(options.degree, int)),
+        ):
+            if given:
+                raise Error(
+                    f"error: {name}: not for networks; {self.file.path} has "
+                    f"{len(self.file.blocks)} curves"
+                )
         places: dict[bytes, int] = {}
         rows: list[int] = []
         self.of_row: list[int] = []
@@ -423,23 +525,33 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
     from moldloft.fairing import fair
 
     for option, given in (
-        ("--through", options.through),
         ("--tangent", options.tangent),
+        ("--join", options.join),
+        ("--knots", options.knots),
+        ("--weights", options.weights),
         ("--count", options.count),
         ("--log", options.log),
         ("--fixed", options.fixed),
     ):
         if given:
             raise Error(f"error: {option} is for curves")
+    if any(len(at) != 2 for at, _ in options.through + options.normal):
+        raise Error("error: --through, --normal: a place of a surface is U,V")
+    rims: Any = options.rims
+    if "=" in rims:
+        rims = dict(word.partition("=")[::2] for word in rims.split(","))
     chosen: dict[str, Any] = {
         "as_": role,
         "degree": options.degree,
-        "closed": (options.closed, False),
+        "closed": (options.closed, options.closed_v),
         "measure": options.measure,
         "mode": options.mode,
         "bound": options.bound or "points",
         "breaks": _surface_breaks(options.breaks),
         "ends": 2 if options.ends is None else _ends(options),
+        "rims": rims,
+        "through": options.through,
+        "normals": options.normal,
         "motion": _motion(options),
         "keep": options.keep,
         "passes": options.passes or 1,
@@ -497,7 +609,7 @@ class _Object(_Source):
             return _fair_grid(made.points, options.role or made.role, options)
         if made.closed:
             options.closed = True
-        chosen = _curve_options(options, len(made.points))
+        chosen = _curve_options(options, len(made.points), options.role or made.role)
         if not options.breaks and made.breaks:
             chosen["breaks"] = made.breaks
         if made.role == "fit" and not made.breaks:

@@ -221,24 +221,68 @@ def _ends(ends: Any, closed: bool) -> tuple[str, str]:
     return ("free", "free") if closed else (words[0], words[1])
 
 
+_Condition = tuple[str, float, tuple[float, float, float], tuple[float, float, float]]
+
+TOGETHER = 1e-9
+"""Ends within this share of a curve's extent are one place."""
+
+
+def _vector(vector: ArrayLike) -> tuple[float, float, float]:
+    v, _ = points_of([np.asarray(vector, np.float64).ravel()])
+    return float(v[0, 0]), float(v[0, 1]), float(v[0, 2])
+
+
 def _conditions(
     through: Iterable[tuple[float, ArrayLike]],
     tangents: Iterable[tuple[float, ArrayLike]],
     keep: Sequence[str],
-) -> list[tuple[str, float, tuple[float, float, float]]]:
-    out: list[tuple[str, float, tuple[float, float, float]]] = []
+) -> tuple[list[_Condition], list[str]]:
+    """The conditions, and what they are called in refusals."""
+    out: list[_Condition] = []
+    labels = []
+    none = (0.0, 0.0, 0.0)
     for word, rows in (("through", through), ("tangent", tangents)):
         for t, vector in rows:
-            v, _ = points_of([np.asarray(vector, np.float64).ravel()])
+            v = _vector(vector)
             if not 0 <= t <= 1:
                 raise FairingError(f"error: expected a parameter from 0 to 1, found {t:g}")
-            out.append((word, float(t), (float(v[0, 0]), float(v[0, 1]), float(v[0, 2]))))
+            if word == "tangent" and not any(v):
+                raise FairingError(f"error: the tangent at {t:g} has no direction")
+            out.append((word, float(t), v, none))
+            labels.append(f"{word} at {t:g}")
     for word in keep:
         if word not in ("area", "centroid", "volume"):
             raise FairingError(f"error: `{word}` cannot be kept; what can: area, centroid, volume")
         axis = (1.0, 0.0, 0.0) if word == "volume" else (0.0, 0.0, 1.0)
-        out.append((word, 0.0, axis))
-    return out
+        out.append((word, 0.0, axis, none))
+        labels.append(f"keep {word}")
+    return out, labels
+
+
+def _joins(joins: Sequence[Spline], spline: Spline) -> list[_Condition]:
+    """What the curve's ends run on from: conditions whose parameter is 0 or 1."""
+    if joins and spline.closed:
+        raise FairingError("error: a closed curve has no ends to join")
+    out: dict[int, _Condition] = {}
+    own = spline([0.0, 1.0])
+    extent = float(np.ptp(spline.control_points, axis=0).max())
+    for k, other in enumerate(joins):
+        if not isinstance(other, Spline) or other.closed:
+            raise FairingError(f"error: join {k + 1} is no open spline")
+        ends = other.at([0.0, 1.0])
+        away = np.linalg.norm(own[:, None] - ends.points[None], axis=2)
+        a, b = (int(i) for i in np.unravel_index(int(np.argmin(away)), away.shape))
+        if not away[a, b] <= TOGETHER * extent:
+            raise FairingError(
+                f"error: join {k + 1} does not begin or end where the curve does: its nearest end "
+                f"is {away[a, b]:.3e} off (a fitted curve ends at its points: as `fit`)"
+            )
+        if a in out:
+            raise FairingError(f"error: two curves join at the {('start', 'end')[a]} of the curve")
+        # The neighbour's parameter runs into the start, or on from the end, or the other way.
+        first = ends.first[b] * (-1.0 if a == b else 1.0)
+        out[a] = ("join", float(a), _vector(first), _vector(ends.second[b]))
+    return list(out.values())
 
 
 def fair_curve(
@@ -258,8 +302,12 @@ def fair_curve(
     through: Iterable[tuple[float, ArrayLike]] = (),
     tangents: Iterable[tuple[float, ArrayLike]] = (),
     keep: Sequence[str] = (),
+    joins: Sequence[Spline] = (),
     spacing: str = "chord",
     count: int | None = None,
+    knots: ArrayLike | None = None,
+    weights: ArrayLike | None = None,
+    period: float | None = None,
     steps: int | None = None,
     least_move: float = 0.0,
     least_drop: float = 0.0,
@@ -321,10 +369,16 @@ def fair_curve(
         What else an optimum keeps, to first order: ``"area"`` (swept about the origin in the xy
         plane), ``"volume"`` (of revolution about the x axis), ``"centroid"`` (of the control
         points).
+    joins
+        Open splines that begin or end where the curve does: an optimum runs on from them with the
+        same tangent direction and curvature. They stay as they are.
     spacing
         Parameters of a fit: ``"chord"``, ``"centripetal"`` or ``"uniform"``.
     count
         Fit by least squares with so many control points instead of through all points.
+    knots, weights, period
+        Knots and weights of your own, of control points or of a fit; see :class:`Spline` and
+        :meth:`Spline.fit`. Weights stay as they are.
     steps
         Local steps (by default one per point), sweeps (10) or cycles of levels (2).
     least_move, least_drop, stop_gap, stop_pieces
@@ -348,7 +402,8 @@ def fair_curve(
     if as_ not in ROLES:
         raise FairingError(f"error: points are `control`, `points` or `fit`, not `{as_}`")
     started = time.perf_counter()
-    made = _prepared(points, as_, closed, degree, spacing, count, breaks)
+    own = _Own(knots, weights, period)
+    made = _prepared(points, as_, closed, degree, spacing, count, breaks, own)
     spline, data, width = made.spline, made.data, made.width
     fitted = made.role in ("fit", "spline")
     n = len(spline.control_points)
@@ -360,11 +415,17 @@ def fair_curve(
     if bound is None:
         bound = "curve" if fitted else "points"
     default = {"sweeps": 10, "levels": 2}.get(mode, n)
+    kept = list(_ends(ends if ends is not None else ("tangent" if fitted else 2), spline.closed))
+    conditions, labels = _conditions(through, tangents, keep)
+    for k, join in enumerate(_joins(joins, spline)):
+        kept[int(join[1])] = "position"
+        conditions.append(join)
+        labels.append(f"join {k + 1}")
     chosen = {
         "tolerance": limits,
         "motion": word,
         "direction": way,
-        "ends": _ends(ends if ends is not None else ("tangent" if fitted else 2), spline.closed),
+        "ends": tuple(kept),
         "marks": made.marks,
         "fixed": [_index(f, n) for f in fixed],
         "measure": measure,
@@ -372,15 +433,41 @@ def fair_curve(
         "bound": bound,
         "steps": default if steps is None else steps,
         "stops": (least_move, least_drop, stop_gap, stop_pieces),
-        "conditions": _conditions(through, tangents, keep),
+        "conditions": conditions,
+        "labels": labels,
         "accuracy": accuracy,
         "log": log,
     }
-    if chosen["conditions"] and mode != "optimum":
+    if conditions and mode != "optimum":
         raise FairingError("error: only the optimum keeps conditions; take mode `optimum`")
     core, told = spline._core.fair(chosen)
     seconds = time.perf_counter() - started
     return _result(made, Spline._of(core), told, tol, mode, width, seconds, data)
+
+
+@dataclass
+class _Own:
+    """Knots and weights of the user's."""
+
+    knots: ArrayLike | None
+    weights: ArrayLike | None
+    period: float | None
+
+    @property
+    def given(self) -> bool:
+        return self.knots is not None or self.weights is not None
+
+    def control(self, data: Floats, degree: int, closed: bool) -> Spline:
+        """The spline with these control points."""
+        return Spline(
+            data,
+            degree=degree,
+            knots=self.knots,
+            weights=self.weights,
+            closed=closed,
+            clamped=False,
+            period=self.period,
+        )
 
 
 @dataclass
@@ -413,12 +500,15 @@ def _prepared(
     spacing: str,
     count: int | None,
     breaks: Sequence[int] | str,
+    own: _Own,
 ) -> _Prepared:
     """The spline to fair, and what the data give away."""
+    if own.given and (isinstance(points, Spline) or role == "points"):
+        raise FairingError("error: knots and weights are for control points and fits")
     if isinstance(points, Spline):
         data, width = points.control_points, 3
         spline: Spline = points
-        role, parameters = "spline", None
+        plain, role, parameters = points, "spline", None
     else:
         data, width = points_of(points)
         refuse_repeats(data, closed)
@@ -427,9 +517,11 @@ def _prepared(
             raise FairingError(
                 f"error: expected at least {least} points for degree {degree}, found {len(data)}"
             )
-        spline = Spline(data, degree=degree, closed=closed, clamped=False)
+        plain = Spline(data, degree=degree, closed=closed, clamped=False)
+        spline = own.control(data, degree, closed) if own.given and role == "control" else plain
         parameters = None
-    found = spline.findings()
+    # A fit's own jumps tell less than those of its points.
+    found = (plain if role == "fit" else spline).findings()
     corrected: list[Finding] = []
     if isinstance(breaks, str):
         if breaks != "auto":
@@ -447,7 +539,13 @@ def _prepared(
         for f in corrected:
             if f.kind == "outlier":
                 moved[f.index] -= f.vector
-        if count is not None:
+        if own.given:
+            if marks:
+                raise FairingError("error: a fit with knots or weights has its breaks in the knots")
+            spline, parameters = Spline._fit(
+                moved, degree, own.knots, count, own.weights, closed, own.period, spacing, None
+            )
+        elif count is not None:
             core, parameters, _, _ = _least_squares(moved, degree, count, spacing, closed)
             spline = core
             if marks:

@@ -25,6 +25,7 @@ __all__ = [
     "is_grid",
     "points_text",
     "read_grids",
+    "read_numbers",
     "read_points",
     "write_vts",
 ]
@@ -209,6 +210,29 @@ def points_text(points: Floats, like: PointFile | None = None, delimiter: str = 
             out.append("")
         out += [row(points[i]) for i in block]
     return "\n".join([*out, ""])
+
+
+def read_numbers(path: str | os.PathLike[str]) -> list[float]:
+    """The numbers of a text, in their order: knots, weights. ``#`` begins a comment.
+
+    Raises
+    ------
+    FairingError
+        With the line of a word that is no number.
+    FileError
+        When the file cannot be read.
+    """
+    path = Path(path)
+    out = []
+    for number, line in enumerate(_bytes(path).decode("latin-1").splitlines(), 1):
+        for word in line.partition("#")[0].replace(",", " ").replace(";", " ").split():
+            value = _number(word)
+            if value is None or not math.isfinite(value):
+                raise FairingError(f"error: {path}:{number}: expected a number, found `{word}`")
+            out.append(value)
+    if not out:
+        raise FairingError(f"error: `{path}` has no numbers")
+    return out
 
 
 @dataclass

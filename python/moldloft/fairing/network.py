@@ -231,6 +231,8 @@ def network(
             "measure": measure,
             "mode": mode,
             "bound": "points",
+            "conditions": [],
+            "labels": [],
             "passes": passes,
             "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
         }

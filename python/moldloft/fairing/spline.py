@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moldloft import _core
+from moldloft.errors import FairingError
 from moldloft.fairing.arrays import points_of, refuse_repeats
 
 if TYPE_CHECKING:
@@ -165,6 +166,97 @@ class Spline:
         rows, _ = points_of(points)
         refuse_repeats(rows, closed)
         return cls._of(_core.Spline.least_squares(rows, degree, count, spacing, closed)[0])
+
+    @classmethod
+    def fit(
+        cls,
+        points: ArrayLike,
+        *,
+        degree: int = 3,
+        knots: ArrayLike | None = None,
+        count: int | None = None,
+        weights: ArrayLike | None = None,
+        closed: bool = False,
+        period: float | None = None,
+        spacing: str = "chord",
+        at: ArrayLike | None = None,
+    ) -> Spline:
+        """The spline with knots and weights of your own that is nearest to points.
+
+        It passes through them when it has as many control points as there are points.
+
+        Parameters
+        ----------
+        points
+            ``(n, 2)`` or ``(n, 3)``.
+        degree, knots, closed, period
+            As for :class:`Spline`. Without knots those of an interpolation, or ``count`` uniform.
+        count
+            The number of control points, where there are no knots.
+        weights
+            Positive weights, one per control point, that stay as they are: a rational curve.
+        spacing
+            How points get their parameters.
+        at
+            The parameters themselves, rising, in [0, 1].
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> angle = np.linspace(0, np.pi / 2, 30)
+        >>> arc = Spline.fit(
+        ...     np.column_stack([np.cos(angle), np.sin(angle)]),
+        ...     degree=2, knots=[0, 0, 0, 0.5, 1, 1, 1], weights=[1, 0.9, 0.9, 1],
+        ... )
+        >>> arc.weights
+        array([1. , 0.9, 0.9, 1. ])
+        >>> bool(abs(np.linalg.norm(arc(np.linspace(0, 1, 9)), axis=1) - 1).max() < 1e-3)
+        True
+        """
+        return cls._fit(points, degree, knots, count, weights, closed, period, spacing, at)[0]
+
+    @classmethod
+    def _fit(
+        cls,
+        points: ArrayLike,
+        degree: int,
+        knots: ArrayLike | None,
+        count: int | None,
+        weights: ArrayLike | None,
+        closed: bool,
+        period: float | None,
+        spacing: str,
+        at: ArrayLike | None,
+    ) -> tuple[Spline, Floats]:
+        """The spline and its data's parameters."""
+        rows, _ = points_of(points)
+        own, w, t = (
+            None if a is None else np.ascontiguousarray(np.asarray(a, np.float64).ravel())
+            for a in (knots, weights, at)
+        )
+        if t is None:
+            refuse_repeats(rows, closed)
+        elif len(t) != len(rows) or not (np.diff(t) > 0).all() or t[0] < 0 or t[-1] > 1:
+            raise FairingError(f"error: expected {len(rows)} rising parameters in [0, 1]")
+        if own is not None:
+            count = len(own) if closed else len(own) - degree - 1
+        elif count is None:
+            through, t, _ = cls._interpolated(rows, degree, spacing, closed, ())
+            own, count = through.knots, len(rows)
+            low, high = through.domain
+            period = high - low
+        if closed and own is not None and period is None:
+            raise FairingError("error: a closed curve with knots needs a period")
+        if not degree + 1 <= count <= len(rows):
+            raise FairingError(
+                f"error: expected {degree + 2} to {len(rows)} control points, as many as there "
+                f"are points at most; found {count}"
+            )
+        form = "closed" if closed else "clamped"
+        core, parameters, _, _ = _core.Spline.fit(
+            rows, degree, count, form, own, w, period, spacing, t
+        )
+        return cls._of(core), parameters
 
     @property
     def degree(self) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -115,6 +115,7 @@ class Look:
             "mean_curvature": self.mean,
             "largest_curvature": largest,
             "smallest_curvature": smallest,
+            "isophote": self.isophotes(),
             "zebra": self.zebra(),
             "normal": self.normals,
         }
@@ -137,6 +138,8 @@ class SplineSurface:
         Whether it is closed along u and v.
     clamped
         Whether uniform knots are clamped.
+    periods
+        Of closed directions with knots: how far the first knot is from itself, once round.
     """
 
     def __init__(
@@ -148,14 +151,15 @@ class SplineSurface:
         weights: ArrayLike | None = None,
         closed: tuple[bool, bool] = (False, False),
         clamped: bool = True,
+        periods: tuple[float | None, float | None] = (None, None),
     ) -> None:
         points, _ = points_of(control_points, 3)
         degrees = (degree, degree) if isinstance(degree, int) else degree
         forms = tuple("closed" if c else ("clamped" if clamped else "floating") for c in closed)
         ku, kv = (None if k is None else np.asarray(k, np.float64) for k in knots)
-        w = None if weights is None else np.asarray(weights, np.float64).ravel()
+        w = None if weights is None else _weights(weights, points.shape[:2])
         self._core = _core.Net(
-            points.reshape(-1, 3), degrees, points.shape[:2], forms, (ku, kv), (None, None), w
+            points.reshape(-1, 3), degrees, points.shape[:2], forms, (ku, kv), periods, w
         )
 
     @classmethod
@@ -169,35 +173,74 @@ class SplineSurface:
         cls,
         points: ArrayLike,
         *,
-        degree: int = 3,
+        degree: int | tuple[int, int] = 3,
+        closed: tuple[bool, bool] = (False, False),
+        knots: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
+        weights: ArrayLike | None = None,
         breaks: tuple[Sequence[int], Sequence[int]] = ((), ()),
     ) -> SplineSurface:
         """The surface through a grid of points ``(m, n, 3)`` at uniform parameters.
 
-        ``breaks`` are rows of points along u and along v, from 0, at which it may have edges.
+        Parameters
+        ----------
+        points
+            The grid; a closed direction does not repeat its first row.
+        degree, closed
+            As for :class:`SplineSurface`.
+        knots
+            Knots of your own, of open directions. Fewer of them than interpolation needs give the
+            nearest surface in the sum of squares instead.
+        weights
+            Positive weights of the control points that stay as they are: a rational surface.
+        breaks
+            Rows of points along u and along v, from 0, at which it may have edges, in open
+            directions without knots of their own.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> angle = np.arange(16) * 2 * np.pi / 16
+        >>> x, y = np.cos(angle), np.sin(angle)
+        >>> rings = [np.stack([x, y, np.full(16, z)], axis=-1) for z in np.linspace(0, 2, 6)]
+        >>> tube = SplineSurface.interpolate(np.stack(rings, axis=1), closed=(True, False))
+        >>> bool(abs(np.linalg.norm(tube.grid(40, 9)[..., :2], axis=-1) - 1).max() < 1e-3)
+        True
         """
-        return cls._interpolated(points, degree, breaks)[0]
+        return cls._interpolated(points, degree, breaks, closed, knots, weights)[0]
 
     @classmethod
     def _interpolated(
-        cls, points: ArrayLike, degree: int, breaks: tuple[Sequence[int], Sequence[int]]
+        cls,
+        points: ArrayLike,
+        degree: int | tuple[int, int],
+        breaks: tuple[Sequence[int], Sequence[int]],
+        closed: tuple[bool, bool] = (False, False),
+        knots: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
+        weights: ArrayLike | None = None,
     ) -> tuple[SplineSurface, tuple[Floats, Floats], tuple[list[int], list[int]]]:
         net, _ = points_of(points, 3)
-        knots, params, marks = [], [], []
-        for axis in (0, 1):
-            lines = np.moveaxis(net, axis, 0)
-            fitted = [
-                _core.Spline.interpolate(
-                    np.ascontiguousarray(lines[:, k]), degree, "uniform", False, list(breaks[axis])
-                )
-                for k in range(lines.shape[1])
-            ]
-            net = np.moveaxis(np.stack([f[0].control_points for f in fitted], axis=1), 0, axis)
-            knots.append(fitted[0][0].knots)
-            params.append(fitted[0][1])
-            marks.append(fitted[0][2])
-        surface = cls(net, degree=degree, knots=(knots[0], knots[1]))
-        return surface, (params[0], params[1]), (marks[0], marks[1])
+        degrees = (degree, degree) if isinstance(degree, int) else degree
+        axes = [_Axis.of(*a) for a in zip(net.shape, degrees, closed, knots, breaks, strict=False)]
+        forms: dict[str, Any] = {
+            "degree": degrees,
+            "closed": closed,
+            "knots": (axes[0].knots, axes[1].knots),
+            "periods": (axes[0].period, axes[1].period),
+        }
+        at = (axes[0].at, axes[1].at)
+        if weights is None:
+            for k, axis in enumerate(axes):
+                net = axis.fitted(net, k)
+            return cls(net, **forms), at, (axes[0].marks, axes[1].marks)
+        # The homogeneous surface passes through the points times their denominator.
+        shape = (axes[0].count, axes[1].count)
+        each = _weights(weights, shape).reshape(shape)
+        under = cls(np.stack([each, 0 * each, 0 * each], axis=-1), **forms)
+        net = net * under.grid(*at)[..., :1]
+        for k, axis in enumerate(axes):
+            net = axis.fitted(net, k)
+        surface = cls(net / each[..., None], weights=each, **forms)
+        return surface, at, (axes[0].marks, axes[1].marks)
 
     @property
     def control_points(self) -> Floats:
@@ -234,6 +277,90 @@ class SplineSurface:
     def __repr__(self) -> str:
         m, n = self._core.shape
         return f"<spline surface, net {m} x {n}>"
+
+
+def _weights(given: ArrayLike, shape: tuple[int, ...]) -> Floats:
+    weights = np.asarray(given, np.float64)
+    if weights.shape != tuple(shape):
+        raise FairingError(f"error: expected weights {tuple(shape)}, found {weights.shape}")
+    bad = np.argwhere(~(np.isfinite(weights) & (weights > 0)))
+    if len(bad):
+        i, j = (int(k) for k in bad[0])
+        raise FairingError(
+            f"error: weight ({i + 1}, {j + 1}) is {weights[i, j]:g}, expected a positive number"
+        )
+    return np.ascontiguousarray(weights.ravel())
+
+
+@dataclass
+class _Axis:
+    """How the lines of a grid along one direction are fitted: all alike."""
+
+    degree: int
+    closed: bool
+    knots: Floats
+    period: float | None
+    at: Floats
+    """The parameters of the points, in [0, 1]."""
+    marks: list[int]
+    """The control points that are breaks."""
+    breaks: list[int]
+    own: bool
+    """Whether the knots are the user's."""
+
+    @classmethod
+    def of(
+        cls, count: int, degree: int, closed: bool, knots: ArrayLike | None, breaks: Sequence[int]
+    ) -> _Axis:
+        rows = [int(b) for b in breaks]
+        if rows and (closed or knots is not None):
+            what = "a closed direction" if closed else "a direction with knots of its own"
+            raise FairingError(f"error: {what} has no breaks of its points")
+        line = np.column_stack([np.arange(count, dtype=np.float64), np.zeros((count, 2))])
+        if knots is None:
+            core, at, marks = _core.Spline.interpolate(line, degree, "uniform", closed, rows)
+            low, high = core.domain
+            period = high - low if closed else None
+            return cls(degree, closed, core.knots, period, at, marks, rows, False)
+        own = np.ascontiguousarray(np.asarray(knots, np.float64).ravel())
+        if closed:
+            raise FairingError("error: knots of your own are for open directions of a fit")
+        at = np.arange(count) / (count - 1)
+        axis = cls(degree, closed, own, None, at, [], rows, True)
+        if not degree + 2 <= axis.count <= count:
+            raise FairingError(
+                f"error: expected {2 * degree + 3} to {count + degree + 1} knots for {count} "
+                f"points, found {len(own)}"
+            )
+        return axis
+
+    @property
+    def count(self) -> int:
+        """The number of control points."""
+        return len(self.knots) if self.closed else len(self.knots) - self.degree - 1
+
+    def fitted(self, net: Floats, axis: int) -> Floats:
+        """The lines along an axis as control points."""
+        lines = np.moveaxis(net, axis, 0)
+
+        def one(line: Floats) -> Floats:
+            if self.own:
+                return _core.Spline.fit(
+                    line,
+                    self.degree,
+                    self.count,
+                    "clamped",
+                    self.knots,
+                    None,
+                    None,
+                    "uniform",
+                    self.at,
+                )[0].control_points
+            made = _core.Spline.interpolate(line, self.degree, "uniform", self.closed, self.breaks)
+            return made[0].control_points
+
+        columns = [one(np.ascontiguousarray(lines[:, k])) for k in range(lines.shape[1])]
+        return np.moveaxis(np.stack(columns, axis=1), 0, axis)
 
 
 def _parameters(given: ArrayLike) -> Floats:
@@ -380,6 +507,52 @@ class SurfaceFairing:
         write_vts(path, after.points, fields)
 
 
+_RIMS = ("u0", "u1", "v0", "v1")
+
+
+def _rims(rims: str | Mapping[str, str]) -> list[str]:
+    """What each rim keeps: at u = 0 and 1, at v = 0 and 1."""
+    known = ("corners", "position", "tangent", "curvature")
+    by_name = dict.fromkeys(_RIMS, rims) if isinstance(rims, str) else dict(rims)
+    for name, word in by_name.items():
+        if name not in _RIMS:
+            raise FairingError(f"error: rims are {', '.join(_RIMS)}, not `{name}`")
+        if word not in known:
+            raise FairingError(f"error: a rim keeps {', '.join(known)}, not `{word}`")
+    return [by_name.get(name, "corners") for name in _RIMS]
+
+
+_Condition = tuple[str, tuple[float, float], tuple[float, float, float]]
+
+
+def _conditions(
+    through: Iterable[tuple[Sequence[float], ArrayLike]],
+    normals: Iterable[tuple[Sequence[float], ArrayLike]],
+    keep: Sequence[str],
+) -> tuple[list[_Condition], list[str]]:
+    """The conditions, and what they are called in refusals."""
+    out: list[_Condition] = []
+    labels = []
+    for word, rows in (("through", through), ("normal", normals)):
+        for place, vector in rows:
+            uv = [float(t) for t in place]
+            if len(uv) != 2 or not all(0 <= t <= 1 for t in uv):
+                raise FairingError(f"error: expected u and v from 0 to 1, found {place}")
+            x, y, z = _vector(vector)
+            if not np.isfinite([x, y, z]).all() or (word == "normal" and not any((x, y, z))):
+                raise FairingError(f"error: {word} at {uv[0]:g}, {uv[1]:g}: no such direction")
+            out.append((word, (uv[0], uv[1]), (x, y, z)))
+            labels.append(f"{word} at {uv[0]:g}, {uv[1]:g}")
+    for word in keep:
+        if word not in ("area", "volume"):
+            raise FairingError(
+                f"error: `{word}` of a surface cannot be kept; what can: area, volume"
+            )
+        out.append((word, (0.0, 0.0), (0.0, 0.0, 0.0)))
+        labels.append(f"keep {word}")
+    return out, labels
+
+
 def fair_surface(
     points: ArrayLike | SplineSurface,
     tol: ArrayLike | None,
@@ -387,13 +560,18 @@ def fair_surface(
     as_: str = "control",
     degree: int | tuple[int, int] = 3,
     closed: tuple[bool, bool] = (False, False),
+    knots: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
+    weights: ArrayLike | None = None,
     measure: str = "second",
     mode: str = "optimum",
     bound: str = "points",
     breaks: tuple[Sequence[int], Sequence[int]] = ((), ()),
     fixed: Sequence[tuple[int, int]] = (),
     ends: Any = 2,
+    rims: str | Mapping[str, str] = "corners",
     motion: Any = "ball",
+    through: Iterable[tuple[Sequence[float], ArrayLike]] = (),
+    normals: Iterable[tuple[Sequence[float], ArrayLike]] = (),
     keep: Sequence[str] = (),
     passes: int = 1,
     steps: int | None = None,
@@ -410,8 +588,8 @@ def fair_surface(
     as_
         ``"control"``: the grid is the control net; ``"fit"``: the surface passes through it before
         it is faired.
-    degree, closed
-        Of the surface of a grid that is a net.
+    degree, closed, knots, weights
+        Of the surface of a grid; see :class:`SplineSurface` and :meth:`SplineSurface.interpolate`.
     measure
         As for curves: the sum over all curves of the net in both directions.
     mode
@@ -429,11 +607,18 @@ def fair_surface(
     ends
         What curves keep at open ends in the faithful mode; see curves. The optimum keeps the four
         corners, two by two points.
+    rims
+        What the rims keep to the bit, so that neighbours still fit: ``"corners"`` (only these),
+        ``"position"``, ``"tangent"`` or ``"curvature"``, of all rims or by name, as in
+        ``{"u0": "curvature", "v1": "position"}``.
     motion
         As for curves.
+    through, normals
+        Conditions of an optimum: pairs of parameters (u, v) in [0, 1] and the point that the
+        surface passes through there, or the direction of its normal.
     keep
-        ``("volume",)``: the volume between the surfaces is zero to first order, so that a hull
-        keeps its displacement.
+        ``"volume"``: the volume between the surfaces is zero to first order, so that a hull keeps
+        its displacement; ``"area"``: so is the change of the area.
     passes
         Passes of the faithful mode; the tolerance is from the original across all of them.
     steps
@@ -452,8 +637,9 @@ def fair_surface(
         raise FairingError(
             f"error: there is no mode `{mode}` of surfaces; there are: optimum, faithful, sweeps"
         )
-    if set(keep) - {"volume"}:
-        raise FairingError("error: of a surface there is only the volume to keep")
+    conditions, labels = _conditions(through, normals, keep)
+    if conditions and mode != "optimum":
+        raise FairingError("error: only the optimum keeps conditions; take mode `optimum`")
     started = time.perf_counter()
     marks = (list(breaks[0]), list(breaks[1]))
     at: tuple[Floats, Floats] | None = None
@@ -461,19 +647,21 @@ def fair_surface(
         surface, data = points, points.control_points
     else:
         data, _ = points_of(points, 3)
-        least = min(degree) if isinstance(degree, tuple) else degree
         for axis, name in ((0, "u"), (1, "v")):
+            least = degree[axis] if isinstance(degree, tuple) else degree
             few = (2 * least if closed[axis] else least) + 2
             if data.shape[axis] < few:
                 raise FairingError(
                     f"error: expected at least {few} points along {name}, found {data.shape[axis]}"
                 )
         if as_ == "fit":
-            if not isinstance(degree, int) or any(closed):
-                raise FairingError("error: a fitted surface is open and has one degree")
-            surface, at, marks = SplineSurface._interpolated(data, degree, marks)
+            surface, at, marks = SplineSurface._interpolated(
+                data, degree, marks, closed, knots, weights
+            )
         else:
-            surface = SplineSurface(data, degree=degree, closed=closed, clamped=False)
+            surface = SplineSurface(
+                data, degree=degree, knots=knots, weights=weights, closed=closed, clamped=False
+            )
     m, n = surface._core.shape
     if tol is not None and np.ndim(tol) == 2 and np.shape(tol) != (m, n):
         raise FairingError(f"error: expected tolerances {(m, n)}, found {np.shape(tol)}")
@@ -492,7 +680,9 @@ def fair_surface(
         "passes": passes,
         "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
         "order": order,
-        "volume": "volume" in keep,
+        "rims": _rims(rims),
+        "conditions": conditions,
+        "labels": labels,
     }
     core, told = surface._core.fair(chosen)
     faired = SplineSurface._of(core)

@@ -45,6 +45,7 @@ impl<T: Real> Build<T> for Fair<T> {
             faithful: faithful(&self.mode, 3)?,
             end: crate::End::Points(2),
             breaks: Vec::new(),
+            joins: [None; 2],
         };
         let places = Places { points: 0, tolerance: 1, degree: 0, breaks: 0 };
         let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;

@@ -7,9 +7,10 @@ mod shapes;
 mod snake;
 mod surface;
 
+use crate::condition::{end_jet, joined};
 use crate::{
-    Bound, End, FairError, Job, Limit, LocalOptions, Measure, Motion, OptimumOptions, Space,
-    Spacing, interpolate_sharp, local, optimum_with, replay_with,
+    Bound, Condition, End, FairError, Job, Limit, LocalOptions, Measure, Motion, OptimumOptions,
+    Space, Spacing, interpolate_sharp, local, optimum_with, replay_with,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
@@ -50,6 +51,9 @@ pub(crate) struct Intent<T> {
     pub end: End,
     /// Intended breaks, from 1.
     pub breaks: Vec<usize>,
+    /// First and second derivative of what the curve runs on from, at its start and end, by a
+    /// parameter that runs as its own.
+    pub joins: [Option<[Vec3<T>; 2]>; 2],
 }
 
 /// What the given points are.
@@ -214,7 +218,7 @@ impl<T: Real> Intent<T> {
         marks: Vec<usize>,
     ) -> Result<Vec<Vec3<T>>, FairError> {
         let n = points.len();
-        let job = Job {
+        let mut job = Job {
             space: space.clone(),
             points: points.iter().map(|p| p.re()).collect(),
             weights: None,
@@ -222,6 +226,15 @@ impl<T: Real> Intent<T> {
             marks,
             ends: [self.end; 2],
         };
+        let (mut conditions, mut targets) = (Vec::new(), Vec::new());
+        for (at, other) in self.joins.iter().enumerate() {
+            let Some(other) = other else { continue };
+            job.ends[at] = End::Position;
+            let plain = other.map(|v| v.re());
+            conditions.extend(Condition::join(space, &job.points, at == 1, plain)?);
+            let aims = joined(end_jet(space, points, at == 1), *other)?;
+            targets.extend(aims.iter().flat_map(|v| v.to_array()));
+        }
         let tolerances = vec![self.tolerance; n];
         if self.faithful {
             let mut options = LocalOptions::faithful(n);
@@ -232,7 +245,9 @@ impl<T: Real> Intent<T> {
             let mut options = OptimumOptions::of(self.measure);
             options.bound = bound;
             options.accuracy = ACCURACY;
-            optimum_with(&job, &options, points, &tolerances).map(|(points, _)| points)
+            options.conditions = conditions;
+            let best = optimum_with(&job, &options, points, &tolerances, &targets)?;
+            Ok(best.0)
         }
     }
 }

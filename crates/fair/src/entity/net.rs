@@ -63,6 +63,14 @@ pub struct FairNet<T: Real> {
     /// Polynomial degree.
     #[field(default = 3, min = 2, max = 9)]
     degree: usize,
+    /// "optimum", or "faithful": curve after curve in the order of the list, knots removed and
+    /// re-inserted one by one, three steps per point. The result then depends on that order and may
+    /// jump where two knots tie.
+    #[field(default = "optimum")]
+    mode: Arc<str>,
+    /// Passes of the faithful mode.
+    #[field(default = 1, min = 1, max = 100)]
+    passes: usize,
 }
 
 /// A network with points by identity.
@@ -172,6 +180,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             }
         };
         let measure = measure(&self.measure, 2)?;
+        let passes = super::faithful(&self.mode, 7)?.then_some(self.passes);
         let kept = joined.kept(&self.keep)?;
         let mut still = vec![self.tolerance.re() == 0.0; joined.points.len()];
         kept.iter().chain(&marked).for_each(|&i| still[i] = true);
@@ -182,6 +191,9 @@ impl<T: Real> Build<T> for FairNet<T> {
             let mut network = Network::new(plain, strands, limit)?;
             network.kept = kept;
             let tolerances = vec![self.tolerance; xyz.len()];
+            if let Some(passes) = passes {
+                return network.passes_with(passes, 3, &xyz, &tolerances);
+            }
             let bound = Bound::ControlPoints;
             Ok(network.optimum_with(measure, bound, ACCURACY, &xyz, &tolerances)?.0)
         };

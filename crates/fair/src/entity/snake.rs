@@ -94,6 +94,7 @@ impl<T: Real> Build<T> for FairSnake<T> {
             faithful: faithful(&self.mode, 4)?,
             end,
             breaks: Vec::new(),
+            joins: [None; 2],
         };
         let places = Places { points: 0, tolerance: 1, degree: 5, breaks: 0 };
         let path: Vec<_> =

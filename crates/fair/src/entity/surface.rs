@@ -1,5 +1,5 @@
 use super::{ACCURACY, Places, Role, faithful, fault, indices, measure, role};
-use crate::{Bound, FairError, Limit, Network, Space, Spacing, interpolate_sharp};
+use crate::{Bound, End, FairError, Limit, Network, Space, Spacing, interpolate_sharp};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     ArrayShape, Build, Class, Context, Fault, FromValue, Kind, SurfaceRef, Value, Vectors,
@@ -63,6 +63,41 @@ pub struct FairSurf<T: Real> {
     /// Passes of the faithful mode.
     #[field(default = 1, min = 1, max = 100)]
     passes: usize,
+    /// What the rims keep, so that neighbours still fit: "corners" (only these), "position",
+    /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
+    #[field(default = "corners")]
+    rims: Rims,
+}
+
+/// What the rims keep, in the order of the edges of a surface.
+struct Rims([End; 4]);
+
+impl<T: Real> FromValue<T> for Rims {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let known = ["corners", "position", "tangent", "curvature"];
+        let one = |word: &str| match word {
+            "corners" => Ok(End::Free),
+            "free" => Err(super::unknown("way to keep a rim", word, &known, 9)),
+            _ => {
+                End::named(word).ok_or_else(|| super::unknown("way to keep a rim", word, &known, 9))
+            }
+        };
+        let text = |value: &Value<T>| <Arc<str> as FromValue<T>>::from_value(value);
+        match value {
+            Value::List(items) if items.len() == 4 => {
+                let mut ends = [End::Free; 4];
+                for (end, item) in ends.iter_mut().zip(items.iter()) {
+                    *end = one(&*text(item)?)?;
+                }
+                Ok(Self(ends))
+            }
+            Value::List(items) => Err(Fault::new("wrong-count", "a surface has four rims")
+                .expected("a word, or four of them for v = 0, u = 1, v = 1 and u = 0")
+                .found(format!("{} items", items.len()))),
+            other => Ok(Self([one(&*text(other)?)?; 4])),
+        }
+    }
 }
 
 /// A grid of points, as the control points of the spline of `degree` through each of its rows along
@@ -128,6 +163,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
             },
         );
         let (marks_u, marks_v) = (marks_u?, marks_v?);
+        let Rims([south, east, north, west]) = self.rims;
+        let rims = [[west, east], [south, north]];
         let make = || -> Result<_, FairError> {
             let degree = self.degree;
             for actual in [m, n] {
@@ -147,7 +184,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
             let limit = Limit::ball(net.len(), self.tolerance.re())?;
             let plain = net.iter().map(|p| p.re()).collect();
             let network = Network::net(spaces.clone(), plain, None, limit)?
-                .with_breaks(&marks[0], &marks[1])?;
+                .with_breaks(&marks[0], &marks[1])?
+                .with_rims(rims)?;
             let tolerances = vec![self.tolerance; net.len()];
             let points = match passes {
                 Some(passes) => network.passes_with(passes, 3, &net, &tolerances)?,

@@ -1,9 +1,11 @@
 //! Nets of surfaces, and curves that share points.
 
-use super::solve::{bound, end, get, long_net, motion};
+use super::solve::{bound, contradiction, end, get, motion};
 use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
 use crate::arrays;
-use moldloft_fair::{End, Limit, Network, NetworkMode, NetworkReport, Space, Strand};
+use moldloft_fair::{
+    Condition, End, FairError, Limit, Network, NetworkMode, NetworkReport, Space, Strand,
+};
 use moldloft_num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
@@ -118,13 +120,20 @@ impl Net {
         let (u, v): (Vec<usize>, Vec<usize>) = get(&options, "marks")?;
         let mut network = network.with_breaks(&u, &v).map_err(fair_error)?;
         network.kept.extend(get::<Vec<usize>>(&options, "fixed")?);
+        if let Some(words) = get::<Option<[String; 4]>>(&options, "rims")? {
+            let rim = |k: usize| match words[k].as_str() {
+                "corners" => Ok(End::Free),
+                word => end(word),
+            };
+            let rims = [[rim(0)?, rim(1)?], [rim(2)?, rim(3)?]];
+            network = network.with_rims(rims).map_err(fair_error)?;
+        }
         if get::<String>(&options, "order")? == "uv" {
             // Passes begin with the curves along v.
             let nv = self.spaces[1].count();
             network.strands.rotate_left(nv);
         }
-        let volume: bool = get(&options, "volume")?;
-        let (told, points) = solved(py, network, &options, volume)?;
+        let (told, points) = solved(py, network, &options)?;
         let (spaces, weights) = (self.spaces.clone(), self.weights.clone());
         Ok((Self { spaces, points, weights }, told))
     }
@@ -173,7 +182,7 @@ impl Web {
         }
         let mut network = Network::new(self.points.clone(), strands, limit).map_err(fair_error)?;
         network.kept = get(&options, "fixed")?;
-        let (told, points) = solved(py, network, &options, false)?;
+        let (told, points) = solved(py, network, &options)?;
         let fill = |out: &mut [Vec3]| out.copy_from_slice(&points);
         Ok((arrays::filled(py, [points.len(), 3], fill).0, told))
     }
@@ -183,7 +192,6 @@ fn solved<'py>(
     py: Python<'py>,
     network: Network,
     options: &Bound<'py, PyDict>,
-    volume: bool,
 ) -> PyResult<(Bound<'py, PyDict>, Vec<Vec3>)> {
     let measure = measure(&get::<String>(options, "measure")?)?;
     let mode: String = get(options, "mode")?;
@@ -197,10 +205,27 @@ fn solved<'py>(
             return Err(refused(format!("there is no mode `{mode}` of nets; there are: {known}")));
         }
     };
-    let told = long_net(py, move || {
-        let conditions = if volume { vec![network.volume_condition()?] } else { Vec::new() };
-        network.report_with(measure, mode, conditions)
+    let wanted: Vec<(String, [f64; 2], [f64; 3])> = get(options, "conditions")?;
+    let labels: Vec<String> = get(options, "labels")?;
+    let done = crate::work::interruptible(py, &Default::default(), move || {
+        let (mut conditions, mut owners) = (Vec::new(), Vec::new());
+        for (k, one) in wanted.iter().enumerate() {
+            let all = match condition(&network, one) {
+                Ok(all) => all,
+                Err(error) => return (Err(error), owners),
+            };
+            owners.extend(std::iter::repeat_n(k, all.len()));
+            conditions.extend(all);
+        }
+        (network.report_with(measure, mode, conditions), owners)
     })?;
+    let told = match done {
+        (Ok(told), _) => told,
+        (Err(FairError::Contradiction { conditions, ends, miss }), owners) => {
+            return Err(contradiction(&conditions, ends, miss, &owners, &labels));
+        }
+        (Err(other), _) => return Err(fair_error(other)),
+    };
     let dict = dictionary(py, &told)?;
     Ok((dict, told.points))
 }
@@ -215,4 +240,20 @@ fn dictionary<'py>(py: Python<'py>, r: &NetworkReport) -> PyResult<Bound<'py, Py
     dict.set_item("sampled", r.sampled)?;
     dict.set_item("certificate", certificate(py, &r.certificate)?)?;
     Ok(dict)
+}
+
+/// One condition of the user's as linear conditions.
+fn condition(
+    network: &Network,
+    (word, at, v): &(String, [f64; 2], [f64; 3]),
+) -> Result<Vec<Condition>, FairError> {
+    let (at, v) = (*at, Vec3::from(*v));
+    match word.as_str() {
+        "through" => network.point_condition(at, v),
+        "normal" => network.normal_condition(at, v),
+        "tangent_u" => network.tangent_condition(at, 0, v),
+        "tangent_v" => network.tangent_condition(at, 1, v),
+        "area" => Ok(vec![network.area_condition()?]),
+        _ => Ok(vec![network.volume_condition()?]),
+    }
 }

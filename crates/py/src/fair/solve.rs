@@ -1,7 +1,7 @@
 //! From options to reports.
 
 use super::spline::told;
-use super::{Spline, certificate, fair_error, long, measure, refused};
+use super::{Spline, certificate, fair_error, measure, refused};
 use moldloft_fair::{
     Bound as Bounded, Condition, End, FairError, Job, Limit, LocalOptions, Mode, Motion, Numbers,
     OptimumOptions, Report, Rule, Space, Step, Stops, local, report,
@@ -55,14 +55,15 @@ pub fn bound(word: &str) -> PyResult<Bounded> {
 fn conditions(
     space: &Space,
     points: &[Vec3],
-    word: &str,
-    t: f64,
-    v: [f64; 3],
+    (word, t, v, second): &(String, f64, [f64; 3], [f64; 3]),
 ) -> PyResult<Vec<Condition>> {
+    let (t, v) = (*t, *v);
     let (a, b) = space.domain();
     let at = a + (b - a) * t;
-    Ok(match word {
+    Ok(match word.as_str() {
         "through" => Condition::point(space, at, v.into()),
+        "join" => Condition::join(space, points, t > 0.5, [v.into(), (*second).into()])
+            .map_err(fair_error)?,
         "tangent" => Condition::tangent(space, at, v.into()),
         "derivative" => {
             let scaled = Vec3::from(v) * (1.0 / (b - a));
@@ -114,9 +115,9 @@ fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)>
             let mut chosen = OptimumOptions::of(named);
             chosen.bound = bound(&get::<String>(options, "bound")?)?;
             chosen.accuracy = get(options, "accuracy")?;
-            let wanted: Vec<(String, f64, [f64; 3])> = get(options, "conditions")?;
-            for (k, (word, t, v)) in wanted.iter().enumerate() {
-                let all = conditions(&job.space, &job.points, word, *t, *v)?;
+            let wanted: Vec<(String, f64, [f64; 3], [f64; 3])> = get(options, "conditions")?;
+            for (k, one) in wanted.iter().enumerate() {
+                let all = conditions(&job.space, &job.points, one)?;
                 owners.extend(std::iter::repeat_n(k, all.len()));
                 chosen.conditions.extend(all);
             }
@@ -141,6 +142,7 @@ pub fn curve<'py>(
     options: Options<'_, 'py>,
 ) -> PyResult<(Spline, Bound<'py, PyDict>)> {
     let (job, mode, owners) = asked(spline, options)?;
+    let labels: Vec<String> = get(options, "labels")?;
     let logged = matches!(&mode, Mode::Local(options) if options.log);
     let done = crate::work::interruptible(py, &Default::default(), move || {
         let told = report(&job, &mode)?;
@@ -154,7 +156,7 @@ pub fn curve<'py>(
     let (told, log) = match done {
         Ok(done) => done,
         Err(FairError::Contradiction { conditions, ends, miss }) => {
-            return Err(contradiction(&conditions, ends, miss, &owners));
+            return Err(contradiction(&conditions, ends, miss, &owners, &labels));
         }
         Err(other) => return Err(fair_error(other)),
     };
@@ -175,10 +177,18 @@ pub fn curve<'py>(
 }
 
 /// Which of the user's conditions contradict each other or the tolerance.
-fn contradiction(conditions: &[usize], ends: bool, miss: f64, owners: &[usize]) -> PyErr {
+pub fn contradiction(
+    conditions: &[usize],
+    ends: bool,
+    miss: f64,
+    owners: &[usize],
+    labels: &[String],
+) -> PyErr {
     let mut whose: Vec<usize> = conditions.iter().map(|&c| owners[c] + 1).collect();
     whose.dedup();
     let list: Vec<String> = whose.iter().map(usize::to_string).collect();
+    let named: Vec<&str> =
+        whose.iter().filter_map(|k| labels.get(k - 1)).map(String::as_str).collect();
     let what = match (whose.len(), ends) {
         (0, _) => "the conditions of the ends".to_string(),
         (1, false) => format!("condition {}", list[0]),
@@ -186,7 +196,8 @@ fn contradiction(conditions: &[usize], ends: bool, miss: f64, owners: &[usize]) 
         (_, false) => format!("conditions {}", list.join(", ")),
         (_, true) => format!("conditions {} and those of the ends", list.join(", ")),
     };
-    refused(format!("{what} cannot hold within the tolerance (missed by {miss:.3e})"))
+    let named = if named.is_empty() { String::new() } else { format!(": {}", named.join("; ")) };
+    refused(format!("{what} cannot hold within the tolerance (missed by {miss:.3e}){named}"))
 }
 
 fn numbers<'py>(py: Python<'py>, n: &Numbers) -> PyResult<Bound<'py, PyDict>> {
@@ -220,12 +231,4 @@ fn dictionary<'py>(py: Python<'py>, r: &Report) -> PyResult<Bound<'py, PyDict>> 
     dict.set_item("jumps_after", r.jumps[1].to_pyarray(py))?;
     dict.set_item("notes", &r.notes)?;
     Ok(dict)
-}
-
-/// Work on nets.
-pub fn long_net<R: Send + 'static>(
-    py: Python<'_>,
-    work: impl FnOnce() -> Result<R, FairError> + Send + 'static,
-) -> PyResult<R> {
-    long(py, work)
 }

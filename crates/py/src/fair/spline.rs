@@ -4,7 +4,8 @@ use super::{fair_error, floats, long, measure, refused, solve, space, vectors};
 use crate::arrays;
 use moldloft_fair::shape::{self, Sample};
 use moldloft_fair::{
-    Finding, Job, Jumps, Space, Spacing, interpolate_sharp, least_squares, surface,
+    Finding, Job, Jumps, Space, Spacing, fit, fit_rational, interpolate_sharp, least_squares,
+    parameters, surface,
 };
 use moldloft_num::Vec3;
 use numpy::ndarray::Array1;
@@ -148,6 +149,48 @@ impl Spline {
         let fit = long(py, move || least_squares(degree, &points, count, spaced, closed))?;
         let at = shares(&fit.space, &fit.parameters).to_pyarray(py);
         let spline = Self { space: fit.space, points: fit.points, weights: None };
+        Ok((spline, at, fit.largest, fit.rms))
+    }
+
+    /// The spline with these knots, or as many uniform ones as give `count` control points, and these
+    /// weights, nearest to points at parameters in [0, 1] (or spaced); parameters, largest and rms
+    /// distance.
+    #[staticmethod]
+    #[pyo3(signature = (points, degree, count, form, knots, weights, period, spaced, at))]
+    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
+    fn fit<'py>(
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+        degree: usize,
+        count: usize,
+        form: &str,
+        knots: Option<PyReadonlyArray1<'py, f64>>,
+        weights: Option<PyReadonlyArray1<'py, f64>>,
+        period: Option<f64>,
+        spaced: &str,
+        at: Option<PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<(Self, Bound<'py, PyArray1<f64>>, f64, f64)> {
+        let points = vectors(&points)?;
+        let space = space(degree, count, form, floats(knots), period).map_err(fair_error)?;
+        let (spaced, at, weights) = (spacing(spaced)?, floats(at), floats(weights));
+        let own = weights.clone();
+        let fit = long(py, move || {
+            let at = match at {
+                Some(at) => at,
+                None => parameters(&points, spaced, space.is_closed())?,
+            };
+            let (a, b) = space.domain();
+            let at = at.into_iter().map(|t| a + (b - a) * t).collect();
+            match own {
+                Some(own) => fit_rational(space, &points, at, &own),
+                None => {
+                    let ones = vec![1.0; points.len()];
+                    fit(space, &points, at, &ones)
+                }
+            }
+        })?;
+        let at = shares(&fit.space, &fit.parameters).to_pyarray(py);
+        let spline = Self { space: fit.space, points: fit.points, weights };
         Ok((spline, at, fit.largest, fit.rms))
     }
 
