@@ -1,4 +1,5 @@
-//! The intrinsics of the array language: distributions, splines and their evaluation.
+//! The intrinsics of the array language: distributions, splines, measures, moves, meetings,
+//! structured grids.
 //!
 //! Each is a documented struct whose fields are its arguments and which builds its value; the
 //! derive macro makes a row of the registry of it. Adding one is adding a struct and a line in
@@ -10,8 +11,14 @@
 //!
 //! Invariant: this crate knows no graph, no language and no file.
 
+mod curvature;
 mod distribution;
 mod evaluate;
+mod grids;
+mod locate;
+mod moves;
+mod reduce;
+mod shape;
 mod spacing;
 mod spline;
 mod value;
@@ -63,5 +70,45 @@ pub fn rows() -> Vec<Row> {
         evaluate::Curvc,
         evaluate::Lengthc,
         evaluate::Length,
+        reduce::Prod,
+        reduce::Argmin,
+        reduce::Argmax,
+        reduce::Dot,
+        reduce::Norm,
+        reduce::Len,
+        reduce::Cumlen,
+        reduce::Centroid,
+        reduce::BboxMin,
+        reduce::BboxMax,
+        shape::List,
+        shape::PointsOf,
+        shape::Join,
+        shape::Stack,
+        shape::Reverse,
+        shape::Swap,
+        shape::SpreadI,
+        shape::SpreadJ,
+        shape::D1,
+        shape::D2,
+        moves::Translate,
+        moves::Scale,
+        moves::Mirror,
+        moves::Rotate,
+        moves::Revolve,
+        moves::Tangents,
+        moves::FrameOf,
+        curvature::Curvatures,
+        curvature::Torsions,
+        curvature::Gauss,
+        curvature::Mean,
+        curvature::Normals,
+        locate::Closest,
+        locate::Project,
+        locate::Intersect,
+        grids::Tfi,
+        grids::EllipticGrid,
+        grids::QualityOf,
+        grids::Folds,
+        grids::Report,
     ]
 }

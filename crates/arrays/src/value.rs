@@ -1,5 +1,6 @@
 //! Arrays in and out: the one place that knows how a value holds its numbers and vectors.
 
+use moldloft_grid::Sheet;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Array, ArrayShape, Class, Fault, FromValue, Scalar, Value, Vectors as Planes,
@@ -186,4 +187,118 @@ pub fn vectors<T: Real>(shape: ArrayShape, items: Vec<Vec3<T>>) -> Value<T> {
 /// A row of numbers as a value.
 pub fn farray<T: Real>(items: Vec<T>) -> Value<T> {
     numbers(ArrayShape::Row(items.len()), items)
+}
+
+/// A vector, a curve or a surface: what is moved keeps its shape.
+pub enum Shaped<T> {
+    One(Vec3<T>),
+    Many(Vectors<T>),
+}
+
+impl<T: Scalar> FromValue<T> for Shaped<T> {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Vector(_) | Value::Point(_) => Ok(Self::One(FromValue::from_value(value)?)),
+            Value::Vectors(_) | Value::List(_) => Ok(Self::Many(FromValue::from_value(value)?)),
+            other => {
+                let found = other.class().a();
+                let message = format!("expected a vector, a curve or a surface, found {found}");
+                let fault = Fault::new("wrong-class", message)
+                    .expected("a vector, a curve [n] or a surface [m,n]")
+                    .found(found);
+                Err(match other {
+                    Value::Curve(_) | Value::Surface(_) => {
+                        fault.help("take points of it first, with distc or dists")
+                    }
+                    _ => fault,
+                })
+            }
+        }
+    }
+}
+
+impl<T: Real> Shaped<T> {
+    /// Every point replaced by `f` of it.
+    pub fn mapped(self, f: impl Fn(Vec3<T>) -> Vec3<T>) -> Value<T> {
+        match self {
+            Self::One(p) => Value::Vector(f(p)),
+            Self::Many(Vectors { shape, items }) => {
+                vectors(shape, items.into_iter().map(f).collect())
+            }
+        }
+    }
+}
+
+/// An array of numbers or of vectors.
+pub enum Items<T> {
+    Numbers(Farray<T>),
+    Vectors(Vectors<T>),
+}
+
+impl<T: Scalar> FromValue<T> for Items<T> {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Numbers(_) => Ok(Self::Numbers(FromValue::from_value(value)?)),
+            Value::Vectors(_) => Ok(Self::Vectors(FromValue::from_value(value)?)),
+            other => {
+                let found = other.class().a();
+                let message = format!("expected an array, found {found}");
+                Err(Fault::new("wrong-class", message)
+                    .expected("an farray, a curve or a surface")
+                    .found(found))
+            }
+        }
+    }
+}
+
+impl<T: Real> Items<T> {
+    /// The shape.
+    pub fn shape(&self) -> ArrayShape {
+        match self {
+            Self::Numbers(a) => a.shape,
+            Self::Vectors(a) => a.shape,
+        }
+    }
+
+    /// The array whose element k is element `from(k)` of this one.
+    pub fn picked(&self, shape: ArrayShape, from: impl Fn(usize) -> usize) -> Value<T> {
+        let count = shape.count();
+        match self {
+            Self::Numbers(a) => numbers(shape, (0..count).map(|k| a.items[from(k)]).collect()),
+            Self::Vectors(a) => vectors(shape, (0..count).map(|k| a.items[from(k)]).collect()),
+        }
+    }
+}
+
+/// A grid of vectors as the sheet that grid functions work on.
+pub struct Lattice<T>(pub Sheet<T>);
+
+impl<T: Scalar> FromValue<T> for Lattice<T> {
+    const CLASS: Class = Class::Vectors;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Vectors(a) => match a.shape {
+                ArrayShape::Grid(m, n) => Ok(Self(Sheet::new(m, n, a.planes.clone()))),
+                shape => {
+                    Err(Fault::new("wrong-shape", format!("expected a surface, found {shape}"))
+                        .expected("a grid of vectors: a surface [m,n]")
+                        .found(format!("a curve {shape}")))
+                }
+            },
+            other => wrong(Class::Vectors, other),
+        }
+    }
+}
+
+/// A sheet as a value.
+pub fn surface<T: Real>(sheet: Sheet<T>) -> Value<T> {
+    let shape = ArrayShape::Grid(sheet.m, sheet.n);
+    Value::Vectors(Arc::new(Planes { shape, planes: sheet.planes }))
+}
+
+/// A row of vectors as a value.
+pub fn curve<T: Real>(items: Vec<Vec3<T>>) -> Value<T> {
+    vectors(ArrayShape::Row(items.len()), items)
 }

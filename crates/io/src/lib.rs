@@ -15,6 +15,9 @@
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`] | – |
 //! | Plot3D surfaces | [`plot3d::write`] | – |
 //! | Plot3D volumes | [`plot3d::write_blocks`] | – |
+//! | Plot3D, all variants, of grids of points | [`plot3d_any::write`] | [`plot3d_any::read`] |
+//! | VTK XML and STL of grids of points | [`write_vts`], [`write_stl`] | – |
+//! | coordinates in text, aerofoil sections | – | [`section::read_points`], [`section::read_aerofoil`] |
 //! | SVG lines drawings | [`drawing::draw`] | – |
 //!
 //! `Mesh -> Vec<u8>` and `&[u8] -> Mesh`. The caller opens and closes the files, and writes each
@@ -27,6 +30,7 @@
 //! Invariant: this crate performs no input or output.
 
 mod error;
+mod lattice;
 mod solver;
 mod text;
 
@@ -39,12 +43,15 @@ pub mod hydrostar;
 pub mod nemoh;
 pub mod obj;
 pub mod plot3d;
+pub mod plot3d_any;
 pub mod ply;
+pub mod section;
 pub mod stl;
 pub mod threemf;
 pub mod vtk;
 
 pub use error::{Bits, Place, ReadError, WriteError};
+pub use lattice::{Lattice, write_stl, write_vts};
 pub use solver::Skin;
 
 use moldloft_num::Vec3;

@@ -335,6 +335,19 @@ pub fn block_files(blocks: &Blocks, stem: &str) -> Result<Vec<NamedFile>, WriteE
     Ok(indexed(blocks.blocks().iter().map(one).collect(), stem))
 }
 
+/// Grids of points as files, named as those of [`structured_files`].
+pub(crate) fn lattices(blocks: &[crate::Lattice], stem: &str) -> Vec<NamedFile> {
+    let one = |(k, b): (usize, &crate::Lattice)| {
+        let points: Vec<Vec3> = (0..b.count())
+            .map(|at| Vec3::of(b.planes[0][at], b.planes[1][at], b.planes[2][at]))
+            .collect();
+        let name = format!("grid {}", k + 1);
+        let vertices = 0..points.len() as u32;
+        (name.clone(), structured(&points, b.size, vertices, "grid_name", &name, &[]))
+    };
+    indexed(blocks.iter().enumerate().map(one).collect(), stem)
+}
+
 /// One grid as `stem.vts`, or several with their index first.
 fn indexed(grids: Vec<(String, Vec<u8>)>, stem: &str) -> Vec<NamedFile> {
     let named = |name: String, bytes| NamedFile { name, bytes };

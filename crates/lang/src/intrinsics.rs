@@ -18,6 +18,7 @@ const fn argument(name: &'static str, help: &'static str) -> Field {
         min: None,
         max: None,
         min_items: 0,
+        variadic: false,
     }
 }
 

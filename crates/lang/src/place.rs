@@ -49,7 +49,14 @@ fn span(m: &Module, args: List<Arg>, row: &Row, positional: usize, fault: &Fault
             arg.value
         }
     } else {
-        argument(m, args, row, positional, place.field)?
+        // An item of a list that was given as so many arguments is an argument of its own.
+        let spread = row.fields[place.field].variadic && positional > place.field + 1;
+        let at = place.field + place.item.filter(|_| spread).unwrap_or(0);
+        if let Some(arg) = args.iter().filter(|a| a.name.is_none()).nth(at).filter(|_| spread) {
+            arg.value
+        } else {
+            argument(m, args, row, positional, place.field)?
+        }
     };
     let item = place.item.and_then(|k| item(m, expr, k));
     Some(m.program[item.unwrap_or(expr)].span)

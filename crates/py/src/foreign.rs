@@ -31,6 +31,7 @@ pub fn row(name: String, arguments: Vec<String>, doc: String, function: Py<PyAny
             min: None,
             max: None,
             min_items: 0,
+            variadic: false,
         })
         .collect();
     Row {

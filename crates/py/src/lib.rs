@@ -13,6 +13,7 @@ mod document;
 mod error;
 mod fair;
 mod foreign;
+mod grids;
 mod implicit;
 mod mesh;
 mod portrait;
@@ -40,6 +41,10 @@ mod _core {
     use crate::document::{PyDocument, format_text};
     #[pymodule_export]
     use crate::fair::{Look, Net, Spline, Web, divided_differences, eta_y, monotone_runs};
+    #[pymodule_export]
+    use crate::grids::{
+        grids_as_stl, grids_as_vts, read_aerofoil, read_plot3d, read_points, write_plot3d,
+    };
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet};
     #[pymodule_export]

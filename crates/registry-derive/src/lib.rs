@@ -19,7 +19,7 @@
 //! `relabel` or with columns that begin with it, take a last argument `relabel`, which acts on what
 //! they build; see `moldloft_registry::relabelled`. `sweep = [bead, point]`: the fields of a bead and of a
 //! point that the model is to move; see `moldloft_registry::Row::sweep`.
-//! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`.
+//! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`, `variadic`.
 
 use proc_macro::TokenStream;
 use proc_macro2::TokenStream as Tokens;
@@ -55,6 +55,7 @@ struct FieldOptions {
     min: Option<Expr>,
     max: Option<Expr>,
     min_items: Option<Expr>,
+    variadic: bool,
     angle: bool,
 }
 
@@ -125,6 +126,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         };
         let (min, max) = (bound(&o.min), bound(&o.max));
         let min_items = o.min_items.as_ref().map_or(quote!(0), |e| quote!(#e));
+        let variadic = o.variadic;
         let unit = if o.angle { quote!(Angle) } else { quote!(None) };
         if o.min.is_some() || o.max.is_some() || min_items.to_string() != "0" {
             checks.push(k);
@@ -139,6 +141,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
             min: #min,
             max: #max,
             min_items: #min_items,
+            variadic: #variadic,
         }));
         reads.push(quote!(
             #field_ident: <#ty as ::moldloft_registry::FromValue<T>>::from_value(&args[#k])
@@ -301,6 +304,7 @@ fn field_options(attrs: &[Attribute]) -> syn::Result<FieldOptions> {
                     options.default = Some(quote!(::moldloft_registry::DefaultValue::Unset));
                 }
                 Meta::Path(path) if path.is_ident("angle") => options.angle = true,
+                Meta::Path(path) if path.is_ident("variadic") => options.variadic = true,
                 Meta::NameValue(nv) if nv.path.is_ident("default") => {
                     let value = &nv.value;
                     options.default = Some(match value {

@@ -20,11 +20,12 @@ pub struct Given<'a, T: Real> {
 /// argument.
 pub fn arrange<T: Real>(
     row: &Row,
-    given: Given<T>,
+    mut given: Given<T>,
     class_of: impl Fn(Key) -> Class,
 ) -> Result<(Vec<Value<T>>, Head), Fault> {
     let fields = &row.fields;
     let mut head = Head::of(row.class);
+    gather(fields, &mut given.positional);
     if given.positional.len() > fields.len() {
         let names: Vec<_> = fields.iter().map(|f| f.name).collect();
         return Err(Fault::new(
@@ -75,6 +76,24 @@ pub fn arrange<T: Real>(
         filled.push(arg);
     }
     Ok((filled, head))
+}
+
+/// Makes one list of the arguments for a last field that takes any number of them.
+fn gather<T: Real>(fields: &[Field], positional: &mut Vec<Value<T>>) {
+    let Some(last) = fields.last().filter(|field| field.variadic) else { return };
+    let at = fields.len() - 1;
+    let several = positional.len() > fields.len();
+    // One argument is the list itself, or its only item.
+    let single = positional.len() == fields.len()
+        && !matches!(positional[at], Value::List(_) | Value::Unset)
+        && match last.class {
+            Class::Any => true,
+            class => class.accepts(positional[at].class()),
+        };
+    if several || single {
+        let items = positional.split_off(at);
+        positional.push(Value::list(items));
+    }
 }
 
 fn lower(help: &str) -> String {

@@ -135,6 +135,7 @@ const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> 
         min: None,
         max: None,
         min_items: 0,
+        variadic: false,
     }
 }
 

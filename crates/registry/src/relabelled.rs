@@ -23,6 +23,7 @@ pub const RELABEL_FIELD: Field = Field {
     min: None,
     max: None,
     min_items: 0,
+    variadic: false,
 };
 
 /// Breaks nearer to each other than this are one.

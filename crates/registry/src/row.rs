@@ -110,6 +110,8 @@ pub struct Field {
     pub max: Option<f64>,
     /// Least length of a list.
     pub min_items: usize,
+    /// For the last field of a function, a list: its items may be given as so many arguments instead.
+    pub variadic: bool,
 }
 
 /// A function that is made at run time, such as a user's Python function.

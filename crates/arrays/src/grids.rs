@@ -1,0 +1,457 @@
+//! Structured grids: interpolated from edges and faces, smoothed, measured.
+
+use crate::value::{Lattice, Points, surface};
+use moldloft_grid::{
+    Blend, Edge, Elliptic, Faces, GridError, Method, Metric, Sheet, Wall, elliptic, folded_cells,
+    framed, quality, transfinite, transfinite_block,
+};
+use moldloft_num::{Order, Real, Surface, Vec3};
+use moldloft_registry::{
+    ArrayShape, Build, Context, Fault, FromValue, Kind, Scalar, SurfaceRef, Value,
+};
+use moldloft_spline::{End, Ends, GridSpline};
+use std::sync::Arc;
+
+/// The fault of a grid, about field 0.
+pub fn fault(error: GridError) -> Fault {
+    let message = error.to_string();
+    let with = |id: &'static str| Fault::new(id, message.clone());
+    match error {
+        GridError::TooFew { expected, actual: [m, n] } => with("too-few-items")
+            .expected(format!("at least {expected} points each way"))
+            .found(format!("[{m},{n}]")),
+        GridError::NotFinite { .. } => with("not-finite").expected("finite points"),
+        GridError::EdgesApart { corner, gap } => {
+            let [i, j] = corner.at;
+            with("edges-apart")
+                .expected(format!("{} and {} with one point in common", corner.edge, corner.other))
+                .found(format!("a gap of {gap} at corner [{i},{j}]"))
+                .help("set all four edges; where two meet, both must end in the same point")
+        }
+        GridError::FacesApart { faces: [a, b], gap, .. } => with("faces-apart")
+            .expected(format!("faces {a} and {b} with one edge in common"))
+            .found(format!("a gap of {gap}"))
+            .help("the faces are i = 1, i = ni, j = 1, j = nj, k = 1, k = nk"),
+        GridError::FaceSizes { face, expected: [a, b], actual: [m, n] } => with("shapes-differ")
+            .expected(format!("[{a},{b}]"))
+            .found(format!("[{m},{n}]"))
+            .in_item(face - 1),
+        GridError::Folded { count, .. } => with("folded-grid")
+            .expected("cells that are not turned over")
+            .found(format!("{count} folded cells")),
+        GridError::Diverged { .. } => with("diverged")
+            .expected("a grid that settles")
+            .help("over-relax less (omega), or ask for less at the walls"),
+        GridError::Heights { value, .. } => {
+            with("not-monotone").expected("heights that ascend from 0").found(value.to_string())
+        }
+        GridError::NoNormal { .. } => {
+            with("no-direction").expected("a surface with a normal at every point")
+        }
+    }
+    .in_field(0)
+}
+
+fn unknown(word: &str, what: &str, expected: String, field: usize) -> Fault {
+    Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
+        .expected(expected)
+        .found(format!("\"{word}\""))
+        .in_field(field)
+}
+
+/// Transfinite interpolation: the surface with the four edges of `s`, to the bit, and its inside
+/// interpolated from them.
+///
+/// `s` is a surface whose edges are set (what is inside does not matter); or a list of four curves,
+/// s[1,], s[m,], s[,1], s[,n], which must meet in the corners; or a list of six surfaces, the faces
+/// i = 1, i = ni, j = 1, j = nj, k = 1, k = nk of a block, and the value is the list of its layers
+/// k = 1 .. nk. `kind` is "arc" (arc-length blending: Soni 1985), "linear" (by index), "hermite" (arc
+/// length with cubic blending: blocks join smoothly) or "soni2" (arc lengths averaged rather than
+/// intersected). An edge without length, a pole, takes the spacing of the opposite one.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "tfi",
+    example = "surface s[5,4]; s[,1] = spread_i(uniform(0, 1, 5), 1)[,1] * {1, 0, 0}; \
+               s[,4] = s[,1] + {0, 1, 0}; s[1,] = uniform(0, 1, 4) * {0, 1, 0}; \
+               s[5,] = s[1,] + {1, 0, 0}; surface g = tfi(s, \"arc\");"
+)]
+pub struct Tfi<T: Scalar> {
+    /// The surface, four curves or six surfaces.
+    s: Value<T>,
+    /// "arc", "linear", "hermite" or "soni2".
+    #[field(default = "arc")]
+    kind: Arc<str>,
+}
+
+impl<T: Scalar> Build<T> for Tfi<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let blend = match &*self.kind {
+            "arc" => Blend::Arc,
+            "linear" => Blend::Linear,
+            "hermite" => Blend::Hermite,
+            "soni2" => Blend::Soni2,
+            word => {
+                let expected = "\"arc\", \"linear\", \"hermite\" or \"soni2\"".to_string();
+                return Err(unknown(word, "kind of interpolation", expected, 1));
+            }
+        };
+        let Value::List(items) = &self.s else {
+            let Lattice(sheet) = Lattice::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+            return transfinite(&sheet, blend).map(surface).map_err(fault);
+        };
+        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(0);
+        match items.len() {
+            4 => {
+                let mut edges: [Vec<Vec3<T>>; 4] = Default::default();
+                for (k, item) in items.iter().enumerate() {
+                    edges[k] = Points::from_value(item).map_err(place(k))?.0;
+                }
+                for (a, b) in [(0, 1), (2, 3)] {
+                    if edges[a].len() != edges[b].len() {
+                        let (m, n) = (edges[a].len(), edges[b].len());
+                        let message = format!("opposite edges have {m} and {n} points");
+                        return Err(Fault::new("shapes-differ", message)
+                            .expected(format!("{m} points"))
+                            .found(format!("{n} points"))
+                            .in_item(b)
+                            .in_field(0));
+                    }
+                }
+                let sheet = framed(&edges).map_err(fault)?;
+                transfinite(&sheet, blend).map(surface).map_err(fault)
+            }
+            6 => {
+                let mut faces: Vec<Sheet<T>> = Vec::with_capacity(6);
+                for (k, item) in items.iter().enumerate() {
+                    faces.push(Lattice::from_value(item).map_err(place(k))?.0);
+                }
+                let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6))?;
+                let layers = transfinite_block(&faces).map_err(fault)?;
+                Ok(Value::list(layers.into_iter().map(surface)))
+            }
+            n => Err(fault_of_count(n)),
+        }
+    }
+}
+
+fn fault_of_count(n: usize) -> Fault {
+    Fault::new("wrong-shape", format!("nothing is bounded by {n} edges or faces"))
+        .expected("a surface, a list of four curves or a list of six surfaces")
+        .found(format!("a list of {n}"))
+        .in_field(0)
+}
+
+/// The edges by the names of the language.
+const EDGES: [(&str, Edge); 4] =
+    [("i1", Edge::FirstI), ("im", Edge::LastI), ("j1", Edge::FirstJ), ("jn", Edge::LastJ)];
+
+/// A grid smoothed by the elliptic equations
+/// a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0; its edges stay.
+///
+/// `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (the spacing of the edges is carried
+/// inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
+/// 1979). A plane grid is smoothed in its plane; a curved one on the surface `on`, or, if that is not
+/// given, on the spline surface through its own points. `n` sweeps are done at most, fewer when no
+/// point moves by more than `tol` of the size. For "sorenson" `walls` names edges, "i1", "im", "j1",
+/// "jn", blank-separated, `spacing` is the first cell there, `angle` the angle of the grid lines to
+/// the wall. A result with folded cells is refused, unless `folded` is "allow".
+#[derive(Kind)]
+#[kind(
+    class = Vectors,
+    function,
+    name = "elliptic",
+    example = "surface s[5,4]; for (j = 1:4) s[,j] = uniform(0, 1, 5) * {1, 0, 0} + {0, 1, 0} * j; \
+               s[3,2] += {0.1, 0.2, 0}; surface g = elliptic(s, 200, 1e-12); \
+               assert |g[3,2] - {0.5, 2, 0}| < 1e-9;"
+)]
+pub struct EllipticGrid<T: Scalar> {
+    /// The grid.
+    s: Lattice<T>,
+    /// The most sweeps.
+    #[field(default = 200, min = 0, max = 1e6)]
+    n: usize,
+    /// Stops when no point moves by more than this share of the size.
+    #[field(default = 1e-8, min = 0)]
+    tol: T,
+    /// "laplace", "middlecoff" or "sorenson".
+    #[field(default = "laplace")]
+    method: Arc<str>,
+    /// The surface that the points stay on.
+    on: Option<SurfaceRef<T>>,
+    /// Walls, for "sorenson".
+    walls: Option<Arc<str>>,
+    /// Spacing off the walls.
+    #[field(min = 0)]
+    spacing: Option<T>,
+    /// Angle to the walls; a right one if not given.
+    #[field(angle, default = std::f64::consts::FRAC_PI_2)]
+    angle: T,
+    /// Over-relaxation.
+    #[field(default = 1.3, min = 0.01, max = 1.99)]
+    omega: T,
+    /// "refuse" or "allow" folded cells in the result.
+    #[field(default = "refuse")]
+    folded: Arc<str>,
+}
+
+impl<T: Scalar> Build<T> for EllipticGrid<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let method = match &*self.method {
+            "laplace" => Method::Laplace,
+            "middlecoff" => Method::Middlecoff,
+            "sorenson" => Method::Sorenson,
+            word => {
+                let expected = "\"laplace\", \"middlecoff\" or \"sorenson\"".to_string();
+                return Err(unknown(word, "method", expected, 3));
+            }
+        };
+        let allowed = match &*self.folded {
+            "refuse" => false,
+            "allow" => true,
+            word => {
+                let expected = "\"refuse\" or \"allow\"".to_string();
+                return Err(unknown(word, "answer to folded cells", expected, 9));
+            }
+        };
+        let walls = match (method, &self.walls, self.spacing) {
+            (Method::Sorenson, Some(words), Some(spacing)) => walls(words, spacing, self.angle)?,
+            (Method::Sorenson, ..) => {
+                let field = if self.walls.is_none() { 5 } else { 6 };
+                return Err(Fault::new(
+                    "missing-argument",
+                    "\"sorenson\" needs walls and a spacing",
+                )
+                .expected("walls = \"j1\", spacing = 0.01")
+                .in_field(field));
+            }
+            (_, None, None) => Vec::new(),
+            _ => {
+                return Err(Fault::new("unused-argument", "walls are for the method \"sorenson\"")
+                    .expected("\"sorenson\"")
+                    .found(format!("\"{}\"", self.method))
+                    .in_field(3));
+            }
+        };
+        let sheet = self.s.0;
+        sheet.re().check_edges().map_err(fault)?;
+        let own;
+        let on: Option<(&dyn Surface<T>, [Vec<T>; 2])> = match &self.on {
+            Some(surface) => Some((&**surface, on_surface(&sheet, surface)?)),
+            None if plane(&sheet) => None,
+            None => {
+                own = through(&sheet)?;
+                let (m, n) = (sheet.m, sheet.n);
+                let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
+                let u = (0..m * n).map(|k| even(k / n, m)).collect();
+                let v = (0..m * n).map(|k| even(k % n, n)).collect();
+                Some((&own, [u, v]))
+            }
+        };
+        let options = Elliptic {
+            method,
+            sweeps: self.n,
+            tolerance: self.tol.re(),
+            omega: self.omega.re(),
+            walls,
+            on,
+        };
+        let smoothed = elliptic(&sheet, &options).map_err(fault)?.sheet;
+        let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
+        if let Some(&[i, j]) = folded.first() {
+            let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };
+            return Err(fault(error).help(
+                "allow more sweeps, or look at it with folded = \"allow\" and quality(s, \"sj\")",
+            ));
+        }
+        Ok(surface(smoothed))
+    }
+}
+
+fn walls<T: Real>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fault> {
+    let mut walls = Vec::new();
+    for word in words.split([' ', ',']).filter(|word| !word.is_empty()) {
+        let Some((_, edge)) = EDGES.iter().find(|(name, _)| *name == word) else {
+            let expected = "\"i1\", \"im\", \"j1\" or \"jn\"".to_string();
+            return Err(unknown(word, "edge", expected, 5));
+        };
+        walls.push(Wall { edge: *edge, spacing: vec![spacing], angle });
+    }
+    if spacing.re() <= 0.0 {
+        return Err(Fault::new("out-of-range", "the spacing off a wall is a positive length")
+            .expected("a positive number")
+            .found(spacing.re().to_string())
+            .in_field(6));
+    }
+    Ok(walls)
+}
+
+/// True when all points lie in one plane, to rounding.
+fn plane<T: Real>(sheet: &Sheet<T>) -> bool {
+    let plain = sheet.re();
+    let points: Vec<Vec3> = plain.points().collect();
+    let first = points[0];
+    let far = |f: &dyn Fn(&Vec3) -> f64| {
+        points.iter().fold(
+            (0.0, first),
+            |best: (f64, Vec3), p| if f(p) > best.0 { (f(p), *p) } else { best },
+        )
+    };
+    let (size, second) = far(&|p| p.distance(first));
+    if size == 0.0 {
+        return true;
+    }
+    let along = (second - first) / size;
+    let (width, third) = far(&|p| (*p - first).cross(along).norm());
+    if width <= 1e-12 * size {
+        return true;
+    }
+    let normal = (third - first).cross(along);
+    let normal = normal / normal.norm();
+    points.iter().all(|p| (*p - first).dot(normal).abs() <= 1e-12 * size)
+}
+
+/// The spline surface through the points, even in the indices.
+fn through<T: Real>(sheet: &Sheet<T>) -> Result<GridSpline<T>, Fault> {
+    let knots = |n: usize| (0..n).map(|k| T::from(k as f64 / (n - 1) as f64)).collect();
+    let ends = Ends::Open(End::NotAKnot, End::NotAKnot);
+    GridSpline::bicubic(knots(sheet.m), knots(sheet.n), sheet.points().collect(), ends)
+        .map_err(|error| crate::spline::fault(error, "point"))
+}
+
+/// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
+fn on_surface<T: Real>(sheet: &Sheet<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
+    let points: Vec<Vec3<T>> = sheet.points().collect();
+    let (uv, off) = crate::locate::nearest_parameters(on, &points);
+    let size = sheet.size();
+    let worst = (0..points.len()).fold(0, |w, k| if off[k] > off[w] { k } else { w });
+    if off[worst] > 1e-6 * size {
+        let (i, j) = (worst / sheet.n + 1, worst % sheet.n + 1);
+        let message = format!("point [{i},{j}] of the grid is {} off the surface", off[worst]);
+        return Err(Fault::new("off-surface", message)
+            .expected("a grid whose points lie on the surface")
+            .found(format!("a distance of {}", off[worst]))
+            .help("project(s, surface) brings them there")
+            .in_field(4));
+    }
+    Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
+}
+
+fn metric(word: &str) -> Result<Metric, Fault> {
+    let known = Metric::ALL.iter().find(|metric| metric.word() == word);
+    known.copied().ok_or_else(|| {
+        let words: Vec<String> = Metric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
+        unknown(word, "metric", words.join(", "), 1)
+    })
+}
+
+/// How well shaped the cells of a grid [m,n] are: numbers [m-1,n-1].
+///
+/// "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
+/// turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
+/// "growth_i", "growth_j": ratio of neighbouring cells' lengths, 1 at best; "warp": distance of the
+/// corners from a plane over the size; "turn": the greatest angle by which grid lines turn there;
+/// "area". Cells at poles count as triangles.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "quality",
+    example = "surface s = spread_i(list(0, 1, 2), 4) * {1, 0, 0} + spread_j(list(0, 1, 2, 3), 3) * {0, 1, 0}; \
+               assert min(quality(s, \"sj\")) == 1;"
+)]
+pub struct QualityOf<T: Scalar> {
+    /// The grid.
+    s: Lattice<T>,
+    /// What is measured.
+    #[field(default = "sj")]
+    metric: Arc<str>,
+}
+
+impl<T: Scalar> Build<T> for QualityOf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let metric = metric(&self.metric)?;
+        let sheet = self.s.0;
+        if sheet.m.min(sheet.n) < 2 {
+            return Err(fault(GridError::TooFew { expected: 2, actual: [sheet.m, sheet.n] }));
+        }
+        let values = quality(&sheet, metric);
+        Ok(crate::value::numbers(ArrayShape::Grid(sheet.m - 1, sheet.n - 1), values))
+    }
+}
+
+/// The number of folded cells of a grid.
+#[derive(Kind)]
+#[kind(
+    class = Number,
+    function,
+    name = "folds",
+    example = "surface s = spread_i(list(0, 1, 2), 4) * {1, 0, 0} + spread_j(list(0, 1, 2, 3), 3) * {0, 1, 0}; \
+               assert folds(s) == 0;"
+)]
+pub struct Folds<T: Scalar> {
+    /// The grid.
+    s: Lattice<T>,
+}
+
+impl<T: Scalar> Build<T> for Folds<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        Ok(Value::Number(T::from(folded_cells(&self.s.0).len() as f64)))
+    }
+}
+
+/// A table of the quality of a grid, to be printed: of each metric the least, mean and greatest
+/// value and the cell that is worst.
+#[derive(Kind)]
+#[kind(
+    class = Text,
+    function,
+    name = "report",
+    example = "surface s = spread_i(list(0, 1, 2), 4) * {1, 0, 0} + spread_j(list(0, 1, 2, 3), 3) * {0, 1, 0}; \
+               print report(s);"
+)]
+pub struct Report<T: Scalar> {
+    /// The grid.
+    s: Lattice<T>,
+}
+
+impl<T: Scalar> Build<T> for Report<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        use std::fmt::Write;
+        let sheet = self.s.0.re();
+        if sheet.m.min(sheet.n) < 2 {
+            return Err(fault(GridError::TooFew { expected: 2, actual: [sheet.m, sheet.n] }));
+        }
+        let n = sheet.n - 1;
+        let folded = folded_cells(&sheet).len();
+        let mut text = format!("grid [{},{}], {folded} folded cells\n", sheet.m, sheet.n);
+        let _ =
+            writeln!(text, "{:<11}{:>13}{:>13}{:>13}  worst cell", "metric", "min", "mean", "max");
+        for metric in Metric::ALL {
+            let values = quality(&sheet, metric);
+            let low_is_worse = matches!(metric, Metric::ScaledJacobian | Metric::Area);
+            let worse = |x: f64, y: f64| if low_is_worse { x < y } else { x > y };
+            let worst =
+                (0..values.len()).fold(0, |w, k| if worse(values[k], values[w]) { k } else { w });
+            let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let place = format!("[{},{}]", worst / n + 1, worst % n + 1);
+            let _ =
+                writeln!(text, "{:<11}{min:>13.6}{mean:>13.6}{max:>13.6}  {place}", metric.word());
+        }
+        Ok(Value::text(text.trim_end()))
+    }
+}
+
+/// Jets of the spline through a grid's own points, at its points.
+pub fn jets<T: Real>(sheet: &Sheet<T>) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
+    if sheet.m.min(sheet.n) < 3 {
+        return Err(fault(GridError::TooFew { expected: 3, actual: [sheet.m, sheet.n] }));
+    }
+    let spline = through(sheet)?;
+    let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
+    let (m, n) = (sheet.m, sheet.n);
+    Ok((0..m * n).map(|k| spline.jet(even(k / n, m), even(k % n, n), Order::Second)).collect())
+}

@@ -1,0 +1,295 @@
+//! Arrays of points moved as a whole, and what follows a curve.
+
+use crate::value::{Points, Shaped, vectors};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{ArrayShape, Build, Context, Fault, Kind, Scalar, Value};
+
+fn direction<T: Real>(v: Vec3<T>, field: usize) -> Result<Vec3<T>, Fault> {
+    v.normalized().ok_or_else(|| {
+        Fault::new("no-direction", "the vector has no direction: it is zero")
+            .expected("a vector other than zero")
+            .in_field(field)
+    })
+}
+
+/// A vector, curve or surface shifted by a vector.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "translate",
+    example = "vector p = translate({1, 0, 0}, {0, 2, 0}); assert p.y == 2;"
+)]
+pub struct Translate<T: Scalar> {
+    /// What is moved.
+    o: Shaped<T>,
+    /// By how much.
+    v: Vec3<T>,
+}
+
+impl<T: Scalar> Build<T> for Translate<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        Ok(self.o.mapped(|p| p + self.v))
+    }
+}
+
+/// A vector, curve or surface with its coordinates multiplied by those of a vector, or all by a
+/// number.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "scale",
+    example = "vector p = scale({1, 2, 3}, {1, 1, 2}); assert p.z == 6;"
+)]
+pub struct Scale<T: Scalar> {
+    /// What is scaled, about the origin.
+    o: Shaped<T>,
+    /// The three factors, or one.
+    by: Value<T>,
+}
+
+impl<T: Scalar> Build<T> for Scale<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let by = match &self.by {
+            Value::Number(x) => Vec3::new(*x, *x, *x),
+            other => <Vec3<T> as moldloft_registry::FromValue<T>>::from_value(other)
+                .map_err(|fault| fault.in_field(1))?,
+        };
+        Ok(self.o.mapped(|p| Vec3::new(p.x * by.x, p.y * by.y, p.z * by.z)))
+    }
+}
+
+/// A vector, curve or surface mirrored in the plane through a point with a normal.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "mirror",
+    example = "vector p = mirror({1, 2, 3}, {0, 0, 0}, {0, 1, 0}); assert p.y == -2;"
+)]
+pub struct Mirror<T: Scalar> {
+    /// What is mirrored.
+    o: Shaped<T>,
+    /// A point of the plane.
+    p: Vec3<T>,
+    /// Normal of the plane, of any length.
+    n: Vec3<T>,
+}
+
+impl<T: Scalar> Build<T> for Mirror<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { o, p, n } = self;
+        let square = direction(n, 2).map(|_| n.norm_sq())?;
+        // 2 (r - p) . n / n^2 without a root: planes of whole normals mirror exactly.
+        Ok(o.mapped(|r| r - n * ((r - p).dot(n) * 2.0 / square)))
+    }
+}
+
+/// A vector, curve or surface turned about an axis, right-handed: rotate(o, axis, angle) about the
+/// axis through the origin, rotate(o, p, axis, angle) about the one through p (Rodrigues 1840).
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "rotate",
+    example = "vector p = rotate({1, 0, 0}, {0, 0, 1}, 1.5707963267948966); \
+               assert |p - {0, 1, 0}| < 1e-15; \
+               vector q = rotate({2, 0, 0}, {1, 0, 0}, {0, 0, 1}, 1.5707963267948966); \
+               assert |q - {1, 1, 0}| < 1e-15;"
+)]
+pub struct Rotate<T: Scalar> {
+    /// What is turned.
+    o: Shaped<T>,
+    /// A point of the axis, if an angle is the fourth argument; else the direction of the axis.
+    p: Vec3<T>,
+    /// Direction of the axis; or the angle.
+    axis: Value<T>,
+    /// The angle.
+    #[field(angle)]
+    angle: Option<T>,
+}
+
+impl<T: Scalar> Build<T> for Rotate<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let (p, axis, angle, field) = match (&self.axis, self.angle) {
+            (Value::Number(angle), None) => (Vec3::zero(), self.p, *angle, 1),
+            (axis, Some(angle)) => {
+                let axis = <Vec3<T> as moldloft_registry::FromValue<T>>::from_value(axis);
+                (self.p, axis.map_err(|fault| fault.in_field(2))?, angle, 2)
+            }
+            (_, None) => {
+                return Err(Fault::new("missing-argument", "the angle is missing")
+                    .expected("rotate(o, axis, angle) or rotate(o, p, axis, angle)")
+                    .in_field(3));
+            }
+        };
+        let k = direction(axis, field)?;
+        let (sin, cos) = (angle.sin(), angle.cos());
+        Ok(self.o.mapped(|r| {
+            let d = r - p;
+            p + d * cos + k.cross(d) * sin + k * (k.dot(d) * (-cos + 1.0))
+        }))
+    }
+}
+
+/// The surface of a curve turned about the x axis: line s[,j] at the j-th of `n` even angles from
+/// `a0` to `a1`.
+///
+/// A point (x, y, z) becomes (x, y cos a - z sin a, y sin a + z cos a). Points on the axis stay there
+/// exactly: the surface has a pole.
+#[derive(Kind)]
+#[kind(
+    class = Vectors,
+    function,
+    name = "revolve",
+    example = "surface s = revolve(points({0, 0, 0}, {1, 1, 0}), 0, 3.141592653589793, 5); \
+               assert |s[2,3] - {1, 0, 1}| < 1e-15;"
+)]
+pub struct Revolve<T: Scalar> {
+    /// The meridian.
+    curve: Points<T>,
+    /// First angle.
+    #[field(angle)]
+    a0: T,
+    /// Last angle.
+    #[field(angle)]
+    a1: T,
+    /// How many lines.
+    #[field(min = 2, max = 1e6)]
+    n: usize,
+}
+
+impl<T: Scalar> Build<T> for Revolve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let (points, n) = (self.curve.0, self.n);
+        let angles: Vec<[T; 2]> = (0..n)
+            .map(|j| {
+                let a = self.a0 + (self.a1 - self.a0) * (j as f64 / (n - 1) as f64);
+                [a.cos(), a.sin()]
+            })
+            .collect();
+        let mut all = Vec::with_capacity(points.len() * n);
+        for p in &points {
+            for [cos, sin] in &angles {
+                all.push(Vec3::new(p.x, p.y * *cos - p.z * *sin, p.y * *sin + p.z * *cos));
+            }
+        }
+        Ok(vectors(ArrayShape::Grid(points.len(), n), all))
+    }
+}
+
+/// Unit tangents of a curve of points: those of the circle through a point and its neighbours.
+fn tangents<T: Real>(points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, Fault> {
+    let n = points.len();
+    if n < 2 {
+        return Err(Fault::new("too-few-items", "one point has no tangent")
+            .expected("at least two points")
+            .found(n.to_string())
+            .in_field(0));
+    }
+    let mut chords = Vec::with_capacity(n - 1);
+    for k in 1..n {
+        let d = points[k] - points[k - 1];
+        if d.norm_sq().re() == 0.0 {
+            let message = format!("points {k} and {} coincide", k + 1);
+            return Err(Fault::new("coincident-points", message)
+                .expected("neighbours at different places")
+                .in_item(k)
+                .in_field(0));
+        }
+        chords.push((d, d.norm()));
+    }
+    // The derivative of the parabola through three points by chord length.
+    let inner = |k: usize| {
+        let ((d, h), (e, g)) = (chords[k - 1], chords[k]);
+        d / h * (g / (h + g)) + e / g * (h / (h + g))
+    };
+    let mut all: Vec<Vec3<T>> = Vec::with_capacity(n);
+    for k in 0..n {
+        let raw = match k {
+            0 if n == 2 => chords[0].0,
+            0 => chords[0].0 / chords[0].1 * T::from(2.0) - inner(1),
+            k if k + 1 == n && n == 2 => chords[0].0,
+            k if k + 1 == n => chords[k - 1].0 / chords[k - 1].1 * T::from(2.0) - inner(k - 1),
+            k => inner(k),
+        };
+        all.push(raw.normalized().ok_or_else(|| {
+            Fault::new("no-direction", format!("the curve turns back at point {}", k + 1))
+                .in_item(k)
+                .in_field(0)
+        })?);
+    }
+    Ok(all)
+}
+
+/// The unit tangents of a curve of points.
+///
+/// At an inner point that of the parabola through it and its neighbours, at an end that of the
+/// nearest parabola.
+#[derive(Kind)]
+#[kind(
+    class = Vectors,
+    function,
+    name = "tangents",
+    example = "curve t = tangents(points({0, 0, 0}, {1, 0, 0}, {2, 0, 0})); assert t[2].x == 1;"
+)]
+pub struct Tangents<T: Scalar> {
+    /// The points.
+    curve: Points<T>,
+}
+
+impl<T: Scalar> Build<T> for Tangents<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let all = tangents(&self.curve.0)?;
+        Ok(vectors(ArrayShape::Row(all.len()), all))
+    }
+}
+
+/// Unit normals of a curve of points that turn about its tangents as little as can be: with
+/// `tangents(c)` and their vector product a frame at each point (double reflection: Wang and others,
+/// ACM Trans. Graph. 27, 2008).
+///
+/// The first normal is `n0` made normal to the first tangent; if not given, one normal to the tangent
+/// and to the axis that is furthest from it.
+#[derive(Kind)]
+#[kind(
+    class = Vectors,
+    function,
+    name = "frame",
+    example = "curve n = frame(points({0, 0, 0}, {1, 0, 0}, {2, 0, 0}), {0, 0, 3}); \
+               assert |n[3] - {0, 0, 1}| < 1e-15;"
+)]
+pub struct FrameOf<T: Scalar> {
+    /// The points.
+    curve: Points<T>,
+    /// The first normal.
+    n0: Option<Vec3<T>>,
+}
+
+impl<T: Scalar> Build<T> for FrameOf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let points = self.curve.0;
+        let tangents = tangents(&points)?;
+        let t = tangents[0];
+        let start = match self.n0 {
+            Some(n0) => direction(n0 - t * t.dot(n0), 1)?,
+            None => t.perpendicular(),
+        };
+        let mut all = vec![start];
+        for k in 1..points.len() {
+            let (r, t) = (all[k - 1], tangents[k - 1]);
+            let reflected = |v: Vec3<T>, m: Vec3<T>, square: T| v - m * (m.dot(v) * 2.0 / square);
+            let d = points[k] - points[k - 1];
+            let square = d.norm_sq();
+            let (r, t) = (reflected(r, d, square), reflected(t, d, square));
+            let turn = tangents[k] - t;
+            let square = turn.norm_sq();
+            let next = if square.re() > 0.0 { reflected(r, turn, square) } else { r };
+            // Rounding would drift over many points.
+            let normal = next - tangents[k] * tangents[k].dot(next);
+            all.push(normal.normalized().unwrap_or(next));
+        }
+        Ok(vectors(ArrayShape::Row(all.len()), all))
+    }
+}

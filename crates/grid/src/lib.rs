@@ -1,0 +1,25 @@
+//! Structured grids: interpolation from their edges, smoothing, and their quality.
+//!
+//! A surface grid is a [`Sheet`] of m by n points kept as three component planes; a volume grid is
+//! a list of sheets. All functions are generic over the scalar, so a grid carries its derivatives;
+//! all give the same bits at any number of threads.
+//!
+//! `edges -> transfinite -> elliptic -> quality`
+//!
+//! Invariant: this crate knows no entity, no file and no language, and depends on `num` only.
+
+mod blend;
+mod block;
+mod control;
+mod elliptic;
+mod error;
+mod lines;
+mod quality;
+mod sheet;
+
+pub use blend::{Blend, transfinite};
+pub use block::{Faces, transfinite_block};
+pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic};
+pub use error::{Corner, GridError};
+pub use quality::{Metric, folded_cells, quality};
+pub use sheet::{Edge, Sheet, framed};

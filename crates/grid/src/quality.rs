@@ -1,0 +1,261 @@
+use crate::Sheet;
+use moldloft_num::{Real, Vec3};
+
+/// What is measured of each cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Metric {
+    /// Scaled Jacobian: the least, over the corners, of the sine of the angle between the two
+    /// sides; negative where the corner is turned over against the cells around. Best 1.
+    ScaledJacobian,
+    /// Equiangular skewness, 0 (best) to 1 and beyond for re-entrant corners: the largest of
+    /// (a - 90) / 90 and (90 - a) / 90 over the angles a in degrees; triangles with 60 for 90.
+    Skew,
+    /// The longer over the shorter of the lines that join the middles of opposite sides.
+    Aspect,
+    /// The longest over the shortest side.
+    EdgeRatio,
+    /// The larger ratio of the cell's length along i to that of its neighbours along i.
+    GrowthI,
+    /// The same along j.
+    GrowthJ,
+    /// Distance of the corners from the plane half-way between the diagonals, over the root of the
+    /// area.
+    Warp,
+    /// The largest angle, in radians, by which a grid line turns at a corner of the cell.
+    Turn,
+    /// The area, of the two halves on either side of a diagonal, averaged over both diagonals.
+    Area,
+}
+
+impl Metric {
+    /// All, in the order of the reference.
+    pub const ALL: [Metric; 9] = [
+        Metric::ScaledJacobian,
+        Metric::Skew,
+        Metric::Aspect,
+        Metric::EdgeRatio,
+        Metric::GrowthI,
+        Metric::GrowthJ,
+        Metric::Warp,
+        Metric::Turn,
+        Metric::Area,
+    ];
+
+    /// The name in the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            Metric::ScaledJacobian => "sj",
+            Metric::Skew => "skew",
+            Metric::Aspect => "aspect",
+            Metric::EdgeRatio => "edge_ratio",
+            Metric::GrowthI => "growth_i",
+            Metric::GrowthJ => "growth_j",
+            Metric::Warp => "warp",
+            Metric::Turn => "turn",
+            Metric::Area => "area",
+        }
+    }
+}
+
+/// The metric of each cell, (i, j) at `i * (n - 1) + j`; a sheet of fewer than two lines has none.
+///
+/// Sides without length (at poles) do not count: the cell is a triangle then. A cell without area
+/// has scaled Jacobian 0 and skew 1, aspect and edge ratio infinite unless it is a point.
+pub fn quality<T: Real>(sheet: &Sheet<T>, metric: Metric) -> Vec<T> {
+    if sheet.m < 2 || sheet.n < 2 {
+        return Vec::new();
+    }
+    let cells = Cells { sheet, m: sheet.m - 1, n: sheet.n - 1 };
+    let each = |f: &dyn Fn(usize, usize) -> T| {
+        (0..cells.m * cells.n).map(|k| f(k / cells.n, k % cells.n)).collect()
+    };
+    match metric {
+        Metric::ScaledJacobian => {
+            let normals = cells.reference_normals();
+            each(&|i, j| cells.scaled_jacobian(i, j, normals[i * cells.n + j]))
+        }
+        Metric::Skew => each(&|i, j| cells.skew(i, j)),
+        Metric::Aspect => each(&|i, j| {
+            let [a, b] = cells.middles(i, j);
+            ratio(a, b)
+        }),
+        Metric::EdgeRatio => each(&|i, j| {
+            let sides = cells.sides(i, j).map(|d| length(d)).into_iter();
+            let known: Vec<T> = sides.filter(|s| s.re() > 0.0).collect();
+            match known.iter().copied().reduce(T::max).zip(known.iter().copied().reduce(T::min)) {
+                Some((most, least)) => most / least,
+                None => T::one(),
+            }
+        }),
+        Metric::GrowthI | Metric::GrowthJ => {
+            let axis = usize::from(metric == Metric::GrowthJ);
+            let last = if axis == 0 { cells.m } else { cells.n };
+            each(&|i, j| {
+                let k = [i, j][axis];
+                let beside = [k.checked_sub(1), (k + 1 < last).then_some(k + 1)];
+                let here = cells.middles(i, j)[axis];
+                beside.into_iter().flatten().fold(T::one(), |most, k| {
+                    let (i, j) = if axis == 0 { (k, j) } else { (i, k) };
+                    most.max(ratio(here, cells.middles(i, j)[axis]))
+                })
+            })
+        }
+        Metric::Warp => each(&|i, j| cells.warp(i, j)),
+        Metric::Turn => each(&|i, j| cells.turn(i, j)),
+        Metric::Area => each(&|i, j| cells.area(i, j)),
+    }
+}
+
+/// The cells, (i, j) from 0, that are turned over against those around them, in order.
+///
+/// In a plane sheet all cells are compared with the sign of the whole; in a curved one with the mean
+/// normal of the cells around, so of a large fold its border is reported.
+pub fn folded_cells<T: Real>(sheet: &Sheet<T>) -> Vec<[usize; 2]> {
+    let plain = sheet.re();
+    let n = sheet.n.saturating_sub(1).max(1);
+    let jacobians = quality(&plain, Metric::ScaledJacobian);
+    let folded = jacobians.iter().enumerate().filter(|(_, x)| **x < 0.0);
+    folded.map(|(k, _)| [k / n, k % n]).collect()
+}
+
+struct Cells<'a, T> {
+    sheet: &'a Sheet<T>,
+    m: usize,
+    n: usize,
+}
+
+/// The root, or zero with derivative zero.
+fn root<T: Real>(square: T) -> T {
+    if square.re() > 0.0 { square.sqrt() } else { T::zero() }
+}
+
+fn length<T: Real>(d: Vec3<T>) -> T {
+    root(d.norm_sq())
+}
+
+/// The larger over the smaller; 1 when both vanish.
+fn ratio<T: Real>(a: T, b: T) -> T {
+    let (most, least) = if a.re() < b.re() { (b, a) } else { (a, b) };
+    if most.re() == 0.0 { T::one() } else { most / least }
+}
+
+impl<T: Real> Cells<'_, T> {
+    /// The corners, counter-clockwise as seen from the side of r_i x r_j.
+    fn corners(&self, i: usize, j: usize) -> [Vec3<T>; 4] {
+        let s = self.sheet;
+        [s.at(i, j), s.at(i + 1, j), s.at(i + 1, j + 1), s.at(i, j + 1)]
+    }
+
+    fn sides(&self, i: usize, j: usize) -> [Vec3<T>; 4] {
+        let [a, b, c, d] = self.corners(i, j);
+        [b - a, c - b, d - c, a - d]
+    }
+
+    /// Lengths along i and along j, between the middles of sides.
+    fn middles(&self, i: usize, j: usize) -> [T; 2] {
+        let [a, b, c, d] = self.corners(i, j);
+        [length(b + c - a - d) * 0.5, length(c + d - a - b) * 0.5]
+    }
+
+    /// Twice the area vector.
+    fn normal(&self, i: usize, j: usize) -> Vec3<T> {
+        let [a, b, c, d] = self.corners(i, j);
+        (c - a).cross(d - b)
+    }
+
+    fn area(&self, i: usize, j: usize) -> T {
+        let [a, b, c, d] = self.corners(i, j);
+        let triangle = |p: Vec3<T>, q: Vec3<T>, r: Vec3<T>| length((q - p).cross(r - p));
+        (triangle(a, b, c) + triangle(a, c, d) + triangle(a, b, d) + triangle(b, c, d)) * 0.25
+    }
+
+    /// The direction that a cell's normal is compared with.
+    fn reference_normals(&self) -> Vec<Vec3<f64>> {
+        let all: Vec<Vec3> =
+            (0..self.m * self.n).map(|k| self.normal(k / self.n, k % self.n).re()).collect();
+        let total = all.iter().fold(Vec3::zero(), |sum, v| sum + *v);
+        let swept = all.iter().map(|v| v.norm()).sum::<f64>();
+        // Plane: no normal leaves the line of the total.
+        let across = |v: &Vec3| v.cross(total).norm() > 1e-9 * v.norm() * total.norm();
+        if total.norm() > 1e-6 * swept && !all.iter().any(across) {
+            return vec![total / total.norm(); all.len()];
+        }
+        let around = |k: usize| {
+            let (i, j) = (k / self.n, k % self.n);
+            let mut sum = Vec3::zero();
+            for a in i.saturating_sub(1)..(i + 2).min(self.m) {
+                for b in j.saturating_sub(1)..(j + 2).min(self.n) {
+                    sum += all[a * self.n + b];
+                }
+            }
+            sum.normalized().unwrap_or_default()
+        };
+        (0..all.len()).map(around).collect()
+    }
+
+    fn scaled_jacobian(&self, i: usize, j: usize, reference: Vec3) -> T {
+        let sides = self.sides(i, j);
+        let reference = Vec3::lifted(reference);
+        let mut least: Option<T> = None;
+        for k in 0..4 {
+            let (next, last) = (sides[k], -sides[(k + 3) % 4]);
+            let scale = length(next) * length(last);
+            if scale.re() == 0.0 {
+                continue;
+            }
+            let cross = next.cross(last);
+            let size = length(cross);
+            // The sine of the angle, with the sign of the side that the corner faces.
+            let sine = if cross.dot(reference).re() < 0.0 { -size } else { size } / scale;
+            least = Some(least.map_or(sine, |least| least.min(sine)));
+        }
+        least.unwrap_or_default()
+    }
+
+    fn skew(&self, i: usize, j: usize) -> T {
+        let sides: Vec<Vec3<T>> =
+            self.sides(i, j).into_iter().filter(|d| d.norm_sq().re() > 0.0).collect();
+        let n = sides.len();
+        if n < 3 {
+            return T::one();
+        }
+        let best = std::f64::consts::PI * (1.0 - 2.0 / n as f64);
+        (0..n).fold(T::zero(), |worst, k| {
+            let (next, last) = (sides[k], -sides[(k + n - 1) % n]);
+            let angle = length(next.cross(last)).atan2(next.dot(last));
+            let sharp = (-angle + best) / best;
+            let blunt = (angle - best) / (std::f64::consts::PI - best);
+            worst.max(sharp).max(blunt)
+        })
+    }
+
+    fn warp(&self, i: usize, j: usize) -> T {
+        let [a, b, ..] = self.corners(i, j);
+        let normal = self.normal(i, j);
+        let area = self.area(i, j);
+        let size = length(normal);
+        if size.re() == 0.0 || area.re() == 0.0 {
+            return T::zero();
+        }
+        ((b - a).dot(normal) / size * 0.5).abs() / root(area)
+    }
+
+    fn turn(&self, i: usize, j: usize) -> T {
+        let s = self.sheet;
+        let mut most = T::zero();
+        for (i, j) in [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)] {
+            let lines = [
+                (i > 0 && i + 1 < s.m).then(|| [s.at(i - 1, j), s.at(i, j), s.at(i + 1, j)]),
+                (j > 0 && j + 1 < s.n).then(|| [s.at(i, j - 1), s.at(i, j), s.at(i, j + 1)]),
+            ];
+            for [a, b, c] in lines.into_iter().flatten() {
+                let (before, after) = (b - a, c - b);
+                let sine = length(before.cross(after));
+                if before.norm_sq().re() > 0.0 && after.norm_sq().re() > 0.0 {
+                    most = most.max(sine.atan2(before.dot(after)));
+                }
+            }
+        }
+        most
+    }
+}

@@ -1,0 +1,291 @@
+"""Structured grids of points in files: Plot3D of every variant, VTK, STL, CSV, aerofoils."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from moldloft import _core
+from moldloft.errors import Error, FileError
+from moldloft.files import Output, commit
+
+__all__ = [
+    "Aerofoil",
+    "Plot3DVariant",
+    "read_aerofoil",
+    "read_plot3d",
+    "read_points",
+    "write_csv",
+    "write_plot3d",
+    "write_stl",
+    "write_vts",
+]
+
+
+@dataclass(frozen=True)
+class Plot3DVariant:
+    """What Plot3D leaves open; the reader finds it out, the writer takes it."""
+
+    layout: str = "stream"
+    """``text``, ``stream`` (plain binary, as C writes it) or ``records`` (Fortran)."""
+    double: bool = True
+    """Double precision; single otherwise."""
+    multi: bool = True
+    """The number of blocks comes first."""
+    three: bool = True
+    """Three coordinates; two otherwise."""
+    big_endian: bool = False
+    """The most significant byte comes first."""
+    mark: int = 4
+    """Bytes of the length of a Fortran record, 4 or 8."""
+    planes: bool = False
+    """Plane by plane, k = 1 first, rather than whole blocks."""
+
+
+@dataclass(frozen=True)
+class Aerofoil:
+    """An aerofoil section."""
+
+    name: str
+    """The heading of the file."""
+    points: NDArray[np.float64]
+    """(n, 2): from the trailing edge along the upper side to the nose and back along the lower."""
+    nose: int
+    """Index of the nose."""
+    listing: str
+    """How the file listed the points: ``selig`` or ``lednicer``."""
+
+    @property
+    def upper(self) -> NDArray[np.float64]:
+        """The upper side from the nose to the trailing edge."""
+        return self.points[self.nose :: -1]
+
+    @property
+    def lower(self) -> NDArray[np.float64]:
+        """The lower side from the nose to the trailing edge."""
+        return self.points[self.nose :]
+
+
+def _read(path: str | Path) -> bytes:
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise FileError(f"error: cannot read `{path}`: {reason}") from error
+
+
+def _named(path: str | Path, error: Error) -> FileError:
+    return FileError(f"error: cannot read `{path}`: {str(error).removeprefix('error: ')}")
+
+
+def _grid(grid: ArrayLike, number: int) -> NDArray[np.float64]:
+    """The grid as (ni, nj, nk, 3)."""
+    array = np.asarray(grid, dtype=np.float64)
+    if array.ndim == 3 and array.shape[-1] == 3:
+        array = array[:, :, None, :]
+    if array.ndim != 4 or array.shape[-1] != 3 or 0 in array.shape:
+        raise Error(
+            f"error: grid {number} has the shape {np.shape(grid)}; "
+            "a grid is (ni, nj, 3) or (ni, nj, nk, 3)"
+        )
+    return np.ascontiguousarray(array)
+
+
+def _grids(grids: Sequence[ArrayLike]) -> list[NDArray[np.float64]]:
+    return [_grid(grid, k + 1) for k, grid in enumerate(grids)]
+
+
+def read_plot3d(
+    path: str | Path,
+) -> tuple[list[NDArray[np.float64]], Plot3DVariant, list[NDArray[np.int32]] | None]:
+    """The blocks of a Plot3D grid file, whatever its variant.
+
+    Text, plain binary and Fortran records, single and double precision, one block and several, two
+    and three coordinates, blanking and both byte orders are told apart by what fits the length of
+    the file to the byte.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    blocks
+        An array (ni, nj, 3) for each surface, (ni, nj, nk, 3) for each volume.
+    variant
+        What the file is.
+    iblank
+        An array (ni, nj) or (ni, nj, nk) for each block, if the file has them.
+
+    Raises
+    ------
+    FileError
+        When the file cannot be read, or no variant explains it: cut off, or no Plot3D.
+    """
+    try:
+        blocks, found = _core.read_plot3d(_read(path))
+    except FileError:
+        raise
+    except Error as error:
+        raise _named(path, error) from error
+    surfaces = [block[:, :, 0, :] if block.shape[2] == 1 else block for block in blocks]
+    blanks = None
+    if found["iblank"] is not None:
+        blanks = [
+            np.array(blank, dtype=np.int32).reshape(block.shape[:-1], order="F")
+            for blank, block in zip(found["iblank"], surfaces, strict=True)
+        ]
+    names = ("layout", "double", "multi", "three", "big_endian", "mark", "planes")
+    return surfaces, Plot3DVariant(**{name: found[name] for name in names}), blanks
+
+
+def write_plot3d(
+    path: str | Path,
+    grids: Sequence[ArrayLike],
+    variant: Plot3DVariant | None = None,
+    *,
+    iblank: Sequence[ArrayLike] | None = None,
+) -> Path:
+    """Write grids as a Plot3D file, whole or not at all.
+
+    Parameters
+    ----------
+    path
+        The file.
+    grids
+        Arrays (ni, nj, 3) or (ni, nj, nk, 3).
+    variant
+        How; by default plain binary, double precision, several blocks, three coordinates.
+    iblank
+        A whole number for each point of each grid: 0 for those that do not count.
+
+    Raises
+    ------
+    Error
+        When the variant cannot hold the grids: several blocks in a single-block file, a z in a 2-D
+        file, numbers beyond single precision.
+    """
+    variant = variant or Plot3DVariant()
+    arrays = _grids(grids)
+    blanks: list[list[int] | None] | None = None
+    if iblank is not None:
+        if len(iblank) != len(arrays):
+            raise Error(f"error: {len(arrays)} grids, but blanking for {len(iblank)}")
+        blanks = []
+        for number, (blank, array) in enumerate(zip(iblank, arrays, strict=True)):
+            values = np.asarray(blank)
+            if values.size != array.size // 3:
+                raise Error(f"error: blanking of grid {number + 1} has not one number a point")
+            shaped = values.reshape(array.shape[:-1])
+            blanks.append([int(x) for x in shaped.ravel(order="F")])
+    data = _core.write_plot3d(
+        arrays,
+        variant.layout,
+        variant.double,
+        variant.multi,
+        variant.three,
+        blanks,
+        variant.big_endian,
+        variant.mark,
+        variant.planes,
+    )
+    return _commit(path, data)
+
+
+def _commit(path: str | Path, data: bytes) -> Path:
+    target = Path(path)
+    return commit(target.parent, [Output(target.name, data)])[0]
+
+
+def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
+    """Write grids as VTK structured grids: one ``.vts``, or several with their ``.vtm``.
+
+    Parameters
+    ----------
+    path
+        The file of one grid; of several its stem is that of all files.
+    grids
+        Arrays (ni, nj, 3) or (ni, nj, nk, 3).
+    """
+    target = Path(path)
+    files = _core.grids_as_vts(_grids(grids), target.stem)
+    return commit(target.parent, [Output(name, bytes(data)) for name, data in files])
+
+
+def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = False) -> Path:
+    """Write surface grids as one binary STL.
+
+    Quads are split along their shorter diagonal; triangles without area, at poles, are left out.
+
+    Parameters
+    ----------
+    path
+        The file.
+    grids
+        Arrays (ni, nj, 3).
+    flip
+        Facets face against r_i x r_j instead of along it.
+    """
+    target = Path(path)
+    return _commit(path, _core.grids_as_stl(_grids(grids), target.stem, flip))
+
+
+def write_csv(path: str | Path, points: ArrayLike) -> Path:
+    """Write points (n, 2) or (n, 3) as lines of numbers with commas, under a heading.
+
+    Every digit that is needed to read the same numbers back is written.
+    """
+    array = np.asarray(points, dtype=np.float64)
+    if array.ndim != 2 or array.shape[1] not in (2, 3):
+        raise Error(f"error: points have the shape (n, 2) or (n, 3), found {array.shape}")
+    if not np.isfinite(array).all():
+        raise Error("error: a point is not finite")
+    lines = ["x,y,z"[: 2 * array.shape[1] - 1]]
+    # Adding zero turns -0 into 0.
+    lines += [",".join(repr(float(x) + 0.0) for x in row) for row in array]
+    return _commit(path, ("\n".join(lines) + "\n").encode())
+
+
+def read_points(path: str | Path) -> NDArray[np.float64]:
+    """Points (n, 3) of a text with two or three numbers to a line.
+
+    Blanks, commas, semicolons and tabulators separate; headings and lines that begin with ``#`` are
+    skipped; a missing z is 0.
+
+    Raises
+    ------
+    FileError
+        With the line that is no point.
+    """
+    try:
+        return np.array(_core.read_points(_read(path)), dtype=np.float64)
+    except FileError:
+        raise
+    except Error as error:
+        raise _named(path, error) from error
+
+
+def read_aerofoil(path: str | Path) -> Aerofoil:
+    """An aerofoil section from a coordinate file in Selig's or Lednicer's listing.
+
+    The two are told apart by the numbers of points that the latter begins with.
+
+    Raises
+    ------
+    FileError
+        With the line that does not fit.
+    """
+    try:
+        found: tuple[str, Any, int, str] = _core.read_aerofoil(_read(path))
+    except FileError:
+        raise
+    except Error as error:
+        raise _named(path, error) from error
+    name, points, nose, listing = found
+    return Aerofoil(name, np.array(points, dtype=np.float64)[:, :2], nose, listing)
