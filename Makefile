@@ -4,8 +4,10 @@ PYTHON ?= python3
 VENV ?= .venv
 ifeq ($(OS),Windows_NT)
 BIN := $(VENV)/Scripts
+EXE := .exe
 else
 BIN := $(VENV)/bin
+EXE :=
 endif
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
@@ -28,6 +30,9 @@ $(VENV)/.installed: $(SOURCES)
 $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml
 	@echo "installing the packages that the tests need into $(VENV)"
 	@$(PIP) install --editable '.[test]'
+	@echo "building the language server"
+	@cargo build --quiet --release -p moldloft-lsp
+	@cp $${CARGO_TARGET_DIR:-target}/release/moldloft-lsp$(EXE) $(BIN)/
 	@touch $@
 
 demo: $(VENV)/.installed ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture

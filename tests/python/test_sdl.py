@@ -13,7 +13,7 @@ import pytest
 import moldloft
 from moldloft.cli import main
 from moldloft.cli.repl import Session
-from moldloft.errors import ModelError
+from moldloft.errors import Error, ModelError
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "missile"
 
@@ -46,9 +46,7 @@ def test_run_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert data["ok"] and data["printed"] == ["hello 2"] and data["files"][0]["bytes"] == 12
 
 
-def test_run_with_errors_writes_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_run_with_errors_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program = tmp_path / "p.sdl"
     program.write_text('file f = open("a.txt", "w"); write(f, 1); close(f); print nothing;')
     assert main(["run", str(program), "-o", str(tmp_path / "out")]) == 1
@@ -80,13 +78,14 @@ def test_eval_of_arrays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
 
 def test_arrays_in_python() -> None:
     model = moldloft.loads(
-        "param float r = 2; curve c[3]; c = {r*uniform(0, 1, 3), r^2*uniform(1, 1, 3), uniform(0, 0, 3)};"
+        "param float r = 2; curve c[3]; farray t = uniform(0, 1, 3);"
+        "c = {r*t, r^2 + 0*t, 0*t};"
         "surface s[2, 3]; s[1,] = c; s[2,] = 2*c;"
     )
     assert model["s"].shape == (2, 3, 3)
     np.testing.assert_array_equal(model["c"], [[0, 4, 0], [1, 4, 0], [2, 4, 0]])
     assert model.derivative("c[3]", "r").tolist() == [1, 4, 0]
-    assert set(model.variables) == {"c", "s"}
+    assert set(model.variables) == {"c", "s", "t"}
 
 
 @pytest.mark.parametrize("name", ["half", "finned"])
@@ -119,9 +118,9 @@ def test_repl() -> None:
     assert session.run("print 3") == ["3"]
     with pytest.raises(ModelError, match="shapes differ"):
         session.run("c = uniform(0, 1, 4)*{1, 0, 0}")
-    with pytest.raises(ModelError, match="there is no"):
+    with pytest.raises(Error, match="there is no"):
         session.run("nothing + 1")
-    assert session.variables() == ["c: curve[3]"]
+    assert session.variables() == ["c: curve[3]", "i: number"]
     # A line with errors is left out; one can be taken back.
     assert session.run("c[1].x") == ["2"]
     assert session.run("c[1].x = 7") == []
@@ -133,7 +132,9 @@ def test_repl() -> None:
 
 
 def test_repl_reads_a_stream() -> None:
-    text = "float x = 2\nx + 1\nsubroutine f(returned float y) {\n  y = 3;\n}\nf(x)\nx\n:vars\n:quit\n"
+    text = (
+        "float x = 2\nx + 1\nsubroutine f(returned float y) {\n  y = 3;\n}\nf(x)\nx\n:vars\n:quit\n"
+    )
     done = command("repl", text=text)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split("\n") == ["3", "3", "x: number", ""]

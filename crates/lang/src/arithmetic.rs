@@ -332,12 +332,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             if let [Some(x), Some(y)] = operands {
                 if let (Some(s), Some(t)) = (x.0, y.0)
                     && s != t
+                    && is_defined(op, x, y)
                 {
                     let d = ops::shapes_differ(s, t);
                     let shapes = [described(x), described(y)];
                     return Err(self.differing(m, d, spans, [&shapes[0], &shapes[1]]));
                 }
-                if let Some(lanes) = work.binary(op, x, y) {
+                let alike = x.0.is_none() || y.0.is_none() || x.0 == y.0;
+                if alike && let Some(lanes) = work.binary(op, x, y) {
                     return Ok(Operand::Lanes(lanes));
                 }
             }
@@ -410,7 +412,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         callee: ExprId,
         args: List<Arg>,
     ) -> Option<(&'static str, intrinsics::Elementary<T>)> {
-        if self.plain_operators || args.len() > 2 {
+        if args.len() > 2 {
             return None;
         }
         let symbol = m.program.as_name(callee)?;
@@ -442,7 +444,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         for &arg in args {
             operands.push(self.operated(m, arg, work)?);
         }
-        let all: Vec<_> = operands.iter().map(|o| work.operand(o)).collect();
+        let mut all: Vec<_> = operands.iter().map(|o| work.operand(o)).collect();
+        if self.plain_operators {
+            all.clear();
+            all.push(None);
+        }
         let number = |o: &Option<Loose<T>>| match o {
             Some((shape, Loosely::Number(src))) => Some((*shape, *src)),
             _ => None,
@@ -534,6 +540,19 @@ enum Loosely<T> {
 enum Number<T> {
     Src(Src),
     Const(T),
+}
+
+/// True when the operator takes such kinds, whatever their shapes.
+fn is_defined<T>(op: BinaryOp, a: Loose<T>, b: Loose<T>) -> bool {
+    let vector = |o: &Loosely<T>| matches!(o, Loosely::Vector(_));
+    match (op, vector(&a.1), vector(&b.1)) {
+        (BinaryOp::Mul, ..) => true,
+        (BinaryOp::Add | BinaryOp::Sub, v, w) => v == w,
+        (BinaryOp::Div, v, w) => v || !w,
+        (BinaryOp::Caret, v, w) => !v && !w,
+        (BinaryOp::Dot | BinaryOp::Cross, v, w) => v && w,
+        _ => false,
+    }
 }
 
 fn described<T>(operand: Loose<T>) -> String {

@@ -8,6 +8,7 @@ use crate::interpreter::{Interpreter, silent};
 use crate::module::Module;
 use crate::section::{Place, Section};
 use moldloft_diag::{Diagnostic, Span};
+use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Row, Scalar, Value, Vectors};
 use moldloft_syntax::number;
@@ -305,6 +306,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             None if unit.is_some() => Mode::Write,
             None => Mode::Read,
         };
+        if mode != Mode::Read && self.run.extent() == Extent::Edit {
+            return Err(Diagnostic::error(
+                "misplaced-assignment",
+                "an expression from outside writes no files",
+            )
+            .expected("an expression that reads the program's variables"));
+        }
         let from = self.modules.get(0).path.clone();
         let world = self.loader.world;
         let unit = self

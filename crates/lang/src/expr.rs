@@ -663,10 +663,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let positional = given.positional.len();
         let (filled, _) = arrange(&row, given, |_| Class::Any)
             .map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
-        let value = self
-            .run
-            .call(&row, filled)
-            .map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
+        // What is as quick to compute as to look up is not remembered.
+        let value = if crate::intrinsics::is_quick(&row) {
+            T::call(&row, &filled, &self.run.graph().context())
+        } else {
+            self.run.call(&row, filled)
+        };
+        let value =
+            value.map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
         if !value.is_finite() {
             return Err(Diagnostic::error(
                 "not-finite",

@@ -90,6 +90,8 @@ pub(crate) struct Tape<T: Real> {
     slots: Vec<Vec<T>>,
     uses: Vec<u16>,
     homes: Vec<Home>,
+    last: Vec<usize>,
+    free: Vec<u16>,
 }
 
 /// Where the result of an instruction is kept while the steps are made.
@@ -137,6 +139,8 @@ impl<T: Real> Default for Tape<T> {
             slots: Vec::new(),
             uses: Vec::new(),
             homes: Vec::new(),
+            last: Vec::new(),
+            free: Vec::new(),
         }
     }
 }
@@ -263,7 +267,7 @@ impl<T: Real> Tape<T> {
     /// Makes steps of the instructions that the roots need: products are merged into the sums and
     /// products that alone use them, results go to as few slots as possible.
     fn plan(&mut self, roots: &[Src], shape: ArrayShape) {
-        let Self { code, uses, homes, steps, checked, .. } = self;
+        let Self { code, uses, homes, steps, checked, last, free, .. } = self;
         let check_of = |k: usize| {
             let at = checked.binary_search_by_key(&(k as u16), |c| c.0).ok()?;
             (checked[at].1 == shape).then_some(at as u16)
@@ -327,7 +331,8 @@ impl<T: Real> Tape<T> {
             }
         }
         // Slots, freed after the last use.
-        let mut last = vec![0; n];
+        last.clear();
+        last.resize(n, 0);
         for k in 0..n {
             if homes[k] != Home::Nowhere {
                 for s in [code[k].a, code[k].b, code[k].c] {
@@ -338,7 +343,7 @@ impl<T: Real> Tape<T> {
             }
         }
         steps.clear();
-        let mut free: Vec<u16> = Vec::new();
+        free.clear();
         let mut count = 0;
         for k in 0..n {
             if homes[k] == Home::Nowhere {
@@ -411,62 +416,66 @@ impl<T: Real> Tape<T> {
             let Self { planes, consts, unary, binary, steps, slots, .. } = self;
             let (planes, consts) = (&planes[..], &consts[..]);
             let (unary, binary) = (&unary[..], &binary[..]);
-            let outs = &mut outs;
-            let failed = &mut failed;
-            let loops = || {
-                let mut lo = 0;
-                while lo < count {
-                    let hi = (lo + block::<T>()).min(count);
-                    for step in steps.iter() {
-                        let held = match step.to {
-                            Home::Slot(s) => &mut slots[s as usize],
-                            Home::Out(o) => &mut outs[o as usize],
-                            Home::Nowhere => unreachable!("only kept results are steps"),
-                        };
-                        // Taken out for the moment, so that operands can be read beside it.
-                        let mut held = std::mem::take(held);
-                        let to = match step.to {
-                            Home::Out(_) => &mut held[lo..hi],
-                            _ => &mut held[..hi - lo],
-                        };
-                        let operand = |o: Operand| match o {
-                            Operand::Plane(p) => In::Row(&planes[p as usize].numbers()[lo..hi]),
-                            Operand::Const(c) => In::Const(consts[c as usize]),
-                            Operand::Slot(s) => In::Row(&slots[s as usize][..hi - lo]),
-                            Operand::Out(o) => In::Row(&outs[o as usize][lo..hi]),
-                        };
-                        let (a, b) = (operand(step.a), operand(step.b));
-                        match step.code {
-                            Code::Add => two(to, a, b, |a, b| a + b),
-                            Code::Sub => two(to, a, b, |a, b| a - b),
-                            Code::Mul => two(to, a, b, |a, b| a * b),
-                            Code::Div => two(to, a, b, |a, b| a / b),
-                            Code::Neg => one(to, a, |a| -a),
-                            Code::Abs => one(to, a, T::abs),
-                            Code::Sqrt => one(to, a, T::sqrt),
-                            Code::MulAdd => three(to, a, b, operand(step.c), |a, b, c| a * b + c),
-                            Code::MulSub => three(to, a, b, operand(step.c), |a, b, c| a * b - c),
-                            Code::SubMul => three(to, a, b, operand(step.c), |a, b, c| c - a * b),
-                            Code::MulMul => three(to, a, b, operand(step.c), |a, b, c| a * b * c),
-                            Code::Unary(f) => one(to, a, unary[f as usize]),
-                            Code::Binary(f) => two(to, a, b, binary[f as usize]),
+            let arch = pulp::Arch::new();
+            let mut lo = 0;
+            while lo < count {
+                let hi = (lo + block::<T>()).min(count);
+                for step in steps.iter() {
+                    let held = match step.to {
+                        Home::Slot(s) => &mut slots[s as usize],
+                        Home::Out(o) => &mut outs[o as usize],
+                        Home::Nowhere => unreachable!("only kept results are steps"),
+                    };
+                    // Taken out for the moment, so that operands can be read beside it.
+                    let mut held = std::mem::take(held);
+                    let to = match step.to {
+                        Home::Out(_) => &mut held[lo..hi],
+                        _ => &mut held[..hi - lo],
+                    };
+                    let operand = |o: Operand| match o {
+                        Operand::Plane(p) => In::Row(&planes[p as usize].numbers()[lo..hi]),
+                        Operand::Const(c) => In::Const(consts[c as usize]),
+                        Operand::Slot(s) => In::Row(&slots[s as usize][..hi - lo]),
+                        Operand::Out(o) => In::Row(&outs[o as usize][lo..hi]),
+                    };
+                    let (a, b, c) = (operand(step.a), operand(step.b), operand(step.c));
+                    match step.code {
+                        Code::Add => arch.dispatch(Two { to, a, b, f: |a: T, b: T| a + b }),
+                        Code::Sub => arch.dispatch(Two { to, a, b, f: |a: T, b: T| a - b }),
+                        Code::Mul => arch.dispatch(Two { to, a, b, f: |a: T, b: T| a * b }),
+                        Code::Div => arch.dispatch(Two { to, a, b, f: |a: T, b: T| a / b }),
+                        Code::Neg => arch.dispatch(Two { to, a, b: a, f: |a: T, _| -a }),
+                        Code::Abs => arch.dispatch(Two { to, a, b: a, f: |a: T, _| a.abs() }),
+                        Code::Sqrt => arch.dispatch(Two { to, a, b: a, f: |a: T, _| a.sqrt() }),
+                        Code::MulAdd => {
+                            arch.dispatch(Three { to, a, b, c, f: |a: T, b: T, c: T| a * b + c });
                         }
-                        if let Some(check) = step.check
-                            && failed.is_none_or(|first| check < first)
-                            && !to.iter().all(|x| x.is_finite())
-                        {
-                            *failed = Some(check);
+                        Code::MulSub => {
+                            arch.dispatch(Three { to, a, b, c, f: |a: T, b: T, c: T| a * b - c });
                         }
-                        match step.to {
-                            Home::Slot(s) => slots[s as usize] = held,
-                            Home::Out(o) => outs[o as usize] = held,
-                            Home::Nowhere => {}
+                        Code::SubMul => {
+                            arch.dispatch(Three { to, a, b, c, f: |a: T, b: T, c: T| c - a * b });
                         }
+                        Code::MulMul => {
+                            arch.dispatch(Three { to, a, b, c, f: |a: T, b: T, c: T| a * b * c });
+                        }
+                        Code::Unary(f) => one(to, a, unary[f as usize]),
+                        Code::Binary(f) => two(to, a, b, binary[f as usize]),
                     }
-                    lo = hi;
+                    if let Some(check) = step.check
+                        && failed.is_none_or(|first| check < first)
+                        && !to.iter().all(|x| x.is_finite())
+                    {
+                        failed = Some(check);
+                    }
+                    match step.to {
+                        Home::Slot(s) => slots[s as usize] = held,
+                        Home::Out(o) => outs[o as usize] = held,
+                        Home::Nowhere => {}
+                    }
                 }
-            };
-            pulp::Arch::new().dispatch(loops);
+                lo = hi;
+            }
         }
         if let Some(check) = failed {
             return Err(check as usize);
@@ -500,6 +509,39 @@ fn block<T: Real>() -> usize {
 enum In<'a, T> {
     Row(&'a [T]),
     Const(T),
+}
+
+/// An operation of two operands on a block, compiled for wide registers as well.
+struct Two<'a, T, F> {
+    to: &'a mut [T],
+    a: In<'a, T>,
+    b: In<'a, T>,
+    f: F,
+}
+
+impl<T: Real, F: Fn(T, T) -> T> pulp::NullaryFnOnce for Two<'_, T, F> {
+    type Output = ();
+    #[inline(always)]
+    fn call(self) {
+        two(self.to, self.a, self.b, self.f);
+    }
+}
+
+/// An operation of three operands on a block.
+struct Three<'a, T, F> {
+    to: &'a mut [T],
+    a: In<'a, T>,
+    b: In<'a, T>,
+    c: In<'a, T>,
+    f: F,
+}
+
+impl<T: Real, F: Fn(T, T, T) -> T> pulp::NullaryFnOnce for Three<'_, T, F> {
+    type Output = ();
+    #[inline(always)]
+    fn call(self) {
+        three(self.to, self.a, self.b, self.c, self.f);
+    }
 }
 
 #[inline(always)]

@@ -9,7 +9,7 @@ use crate::section::Place;
 use crate::variables::{self, Taken};
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Span, nearest};
-use moldloft_model::Run;
+use moldloft_model::{Extent, Run};
 use moldloft_num::trace::Key;
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::number;
@@ -1032,6 +1032,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     pub fn store(&mut self, place: Place, value: Value<T>) -> Result<(), Diagnostic> {
         let text = self.modules.text(place.name).clone();
+        if place.frame.is_none() && self.run.extent() == Extent::Edit {
+            return Err(Diagnostic::error(
+                "misplaced-assignment",
+                format!("an expression from outside does not change `{text}`"),
+            )
+            .expected("an expression that reads the program's variables")
+            .help("put the statement into the program"));
+        }
         let Some(bound) = self.root_mut(&place) else { return Err(silent()) };
         match &mut bound.what {
             Binding::Variable { ty, value: old, fixed, known } => {

@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     if os.name == "nt":
         return subprocess.run([str(path)], check=False).returncode
     sys.stdout.flush()
-    os.execv(path, [str(path)])
+    return os.execv(path, [str(path)])
 
 
 def server() -> Path:

@@ -1,7 +1,7 @@
 """``moldloft repl``: talk to the language line by line.
 
-The lines are a program that is run again at each of them: only what changed is computed. A line that
-has errors is told and left out.
+The lines are a program that is run again at each of them: only what changed is computed. A line
+that has errors is told and left out.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Session:
 
         Raises
         ------
-        ModelError
+        Error
             When it has errors; it is left out then.
         """
         if not entry.strip():
@@ -62,7 +62,7 @@ class Session:
         expression = entry.strip().rstrip(";")
         try:
             return [shown(document.eval(expression))]
-        except ModelError as error:
+        except Error as error:
             if _is_expression(expression, error):
                 raise
         text = document.text()
@@ -94,14 +94,14 @@ class Session:
         return [f"{name}: {shape}" for name, shape, _ in self.model._document.variables()]
 
 
-def _is_expression(text: str, error: ModelError) -> bool:
+def _is_expression(text: str, error: Error) -> bool:
     """Whether the text was meant as an expression, so that its error is the one to show."""
-    ids = {d.id for d in error.diagnostics}
+    ids = {d.id for d in getattr(error, "diagnostics", [])}
     syntax = {"unexpected-token", "missing-semicolon", "unclosed-bracket", "not-a-value"}
     words = text.replace("(", " ").split()
     if not words or ids & syntax or "=" in text.replace("==", "").replace("<=", ""):
         return False
-    return "no-value" not in ids
+    return not ids & {"no-value", "misplaced-assignment"}
 
 
 def shown(value: Any) -> str:
@@ -111,7 +111,7 @@ def shown(value: Any) -> str:
     >>> shown(np.arange(100.0))
     '{0, 1, 2, 3, 4, 5, 6, 7, ...} farray[100]'
     """
-    shape = getattr(value, "shape", ())
+    shape: tuple[int, ...] = tuple(getattr(value, "shape", ()))
     if len(shape) == 1 and shape[0] > _MOST_ITEMS:
         return as_text(value[:_MOST_ITEMS])[:-1] + f", ...}} farray[{shape[0]}]"
     if len(shape) == 2 and shape[1] == 3 and shape[0] > _MOST_ITEMS:
@@ -246,7 +246,7 @@ def _line_editor(session: Session) -> Iterator[None]:
         found = session.model._document.complete(line)
         return found[number] if number < len(found) else None
 
-    readline.set_completer_delims(" \t\n()[]{},;=+-*/^|&<>!.:\"")
+    readline.set_completer_delims(' \t\n()[]{},;=+-*/^|&<>!.:"')
     readline.set_completer(complete)
     readline.parse_and_bind("tab: complete")
     try:
