@@ -37,12 +37,14 @@ mod hydrostatics;
 mod measure;
 mod mesh;
 mod panel;
+mod planar;
 mod quality;
 mod report;
 mod section;
 mod select;
 mod sum;
 mod topology;
+mod triangulate;
 mod volume;
 
 pub use afloat::{Afloat, Attitude, Water, afloat, bottom};
@@ -55,10 +57,12 @@ pub use hydrostatics::{
 pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;
+pub use planar::planar_triangles;
 pub use quality::{PatchQuality, Spread, WorstPanel, qualities, quality};
 pub use report::{OpenLoop, TopologyReport};
 pub use section::{Polyline, section};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};
+pub use triangulate::triangulate;
 pub use volume::{
     BadCell, BlockFace, BlockQuality, Blocks, BlocksReport, Boundary, HexBlock, Hexahedron,
     Interface,

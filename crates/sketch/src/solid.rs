@@ -7,9 +7,8 @@
 
 use crate::curve::{Curve, CurveFault, CurveKind, Piece, Traced, trace};
 use crate::mass::{Mass, Sums};
-use crate::triangulate::triangulate;
 use crate::{FaceId, Layout, Object, Planes, PointId};
-use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
