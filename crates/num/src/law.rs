@@ -8,7 +8,7 @@ use std::sync::Arc;
 pub type LawJet<T> = [T; 3];
 
 /// A monotone law R of [0, 1] with R(0) = 0 and R(1) = 1 exactly: it redistributes the parameter of
-/// a curve c to C(t) = c(R(t)).
+/// a curve c to C(t) = c(R(t)). Partial laws run between other values, and take a part of the curve.
 ///
 /// Its slope is positive inside; at the ends it may vanish. Outside [0, 1] it is the natural
 /// continuation of its formula.
@@ -102,7 +102,9 @@ impl<T: Real> Law<T> for Composed<T> {
 
     fn breaks(&self) -> Vec<f64> {
         let mut all = self.first.breaks();
-        all.extend(self.second.breaks().into_iter().map(|b| inv_law(&*self.first, b)));
+        let [low, high] = [0.0, 1.0].map(|t| self.first.jet(T::from(t), Order::Zero)[0].re());
+        let reached = self.second.breaks().into_iter().filter(|b| low < *b && *b < high);
+        all.extend(reached.map(|b| inv_law(&*self.first, b)));
         all.sort_by(f64::total_cmp);
         all.dedup();
         all

@@ -68,6 +68,11 @@ impl<T: Real> MovingSpline<T> {
         Ok(Self { degree, knots, points, rational })
     }
 
+    /// The control points of a curve without weights.
+    pub fn control_points(&self) -> impl Iterator<Item = Vec3<T>> + '_ {
+        self.points.iter().map(|(p, _)| *p)
+    }
+
     /// True where the curve begins and ends at its first and last control point.
     pub fn clamped_ends(&self) -> [bool; 2] {
         let (p, n) = (self.degree, self.points.len());

@@ -158,12 +158,24 @@ impl<T: Real> Relabel<T> {
     /// [`RelabelError`] when the values run back, do not run from 0 to 1, are too few, or so many
     /// are equal that R stands still inside.
     pub fn spline(degree: usize, mut values: Vec<T>) -> Result<Self, RelabelError> {
+        if let [first, .., last] = values.as_mut_slice() {
+            let ends = (first.re(), last.re());
+            if ends != (0.0, 1.0) {
+                return Err(RelabelError::Ends { first: ends.0, last: ends.1 });
+            }
+            (*first, *last) = (T::zero(), T::one());
+        }
+        Self::partial(degree, values)
+    }
+
+    /// The same from any first to any last value: a law that leaves parts of a curve out, or goes
+    /// beyond its ends.
+    ///
+    /// # Errors
+    /// As for [`Self::spline`], but for the ends.
+    pub fn partial(degree: usize, values: Vec<T>) -> Result<Self, RelabelError> {
         let knots =
             KnotVector::clamped_uniform(degree, values.len()).map_err(RelabelError::Knots)?;
-        let (first, last) = (values[0].re(), values[values.len() - 1].re());
-        if (first, last) != (0.0, 1.0) {
-            return Err(RelabelError::Ends { first, last });
-        }
         for (k, w) in values.windows(2).enumerate() {
             let (before, value) = (w[0].re(), w[1].re());
             // Written so that NaN is refused.
@@ -172,8 +184,6 @@ impl<T: Real> Relabel<T> {
                 return Err(RelabelError::NotMonotone { index: k + 1, before, value });
             }
         }
-        let last = values.len() - 1;
-        (values[0], values[last]) = (T::zero(), T::one());
         let mut ends = knots.as_slice().to_vec();
         ends.dedup();
         let law = Self { law: Law::Spline { knots, values } };

@@ -107,6 +107,33 @@ impl<T: Real> Layout<T> {
         })
     }
 
+    /// The foil without size that all points in one place make, such as the tip of a loft: with the
+    /// points' own derivatives.
+    ///
+    /// # Errors
+    /// [`FoilError::Points`] for another number of points than 3, 4 or 5.
+    pub fn vanishing(points: &[Vec3<T>]) -> Result<Self, FoilError> {
+        let (nose, tails, above, below) = match *points {
+            [nose, above, tail] => (nose, [tail, tail], above, None),
+            [upper, above, nose, lower] => (nose, [upper, lower], above, None),
+            [upper, above, nose, below, lower] => (nose, [upper, lower], above, Some(below)),
+            _ => return Err(FoilError::Points { actual: points.len() }),
+        };
+        let half = T::from(0.5);
+        let chord = (tails[0] + tails[1]) * half - nose;
+        let above = above - nose;
+        let below = below.map_or(-above, |p| p - nose);
+        Ok(Self {
+            nose,
+            tails,
+            chord,
+            camber: (above + below) * half,
+            thickness: (above - below) * half,
+            half: points.len() == 3,
+            metric: Metric::Space,
+        })
+    }
+
     /// True for a half section.
     pub fn is_half(&self) -> bool {
         self.half

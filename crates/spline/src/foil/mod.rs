@@ -256,6 +256,11 @@ impl<T: Real> Section<T> {
         Self { thickness: Thickness::Curve(curve), mean: Mean::InOrdinates }
     }
 
+    /// The same made ready to be evaluated at many places: one section of its own, not one of a loft.
+    pub fn settled(self) -> Self {
+        Self { thickness: self.thickness.settled(), ..self }
+    }
+
     /// The station at `s` in [-1, 1]; outside, the natural continuation.
     ///
     /// The slope of the mean lines with uniform load is infinite at the nose: in front of
@@ -286,7 +291,15 @@ impl<T: Real> Section<T> {
 
     /// The places s in (0, 1) at which a second derivative may jump, ascending.
     pub fn breaks(&self) -> Vec<f64> {
-        let mut breaks = self.thickness.breaks();
+        self.with_mean(self.thickness.breaks())
+    }
+
+    /// The same without the places at which only third derivatives jump.
+    pub fn kinks(&self) -> Vec<f64> {
+        self.with_mean(self.thickness.kinks())
+    }
+
+    fn with_mean(&self, mut breaks: Vec<f64>) -> Vec<f64> {
         breaks.extend(self.mean.breaks().into_iter().map(f64::sqrt));
         breaks.retain(|s| *s > 0.0 && *s < 1.0);
         breaks.sort_by(f64::total_cmp);
@@ -309,6 +322,23 @@ pub struct Profile<T: Real> {
     pub offset: Offset,
 }
 
+impl<T: Real> Profile<T> {
+    /// The parameters at which a second derivative may jump, from those of the section.
+    fn at_both_sides(&self, places: Vec<f64>) -> Vec<f64> {
+        if self.layout.is_half() {
+            return places;
+        }
+        let upper = places.iter().rev().map(|s| 0.5 * (1.0 - s));
+        let lower = places.iter().map(|s| 0.5 * (1.0 + s));
+        upper.chain([0.5]).chain(lower).collect()
+    }
+
+    /// The breaks without the places at which only third derivatives jump.
+    pub fn kinks(&self) -> Vec<f64> {
+        self.at_both_sides(self.section.kinks())
+    }
+}
+
 impl<T: Real> CurveFormula for Profile<T> {
     type Scalar = T;
 
@@ -318,12 +348,6 @@ impl<T: Real> CurveFormula for Profile<T> {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        let breaks = self.section.breaks();
-        if self.layout.is_half() {
-            return breaks;
-        }
-        let upper = breaks.iter().rev().map(|s| 0.5 * (1.0 - s));
-        let lower = breaks.iter().map(|s| 0.5 * (1.0 + s));
-        upper.chain([0.5]).chain(lower).collect()
+        self.at_both_sides(self.section.breaks())
     }
 }

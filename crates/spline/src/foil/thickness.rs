@@ -1,4 +1,5 @@
 use super::FoilError;
+use super::six_series::{Blended, STEPS};
 use crate::{End, Ends, InterpolatingSpline};
 use moldloft_num::{Curve, Jet, Real, Vec3, lift_curve};
 use std::sync::Arc;
@@ -28,6 +29,8 @@ pub enum Thickness<T: Real> {
         /// True when its z is the camber.
         cambered: bool,
     },
+    /// A form of the 6-series, which depends on the ratio of thickness.
+    Family(Blended<T>),
     /// A curve of (x, thickness, camber).
     Curve(Arc<dyn Curve<T>>),
     /// Another form, less what is left at its tail times the cube of the way behind `at`.
@@ -181,6 +184,7 @@ impl<T: Real> Thickness<T> {
         let at = match &self {
             Thickness::Joined { at, .. } => *at,
             Thickness::Spline { at, .. } => T::from(*at),
+            Thickness::Family(form) => form.top(),
             // Only rounding is left there.
             Thickness::Polynomial(_) => T::from(0.3),
             _ => return self,
@@ -210,6 +214,7 @@ impl<T: Real> Thickness<T> {
                 let p = lift_curve(&spline.jet(s.value(), J::ORDER), s);
                 (x, p.y, cambered.then_some(p.z))
             }
+            Thickness::Family(form) => (x, form.at(s), None),
             Thickness::Curve(curve) => {
                 let p = lift_curve(&curve.jet(s.value(), J::ORDER), s);
                 (p.x, p.y, Some(p.z))
@@ -225,6 +230,17 @@ impl<T: Real> Thickness<T> {
         }
     }
 
+    /// The same made ready to be evaluated at many places.
+    pub fn settled(self) -> Self {
+        match self {
+            Thickness::Family(form) => Thickness::Family(form.settled()),
+            Thickness::Closed { open, at, rest } => {
+                Thickness::Closed { open: Box::new(open.settled()), at, rest }
+            }
+            other => other,
+        }
+    }
+
     /// The places s at which a second derivative may jump.
     pub fn breaks(&self) -> Vec<f64> {
         match self {
@@ -234,9 +250,19 @@ impl<T: Real> Thickness<T> {
                 let knots = spline.knots();
                 knots[1..knots.len() - 1].iter().map(|k| k.re()).collect()
             }
+            Thickness::Family(_) => (1..STEPS).map(|k| k as f64 / STEPS as f64).collect(),
+            Thickness::Closed { open, .. } => open.breaks(),
+            _ => self.kinks(),
+        }
+    }
+
+    /// The same without the places at which only third derivatives jump.
+    pub fn kinks(&self) -> Vec<f64> {
+        match self {
             Thickness::Joined { at, .. } => vec![at.re().sqrt()],
             Thickness::Curve(curve) => curve.breaks(),
-            Thickness::Closed { open, .. } => open.breaks(),
+            Thickness::Closed { open, .. } => open.kinks(),
+            _ => Vec::new(),
         }
     }
 }
