@@ -370,7 +370,8 @@ impl<T: Scalar> Graph<T> {
             let named = |k: usize| match object.args[k] {
                 Value::Object(key) => Ok(key),
                 _ => Err(Fault::new("constant-point", "a sweep needs names")
-                    .expected("a bead and a point of the model, by their names")
+                    .expected("a bead and what follows it, by their names in the model")
+                    .found("something without a name")
                     .in_field(k)),
             };
             let locus = named(bead).and_then(|bead| self.locus(bead, named(point)?));

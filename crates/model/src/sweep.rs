@@ -1,33 +1,34 @@
-//! Parts of the graph evaluated anew with a bead moved, for curves that a point describes.
+//! Parts of the graph evaluated anew with a bead moved, for curves that a point describes and surfaces
+//! that a curve does.
 
 use crate::Graph;
-use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Context, CurveRef, Fault, LocusRef, Point, Row, Scalar, Sweep, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 impl<T: Scalar> Graph<T> {
-    /// Where `point` is when `bead` is moved along its curve.
+    /// What `follower` is when `bead` is moved along its curve.
     ///
     /// # Errors
     /// `constant-point` when the one does not depend on the other.
-    pub(crate) fn locus(&self, bead: Key, point: Key) -> Result<LocusRef<T>, Fault> {
+    pub(crate) fn locus(&self, bead: Key, follower: Key) -> Result<LocusRef<T>, Fault> {
         let unrelated = || {
-            Fault::new("constant-point", "the point does not depend on the bead")
-                .expected("a point that moves when the bead does")
+            Fault::new("constant-point", "what is swept does not depend on the bead")
+                .expected("an object that moves when the bead does")
                 .found("one that stays")
+                .help("build it on the bead")
                 .related(Some(bead), "is the bead")
-                .related(Some(point), "is the point")
+                .related(Some(follower), "does not move with it")
                 .in_field(1)
         };
         let after: HashSet<Key> = self.dependents(bead).into_iter().collect();
-        if !after.contains(&point) {
+        if !after.contains(&follower) {
             return Err(unrelated());
         }
-        let mut between = self.ancestors(point);
+        let mut between = self.ancestors(follower);
         between.retain(|key| after.contains(key));
-        between.push(point);
+        between.push(follower);
         // Parents have a lower rank.
         between.sort_unstable_by_key(|&key| (self.object(key).rank, key));
         let inside: HashSet<Key> = between.iter().copied().collect();
@@ -35,9 +36,11 @@ impl<T: Scalar> Graph<T> {
         for key in between {
             let object = self.object(key);
             if object.row.sweep.is_some() {
-                return Err(Fault::new("nested-sweep", "a swept point is swept again")
-                    .expected("a point that depends on no curve of a swept point")
-                    .related(Some(key), "sweeps a point itself")
+                return Err(Fault::new("nested-sweep", "what is swept depends on a sweep itself")
+                    .expected("an object that depends on no ProcCurve or ProcSurf")
+                    .found("one that does")
+                    .help("sweep the object that the other sweep follows")
+                    .related(Some(key), "sweeps itself")
                     .in_field(1));
             }
             let moves = |key: Key| key == bead || inside.contains(&key);
@@ -88,10 +91,10 @@ fn filled<T: Scalar>(arg: &Value<T>, values: &HashMap<Key, Value<T>>) -> Value<T
 }
 
 impl<T: Scalar> Sweep<T> for Swept<T> {
-    fn at(&self, t: T) -> Result<Vec3<T>, Fault> {
+    fn at(&self, t: T) -> Result<Value<T>, Fault> {
         let bead = Value::Point(Box::new(Point::on_curve(self.curve.clone(), t)));
         let mut values = HashMap::from([(self.bead, bead.named(self.bead))]);
-        let mut last = Vec3::zero();
+        let mut last = Value::Unset;
         for Step { key, row, args } in &self.steps {
             let args: Vec<_> = args.iter().map(|arg| filled(arg, &values)).collect();
             let call = || T::call(row, &args, &self.context);
@@ -105,10 +108,8 @@ impl<T: Scalar> Sweep<T> for Swept<T> {
                 return Err(Fault::new("not-finite", "the result is not a finite number")
                     .related(Some(*key), "has no finite value there"));
             }
-            if let Value::Point(p) = &value {
-                last = p.xyz;
-            }
-            values.insert(*key, value.named(*key));
+            last = value.named(*key);
+            values.insert(*key, last.clone());
         }
         Ok(last)
     }

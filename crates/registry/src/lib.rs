@@ -33,7 +33,7 @@ pub use read::{FromValue, Mirror, many};
 pub use refs::{CurveRef, FieldRef, Implicit, Point, RelabelRef, SetRef, SolidRef, SurfaceRef};
 pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
-pub use sweep::{LocusRef, Sweep};
+pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};
 
 /// What the derive macro's output refers to.

@@ -291,6 +291,7 @@ fn axis<T: Real>(curve: &CurveRef<T>) -> Result<Axis<T>, Fault> {
     Axis::through(curve.end(0.0), curve.end(1.0)).ok_or_else(|| {
         Fault::new("zero-length-axis", "the axis has no direction: its ends coincide")
             .expected("a line between two different points")
+            .found("no distance between its ends")
             .help("move one end of the line")
     })
 }

@@ -118,6 +118,8 @@ pub struct SurfaceRef<T: Real> {
     shape: Arc<dyn Surface<T>>,
     /// The object, once it has a name.
     pub key: Option<Key>,
+    /// How it was found, when that took a search or a fit.
+    pub found: Option<Arc<Found>>,
     /// How deep shapes are nested in it, itself included.
     pub depth: u32,
 }
@@ -262,7 +264,13 @@ impl<T: Real> CurveRef<T> {
 impl<T: Real> SurfaceRef<T> {
     /// A surface that holds on to shapes nested `nesting` deep (0 when it holds on to none).
     pub fn new(shape: impl Surface<T> + 'static, nesting: u32) -> Self {
-        Self { shape: Arc::new(shape), key: None, depth: nesting + 1 }
+        Self { shape: Arc::new(shape), key: None, found: None, depth: nesting + 1 }
+    }
+
+    /// The same surface with the report of how it was found.
+    pub fn with_found(mut self, found: Found) -> Self {
+        self.found = Some(Arc::new(found));
+        self
     }
 
     /// The position at parameters that are jets.

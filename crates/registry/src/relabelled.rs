@@ -41,7 +41,7 @@ const ONE_BREAK: f64 = 1e-12;
 /// `wrong-class` when the law is none.
 pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, Fault> {
     let Some(law) = Option::<RelabelRef<T>>::from_value(law)? else { return Ok(value) };
-    if law.is_straight() && law.breaks().is_empty() {
+    if law.is_straight() && law.breaks().is_empty() && reaches(&law) == [true; 2] {
         return Ok(value);
     }
     Ok(match value {
@@ -58,16 +58,27 @@ pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, 
         }
         Value::Surface(surface) => {
             let nesting = surface.depth.max(law.depth);
-            Value::Surface(SurfaceRef::new(RelabelledSurface { surface, law }, nesting))
+            let found = surface.found.clone();
+            let shape = RelabelledSurface { surface, law };
+            let mut relabelled = SurfaceRef::new(shape, nesting);
+            relabelled.found = found;
+            Value::Surface(relabelled)
         }
         other => other,
     })
 }
 
+/// Whether the law runs from 0, and to 1: a partial one does not.
+fn reaches<T: Real>(law: &RelabelRef<T>) -> [bool; 2] {
+    [0.0, 1.0].map(|end| law.jet(T::from(end), Order::Zero)[0].re() == end)
+}
+
 /// The breaks of the law, and where it reaches those of the shape.
 fn breaks<T: Real>(law: &RelabelRef<T>, of_shape: Vec<f64>) -> Vec<f64> {
     let mut all = law.breaks();
-    all.extend(of_shape.into_iter().map(|b| inv_law(&**law, b)));
+    let [low, high] = [0.0, 1.0].map(|end| law.jet(T::from(end), Order::Zero)[0].re());
+    let inside = of_shape.into_iter().filter(|b| low < *b && *b < high);
+    all.extend(inside.map(|b| inv_law(&**law, b)));
     all.retain(|t| *t > 0.0 && *t < 1.0);
     all.sort_by(f64::total_cmp);
     all.dedup_by(|b, a| *b - *a < ONE_BREAK);
@@ -155,7 +166,14 @@ impl<T: Real> Curve<T> for RelabelledCurve<T> {
     }
 
     fn trace(&self) -> Trace<T> {
+        let whole = reaches(&self.law);
         match self.curve.trace() {
+            Trace::Point(point) => Trace::Point(point),
+            // A part is a curve of its own; it ends where the whole does only if it goes that far.
+            _ if whole != [true; 2] => {
+                let ends = self.curve.end_points();
+                Trace::Own([0, 1].map(|k| ends[k].filter(|_| whole[k])))
+            }
             Trace::Pieces(pieces) => match pieces_by(&self.law, &pieces) {
                 Some(pieces) => Trace::Pieces(pieces),
                 None => Trace::Own(self.curve.end_points()),
@@ -256,6 +274,28 @@ impl<T: Real> Surface<T> for RelabelledSurface<T> {
 
     fn edges(&self) -> Edges<T> {
         let mut edges = self.surface.edges();
+        let whole = reaches(&self.law);
+        if whole != [true; 2] {
+            for (end, k) in [(0, 0), (1, 2)] {
+                if !whole[end] {
+                    edges.edges[k] = Edge::Own;
+                    edges.corners[k] = None;
+                    edges.corners[k + 1] = None;
+                }
+            }
+            // A seam between the two is open then, and the sides are parts of what they were.
+            for k in 0..4 {
+                let keeps = match &edges.edges[k] {
+                    Edge::Pole(_) | Edge::Own => true,
+                    Edge::SameAs(_) => k % 2 == 1,
+                    Edge::Pieces(_) => k % 2 == 0,
+                };
+                if !keeps {
+                    edges.edges[k] = Edge::Own;
+                }
+            }
+            return edges;
+        }
         for k in [1, 3] {
             if let Edge::Pieces(pieces) = &edges.edges[k] {
                 edges.edges[k] = match governed(&self.law, pieces) {

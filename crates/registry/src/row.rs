@@ -162,7 +162,7 @@ pub struct Row {
     pub columns: Option<&'static str>,
     /// An example in the language that runs by itself.
     pub example: Cow<'static, str>,
-    /// For a kind that sweeps a point: the fields of the bead that is moved and of the point that
+    /// For a kind that sweeps: the fields of the bead that is moved and of the point or curve that
     /// follows, which the model gives as a [`crate::LocusRef`].
     pub sweep: Option<[usize; 2]>,
     /// How it is computed.

@@ -1,18 +1,18 @@
-use crate::{Class, Fault, FromValue, Value};
+use crate::{Class, CurveRef, Fault, FromValue, Value};
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
-/// Where a point of the model is when a bead that it depends on is moved: the objects between the
+/// What an object of the model is when a bead that it depends on is moved: the objects between the
 /// two, evaluated anew.
 pub trait Sweep<T: Real>: Send + Sync {
-    /// The position of the point with the bead at `t` of its curve.
+    /// The value of the object with the bead at `t` of its curve.
     ///
     /// # Errors
     /// The fault of the first object that has no value then.
-    fn at(&self, t: T) -> Result<Vec3<T>, Fault>;
+    fn at(&self, t: T) -> Result<Value<T>, Fault>;
 }
 
-/// The argument of a kind that sweeps a point: made by the model, see [`crate::Row::sweep`].
+/// An object that follows a bead: made by the model for kinds that sweep, see [`crate::Row::sweep`].
 #[derive(Clone)]
 pub struct LocusRef<T: Real>(Arc<dyn Sweep<T>>);
 
@@ -23,27 +23,65 @@ impl<T: Real> LocusRef<T> {
     }
 }
 
-impl<T: Real> std::ops::Deref for LocusRef<T> {
-    type Target = dyn Sweep<T>;
-    fn deref(&self) -> &Self::Target {
-        &*self.0
-    }
-}
-
 impl<T: Real> std::fmt::Debug for LocusRef<T> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str("LocusRef")
     }
 }
 
-impl<T: Real> FromValue<T> for LocusRef<T> {
+/// The argument of a kind that sweeps a point.
+#[derive(Clone, Debug)]
+pub struct MovingPoint<T: Real>(LocusRef<T>);
+
+impl<T: Real> MovingPoint<T> {
+    /// The position with the bead at `t`.
+    ///
+    /// # Errors
+    /// See [`Sweep::at`].
+    pub fn at(&self, t: T) -> Result<Vec3<T>, Fault> {
+        match self.0.0.at(t)? {
+            Value::Point(p) => Ok(p.xyz),
+            other => Err(Fault::wrong_class(Class::Point, other.class())),
+        }
+    }
+}
+
+/// The argument of a kind that sweeps a curve.
+#[derive(Clone, Debug)]
+pub struct MovingCurve<T: Real>(LocusRef<T>);
+
+impl<T: Real> MovingCurve<T> {
+    /// The curve with the bead at `t`.
+    ///
+    /// # Errors
+    /// See [`Sweep::at`].
+    pub fn at(&self, t: T) -> Result<CurveRef<T>, Fault> {
+        match self.0.0.at(t)? {
+            Value::Curve(c) => Ok(c),
+            other => Err(Fault::wrong_class(Class::Curve, other.class())),
+        }
+    }
+}
+
+fn locus<T: Real>(value: &Value<T>, class: Class) -> Result<LocusRef<T>, Fault> {
+    match value {
+        Value::Locus(locus) => Ok(locus.clone()),
+        _ => Err(Fault::new("no-model", "things are swept in a model only")
+            .expected(format!("a named {} that depends on a bead", class.name()))
+            .found(value.class().a())),
+    }
+}
+
+impl<T: Real> FromValue<T> for MovingPoint<T> {
     const CLASS: Class = Class::Point;
     fn from_value(value: &Value<T>) -> Result<Self, Fault> {
-        match value {
-            Value::Locus(locus) => Ok(locus.clone()),
-            _ => Err(Fault::new("no-model", "a point is swept in a model only")
-                .expected("a named point that depends on a bead")
-                .found(value.class().a())),
-        }
+        locus(value, Class::Point).map(Self)
+    }
+}
+
+impl<T: Real> FromValue<T> for MovingCurve<T> {
+    const CLASS: Class = Class::Curve;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        locus(value, Class::Curve).map(Self)
     }
 }

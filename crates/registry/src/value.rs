@@ -387,6 +387,7 @@ impl<T: Real> Value<T> {
         match self {
             Value::Point(p) => p.found.as_ref(),
             Value::Curve(c) => c.found.as_ref(),
+            Value::Surface(s) => s.found.as_ref(),
             _ => None,
         }
     }

@@ -203,7 +203,14 @@ impl<T: Real> Build<T> for InvRelabel<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let law = self.relabel;
         for end in [0.0, 1.0] {
-            let slope = law.jet(T::from(end), Order::First)[1].re();
+            let [value, slope, _] = law.jet(T::from(end), Order::First).map(Real::re);
+            if value != end {
+                return Err(Fault::new("wrong-ends", "a partial relabel cannot be undone")
+                    .expected(format!("the value {end} at t = {end}"))
+                    .found(value.to_string())
+                    .related(law.key, "is the relabel")
+                    .in_field(0));
+            }
             if slope < NO_SLOPE {
                 return Err(Fault::new("zero-slope", "this relabel cannot be undone")
                     .expected("a slope at both ends")

@@ -64,7 +64,8 @@ fn law<T: Real>(
 /// A redistribution that is a B-spline function of the parameter: R(t) = sum N_i(t) r_i, with
 /// clamped uniform knots (as a B-sub-curve has its beads' parameters).
 ///
-/// The values run from 0 to 1 and ascend. With N values the degree is at most N - 1: a higher one
+/// The values run from 0 to 1 and ascend; with `partial = 1` they run from any value to a greater one,
+/// and the law leaves the rest of the curve out, or goes on beyond its ends. With N values the degree is at most N - 1: a higher one
 /// is lowered to that. Degree 1 is straight between its breaks, so parts of other curves stay parts
 /// of them.
 #[derive(Kind)]
@@ -81,13 +82,23 @@ pub struct Relabel<T: Real> {
     /// Polynomial degree.
     #[field(default = 3, min = 1, max = 25)]
     degree: usize,
+    /// 1 when the values may begin and end elsewhere than at 0 and 1.
+    #[field(default = 0, min = 0, max = 1)]
+    partial: u32,
 }
 
 impl<T: Real> Build<T> for Relabel<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let degree = self.degree.min(self.values.len().saturating_sub(1)).max(1);
-        law(spline::Relabel::spline(degree, self.values), |fault, error| match error {
+        let made = match self.partial {
+            0 => spline::Relabel::spline(degree, self.values),
+            _ => spline::Relabel::partial(degree, self.values),
+        };
+        law(made, |fault, error| match error {
             RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(0),
+            RelabelError::Ends { .. } => {
+                fault.help("or add partial = 1 to leave a part of the curve out").in_field(0)
+            }
             _ => fault.in_field(0),
         })
     }
