@@ -207,6 +207,7 @@ pub fn common_surface<T: Real>(
             let fault = Fault::new("wrong-surface", message)
                 .expected("magnets and snakes of one surface")
                 .found("two different surfaces")
+                .help("take magnets of one surface; CopyMagnet and CopySnake take them to another")
                 .related(*key, "lies on one surface")
                 .related(surface.key, "is the surface of the one")
                 .related(first_key, "lies on another surface")

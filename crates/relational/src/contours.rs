@@ -85,15 +85,24 @@ macro_rules! contour_kind {
 
 contour_kind!(
     /// Sections x = start + i step, for i from first to last: the stations of a hull.
-    XContours, 0, "XContours stations(0, 10, 1.8, 2.735);"
+    XContours, 0,
+    "AbsPoint A(0, 0, -1); AbsPoint B(30, 0, -1.5); AbsPoint C(0, 3, 2); AbsPoint D(15, 8, 2); \
+     AbsPoint E(30, 4, 2.5); Line keel(A, B); BCurve sheer({C, D, E}, 2); RuledSurf hull(keel, sheer); \
+     XContours stations(0, 10, 1.8, 2.735);"
 );
 contour_kind!(
     /// Sections y = start + i step, for i from first to last: the buttocks of a hull.
-    YContours, 1, "YContours buttocks(0, 4, 0.5, 0.5);"
+    YContours, 1,
+    "AbsPoint A(0, 0, -1); AbsPoint B(30, 0, -1.5); AbsPoint C(0, 3, 2); AbsPoint D(15, 8, 2); \
+     AbsPoint E(30, 4, 2.5); Line keel(A, B); BCurve sheer({C, D, E}, 2); RuledSurf hull(keel, sheer); \
+     YContours buttocks(0, 4, 0.5, 0.75);"
 );
 contour_kind!(
     /// Sections z = start + i step, for i from first to last: the waterlines of a hull.
-    ZContours, 2, "ZContours waterlines(-2, 2, 0, 0.25);"
+    ZContours, 2,
+    "AbsPoint A(0, 0, -1); AbsPoint B(30, 0, -1.5); AbsPoint C(0, 3, 2); AbsPoint D(15, 8, 2); \
+     AbsPoint E(30, 4, 2.5); Line keel(A, B); BCurve sheer({C, D, E}, 2); RuledSurf hull(keel, sheer); \
+     ZContours waterlines(-2, 4, 0, 0.5);"
 );
 
 /// Sections by planes parallel to a given one, at the distances start + i step from it along its
@@ -103,6 +112,8 @@ contour_kind!(
     class = Contours,
     columns = "plane first last start step",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0.5, 2); TwoPointPlane deck(A, B); \
+               AbsPoint P(0, 0, -1); AbsPoint Q(4, 0, -1); AbsPoint R(0, 2, 1.5); AbsPoint S(2, 3, 2.5); \
+               AbsPoint T(4, 2, 1.5); Line low(P, Q); BCurve high({R, S, T}, 2); RuledSurf side(low, high); \
                PlaneContours diagonals(deck, 0, 4, -1, 0.5);"
 )]
 pub struct PlaneContours<T: Real> {
@@ -134,7 +145,9 @@ impl<T: Real> Build<T> for PlaneContours<T> {
     class = Contours,
     columns = "line first last start step",
     example = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0.25, 0); Line shaft(O, X); \
-               CylinderContours radii(shaft, 0, 8, 0.2, 0.1);"
+               AbsPoint P(0, 0, -1); AbsPoint Q(4, 0, -1); AbsPoint R(0, 2, 1.5); AbsPoint S(2, 3, 2.5); \
+               AbsPoint T(4, 2, 1.5); Line low(P, Q); BCurve high({R, S, T}, 2); RuledSurf side(low, high); \
+               CylinderContours radii(shaft, 0, 8, 1, 0.25);"
 )]
 pub struct CylinderContours<T: Real> {
     /// The common axis: the line through the ends of a curve.
@@ -176,7 +189,9 @@ impl<T: Real> Build<T> for CylinderContours<T> {
     class = Contours,
     columns = "line first last start step",
     example = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0.25, 0); Line shaft(O, X); AbsPoint up(0, 0.5, 2); \
-               AngleContours meridians(shaft, 0, 3, 0, 0.5); \
+               AbsPoint P(0, 0, -1); AbsPoint Q(4, 0, -1); AbsPoint R(0, 2, 1.5); AbsPoint S(2, 3, 2.5); \
+               AbsPoint T(4, 2, 1.5); Line low(P, Q); BCurve high({R, S, T}, 2); RuledSurf side(low, high); \
+               AngleContours meridians(shaft, 0, 3, -1, 0.5); \
                AngleContours others(shaft, 0, 3, 0.25, 0.5, zero = up);"
 )]
 pub struct AngleContours<T: Real> {

@@ -1,12 +1,14 @@
-//! What foil curves and foil snakes have in common: their section from their arguments.
+//! What foil curves, foil snakes and foil lofts have in common: their arguments, and their section
+//! from them.
 
 use crate::arguments::Named;
-use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use crate::lifted;
+use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3};
 use moldloft_registry::{CurveRef, Fault};
 use moldloft_spline::foil::{FoilError, Layout, Metric, Offset, Profile, Section, SectionSpec};
 use std::sync::Arc;
 
-/// The fields of a foil, in this order in both kinds.
+/// The fields of a foil, in the order of [`foil_kind`].
 pub const POINTS: usize = 0;
 const FAMILY: usize = 1;
 const MEAN: usize = 2;
@@ -19,7 +21,77 @@ const OFFSET: usize = 8;
 const ORDINATES: usize = 10;
 const METRIC: usize = 11;
 
+/// Declares a kind of foil: a list of what the section is laid between, the arguments that say
+/// which section it is, and those of its own after them. `parts` takes it apart again.
+macro_rules! foil_kind {
+    ($(#[$kind:meta])* $name:ident {
+        $(#[$first:meta])* $items:ident: $Item:ty
+        $(, $(#[$last:meta])* metric: $Metric:ty)? $(,)?
+    }) => {
+        $(#[$kind])*
+        pub struct $name<T: Real> {
+            $(#[$first])*
+            #[field(min_items = 3)]
+            $items: Vec<$Item>,
+            /// Thickness form: "4-digit", "modified", "5-digit", "16", "63", "64", "65", "66", "63A",
+            /// "64A", "65A" or "66tmb", or its number in this list.
+            #[field(default = "4-digit")]
+            family: crate::arguments::Named,
+            /// Mean line: "flat", "parabolic", "210" to "250", "221" to "241", "a" or "a modified"; "" is
+            /// the usual one of the family.
+            #[field(default = "")]
+            mean: std::sync::Arc<str>,
+            /// Place of the greatest camber of the parabolic mean line, in chords.
+            #[field(default = 0.4)]
+            camber_at: T,
+            /// Extent a of the uniform load of the mean line "a"; 0.8 for 66tmb, else 1, when not given.
+            load: Option<T>,
+            /// Nose index of the modified form: 6 is the plain nose, 0 a sharp one.
+            #[field(default = 6)]
+            nose_index: T,
+            /// Place of the greatest thickness of the modified form, from 0.2 to 0.6.
+            #[field(default = 0.3)]
+            thickness_at: T,
+            /// "closed" draws the tail to its points, "open" leaves the thickness that the form has there.
+            #[field(default = "closed")]
+            tail: std::sync::Arc<str>,
+            /// "affine" sets thickness off across the chord, "normal" across the mean line.
+            #[field(default = "affine")]
+            offset: std::sync::Arc<str>,
+            /// A curve of ordinates (x, half thickness, camber) from nose to tail instead of a family.
+            section: Option<moldloft_registry::CurveRef<T>>,
+            /// Ordinates {x, half thickness, camber} from nose to tail instead of a family.
+            ordinates: Option<Vec<moldloft_num::Vec3<T>>>,
+            $($(#[$last])* metric: $Metric,)?
+        }
+
+        impl<T: Real> $name<T> {
+            /// What the section is laid between, and which section it is.
+            fn parts(self) -> (Vec<$Item>, crate::foil::Arguments<T>) {
+                let metric: Option<moldloft_num::Vec3<T>> = None;
+                $(let metric: $Metric = metric.or(self.metric);)?
+                let arguments = crate::foil::Arguments {
+                    family: self.family,
+                    mean: self.mean,
+                    camber_at: self.camber_at,
+                    load: self.load,
+                    nose_index: self.nose_index,
+                    thickness_at: self.thickness_at,
+                    tail: self.tail,
+                    offset: self.offset,
+                    section: self.section,
+                    ordinates: self.ordinates,
+                    metric,
+                };
+                (self.$items, arguments)
+            }
+        }
+    };
+}
+pub(crate) use foil_kind;
+
 /// The arguments of a foil but its points.
+#[derive(Clone)]
 pub struct Arguments<T: Real> {
     pub family: Named,
     pub mean: Arc<str>,
@@ -49,6 +121,43 @@ impl<T: Real> Arguments<T> {
     /// The foil between `points`, whether its section is closed, and how deep shapes are nested in
     /// it.
     pub fn profile(self, points: &[Vec3<T>]) -> Result<(Profile<T>, bool, u32), Fault> {
+        let metric = self.metric.map_or(Metric::Space, |m| Metric::Plane(m.to_array()));
+        let layout = Layout::new(points, metric).map_err(of_foil)?;
+        let (section, layout, offset, nesting) = self.laid(layout)?;
+        let closed = section.is_closed();
+        let section = Arc::new(section.settled());
+        Ok((Profile { section, layout, offset }, closed, nesting))
+    }
+
+    /// The same in numbers that may depend on a parameter, for lofts; points that all are in one
+    /// place make a foil without size.
+    pub fn lifted<J: Jet<T>>(&self, points: &[Vec3<J>]) -> Result<Profile<J>, Fault> {
+        let fixed = |v: Vec3<T>| v.map(J::fixed);
+        let arguments = Arguments::<J> {
+            family: self.family.clone(),
+            mean: self.mean.clone(),
+            camber_at: J::fixed(self.camber_at),
+            load: self.load.map(J::fixed),
+            nose_index: J::fixed(self.nose_index),
+            thickness_at: J::fixed(self.thickness_at),
+            tail: self.tail.clone(),
+            offset: self.offset.clone(),
+            section: self.section.as_ref().map(|c| CurveRef::new(Fixed(c.clone()), c.depth)),
+            ordinates: self.ordinates.as_ref().map(|o| o.iter().map(|&p| fixed(p)).collect()),
+            metric: self.metric.map(fixed),
+        };
+        let first = points.first().map(|p| p.re());
+        let layout = if points.iter().all(|p| Some(p.re()) == first) {
+            Layout::vanishing(points)
+        } else {
+            Layout::new(points, Metric::Space)
+        };
+        let (section, layout, offset, _) = arguments.laid(layout.map_err(of_foil)?)?;
+        Ok(Profile { section: Arc::new(section), layout, offset })
+    }
+
+    /// The section, where it lies, how thickness is set off, and how deep shapes are nested in it.
+    fn laid(self, layout: Layout<T>) -> Result<(Section<T>, Layout<T>, Offset, u32), Fault> {
         let families = Section::<T>::FAMILIES;
         let family = self.family.among(&families, FAMILY)?;
         let closed = either(&self.tail, ["closed", "open"], TAIL)?;
@@ -56,8 +165,6 @@ impl<T: Real> Arguments<T> {
             true => Offset::Affine,
             false => Offset::Normal,
         };
-        let metric = self.metric.map_or(Metric::Space, |m| Metric::Plane(m.to_array()));
-        let layout = Layout::new(points, metric).map_err(of_foil)?;
         let mut nesting = 0;
         let section = match (self.section, self.ordinates) {
             (Some(_), Some(_)) => {
@@ -88,8 +195,7 @@ impl<T: Real> Arguments<T> {
         if offset == Offset::Normal && !section.has_slope() {
             return Err(of_foil(FoilError::NoSlope));
         }
-        let closed = section.is_closed();
-        Ok((Profile { section: Arc::new(section), layout, offset }, closed, nesting))
+        Ok((section, layout, offset, nesting))
     }
 }
 
@@ -99,6 +205,24 @@ struct Shared<T: Real>(CurveRef<T>);
 impl<T: Real> Curve<T> for Shared<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.0.jet(t, order)
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.0.breaks()
+    }
+}
+
+/// A curve that does not depend on the parameter of a loft, in numbers that may.
+struct Fixed<T: Real>(CurveRef<T>);
+
+impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
+    fn jet(&self, t: J, order: Order) -> CurveJet<J> {
+        let at = t.value();
+        let [_, _, dd] = self.0.jet(at, order.max(J::ORDER));
+        let along = |t: J| lifted::tangent(|t, order| self.0.jet(t, order), || self.0.breaks(), t);
+        let d = if order == Order::Zero { Vec3::zero() } else { along(t) };
+        // Sections are run through alike at all places of a loft, so t has no derivatives that the
+        // second one would pass on.
+        [self.0.at(t), d, dd.map(J::fixed)]
     }
     fn breaks(&self) -> Vec<f64> {
         self.0.breaks()

@@ -14,6 +14,7 @@
 
 mod affine;
 mod arguments;
+mod chebyshev;
 mod contours;
 mod curve;
 mod faults;
@@ -107,6 +108,7 @@ pub fn rows() -> Vec<Row> {
         curve::OffsetCurve,
         curve::BFitCurve,
         curve::NUBFitCurve,
+        curve::ProcCurve,
         curve::MirrCurve,
         search::ProjCurve,
         search::IntCurve,
@@ -134,18 +136,29 @@ pub fn rows() -> Vec<Row> {
         surface::ArcLoftSurf,
         surface::BSurf,
         surface::NURBSurf,
+        surface::FoilLoftSurf,
         surface::RevSurf,
         surface::TranSurf,
         surface::SweepSurf,
         surface::BlendSurf,
         surface::BlendCenter,
+        surface::TanBoundary,
+        surface::DevSurf,
+        surface::ExpandedSurf,
         surface::FilletSurf,
+        surface::RollFillet,
         surface::SubSurf,
+        surface::TrimSurf,
         surface::MirrSurf,
         surface::RotatSurf,
         surface::CopySurf,
         surface::ProjSurf,
         surface::RelSurf,
+        surface::OffsetSurf,
+        surface::PolySurf,
+        surface::BFitSurf,
+        surface::NUBFitSurf,
+        surface::ProcSurf,
         solid::FaceSurf,
         solid::RuledSolid,
         solid::BLoftSolid,

@@ -194,6 +194,8 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
             return c.values.iter().map(|&value| c.family.height(value, p)).collect();
         }
         Value::Number(x) => return vec![*x],
+        // Those of the rim: how many there are inside may change.
+        Value::Mesh(m) => m.points.iter().take(8).copied().collect(),
         other => panic!("no samples of {other:?}"),
     };
     points.into_iter().flat_map(Vec3::to_array).collect()

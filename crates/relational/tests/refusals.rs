@@ -36,6 +36,21 @@ fn each_fault_has_its_id_and_its_place() {
         ("Arc c(A, A, C, 2);", "coincident-points", 0, None),
         ("Arc c(A, B, C, 7);", "out-of-range", 3, None),
         ("SubCurve c(b, c);", "wrong-curve", 1, None),
+        (
+            "Line e(A, B); RuledSurf F(l, e); AbsMagnet n(F, 0.5, 0.5); OffsetPoint o(n, 1);",
+            "no-normal",
+            0,
+            None,
+        ),
+        (
+            "Line e(A, B); RuledSurf F(l, e); AbsMagnet n(F, 0.5, 0.5); TanMagnet o(n, 0.1);",
+            "singular-normal",
+            0,
+            None,
+        ),
+        // Sweeps ask the model, which is not here.
+        ("ProcCurve o(b, D);", "no-model", 1, None),
+        ("ProcSurf o(b, m);", "no-model", 1, None),
         ("LineSnake c(p, x);", "wrong-surface", 1, None),
         ("BSnake c({p, q, x});", "wrong-surface", 0, Some(2)),
         ("LineSnake c(p, B);", "wrong-class", 1, None),

@@ -62,18 +62,8 @@ pub struct NUBFitCurve<T: Real> {
 impl<T: Real> Build<T> for NUBFitCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { curve, degree, knots, accuracy } = self;
-        let (first, last) = (knots[0].re(), knots[knots.len() - 1].re());
-        if (first, last) != (0.0, 1.0) {
-            return Err(Fault::new("out-of-range", "the knots of a fit run from 0 to 1")
-                .expected("knots from 0 to 1")
-                .found(format!("knots from {first} to {last}"))
-                .in_field(2));
-        }
         let points = knots.len() + degree - 1;
-        let mut all = vec![T::zero(); degree];
-        all.push(T::zero());
-        all.extend_from_slice(&knots[1..knots.len() - 1]);
-        all.extend(vec![T::one(); degree + 1]);
+        let all = clamped(degree, &knots, 2)?;
         fit(&curve, degree, Some(all), points, accuracy)
     }
 }
@@ -94,35 +84,49 @@ fn fit<T: Real>(
         .map(|t| (t, curve.jet(T::from(t), Order::Zero)[0]))
         .collect();
     let spline = MovingSpline::fitted(degree, knots, points, &samples);
-    let spline = spline.map_err(|error| {
-        let fault = Fault::new("no-fit", error.to_string());
-        match error {
-            SplineError::Count { .. } => fault
-                .expected("knots with room between them")
-                .found("a control point that no place of the curve determines"),
-            _ => fault.expected("ascending knots, and more points than the degree"),
-        }
-        .in_field(2)
-    })?;
+    let spline = spline.map_err(|error| no_fit(error).in_field(2))?;
     let residual = {
         let gap = |(t, p): &(f64, moldloft_num::Vec3<T>)| {
             spline.jet(T::from(*t), Order::Zero)[0].re().distance(p.re())
         };
         samples.iter().map(gap).fold(0.0, f64::max)
     };
-    if let Some(accuracy) = accuracy {
+    near_enough(residual, accuracy, "curve")
+        .map_err(|fault| fault.related(curve.key, "is the curve").in_field(3))?;
+    let ends = curve.end_points();
+    let fitted = CurveRef::new(Ended { curve: spline, ends }, 0).with_found(report(residual));
+    Ok(Value::Curve(fitted))
+}
+
+/// The fault of a fit whose knots or numbers do not serve.
+pub fn no_fit(error: SplineError) -> Fault {
+    let fault = Fault::new("no-fit", error.to_string());
+    match error {
+        SplineError::Count { .. } => fault
+            .expected("knots with room between them")
+            .found("a control point that no place of the original determines"),
+        _ => fault.expected("ascending knots, and more points than the degree"),
+    }
+}
+
+/// Refuses a fit of a `noun` that comes no nearer than asked.
+pub fn near_enough<T: Real>(residual: f64, accuracy: Option<T>, noun: &str) -> Result<(), Fault> {
+    match accuracy {
         // Written so that NaN is refused.
-        if residual.is_nan() || residual > accuracy.re() {
-            return Err(Fault::new("no-fit", "the fit does not come near enough to the curve")
+        Some(accuracy) if residual.is_nan() || residual > accuracy.re() => {
+            let message = format!("the fit does not come near enough to the {noun}");
+            Err(Fault::new("no-fit", message)
                 .expected(format!("a distance of at most {}", accuracy.re()))
                 .found(format!("{residual}"))
-                .help("give it more control points or knots")
-                .related(curve.key, "is the curve")
-                .in_field(3));
+                .help("give it more control points or knots"))
         }
+        _ => Ok(()),
     }
-    let ends = curve.end_points();
-    let fitted = CurveRef::new(Ended { curve: spline, ends }, 0).with_found(Found {
+}
+
+/// How near a fit came.
+pub fn report(residual: f64) -> Found {
+    Found {
         status: FoundStatus::Ok,
         residual,
         iterations: 1,
@@ -130,6 +134,21 @@ fn fit<T: Real>(
         last: Vec::new(),
         alternatives: Vec::new(),
         advice: "",
-    });
-    Ok(Value::Curve(fitted))
+    }
+}
+
+/// The knot vector of pieces that meet at `knots`, which are those of field `field`.
+pub fn clamped<T: Real>(degree: usize, knots: &[T], field: usize) -> Result<Vec<T>, Fault> {
+    let (first, last) = (knots.first().map(|k| k.re()), knots.last().map(|k| k.re()));
+    if (first, last) != (Some(0.0), Some(1.0)) || knots.len() < 2 {
+        let ends = |x: Option<f64>| x.map_or("nothing".into(), |x| x.to_string());
+        return Err(Fault::new("out-of-range", "the knots of a fit run from 0 to 1")
+            .expected("knots from 0 to 1")
+            .found(format!("knots from {} to {}", ends(first), ends(last)))
+            .in_field(field));
+    }
+    let mut all = vec![T::zero(); degree + 1];
+    all.extend_from_slice(&knots[1..knots.len() - 1]);
+    all.extend(vec![T::one(); degree + 1]);
+    Ok(all)
 }

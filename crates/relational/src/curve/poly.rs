@@ -77,7 +77,7 @@ fn chain<T: Real>(
     if curves.is_empty() {
         return Err(too_few("curve"));
     }
-    let ends = ends(curves.len(), breaks)?;
+    let ends = shares(curves.len(), breaks, 1)?;
     for k in 1..curves.len() {
         check_joint(&curves, k, surface.is_some(), context.tolerance)?;
     }
@@ -89,8 +89,16 @@ fn chain<T: Real>(
     }))
 }
 
-/// The parameters at which pieces begin and end, 0 and 1 included.
-fn ends<T: Real>(count: usize, breaks: Option<Vec<T>>) -> Result<Vec<T>, Fault> {
+/// The parameters at which `count` pieces begin and end, 0 and 1 included: the breaks of field
+/// `field`, or equal shares.
+///
+/// # Errors
+/// `wrong-length` and `not-ascending`.
+pub fn shares<T: Real>(
+    count: usize,
+    breaks: Option<Vec<T>>,
+    field: usize,
+) -> Result<Vec<T>, Fault> {
     let Some(breaks) = breaks else {
         return Ok((0..=count).map(|k| T::from(k as f64 / count as f64)).collect());
     };
@@ -99,7 +107,7 @@ fn ends<T: Real>(count: usize, breaks: Option<Vec<T>>) -> Result<Vec<T>, Fault> 
         return Err(Fault::new("wrong-length", text)
             .expected(format!("{} numbers between 0 and 1", count - 1))
             .found(breaks.len().to_string())
-            .in_field(1));
+            .in_field(field));
     }
     let mut ends = vec![T::zero()];
     ends.extend(breaks);
@@ -114,7 +122,7 @@ fn ends<T: Real>(count: usize, breaks: Option<Vec<T>>) -> Result<Vec<T>, Fault> 
             .expected("numbers that ascend, greater than 0 and less than 1")
             .found(format!("{} after {}", ends[k].re(), ends[k - 1].re()))
             .in_item(at.saturating_sub(1))
-            .in_field(1));
+            .in_field(field));
     }
     Ok(ends)
 }

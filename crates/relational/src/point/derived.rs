@@ -3,7 +3,7 @@ use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
 use moldloft_num::{Axis, Order, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SolidRef, SurfaceRef, Value,
 };
 use moldloft_spline::{arclen, curve_integral};
 
@@ -182,19 +182,22 @@ impl<T: Real> Build<T> for BlendPoint<T> {
     }
 }
 
-/// The centroid of points, of curves by their length, or of surfaces by their area.
+/// The centroid of points, of curves by their length, of surfaces by their area, or of solids and closed
+/// bodies of triangles by their volume.
 ///
-/// A list is of one class: a point has neither length nor area to weigh against a curve.
+/// A list is of one class: a point has neither length nor area to weigh against a curve. Left-handed
+/// solids count like right-handed ones; where a solid is folded, what is covered twice counts twice.
 #[derive(Kind)]
 #[kind(
     class = Point,
     columns = "objects",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 0, 2); AbsPoint D(4, 1, 3); \
                BCurve l({A, B, D}); Line m(C, D); RuledSurf S(l, m); CentroidPoint p({A, B, C}); \
-               CentroidPoint q({l, m}); CentroidPoint r({S});"
+               CentroidPoint q({l, m}); CentroidPoint r({S}); AbsPoint E(0, 3, 0); Line up(A, E); \
+               TranSolid block(S, up); CentroidPoint s({block});"
 )]
 pub struct CentroidPoint<T: Real> {
-    /// Points, curves or surfaces.
+    /// Points, curves, surfaces or solids.
     #[field(min_items = 1)]
     objects: Vec<Value<T>>,
 }
@@ -210,9 +213,11 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
                 Value::Vector(p) => ("points", (T::one(), *p)),
                 Value::Curve(curve) => ("curves", of_curve(curve)),
                 Value::Surface(surface) => ("surfaces", of_surface(surface)),
+                Value::Solid(solid) => ("solids", of_solid(solid)),
+                Value::Mesh(mesh) => ("solids", (mesh.volume, mesh.centroid * mesh.volume)),
                 other => {
                     return Err(Fault::new("wrong-class", "a centroid is of shapes")
-                        .expected("points, curves or surfaces")
+                        .expected("points, curves, surfaces or solids")
                         .found(other.class().a())
                         .in_item(k)
                         .in_field(0));
@@ -256,6 +261,32 @@ fn of_curve<T: Real>(curve: &CurveRef<T>) -> (T, Vec3<T>) {
         })
     };
     (arclen(curve, zero, one, 1e-12 * rough), Vec3::new(axis(0), axis(1), axis(2)))
+}
+
+/// A solid is integrated in so many parts each way.
+const BLOCKS: usize = 3;
+
+/// Volume of a solid, and the integral of X over it, by Gauss's rule with eight points each way.
+fn of_solid<T: Real>(solid: &SolidRef<T>) -> (T, Vec3<T>) {
+    let part = |k: usize| [k, k + 1].map(|k| k as f64 / BLOCKS as f64);
+    let places: Vec<(f64, f64)> = (0..BLOCKS)
+        .flat_map(|k| {
+            let [a, b] = part(k);
+            moldloft_num::gauss_points(a, b)
+        })
+        .collect();
+    let (mut volume, mut moment) = (T::zero(), Vec3::zero());
+    for (u, wu) in &places {
+        for (v, wv) in &places {
+            for (w, ww) in &places {
+                let jet = solid.jet(T::from(*u), T::from(*v), T::from(*w));
+                let share = jet.jacobian() * (wu * wv * ww);
+                volume += share;
+                moment += jet.p * share;
+            }
+        }
+    }
+    if volume.re() < 0.0 { (-volume, -moment) } else { (volume, moment) }
 }
 
 /// Each span of a surface is integrated in so many parts each way.

@@ -6,7 +6,7 @@ use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value
 use std::sync::Arc;
 
 /// What a snake along edge `k` (0..4: v = 0, u = 1, v = 1, u = 0) of a surface runs along.
-fn edge_trace<T: Real>(surface: &SurfaceRef<T>, k: usize) -> Trace<T> {
+pub fn edge_trace<T: Real>(surface: &SurfaceRef<T>, k: usize) -> Trace<T> {
     let mut edges = surface.edges();
     match std::mem::replace(&mut edges.edges[k], Edge::Own) {
         Edge::Pieces(pieces) => Trace::Pieces(pieces),

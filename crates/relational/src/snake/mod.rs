@@ -7,7 +7,7 @@ mod on_surface;
 mod through;
 
 pub use foil::FoilSnake;
-pub use isoparametric::{EdgeSnake, UVSnake};
+pub use isoparametric::{EdgeSnake, UVSnake, edge_trace};
 pub use more::{ArcSnake, CSnake, ConicSnake, CopySnake, NURBSnake, RelSnake};
 pub use on_surface::OnSurface;
 pub use through::{BSnake, LineSnake};

@@ -5,12 +5,13 @@ use moldloft_num::{Axis, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{Build, Context, Fault, Kind, Mirror, Point, SurfaceRef, Value};
 
 /// An affine map: p goes to `to` + A (p - `from`).
-#[derive(Clone, Copy)]
 enum Linear<T: Real> {
     /// A turn about an axis, with the cosine and sine of its angle.
     Turn(Axis<T>, T, T),
     /// A shift and a stretch along the three axes.
     Stretch { from: Vec3<T>, to: Vec3<T>, factors: Vec3<T> },
+    /// A reflection in a plane, line or point.
+    Reflection(Mirror<T>),
 }
 
 impl<T: Real> Linear<T> {
@@ -18,6 +19,7 @@ impl<T: Real> Linear<T> {
         match self {
             Linear::Turn(axis, c, s) => axis.turned(p, *c, *s),
             Linear::Stretch { from, to, .. } => *to + self.direction(p - *from),
+            Linear::Reflection(mirror) => mirror.image(p),
         }
     }
 
@@ -27,6 +29,22 @@ impl<T: Real> Linear<T> {
                 Axis { point: Vec3::zero(), direction: axis.direction }.turned(d, *c, *s)
             }
             Linear::Stretch { factors: f, .. } => Vec3::new(d.x * f.x, d.y * f.y, d.z * f.z),
+            Linear::Reflection(mirror) => mirror.direction(d, false),
+        }
+    }
+
+    /// The image of a unit normal: A n x A m = det(A) A^-T (n x m).
+    fn normal(&self, n: Vec3<T>) -> Vec3<T> {
+        match self {
+            Linear::Turn(..) => self.direction(n),
+            Linear::Stretch { factors: f, .. } => {
+                let m = Vec3::new(n.x * f.y * f.z, n.y * f.z * f.x, n.z * f.x * f.y);
+                m.normalized().unwrap_or_default()
+            }
+            Linear::Reflection(mirror) => {
+                let turned = mirror.direction(n, false);
+                if mirror.reverses() { -turned } else { turned }
+            }
         }
     }
 
@@ -35,6 +53,7 @@ impl<T: Real> Linear<T> {
         match self {
             Linear::Turn(..) => false,
             Linear::Stretch { factors: f, .. } => f.x.re() * f.y.re() * f.z.re() < 0.0,
+            Linear::Reflection(mirror) => mirror.reverses(),
         }
     }
 }
@@ -70,14 +89,7 @@ impl<T: Real> Surface<T> for Image<T> {
             *p = self.map.point(*p);
         }
         for n in normals.into_iter().flatten() {
-            *n = match self.map {
-                Linear::Turn(..) => self.map.direction(*n),
-                // A n x A m = det(A) A^-T (n x m), here with a diagonal A.
-                Linear::Stretch { factors: f, .. } => {
-                    let m = Vec3::new(n.x * f.y * f.z, n.y * f.z * f.x, n.z * f.x * f.y);
-                    m.normalized().unwrap_or_default()
-                }
-            };
+            *n = self.map.normal(*n);
         }
     }
 
@@ -95,6 +107,32 @@ impl<T: Real> Surface<T> for Image<T> {
 
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, self.map.reverses()))
+    }
+}
+
+/// The mirror image of a surface in a plane, line or point, point by point.
+///
+/// A plane or point turns the natural normal round; panels keep the side of the original's all the
+/// same.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "surface mirror",
+    example = "AbsPoint A(0, 0.5, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
+               AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
+               MirrSurf port(S, \"y=0\");"
+)]
+pub struct MirrSurf<T: Real> {
+    /// The surface to mirror.
+    surface: SurfaceRef<T>,
+    /// What to mirror it in.
+    mirror: Mirror<T>,
+}
+
+impl<T: Real> Build<T> for MirrSurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let image = Image { surface: self.surface, map: Linear::Reflection(self.mirror) };
+        Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
     }
 }
 

@@ -1,5 +1,5 @@
+use super::law::law;
 use super::masters::{along, is_closed};
-use crate::faults;
 use crate::lifted::tangent;
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3, surface_jet_of};
@@ -48,26 +48,6 @@ impl<T: Scalar> Build<T> for SweepSurf<T> {
         let shape = Sweep { profile, moving, twist: law(twist, 4)?, scale: law(scale, 5)? };
         Ok(Value::Surface(SurfaceRef::new(shape, context.nesting)))
     }
-}
-
-/// A law along v: the first coordinate of a B-spline.
-fn law<T: Real>(values: Option<Vec<T>>, field: usize) -> Result<Option<BSplineCurve<T>>, Fault> {
-    let Some(mut values) = values else { return Ok(None) };
-    match values[..] {
-        [] => {
-            return Err(Fault::new("too-few-items", "a law needs at least 1 number")
-                .expected("at least 1 number")
-                .found("0")
-                .in_field(field));
-        }
-        [constant] => values.push(constant),
-        _ => {}
-    }
-    let degree = 3.min(values.len() - 1);
-    let points = values.iter().map(|&x| Vec3::new(x, T::zero(), T::zero())).collect();
-    BSplineCurve::uniform(degree, points)
-        .map(Some)
-        .map_err(|error| faults::of_spline(error, field, field))
 }
 
 /// How a frame moves along a path.

@@ -59,6 +59,14 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         }
         "BFitCurve" => format!("{}, 2, 5", p.curve()),
         "NUBFitCurve" => format!("{}, 3, {{0, 0.3*w, 1}}", p.curve()),
+        "ProcCurve" => {
+            let curve = p.curve();
+            let bead = p.bead(&curve);
+            let other = p.point();
+            let middle = p.object("BlendPoint", &format!("{{{bead}, {other}}}, {{w, 1 - w}}"));
+            let image = p.object("MirrPoint", &format!("{middle}, \"y=0\""));
+            format!("{bead}, {image}, t1 = 0.2*w, t2 = 0.9")
+        }
         "Conic" => {
             format!("{}, {x}, {z}*w, type = {}", p.points::<3>().join(", "), 1 + p.random.below(3))
         }

@@ -115,6 +115,98 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let continuity = 1 + p.random.below(2);
             format!("{first}, {second}, w, h, continuity = {continuity}, {divisions}")
         }
+        "TanBoundary" => {
+            let floor = flat_patch(p, 0.0);
+            let low = p.object("EdgeSnake", &format!("3, {floor}"));
+            // Sides that leave the floor along its lines u = 0 and u = 1.
+            let mut side = |u: usize| {
+                let [a, b] = [0, 1].map(|v| p.object("AbsMagnet", &format!("{floor}, {u}, {v}")));
+                let on = p.object("BlendPoint", &format!("{{{b}, {a}}}, {{1.25, -0.25}}"));
+                let (x, z) = (p.number(-0.3, 0.3), p.number(0.5, 1.5));
+                let top = p.object("AbsPoint", &format!("{}*w + {x}, 5, {z}*h", 4 * u));
+                (p.object("BCurve", &format!("{{{b}, {on}, {top}}}, degree = 2")), top)
+            };
+            let ((west, a), (east, b)) = (side(0), side(1));
+            let high = p.object("Line", &format!("{a}, {b}"));
+            format!("{{{low}, {east}, {high}, {west}}}, {divisions}")
+        }
+        "DevSurf" => format!("{}, {divisions}", bows(p)),
+        "ExpandedSurf" => {
+            let args = bows(p);
+            let plate = p.object("DevSurf", &args);
+            format!("{plate}, {}, {divisions}", p.frame())
+        }
+        "FoilLoftSurf" => {
+            // Nose, thickness point and tail at the root and, smaller, at the tip.
+            let mut rail = |x: f64, z: f64| {
+                let ends = [(x, 0.0), (0.5 * x + 0.5, 3.0)].map(|(x, y)| {
+                    let (dx, dz) = (p.number(-0.1, 0.1), p.number(-0.02, 0.02));
+                    p.object("AbsPoint", &format!("{x}*w + {dx}, {y}, {z}*h + {dz}"))
+                });
+                p.object("Line", &ends.join(", "))
+            };
+            let (nose, up, tail) = (rail(0.0, 0.0), rail(0.6, 0.2), rail(2.0, 0.0));
+            let family = *p.random.pick(&["4-digit", "16", "65A", "66tmb"]);
+            let rails = match p.random.below(2) {
+                0 => format!("{nose}, {up}, {tail}"),
+                _ => format!("{tail}, {up}, {nose}, {tail}"),
+            };
+            format!("{{{rails}}}, \"{family}\", {divisions}")
+        }
+        "RollFillet" => {
+            // A floor, and a wall that stands across its middle.
+            let floor = flat_patch(p, 0.0);
+            let wall = [-1.0, 3.0].map(|z| {
+                let ends = [0.0, 4.0].map(|x| {
+                    let (y, dz) = (p.number(2.0, 2.3), p.number(-0.2, 0.2));
+                    p.object("AbsPoint", &format!("{x}, {y} + 0.05*w, {z} + {dz}"))
+                });
+                p.object("Line", &ends.join(", "))
+            });
+            let wall = p.object("RuledSurf", &format!("{}, visible = 0", wall.join(", ")));
+            match p.random.below(2) {
+                0 => format!("{floor}, {wall}, 0.3*w, side2 = 1, {divisions}"),
+                _ => {
+                    format!("{floor}, {wall}, 0.4, side2 = 1, radii = {{0.3*w, 0.4}}, {divisions}")
+                }
+            }
+        }
+        "TrimSurf" => {
+            let sheet = p.sheet();
+            let mut at = |u: f64, v: f64| {
+                let (u, v) = (p.number(u - 0.03, u + 0.03), p.number(v - 0.03, v + 0.03));
+                p.object("AbsMagnet", &format!("{sheet}, {u}, {v}"))
+            };
+            let [a, b, c] = [at(0.1, 0.1), at(0.9, 0.15), at(0.4, 0.9)];
+            let hole = [at(0.45, 0.35), at(0.55, 0.35), at(0.45, 0.45)].join(", ");
+            let pairs = [format!("{a}, {b}"), format!("{c}, {b}"), format!("{c}, {a}")];
+            let sides = pairs.map(|ends| p.object("LineSnake", &ends)).join(", ");
+            // Round its second magnet, through the first.
+            let (centre, rest) = hole.split_once(", ").expect("three magnets");
+            let (from, toward) = rest.split_once(", ").expect("two magnets");
+            let round = p.object("ArcSnake", &format!("{from}, {centre}, {toward}, type = 6"));
+            format!("{sheet}, {{{sides}, {round}}}, rim = 5, nu = 4, nv = 4")
+        }
+        "OffsetSurf" => format!("{}, 0.2*w, {divisions}", p.sheet()),
+        "PolySurf" => {
+            let [a, b, c] = stations(p);
+            let r = p.object("RuledSurf", &format!("{a}, {b}, visible = 0"));
+            let s = p.object("RuledSurf", &format!("{b}, {c}, visible = 0"));
+            match p.random.below(2) {
+                0 => format!("{{{r}, {s}}}, \"v\", {divisions}"),
+                _ => format!("{{{r}, {s}}}, \"v\", {{0.3*w}}, {divisions}"),
+            }
+        }
+        "ProcSurf" => {
+            let [path, other, _] = stations(p);
+            let bead = p.bead(&path);
+            let copy = p.object("CopyBead", &format!("{bead}, {other}"));
+            let middle = p.object("RelPoint", &format!("{bead}, 0.5*w, h, 0.3"));
+            let rib = p.object("BCurve", &format!("{{{bead}, {middle}, {copy}}}, degree = 2"));
+            format!("{bead}, {rib}, t1 = 0.1*w, t2 = 0.9, {divisions}")
+        }
+        "BFitSurf" => format!("{}, 2, 2, 5, 4, {divisions}", p.surface()),
+        "NUBFitSurf" => format!("{}, 3, 1, {{0, 0.3*w, 1}}, {{0, 1}}, {divisions}", p.surface()),
         "RotatSurf" => {
             let [a, b] = p.points();
             let line = p.object("Line", &format!("{a}, {b}"));
@@ -174,6 +266,21 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         }
         _ => return None,
     })
+}
+
+/// Two nearly parallel bows, so that rulings run across.
+fn bows(p: &mut Program) -> String {
+    let curves = [0.0, 2.0].map(|z| {
+        let points: Vec<String> = (0..3)
+            .map(|j| {
+                let (x, y) = (p.number(-0.1, 0.1), p.number(-0.1, 0.1));
+                let bow = [0.0, 1.5, 0.0][j];
+                p.object("AbsPoint", &format!("{}*w + {x}, {bow} + {y}, {z}", 2 * j))
+            })
+            .collect();
+        p.object("BCurve", &format!("{{{}}}, degree = 2", points.join(", ")))
+    });
+    curves.join(", ")
 }
 
 /// Three curves apart from one another: at y = 0, 2 and 4 more or less, and away from one line.

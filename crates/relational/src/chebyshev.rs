@@ -1,0 +1,111 @@
+//! Chains of polynomials through given places, for what can only be evaluated at some parameters.
+
+use moldloft_num::{CurveFormula, Jet, Real, Vec3};
+use std::f64::consts::PI;
+
+/// The degree of a polynomial.
+const DEGREE: usize = 16;
+
+/// So many places determine one.
+pub const NODES: usize = DEGREE + 1;
+
+/// Pieces are halved so often at most, and so many there are at most: beyond, a kink stays.
+pub const DEEPEST: u32 = 16;
+pub const MOST_PIECES: usize = 256;
+
+/// cos(pi k / DEGREE), exact at the ends.
+fn cosine(k: usize) -> f64 {
+    match k {
+        0 => 1.0,
+        DEGREE => -1.0,
+        _ => Real::cos(PI * k as f64 / DEGREE as f64),
+    }
+}
+
+/// The parameters of the places between `a` and `b`, both included, ascending.
+pub fn nodes(a: f64, b: f64) -> impl Iterator<Item = f64> {
+    (0..NODES).map(move |k| 0.5 * (a + b) - 0.5 * (b - a) * cosine(k))
+}
+
+/// A polynomial on a stretch of the parameter, by its Chebyshev coefficients.
+pub struct Piece<T> {
+    pub from: f64,
+    pub to: f64,
+    coefficients: Vec<Vec3<T>>,
+}
+
+impl<T: Real> Piece<T> {
+    /// The polynomial through `samples` at the nodes between `from` and `to` (Trefethen 2013, ch. 3).
+    pub fn through(from: f64, to: f64, samples: &[Vec3<T>]) -> Self {
+        let n = DEGREE;
+        let coefficient = |j: usize| {
+            let mut sum = Vec3::zero();
+            for (k, &p) in samples.iter().enumerate() {
+                // T_j at -cosine(k) is cos(j pi (1 - k / n)), an integer multiple of pi / n.
+                let m = j * (n - k) % (2 * n);
+                let value = if m <= n { cosine(m) } else { cosine(2 * n - m) };
+                let share = if k == 0 || k == n { 0.5 } else { 1.0 };
+                sum += p * T::from(value * share);
+            }
+            let share = if j == 0 || j == n { 1.0 } else { 2.0 };
+            sum * T::from(share / n as f64)
+        };
+        Self { from, to, coefficients: (0..=n).map(coefficient).collect() }
+    }
+
+    /// How large the last coefficients are.
+    pub fn rest(&self) -> f64 {
+        self.coefficients[DEGREE - 2..].iter().map(|c| c.re().norm()).fold(0.0, f64::max)
+    }
+}
+
+/// The piece in charge at `t` among pieces that begin at these parameters.
+pub fn in_charge<P>(pieces: &[P], from: impl Fn(&P) -> f64, t: f64) -> usize {
+    pieces[1..].partition_point(|piece| from(piece) <= t)
+}
+
+/// The curve of such pieces.
+pub struct Way<T> {
+    pub pieces: Vec<Piece<T>>,
+}
+
+impl<T: Real> CurveFormula for Way<T> {
+    type Scalar = T;
+
+    /// Clenshaw's recurrence.
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        let k = in_charge(&self.pieces, |piece| piece.from, t.re());
+        let Piece { from, to, coefficients } = &self.pieces[k];
+        let x = ((t - *from) * 2.0 / (*to - *from)) - 1.0;
+        let (mut b, mut c) = (Vec3::<J>::zero(), Vec3::<J>::zero());
+        for coefficient in coefficients[1..].iter().rev() {
+            let next = coefficient.map(J::fixed) + b * (x * 2.0) - c;
+            c = b;
+            b = next;
+        }
+        coefficients[0].map(J::fixed) + b * x - c
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.pieces[1..].iter().map(|piece| piece.from).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldloft_num::{Curve, Order};
+
+    #[test]
+    fn a_smooth_curve_is_met_to_rounding() {
+        let f = |t: f64| Vec3::of(Real::sin(3.0 * t), Real::exp(t), t * t);
+        let samples: Vec<Vec3> = nodes(0.25, 1.0).map(f).collect();
+        let way = Way { pieces: vec![Piece::through(0.25, 1.0, &samples)] };
+        assert!(way.pieces[0].rest() < 1e-14);
+        for t in [0.25, 0.4, 0.77, 1.0] {
+            let [p, d, dd] = way.jet(t, Order::Second);
+            assert!(p.distance(f(t)) < 1e-14);
+            assert!((d.y - Real::exp(t)).abs() < 1e-12 && (dd.z - 2.0).abs() < 1e-10);
+        }
+    }
+}

@@ -1,0 +1,103 @@
+use crate::arguments::Bead;
+use crate::chebyshev::{DEEPEST, MOST_PIECES, NODES, Piece, Way, nodes};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingPoint, Value};
+
+/// The way of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
+/// `bead` at the parameter t1 + t (t2 - t1).
+///
+/// Everything between bead and point is evaluated anew at each place. The curve is a chain of
+/// polynomials through such places, halved until they agree with it to about 1e-12 of its size;
+/// derivatives by what the model depends on are those of the places. Where the bead itself is does not
+/// matter.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    sweep = [0, 1],
+    columns = "relabel bead point",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
+               AbsBead b(c, 0.5); Line l(A, C); ProjPoint foot(b, l); BlendPoint m({b, foot}); \
+               ProcCurve way(b, m);"
+)]
+pub struct ProcCurve<T: Real> {
+    /// The bead that moves.
+    bead: Bead<T>,
+    /// The point that follows.
+    point: MovingPoint<T>,
+    /// Where the bead begins.
+    #[field(default = 0)]
+    t1: T,
+    /// Where it ends.
+    #[field(default = 1)]
+    t2: T,
+}
+
+impl<T: Real> Build<T> for ProcCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Self { bead, point, t1, t2 } = self;
+        let at = |t: f64| {
+            let place = t1 * (1.0 - t) + t2 * t;
+            point.at(place).map_err(|fault| no_locus("point", place.re(), &fault))
+        };
+        let mut size = 0.0f64;
+        let pieces = halved(&stretches(&bead, [t1, t2]), |a, b| {
+            let mut samples = Vec::with_capacity(NODES);
+            for t in nodes(a, b) {
+                samples.push(at(t)?);
+            }
+            let first = samples[0].re();
+            size = samples.iter().fold(size, |s, p: &Vec3<T>| s.max(p.re().distance(first)));
+            size = size.max(f64::EPSILON * first.norm());
+            let piece = Piece::through(a, b, &samples);
+            let fits = piece.rest() <= ACCURACY * size;
+            Ok((piece, fits))
+        })?;
+        Ok(Value::Curve(CurveRef::new(Way { pieces }, 0)))
+    }
+}
+
+/// How far the last coefficients must have fallen, as a share of the size of what is swept.
+pub const ACCURACY: f64 = 1e-12;
+
+/// The fault of a `noun` that has no value with the bead at `t`.
+pub fn no_locus(noun: &str, t: f64, fault: &Fault) -> Fault {
+    let whole = Fault::new("no-locus", format!("the {noun} has no place with the bead at {t}"))
+        .expected(format!("a {noun} wherever the bead is"))
+        .found(fault.message.clone())
+        .help("sweep only a part of the curve: give t1 and t2")
+        .in_field(1);
+    fault.related.iter().fold(whole, |whole, (key, label)| whole.related(Some(*key), label.clone()))
+}
+
+/// The ends of the stretches of [0, 1] in which the curve of the bead is smooth.
+pub fn stretches<T: Real>(bead: &Bead<T>, [t1, t2]: [T; 2]) -> Vec<f64> {
+    let (low, high) = (t1.re(), t2.re());
+    let breaks = bead.curve.breaks().into_iter().map(|b| (b - low) / (high - low));
+    let mut ends = vec![0.0];
+    ends.extend(breaks.filter(|t| *t > 0.0 && *t < 1.0));
+    ends.push(1.0);
+    ends.sort_by(f64::total_cmp);
+    ends
+}
+
+/// The pieces of these stretches, halved until each fits: `piece` makes one and says whether it does.
+/// Pieces so short that they cannot be halved again stay as they are, which keeps a kink.
+pub fn halved<P>(
+    ends: &[f64],
+    mut piece: impl FnMut(f64, f64) -> Result<(P, bool), Fault>,
+) -> Result<Vec<P>, Fault> {
+    let mut todo: Vec<(f64, f64, u32)> = ends.windows(2).map(|w| (w[0], w[1], 0)).collect();
+    todo.reverse();
+    let mut pieces = Vec::new();
+    while let Some((a, b, depth)) = todo.pop() {
+        let (made, fits) = piece(a, b)?;
+        if !fits && depth < DEEPEST && pieces.len() + todo.len() < MOST_PIECES {
+            let mid = 0.5 * (a + b);
+            todo.push((mid, b, depth + 1));
+            todo.push((a, mid, depth + 1));
+        } else {
+            pieces.push(made);
+        }
+    }
+    Ok(pieces)
+}

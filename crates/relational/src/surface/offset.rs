@@ -1,0 +1,187 @@
+use super::inherited;
+use super::ribbon::unit;
+use crate::lifted::{bends, tangents};
+use moldloft_num::trace::Edges;
+use moldloft_num::{Jet, Order, Real, Surface, SurfaceFormula, Vec3};
+use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+
+/// A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
+/// n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
+///
+/// At a pole the normal is the limit along the parameter line that leads there. The offset is refused
+/// where the distance exceeds a radius of curvature on that side, since it is folded there, and where
+/// the surface has no normal.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "surface distance",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0.5); AbsPoint C(4, 0, 0); AbsPoint D(0, 0.5, 2); \
+               AbsPoint E(2, 2, 2); AbsPoint F(4, 1, 3); BCurve l({A, B, C}); BCurve m({D, E, F}); \
+               RuledSurf S(l, m); OffsetSurf plate(S, 0.25); OffsetSurf inside(S, -0.5);"
+)]
+pub struct OffsetSurf<T: Real> {
+    /// The surface it runs beside.
+    surface: SurfaceRef<T>,
+    /// The distance, on the side of the natural normal if positive.
+    distance: T,
+}
+
+impl<T: Real> Build<T> for OffsetSurf<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { surface, distance } = self;
+        check(&surface, distance.re())?;
+        Ok(Value::Surface(parallel(surface, distance, context)))
+    }
+}
+
+/// The parallel surface, unchecked.
+pub fn parallel<T: Real>(surface: SurfaceRef<T>, distance: T, context: &Context) -> SurfaceRef<T> {
+    let edges = inherited::edges(
+        &*surface,
+        &Parallel { surface: surface.clone(), distance, edges: Edges::own() },
+    );
+    let nesting = context.nesting.max(surface.depth);
+    SurfaceRef::new(Parallel { surface, distance, edges }, nesting)
+}
+
+/// Each direction of the surface is tried at so many places.
+const TRIALS: usize = 24;
+
+/// The places of a direction: some in each span, and its ends from inside.
+fn trials(breaks: &[f64]) -> Vec<f64> {
+    let mut ends = vec![0.0];
+    ends.extend_from_slice(breaks);
+    ends.push(1.0);
+    let each = (TRIALS / (ends.len() - 1)).max(4);
+    let spans = ends.windows(2);
+    spans
+        .flat_map(|span| {
+            let at = move |k: usize| span[0] + (span[1] - span[0]) * k as f64 / each as f64;
+            (0..=each).map(move |k| at(k).clamp(span[0].next_up(), span[1].next_down()))
+        })
+        .collect()
+}
+
+/// Refuses a distance beyond a radius of curvature, and places without a normal.
+fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), Fault> {
+    let [us, vs] = surface.breaks().map(|b| trials(&b));
+    let mut worst: Option<(f64, f64, f64)> = None;
+    for (u, v) in us.iter().flat_map(|&u| vs.iter().map(move |&v| (u, v))) {
+        let normal: Vec3<T> = normal(&**surface, T::from(u), T::from(v));
+        if normal.re().norm() == 0.0 {
+            let at = surface.jet(T::from(u), T::from(v), Order::Zero).p.re();
+            return Err(Fault::new(
+                "no-normal",
+                format!("the surface has no normal at ({u}, {v})"),
+            )
+            .expected("a surface with a tangent plane everywhere")
+            .found(format!("none at ({}, {}, {})", at.x, at.y, at.z))
+            .help("offset a part of the surface that leaves this place out")
+            .related(surface.key, "is singular there")
+            .in_field(0));
+        }
+        let Some(bends) = curvatures(surface, u, v) else { continue };
+        // How the offset moves on, as a share of the surface's own way: at most 0 where it folds.
+        let share = bends.into_iter().map(|k| 1.0 - distance * k).fold(f64::INFINITY, f64::min);
+        if worst.is_none_or(|(least, ..)| share < least) {
+            worst = Some((share, u, v));
+        }
+    }
+    match worst {
+        Some((share, u, v)) if share <= 0.0 => {
+            let radius = distance.abs() / (1.0 - share);
+            Err(Fault::new("cusp", "the offset exceeds the radius of curvature")
+                .expected(format!("a distance less than {radius} on that side"))
+                .found(format!("{} where (u, v) = ({u}, {v})", distance.abs()))
+                .help("offset by less, or to the other side, or only a part of the surface")
+                .related(surface.key, "is bent too much there")
+                .in_field(1))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The principal curvatures, positive where the surface bends towards its normal; none where it is
+/// singular.
+pub fn curvatures<T: Real>(surface: &SurfaceRef<T>, u: f64, v: f64) -> Option<[f64; 2]> {
+    let jet = surface.jet(T::from(u), T::from(v), Order::Second);
+    let (su, sv) = (jet.u.re(), jet.v.re());
+    let (e, f, g) = (su.dot(su), su.dot(sv), sv.dot(sv));
+    let area = e * g - f * f;
+    if area <= 1e-12 * e * g || !area.is_finite() {
+        return None;
+    }
+    let n = su.cross(sv) / area.sqrt();
+    let (l, m, k) = (jet.uu.re().dot(n), jet.uv.re().dot(n), jet.vv.re().dot(n));
+    let mean = (e * k - 2.0 * f * m + g * l) / (2.0 * area);
+    let spread = (mean * mean - (l * k - m * m) / area).max(0.0).sqrt();
+    Some([mean - spread, mean + spread])
+}
+
+/// The surface beside another one.
+struct Parallel<T: Real> {
+    surface: SurfaceRef<T>,
+    distance: T,
+    edges: Edges<T>,
+}
+
+impl<T: Real> SurfaceFormula for Parallel<T> {
+    type Scalar = T;
+
+    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        beside(&*self.surface, J::fixed(self.distance), u, v)
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        self.surface.breaks()
+    }
+
+    fn crossings(&self, path: &dyn Fn(f64) -> [f64; 2], spans: &[f64]) -> Vec<f64> {
+        self.surface.crossings(path, spans)
+    }
+
+    fn edges(&self) -> Edges<T> {
+        self.edges.clone()
+    }
+}
+
+/// S + d n at parameters and a distance that may be jets.
+pub fn beside<T: Real, J: Jet<T>>(surface: &dyn Surface<T>, distance: J, u: J, v: J) -> Vec3<J> {
+    surface.at(u, v) + normal(surface, u, v) * distance
+}
+
+/// Below this the ratio of the lengths of S_u and S_v, or the sine of the angle between them, is
+/// rounding.
+const SINGULAR: f64 = 1e-10;
+
+/// The unit normal at parameters that may be jets; at a pole its limit, where there is none zero.
+pub fn normal<T: Real, J: Jet<T>>(surface: &dyn Surface<T>, u: J, v: J) -> Vec3<J> {
+    let [su, sv] = tangents(surface, u, v);
+    let (along, across) = (su.re().norm(), sv.re().norm());
+    // S_u = (v - v0) times the mean of S_uv between v0 and v, which Simpson's rule gives exactly to
+    // the order of jets. Inside is at smaller parameters when the pole is at the far edge.
+    let mean = |by_v: bool| {
+        let at = if by_v { v } else { u };
+        let start = at.re();
+        let place = |share: f64| (at - start) * share + start;
+        let twist = |share: f64| {
+            let [_, twist, _] = match by_v {
+                true => bends(surface, u, place(share)),
+                false => bends(surface, place(share), v),
+            };
+            twist
+        };
+        let mean = (twist(0.0) + twist(0.5) * J::from(4.0) + twist(1.0)) / J::from(6.0);
+        if start > 0.5 { -mean } else { mean }
+    };
+    let (a, b) = if along <= SINGULAR * across {
+        (mean(true), sv)
+    } else if across <= SINGULAR * along {
+        (su, mean(false))
+    } else {
+        (su, sv)
+    };
+    let n = a.cross(b);
+    let size = a.re().norm() * b.re().norm();
+    if n.re().norm() > SINGULAR * size { unit(n) } else { Vec3::zero() }
+}

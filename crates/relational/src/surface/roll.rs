@@ -1,0 +1,370 @@
+use super::column::{Column, Columns};
+use super::law::law;
+use super::offset::{beside, curvatures, parallel};
+use crate::lifted::tangent;
+use crate::search::{IntSnake, Onto};
+use moldloft_locate::implicit::{Implicit, jets, solve};
+use moldloft_locate::{PlainSurface, nearest_on_surface};
+use moldloft_num::trace::{Edge, Edges};
+use moldloft_num::{Bi1, Jet, Order, Real, Surface, SurfaceFormula, Vec3, lift_law};
+use moldloft_registry::export::StaticRow;
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Scalar, SurfaceRef, Value};
+use moldloft_spline::{Arc, BSplineCurve};
+
+/// A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
+/// the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
+///
+/// The centre of the ball is where both surfaces, offset by the radius, meet; it rolls from edge to edge
+/// or round, and u is the share of the way of its centre. Which way it goes and where among several is
+/// as for IntSnake: the ball that touches nearest to a magnet, if one is given. With `radii` the radius
+/// follows a law along u (the coefficients of a clamped uniform B-spline of degree 3 or less): there the
+/// centre lies in the plane across the way of a ball of `radius`, and arcs are those through both points
+/// of contact, which is still tangent to both surfaces. A ball larger than a radius of curvature of
+/// either surface on its side would turn back, and is refused.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    columns = "surface1 surface2 radius",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0.2); AbsPoint D(4, 3, 0); \
+               AbsPoint E(0, 2.5, -1); AbsPoint F(4, 2, -1); AbsPoint G(0, 2.5, 3); AbsPoint H(4, 2.25, 3); \
+               Line a(A, B); Line b(C, D); RuledSurf floor(a, b); Line c(E, F); Line d(G, H); \
+               RuledSurf wall(c, d); RollFillet S(floor, wall, 0.5, side2 = -1); \
+               RollFillet more(floor, wall, 0.5, side2 = -1, radii = {0.25, 0.5, 0.75});"
+)]
+pub struct RollFillet<T: Real> {
+    /// The first surface, or a magnet of it near where the ball is meant to touch.
+    surface1: Onto<T>,
+    /// The second surface, or a magnet of it.
+    surface2: Onto<T>,
+    /// The radius of the ball.
+    #[field(min = 0)]
+    radius: T,
+    /// Where the ball lies: 1 on the side of the natural normal of the first surface, -1 on the other.
+    #[field(default = 1, min = -1, max = 1)]
+    side1: i32,
+    /// The same for the second surface.
+    #[field(default = 1, min = -1, max = 1)]
+    side2: i32,
+    /// Radii along u: the coefficients of a B-spline.
+    radii: Option<Vec<T>>,
+}
+
+/// Stations along the fillet at which iterations begin, and at which a new one is tried.
+const STATIONS: usize = 48;
+
+/// How far beyond an edge, in u or v, a ball whose radius changes may touch a surface: it is another
+/// ball than the one whose way ends there.
+const BEYOND: f64 = 0.05;
+
+impl<T: Scalar> Build<T> for RollFillet<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { surface1, surface2, radius, side1, side2, radii } = self;
+        for (field, side) in [(3, side1), (4, side2)] {
+            if side == 0 {
+                return Err(Fault::new("out-of-range", "a ball lies on one side or on the other")
+                    .expected("1 or -1")
+                    .found("0")
+                    .in_field(field));
+            }
+        }
+        let least = radii.iter().flatten().map(|r| r.re()).fold(f64::INFINITY, f64::min);
+        let too_small = match radius.re() {
+            r if r <= 0.0 => Some((r, 2)),
+            _ => (least <= 0.0).then_some((least, 5)),
+        };
+        if let Some((found, field)) = too_small {
+            return Err(Fault::new("out-of-range", format!("a ball of radius {found}"))
+                .expected("a radius greater than 0")
+                .found(found.to_string())
+                .in_field(field));
+        }
+        let radii = law(radii, 5)?;
+        let sides = [f64::from(side1), f64::from(side2)];
+        let spine = spine([&surface1, &surface2], sides.map(|s| radius * s), context)?;
+        let found = spine.found.clone();
+        let nesting = context.nesting.max(spine.depth);
+        let ball =
+            Ball { surfaces: [surface1.surface, surface2.surface], sides, spine, radius, radii };
+        let mut fillet = Rolled { stations: ball.stations(), ball, closed: false };
+        fillet.check()?;
+        fillet.closed = fillet.closes();
+        let mut surface = SurfaceRef::new(Columns(fillet), nesting);
+        surface.found = found;
+        Ok(Value::Surface(surface))
+    }
+}
+
+/// The way of the centre of a ball of one radius: where the offset surfaces meet.
+fn spine<T: Scalar>(
+    onto: [&Onto<T>; 2],
+    distances: [T; 2],
+    context: &Context,
+) -> Result<CurveRef<T>, Fault> {
+    let row = <IntSnake<f64> as StaticRow>::row();
+    let mut args = vec![Value::Unset; row.fields.len()];
+    for (k, name) in ["surface", "target"].into_iter().enumerate() {
+        let beside = parallel(onto[k].surface.clone(), distances[k], context);
+        let at = row.field(name).expect("an intersection is of a surface and a target");
+        args[at] = match onto[k].start {
+            Some([u, v]) => Value::Point(Box::new(Point::on_surface(beside, u, v))),
+            None => Value::Surface(beside),
+        };
+    }
+    let met = T::call(&row, &args, context).map_err(|fault| {
+        let radius = distances[0].re().abs();
+        let message = format!("no ball of radius {radius} rolls along both surfaces");
+        let found = fault.found.clone().unwrap_or_else(|| fault.message.clone());
+        if fault.id == "tangent-contact" {
+            // Offsets that are folded touch one another where they turn.
+            return Fault::new("fillet-turns-back", "the way of the ball's centre turns back")
+                .expected("a radius less than the radius of curvature of both surfaces where it rolls")
+                .found(format!("{radius}, and {found}"))
+                .help("choose a smaller radius, or give magnets where the ball is meant to roll")
+                .related(onto[0].surface.key, "is the first surface")
+                .related(onto[1].surface.key, "is the second surface")
+                .in_field(2);
+        }
+        Fault::new("no-ball", message)
+            .expected("surfaces that a ball of that radius touches both, on the sides that are meant")
+            .found(found)
+            .help("choose the sides (side1, side2), give magnets near the places of contact, or another radius")
+            .related(onto[0].surface.key, "is the first surface")
+            .related(onto[1].surface.key, "is the second surface")
+            .in_field(2)
+    })?;
+    match met {
+        Value::Curve(curve) => Ok(curve),
+        other => Err(Fault::wrong_class(moldloft_registry::Class::Curve, other.class())),
+    }
+}
+
+/// A ball that touches two surfaces.
+struct Ball<T: Real> {
+    surfaces: [SurfaceRef<T>; 2],
+    sides: [f64; 2],
+    /// The way of the centre of a ball of `radius`.
+    spine: CurveRef<T>,
+    radius: T,
+    radii: Option<BSplineCurve<T>>,
+}
+
+impl<T: Real> Ball<T> {
+    fn radius<J: Jet<T>>(&self, t: J) -> J {
+        match &self.radii {
+            None => J::fixed(self.radius),
+            Some(law) => {
+                let law: &dyn moldloft_num::Curve<T> = law;
+                law.at(t).x
+            }
+        }
+    }
+
+    /// The centre from the place on surface `k`.
+    fn centre<J: Jet<T>>(&self, k: usize, radius: J, [u, v]: [J; 2]) -> Vec3<J> {
+        beside(&*self.surfaces[k], radius * self.sides[k], u, v)
+    }
+
+    /// Where the ball of `radius` touches at stations along its way.
+    fn stations(&self) -> Vec<[f64; 4]> {
+        let second = Beside { ball: self, k: 1 };
+        let second: &dyn Surface<T> = &second;
+        let second = PlainSurface(second);
+        let mut last: Option<[f64; 2]> = None;
+        (0..=STATIONS)
+            .map(|i| {
+                let t = T::from(i as f64 / STATIONS as f64);
+                let w = self.spine.on_surface(t, Order::Zero).unwrap_or_default()[0].re();
+                let centre = self.spine.jet(t, Order::Zero)[0].re();
+                let [p, q] = nearest_on_surface(&second, centre, last).at;
+                last = Some([p, q]);
+                [w.x, w.y, p, q]
+            })
+            .collect()
+    }
+}
+
+/// The surface that the centre of the ball of `radius` lies on, for surface `k`.
+struct Beside<'b, T: Real> {
+    ball: &'b Ball<T>,
+    k: usize,
+}
+
+impl<T: Real> SurfaceFormula for Beside<'_, T> {
+    type Scalar = T;
+    fn at<J: Jet<T>>(&self, u: J, v: J) -> Vec3<J> {
+        self.ball.centre(self.k, J::fixed(self.ball.radius), [u, v])
+    }
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        self.ball.surfaces[self.k].breaks()
+    }
+}
+
+/// Both centres are one, in the plane across the spine.
+impl<T: Real> Implicit<T, 4> for Ball<T> {
+    fn at<J: Jet<T>>(&self, [u, v, p, q]: [J; 4], t: J) -> [J; 4] {
+        let radius = self.radius(t);
+        let [first, second] = [self.centre(0, radius, [u, v]), self.centre(1, radius, [p, q])];
+        let gap = first - second;
+        let along = tangent(|t, order| self.spine.jet(t, order), || self.spine.breaks(), t);
+        [gap.x, gap.y, gap.z, along.dot(first - self.spine.at(t))]
+    }
+
+    fn jacobian(&self, q: [T; 4], t: T) -> [[T; 4]; 4] {
+        let radius = self.radius(t);
+        let by = |k: usize, [u, v]: [T; 2]| {
+            let (u, v) = Bi1::parameters(u, v);
+            let p = self.centre(k, Bi1::fixed(radius), [u, v]);
+            [p.map(|x| x.u), p.map(|x| x.v)]
+        };
+        let ([a, b], [c, d]) = (by(0, [q[0], q[1]]), by(1, [q[2], q[3]]));
+        let along = self.spine.jet(t, Order::First)[1];
+        let row = |k: usize| [a[k], b[k], -c[k], -d[k]];
+        [row(0), row(1), row(2), [along.dot(a), along.dot(b), T::zero(), T::zero()]]
+    }
+}
+
+struct Rolled<T: Real> {
+    ball: Ball<T>,
+    /// Places of contact to begin iterations with.
+    stations: Vec<[f64; 4]>,
+    closed: bool,
+}
+
+impl<T: Real> Rolled<T> {
+    /// The places of contact at a plain parameter; `None` when the iteration comes to no end.
+    fn contact(&self, t: f64) -> Option<[f64; 4]> {
+        let at = (t * STATIONS as f64).floor().clamp(0.0, (STATIONS - 1) as f64);
+        let share = t * STATIONS as f64 - at;
+        let (a, b) = (self.stations[at as usize], self.stations[at as usize + 1]);
+        // A seam of a closed surface lies between stations that are far apart.
+        let mut q: [f64; 4] = std::array::from_fn(|k| match (b[k] - a[k]).abs() < 0.5 {
+            true => a[k] + share * (b[k] - a[k]),
+            false => {
+                if share < 0.5 {
+                    a[k]
+                } else {
+                    b[k]
+                }
+            }
+        });
+        for _ in 0..40 {
+            let lifted = q.map(T::from);
+            let rest = self.ball.at::<T>(lifted, T::from(t)).map(Real::re);
+            let jacobian = self.ball.jacobian(lifted, T::from(t)).map(|row| row.map(Real::re));
+            let step = solve(&jacobian, rest)?;
+            let size = step.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+            if !size.is_finite() {
+                return None;
+            }
+            let damped = (0.2 / size).min(1.0);
+            for k in 0..4 {
+                q[k] -= damped * step[k];
+            }
+            if size <= 1e-15 {
+                break;
+            }
+            if size <= 1e-9 {
+                // Once more, to rounding.
+                let lifted = q.map(T::from);
+                let rest = self.ball.at::<T>(lifted, T::from(t)).map(Real::re);
+                if let Some(step) = solve(&jacobian, rest) {
+                    q = std::array::from_fn(|k| q[k] - step[k]);
+                }
+                return Some(q);
+            }
+        }
+        Some(q)
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        let outside = |x: f64| !(-BEYOND..=1.0 + BEYOND).contains(&x);
+        for i in 0..=STATIONS {
+            let t = i as f64 / STATIONS as f64;
+            let radius = self.ball.radius(T::from(t)).re();
+            let field = if self.ball.radii.is_some() { 5 } else { 2 };
+            let Some(q) = self.contact(t) else {
+                return Err(Fault::new(
+                    "no-ball",
+                    format!("no ball touches both surfaces at u = {t}"),
+                )
+                .expected("radii that let the ball touch both surfaces all along")
+                .found(format!("none for the radius {radius}"))
+                .help("let the radii change less")
+                .in_field(field));
+            };
+            if self.ball.radii.is_some()
+                && let Some(k) = (0..4).find(|&k| outside(q[k]))
+            {
+                let which = k / 2;
+                return Err(Fault::new(
+                    "no-ball",
+                    format!("the ball leaves surface {} at u = {t}", which + 1),
+                )
+                .expected("radii that let the ball touch both surfaces all along")
+                .found(format!("a contact at (u, v) = ({}, {})", q[2 * which], q[2 * which + 1]))
+                .help("choose radii nearer to `radius`, or enlarge the surface")
+                .related(self.ball.surfaces[which].key, "is too small there")
+                .in_field(5));
+            }
+            for k in 0..2 {
+                let surface = &self.ball.surfaces[k];
+                let bends = curvatures(surface, q[2 * k], q[2 * k + 1]);
+                let share = |bend: f64| 1.0 - self.ball.sides[k] * radius * bend;
+                let least = bends.into_iter().flatten().map(share).fold(f64::INFINITY, f64::min);
+                if least <= 0.0 {
+                    let most = radius / (1.0 - least);
+                    return Err(Fault::new(
+                        "fillet-turns-back",
+                        format!("the fillet turns back at u = {t}"),
+                    )
+                    .expected(format!("a radius less than {most}, the radius of curvature there"))
+                    .found(radius.to_string())
+                    .help("choose a smaller radius, or the other side")
+                    .related(surface.key, "is bent more than the ball")
+                    .in_field(field));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// True when the ball comes back to where it began.
+    fn closes(&self) -> bool {
+        let [first, last] = [0.0, 1.0].map(|u| self.across(T::from(u)));
+        let (Some(first), Some(last)) = (first, last) else { return false };
+        let along = |u: f64| self.ball.spine.jet(T::from(u), Order::First)[1].re();
+        let place = |arc: &Arc<T>, v: f64| arc.at(T::from(v)).re();
+        let size = self.ball.radius.re() + place(&first, 0.0).norm();
+        let meets = |v: f64| place(&first, v).distance(place(&last, v)) <= 1e-11 * size;
+        [0.0, 0.5, 1.0].into_iter().all(meets) && along(0.0).dot(along(1.0)) > 0.0
+    }
+}
+
+impl<T: Real> Column for Rolled<T> {
+    type Scalar = T;
+    type Across<S: Real> = Arc<S>;
+
+    fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {
+        let plain = self.contact(u.re())?;
+        let jet = jets(&self.ball, plain, u.value(), J::ORDER)?;
+        let [a, b, c, d] = std::array::from_fn(|k| lift_law(&jet.map(|q| q[k]), u));
+        let [first, second] = [&self.ball.surfaces[0], &self.ball.surfaces[1]];
+        let centre = self.ball.centre(0, self.ball.radius(u), [a, b]);
+        Arc::about(first.at(a, b), centre, second.at(c, d)).ok()
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        let mut all = self.ball.spine.breaks();
+        if let Some(law) = &self.ball.radii {
+            all.extend(moldloft_num::Curve::breaks(law));
+            all.sort_by(f64::total_cmp);
+            all.dedup_by(|b, a| *b - *a < 1e-12);
+        }
+        [all, Vec::new()]
+    }
+
+    fn edges(&self) -> Edges<T> {
+        let edges = Edges::own();
+        if self.closed { edges.with(1, Edge::SameAs(3)) } else { edges }
+    }
+}
