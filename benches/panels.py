@@ -78,7 +78,7 @@ def main() -> None:
     text = text.replace("swell", "all")
     measure("30 patches, all change", moldloft.loads(text), "all", [0.9, 1.1, 1.2])
     for path, param, values, times in (
-        ("platform/platform.sdl", "leg_radius", [7.5, 8.5, 9.0], (1, 2)),
+        ("platform/platform.sdl", "leg_radius", [7.5, 8.5, 9.0], (1,)),
         ("sailboat/yacht.sdl", "beam", [9.5, 10.0, 10.5], (1, 4)),
     ):
         for k in times:

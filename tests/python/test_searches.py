@@ -12,7 +12,7 @@ from moldloft.builder import Builder
 TUBE = """
 AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(0, 2, 0); AbsPoint B(4, 2, 0);
 Line m(A, B); RevSurf S(m, axis, 0, 6.283185307179586); XPlane half(1.5);
-AbsPoint C(-1, 1, 3); AbsPoint D(3, 1, -3); Line through(C, D);
+AbsPoint C(0.5, 1, 3); AbsPoint D(3, 1, -3); Line through(C, D);
 AbsPoint E(2, -3, 0); AbsPoint F(2, 3, 0); Line post(E, F);
 AbsPoint G(2.7, -3, 0); AbsPoint H(2.7, 3, 0); Line g(G, H);
 RevSurf T(g, post, 0, 6.283185307179586);
