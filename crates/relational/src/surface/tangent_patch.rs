@@ -185,7 +185,7 @@ impl<T: Real> Patch<T> {
                 let end = usize::from(!at_begin);
                 let [a, b] = neighbours.map(|n| self.leaving[n][end].map(J::fixed));
                 // Towards the opposite edge, less what the corners' chords have too much.
-                let [low, high] = if k % 2 == 0 { [0, 2] } else { [3, 1] };
+                let [low, high] = if k == 0 || k == 2 { [0, 2] } else { [3, 1] };
                 let chord = self.boundary.side(high, t) - self.boundary.side(low, t);
                 let ends = [0.0, 1.0].map(|t| {
                     let t = T::from(t);
