@@ -1,9 +1,10 @@
-"""Implicit solids beside Manifold's `level_set`: the T-piece of the svLis manual at equal cell size.
+"""Implicit solids beside Manifold's `level_set`: the svLis manual's T-piece at equal cell size.
 
-Manifold takes a Python function of one point, so most of its time is Python's; its times are told for what
-they are. Quality is compared too: distance of triangle centres from the surface, self-intersections, volume.
+Manifold takes a Python function of one point, so most of its time is Python's; its times are told
+for what they are. Quality is compared too: distance of triangle centres from the surface,
+self-intersections, volume.
 
-Run with `python benches/implicit.py [depth …]`; MOLDLOFT needs a release build, RAYON_NUM_THREADS=1 for one
+Run with `python benches/implicit.py [depth …]` on a release build; RAYON_NUM_THREADS=1 for one
 thread.
 """
 
@@ -52,7 +53,7 @@ def told(name: str, seconds: float, triangles: int, rms: float, volume: float, c
 
 
 def centre_rms(part: im.Set, vertices: np.ndarray, triangles: np.ndarray) -> float:
-    """Root mean square of |f| / |f'| at the triangles' centres, by the primitive that decides there."""
+    """Root mean square of |f| / |f'| at the triangles' centres, by the primitive that decides."""
     centres = vertices[triangles].mean(axis=1)
     winners = part.winner(centres)
     out = np.zeros(len(centres))
@@ -64,6 +65,18 @@ def centre_rms(part: im.Set, vertices: np.ndarray, triangles: np.ndarray) -> flo
     return float(np.sqrt(np.mean(out**2)))
 
 
+class Fresh:
+    """Facets of another box each time, so that nothing is taken over from before."""
+
+    def __init__(self, part: im.Set, depth: int) -> None:
+        self.part, self.depth, self.shift = part, depth, 0.0
+
+    def __call__(self) -> im.Facets:
+        """The facets."""
+        self.shift += 1e-9
+        return self.part.facets((LOW[0] - self.shift, *LOW[1:]), HIGH, depth=self.depth)
+
+
 def main() -> None:
     depths = [int(d) for d in sys.argv[1:]] or [6, 7, 8]
     part = tee()
@@ -71,14 +84,7 @@ def main() -> None:
     seconds, _ = best(5, lambda: part(points))
     print(f"values at 10^6 points: {1e9 * seconds / len(points):.1f} ns per point")
     for depth in depths:
-        x = [0.0]
-
-        def fresh() -> im.Facets:
-            # Another box each time, so that nothing is taken over from before.
-            x[0] += 1e-9
-            return part.facets((LOW[0] - x[0], *LOW[1:]), HIGH, depth=depth)
-
-        seconds, facets = best(5, fresh)
+        seconds, facets = best(5, Fresh(part, depth))
         rms = float(np.sqrt(np.mean(facets.centre_distances() ** 2)))
         count = len(facets.triangles)
         told(f"depth {depth}", seconds, count, rms, facets.volume, facets.crossings())

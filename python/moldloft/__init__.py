@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from moldloft.builder import Builder, model, param
     from moldloft.errors import Error, FairingError, FileError, ModelError, UnknownNameError
     from moldloft.fairing import fair
-    from moldloft.implicit import Field, Set
     from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
+    from moldloft.implicit import Field, Set
     from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model, Param, load, loads
     from moldloft.objects import Object

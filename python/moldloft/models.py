@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from moldloft.blocks import Blocks
+    from moldloft.implicit import Field, Set
     from moldloft.mesh import Mesh
 
 __all__ = ["Model", "Param", "load", "loads"]
@@ -61,8 +62,8 @@ def load(
         Python functions that the model may call, by the names it calls them. They take and
         return floats, vectors ``(3,)`` and arrays; where derivatives are asked for they are given
         :class:`moldloft.numbers.Dual` numbers, on which arithmetic and NumPy's elementary
-        functions work. A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set` is called
-        without arguments: ``field scan = scan();``.
+        functions work. A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set` is
+        called without arguments: ``field f = scan();``.
     strict
         Whether errors raise. Without it they are told by :attr:`Model.diagnostics` only, and
         what does not depend on a failed object lives on.

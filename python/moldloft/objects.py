@@ -79,8 +79,9 @@ class Object:
         return bool(self._facts()["ok"])
 
     def __call__(self, *parameters: ArrayLike) -> Floats:
-        """Positions on the curve at ``t``, or on the surface at ``u, v``; of a field or set the values
-        at points ``(…, 3)``.
+        """Positions on the curve at ``t``, or on the surface at ``u, v``.
+
+        Of a field or set the values at points ``(…, 3)``.
 
         Parameters
         ----------
@@ -135,7 +136,9 @@ class Object:
 
     @property
     def value(self) -> Any:
-        """Its value: a :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set`, an array of
+        """Its value.
+
+        A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set`, an array of
         coordinates, the data of a body.
 
         >>> import moldloft

@@ -1,5 +1,6 @@
 """Implicit fields and sets from Python, in models, in files, and with bad input."""
 
+import itertools
 import json
 import math
 import signal
@@ -251,7 +252,8 @@ def test_python_functions_as_primitives():
     # In arithmetic with others, moved, and in a model.
     ball = im.function(value, lipschitz=1.0)
     assert (2 * ball.translated((1, 0, 0)) + 1)((1, 0, 3)) == 5.0
-    text = "param float h = 0.5 in [0, 1]; field b = ball(); set cap = set(b) & set(plane({0, 0, -1}, {0, 0, h}));"
+    text = """param float h = 0.5 in [0, 1]; field b = ball();
+        set cap = set(b) & set(plane({0, 0, -1}, {0, 0, h}));"""
     m = moldloft.loads(text, functions={"ball": ball})
     h = 0.5
     cap = math.pi * (1 - h) ** 2 * (2 + h) / 3
@@ -439,6 +441,7 @@ def test_the_wave_has_the_area_of_its_integral():
     box = "{-4, -2, -2}, {4, 2, 2}"
     area = m.eval(f"area(sheet, {box})")
     assert abs(area - 4 * arc) < 1e-3 * area
+
     # The ball cuts out the part that lies in it.
     def inside(y: float, x: float) -> float:
         z = -math.sin(x)
@@ -481,7 +484,7 @@ def test_fillets_side_by_side_grow_with_lambda():
     m = example("lambdas")
     volumes = [m.eval(f"piece[{k}].volume") for k in range(1, 10)]
     # The smaller lambda, the fuller the fillet.
-    assert all(a > b for a, b in zip(volumes, volumes[1:], strict=False))
+    assert all(a > b for a, b in itertools.pairwise(volumes))
     assert abs(volumes[5] - 25.097) < 5e-3 and m.mesh().closed
     assert m.mesh().summary["components"] == 9
 
@@ -518,3 +521,34 @@ def test_the_manifold_and_its_openings():
     high = m.eval("length(opening[2])")
     m["pipe"] = 0.15 - h
     assert abs((high - m.eval("length(opening[2])")) / (2 * h) - slope) < 1e-5
+
+
+def test_vertices_move_with_parameters():
+    m = example("tee")
+    mesh = m.mesh()
+    motion = m.jacobian(["r1"])[:, :, 0]
+    run = mesh.patch("part.run")
+    own = set(np.unique(mesh.faces[run.start : run.stop]).tolist())
+    others = np.ones(len(mesh.faces), dtype=bool)
+    others[run.start : run.stop] = False
+    own -= set(np.unique(mesh.faces[others]).tolist())
+    at = np.array(sorted(own))
+    p = mesh.vertices[at]
+    normal = np.column_stack([np.zeros(len(p)), p[:, 1], p[:, 2]])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    # Faces of a cylinder move outward as its radius grows, and along no other way.
+    assert len(at) > 500
+    assert np.allclose((motion[at] * normal).sum(axis=1), 1, atol=1e-9)
+    assert np.allclose(motion[at], normal, atol=1e-9)
+    # The ends of the pipe do not move.
+    ends = mesh.patch("part.right")
+    flat = np.unique(mesh.faces[ends.start : ends.stop])
+    assert np.allclose(motion[flat, 0], 0, atol=1e-9)
+    # The volume grows by the flux of the motion through the panels.
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    area = np.cross(b - a, c - a) / 2
+    mean = motion[mesh.faces[:, :3]].mean(axis=1)
+    slope = m.derivative("mesh.volume", "r1")
+    assert abs((area * mean).sum() - slope) < 2e-3 * abs(slope)
+    best = m.derivative("volume(bored, {-4,-4,-4}, {4,4,4})", "r1")
+    assert abs(best - slope) < 2e-2 * abs(best)

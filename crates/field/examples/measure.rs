@@ -1,4 +1,4 @@
-//! Times and volume of the T-piece: bulk evaluation, brackets and facets. Run with `--release`.
+//! Times and quality of the T-piece: bulk evaluation, brackets, facets, fewer triangles. Run with `--release`.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -44,4 +44,33 @@ fn main() {
             println!("{threads} threads, depth {depth}: {:.1} ms, {faces} triangles", time * 1e3);
         }
     }
+    for depth in [6, 7, 8] {
+        let f = common::facets(&set, &common::cube(4.0), depth);
+        told(&format!("depth {depth}"), &f);
+        if depth > 6 {
+            for accuracy in [1.6e-3, 1e-3, 6e-4] {
+                let mut simple = None;
+                let time = best(1, || simple = f.simplified(accuracy).ok());
+                if let Some(simple) = simple {
+                    told(
+                        &format!("  simplified to {accuracy:.0e} in {:.0} ms", time * 1e3),
+                        &simple,
+                    );
+                }
+            }
+        }
+    }
+}
+
+fn told(name: &str, f: &moldloft_field::Facets) {
+    let all = f.centre_distances();
+    let rms = (all.iter().map(|d| d * d).sum::<f64>() / all.len() as f64).sqrt();
+    println!(
+        "{name}: {} triangles, centre rms {rms:.2e}, worst vertex {:.1e}, {} crossing pairs, {} undecided of {} cells",
+        all.len(),
+        f.worst_vertex(),
+        moldloft_field::crossing_faces(&f.mesh, None).len(),
+        f.undecided.len(),
+        f.cells
+    );
 }

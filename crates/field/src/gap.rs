@@ -2,7 +2,7 @@
 
 use crate::facet::Facets;
 use crate::interval::{Interval, sides};
-use crate::tape::Tape;
+use crate::tape::{NO_LEAF, RangeRoom, Tape};
 use crate::{FieldError, Set, foot};
 use moldloft_num::{Box3, Vec3};
 use std::cmp::Ordering;
@@ -29,6 +29,57 @@ struct Part {
     tape: Arc<Tape<f64>>,
     /// True when all of it is in the set.
     solid: bool,
+    /// True when it is away from the faces of the whole box.
+    within: bool,
+    /// The range of the gradient, where one primitive decides away from these faces.
+    slope: Option<Sides>,
+}
+
+/// The part of a box in which a primitive with these slopes can be zero; `None` when there is none.
+fn contracted(
+    tape: &Tape<f64>,
+    mut sides: Sides,
+    slope: &Sides,
+    room: &mut RangeRoom,
+) -> Option<Sides> {
+    let centre = sides.map(|s| Interval::point(s.middle()));
+    let value = tape.range(&centre, &mut room.ranges);
+    for k in 0..3 {
+        if slope[k].contains(0.0) {
+            continue;
+        }
+        // 0 = f(c) + sum of g (x - c), solved for x along one axis.
+        let mut rest = value;
+        for j in (0..3).filter(|j| *j != k) {
+            rest = rest + slope[j] * (sides[j] - centre[j]);
+        }
+        let place = centre[k] - rest * slope[k].reciprocal();
+        let (low, high) = (sides[k].low.max(place.low), sides[k].high.min(place.high));
+        if low > high {
+            return None;
+        }
+        sides[k] = Interval { low, high };
+    }
+    Some(sides)
+}
+
+/// True when no nearest pair of points can be in two boxes apart: inside a solid, or where the way
+/// between them is nowhere along the gradient, outward.
+fn hopeless(pair: &[Arc<Part>; 2]) -> bool {
+    (0..2).any(|k| {
+        let (own, other) = (&pair[k], &pair[1 - k]);
+        if own.within && own.solid {
+            return true;
+        }
+        let Some(g) = own.slope else { return false };
+        let way = [0, 1, 2].map(|axis| other.sides[axis] - own.sides[axis]);
+        let along = way[0] * g[0] + way[1] * g[1] + way[2] * g[2];
+        along.high < 0.0
+            || (0..3).any(|k| {
+                let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                !(way[a] * g[b] - way[b] * g[a]).contains(0.0)
+            })
+    })
 }
 
 struct Pair {
@@ -112,14 +163,24 @@ pub fn gap(a: &Set, b: &Set, over: &Box3, accuracy: f64) -> Result<Option<Gap>, 
     let over = crate::error::solid_box(*over)?;
     let near = 1e-9 * over.diagonal();
     let sets = [a, b];
-    let mut room = Vec::new();
+    let mut room = RangeRoom::default();
     let mut part = |sides: Sides, tape: &Arc<Tape<f64>>| {
-        let range = tape.range(&sides, &mut room);
+        let range = tape.range(&sides, &mut room.ranges);
         if range.low > 0.0 {
             return None;
         }
-        let tape = tape.pruned(&room).map_or_else(|| tape.clone(), Arc::new);
-        Some(Arc::new(Part { sides, tape, solid: range.high < 0.0 }))
+        let tape = tape.pruned(&room.ranges).map_or_else(|| tape.clone(), Arc::new);
+        let solid = range.high < 0.0;
+        let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);
+        let alone = !solid && tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
+        // Points that are nearest are on the surface, or in a face of the whole box.
+        let mut part = Part { sides, tape, solid, within, slope: None };
+        if alone && within {
+            let range = part.tape.mean_value(&part.sides, &mut room);
+            part.sides = contracted(&part.tape, part.sides, &range.slope, &mut room)?;
+            part.slope = Some(range.slope);
+        }
+        Some(Arc::new(part))
     };
     let whole = sides(&over);
     let starts = [a, b].map(|s| part(whole, &s.compiled().tape));
@@ -169,6 +230,9 @@ pub fn gap(a: &Set, b: &Set, over: &Box3, accuracy: f64) -> Result<Option<Gap>, 
             let mut pair = parts.clone();
             pair[k] = new;
             let distance = apart(&pair[0].sides, &pair[1].sides).0;
+            if distance > 0.0 && hopeless(&pair) {
+                continue;
+            }
             if best.is_none_or(|b| distance < b.0) {
                 heap.push(Pair { distance, depth: depth + 1, parts: pair });
             }

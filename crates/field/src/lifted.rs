@@ -112,10 +112,6 @@ fn moved<T: Real>(
     surfaces: &[SmallVec<[u32; 3]>],
     primitives: &[Option<Primitive<T>>],
 ) -> Vec<Vec3<T>> {
-    // Plain numbers are where they are.
-    if T::PARTS == 1 {
-        return points.iter().map(|p| Vec3::lifted(*p)).collect();
-    }
     let mut values = Vec::new();
     let mut positions = Vec::with_capacity(surfaces.len());
     for (plain, surfaces) in points.iter().zip(surfaces) {
@@ -128,7 +124,7 @@ fn moved<T: Real>(
                 Some((g.slope, g.value))
             })
             .collect();
-        positions.push(moved_by(*plain, shortest(&rows)));
+        positions.push(p + shortest(&rows));
     }
     positions
 }

@@ -10,6 +10,7 @@ use crate::tape::{Code, NO_LEAF, Tape};
 use crate::{Leaf, Membership, Primitive, Set};
 use moldloft_num::{Real, Vec3, find_root};
 use smallvec::SmallVec;
+use std::sync::Arc;
 
 /// A half-line or a piece of a line: start + t direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -229,12 +230,14 @@ pub fn roots(f: &Primitive, ray: &Ray) -> Vec<f64> {
 pub struct Caster<'a> {
     set: &'a Set,
     leaves: Vec<Leaf>,
+    tape: Arc<Tape<f64>>,
 }
 
 impl<'a> Caster<'a> {
     /// Makes a set ready.
     pub fn new(set: &'a Set) -> Self {
-        Self { set, leaves: set.leaves() }
+        let compiled = set.compiled();
+        Self { set, leaves: compiled.leaves, tape: compiled.tape }
     }
 
     /// The primitives, as [`Set::leaves`].
@@ -261,8 +264,9 @@ impl<'a> Caster<'a> {
             candidates.extend(roots(leaf.primitive.of_sheet(), ray).into_iter().map(|t| (t, k)));
         }
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let inside =
-            |a: f64, b: f64| self.set.member(ray.at(0.5 * (a + b)), 0.0) == Membership::Solid;
+        let mut values = Vec::new();
+        let mut inside =
+            |a: f64, b: f64| self.tape.eval::<f64>(&ray.at(0.5 * (a + b)), &mut values) < 0.0;
         let mut hits = Vec::new();
         let mut from = 0.0;
         for (k, &(t, leaf)) in candidates.iter().enumerate() {
@@ -276,15 +280,13 @@ impl<'a> Caster<'a> {
             let point = ray.at(t);
             let before = inside(from, t);
             let after = inside(t, to);
-            let known: Vec<Primitive> = candidates
-                .iter()
-                .filter(|c| group(c.0))
-                .map(|c| leaves[c.1].primitive.clone())
-                .collect();
-            let shows = before != after
-                || (!before
-                    && self.set.member_knowing(point, 0.0, &known) == Membership::Surface
-                    && leaves[leaf].primitive.is_sheet());
+            let on_surface = || {
+                let here = candidates.iter().filter(|c| group(c.0));
+                let known: Vec<Primitive> = here.map(|c| leaves[c.1].primitive.clone()).collect();
+                self.set.member_knowing(point, 0.0, &known) == Membership::Surface
+            };
+            let shows =
+                before != after || (!before && leaves[leaf].primitive.is_sheet() && on_surface());
             if candidates[k + 1..].first().is_none_or(|next| !group(next.0)) {
                 from = t;
             }

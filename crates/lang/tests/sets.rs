@@ -154,7 +154,12 @@ fn derivatives_equal_differences() {
                 || text.starts_with("ce")
                 || text.starts_with("i")
                 || *text == "b.volume";
-            let (h, tolerance) = if integral { (0.02, 2e-3) } else { (1e-4, 1e-6) };
+            let (h, tolerance) = match *text {
+                // Facets at one depth jump a little as the grid passes.
+                "b.volume" => (0.04, 5e-3),
+                _ if integral => (0.02, 2e-3),
+                _ => (1e-4, 1e-6),
+            };
             let mut at = |x: f64| {
                 model.set(&[(by.into(), x)]).unwrap();
                 number(&mut model, text)
@@ -320,7 +325,7 @@ fn sheets_wires_and_points_reach_the_body() {
     };
     let (sheet, wire, dot) = (body("sheet"), body("wire"), body("dot"));
     assert!((sheet.area - 4.0 * PI).abs() < 0.1 && sheet.wires.is_empty());
-    assert_eq!(sheet.groups[0].name, "a");
+    assert_eq!(sheet.groups[0].name, "shell");
     assert!(wire.triangles.is_empty() && wire.wires.len() == 1);
     let length: f64 = wire.wires[0].windows(2).map(|p| p[0].distance(p[1])).sum();
     assert!((length - 2.0 * PI * 0.75f64.sqrt()).abs() < 5e-3, "{length}");
@@ -369,4 +374,58 @@ fn implicit_surfaces_serve_projections_and_intersections() {
             "d({text})/d({by}) = {exact}, differences {centred}"
         );
     }
+}
+
+#[test]
+fn curves_surfaces_and_bodies_become_fields() {
+    let mut model = sound(
+        "param float r = 0.25 in [0.1, 0.5]; param float h = 1 in [0.5, 2];
+         AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); Line l(A, B);
+         field bar = tube(l, r); set rod = set(bar);
+         AbsPoint C(0, 2, h); AbsPoint D(2, 2, h); Line m(C, D); AbsPoint E(0, -2, h); AbsPoint F(2, -2, h); Line n(E, F);
+         RuledSurf S(n, m); field sheet = plate(S, 0.2); field below = side(S);
+         set under = set(below) & cuboid({0.2, -1, 0}, {1.2, 1, 3});
+         set box = cuboid({0, 0, 0}, {1, 2, h}); SetBody hull(box, {-1, -1, -1}, {2, 3, 3}, depth = 4);
+         field skin = inside(hull); set outer = set(skin - 0.5);",
+    );
+    // A bar with round ends: pi r^2 l + 4/3 pi r^3.
+    let exact = |r: f64| PI * r * r * 2.0 + 4.0 / 3.0 * PI * r.powi(3);
+    let volume = "volume(rod, {-1,-1,-1}, {3,1,1}, 1e-5)";
+    assert!((number(&mut model, volume) - exact(0.25)).abs() < 1e-3);
+    let slope = |model: &mut Document, text: &str, by: &str| {
+        let all = model.derivatives(&[text.into()], &[by.into()]).unwrap();
+        match all[0][0] {
+            Value::Number(x) => x,
+            ref other => panic!("{other:?}"),
+        }
+    };
+    let along = (exact(0.2501) - exact(0.2499)) / 2e-4;
+    assert!((slope(&mut model, volume, "r") - along).abs() < 1e-2);
+    assert!((number(&mut model, "bar({1, 3, 4})") - 4.75).abs() < 1e-12);
+    assert!((number(&mut model, "sheet({1, 0, 3})").abs() - 1.9).abs() < 1e-9);
+    assert!((slope(&mut model, "sheet({1, 0, 3})", "h") + 1.0).abs() < 1e-9);
+    let side = number(&mut model, "below({1, 0.5, 3})");
+    assert!((side.abs() - 2.0).abs() < 1e-9);
+    let part = number(&mut model, "volume(under, {0,-1.5,-0.5}, {2,1.5,3.5}, 1e-4)");
+    assert!((part - 2.0).abs() < 2e-3 || (part - 4.0).abs() < 2e-3, "{part}");
+    // Inside a box: exact distances, at faces, edges and corners.
+    for (point, distance) in [
+        ("{0.5, 1, 0.5}", -0.5),
+        ("{2, 1, 0.5}", 1.0),
+        ("{2, 3, 0.5}", 2.0f64.sqrt()),
+        ("{2, 3, 2}", 3.0f64.sqrt()),
+        ("{-1, -1, -1}", 3.0f64.sqrt()),
+    ] {
+        let found = number(&mut model, &format!("skin({point})"));
+        assert!((found - distance).abs() < 1e-9, "{point}: {found}");
+    }
+    assert!((slope(&mut model, "skin({0.5, 1, 3})", "h") + 1.0).abs() < 1e-9);
+    // The body at a distance of 0.5: box, faces, quarter cylinders, a ball.
+    let offset = 2.0 + 0.5 * 10.0 + PI * 0.25 * 4.0 + 4.0 / 3.0 * PI * 0.125;
+    let found = number(&mut model, "volume(outer, {-1,-1,-1}, {2,3,3}, 1e-3)");
+    assert!((found - offset).abs() < 2e-2, "{found} {offset}");
+    let open = told(&open(
+        "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4}); field f = inside(b);",
+    ));
+    assert!(open[0].contains("not-closed"), "{open:?}");
 }

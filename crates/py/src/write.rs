@@ -20,6 +20,10 @@ const CONTOUR_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
 /// In picture points.
 const CONTOUR_WIDTH: f32 = 1.5;
 
+/// Wires of bodies: dark and broad, so that they are seen against nothing.
+const WIRE_COLOUR: [u8; 3] = [0x1b, 0x25, 0x33];
+const WIRE_WIDTH: f32 = 3.0;
+
 type Outcome<R> = Result<R, Vec<Diagnostic>>;
 
 /// Standard gravity in metres per second squared (ISO 80000-3).
@@ -304,7 +308,9 @@ fn round_values(low: f64, high: f64) -> Vec<f64> {
 /// # Errors
 /// An impossible size.
 pub fn picture(document: &mut Document, width: usize, height: usize) -> Outcome<Vec<u8>> {
-    let lines: Vec<Line> = document.sections().iter().flat_map(drawn).collect();
+    let mut lines: Vec<Line> = document.sections().iter().flat_map(drawn).collect();
+    let wires = strands(document).wires.into_iter();
+    lines.extend(wires.map(|(_, points)| Line { points, colour: WIRE_COLOUR, width: WIRE_WIDTH }));
     let mirror = document.symmetry().contains('y');
     let panelled = document.panelled().map_err(|d| vec![d])?;
     let options = Options { width, height, mirror, ..Options::default() };

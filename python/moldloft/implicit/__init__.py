@@ -1,8 +1,8 @@
 """Implicit solids: primitives by arithmetic, sets, blends, and meshes of their boundaries.
 
-A :class:`Field` is a function of space, negative in the solid, zero on the surface, positive in air.
-A :class:`Set` combines the solid sides of fields by ``|``, ``&``, ``-`` and ``^``. :class:`Facets`
-are its surface as triangles.
+A :class:`Field` is a function of space, negative in the solid, zero on the surface, positive in
+air. A :class:`Set` combines the solid sides of fields by ``|``, ``&``, ``-`` and ``^``.
+:class:`Facets` are its surface as triangles.
 
 >>> from moldloft import implicit as im
 >>> ball = im.sphere((0, 0, 0), 1)
@@ -28,7 +28,7 @@ from moldloft.implicit.blends import (
     transition,
     zhang,
 )
-from moldloft.implicit.facets import Contour, Facets, FacetPatch, Sheet
+from moldloft.implicit.facets import Contour, FacetPatch, Facets, Sheet
 from moldloft.implicit.fields import (
     Field,
     atan2,

@@ -49,8 +49,8 @@ def liming(
 ) -> Field:
     """The surface through the four curves in which ``l1`` and ``l2`` meet ``l3`` and ``l4``.
 
-    ``lam l1 l2 - (1 - lam) l3 l4``. Without ``l4``, ``l3`` is a rail: the blend touches both bodies where
-    the rail does, with contact G^n.
+    ``lam l1 l2 - (1 - lam) l3 l4``. Without ``l4``, ``l3`` is a rail: the blend touches both
+    bodies where the rail does, with contact G^n.
 
     >>> from moldloft import implicit as im
     >>> x, y, z = im.axes()
@@ -69,8 +69,10 @@ def zhang(
 
 
 def setback(l1: Field, l2: Field, a: float, b: float | None = None) -> Field:
-    """The rail of prescribed setbacks: it meets ``l1 = 0`` where ``l2 = b`` and ``l2 = 0`` where
-    ``l1 = a``."""
+    """The rail of prescribed setbacks.
+
+    It meets ``l1 = 0`` where ``l2 = b`` and ``l2 = 0`` where ``l1 = a``.
+    """
     return Field(l1._core.setback(l2._core, float(a), float(a if b is None else b)))
 
 
@@ -131,8 +133,10 @@ def rounded(
 def transition(
     l1: Field, l2: Field, l3: Field, l4: Field, *, lam: float = 0.5, contact: int = 1
 ) -> Blend:
-    """The body ``l1`` up to its rail ``l3``, ``l2`` up to ``l4``, and Zhang's transition between: the
-    solid sides of the rails keep the bodies."""
+    """The body ``l1`` up to its rail ``l3``, ``l2`` up to ``l4``, and Zhang's transition.
+
+    The solid sides of the rails keep the bodies.
+    """
     from moldloft.implicit.sets import Set
 
     cores = (l1._core, l2._core, l3._core, l4._core)

@@ -91,7 +91,7 @@ class Facets:
 
     @cached_property
     def triangles(self) -> NDArray[np.uint32]:
-        """Corners as indices of vertices ``(m, 3)``, counter-clockwise seen from air; the sheets' last."""
+        """Corners as indices of vertices ``(m, 3)``, counter-clockwise from air; sheets last."""
         return self._core.triangles()
 
     @cached_property
@@ -166,10 +166,10 @@ class Facets:
         return float(self.summary["best_volume"])
 
     def simplified(self, accuracy: float) -> Facets:
-        """The same surface with fewer triangles: middles and sides stay within ``accuracy`` of it.
+        """The same surface with fewer triangles, middles and sides within ``accuracy`` of it.
 
-        Vertices that stay are on their surfaces as before. Flat and singly curved faces shrink most:
-        triangles become long where the surface is straight.
+        Vertices that stay are on their surfaces as before. Flat and singly curved faces shrink
+        most, with triangles that are long where the surface is straight.
         """
         return Facets(self._core.simplified(float(accuracy)))
 
@@ -190,8 +190,10 @@ class Facets:
 
     @cached_property
     def undecided(self) -> list[tuple[list[float], list[float]]]:
-        """Boxes in which something did not come out right: low and high corners. Elsewhere no two
-        triangles meet except where they join."""
+        """Boxes in which something did not come out right: low and high corners.
+
+        Elsewhere no two triangles meet except where they join.
+        """
         return self._core.undecided()
 
     def centre_distances(self) -> Floats:
@@ -206,10 +208,8 @@ class Facets:
         """How many pairs of triangles cut each other."""
         return self._core.crossings()
 
-    def section(
-        self, normal: Sequence[float], point: Sequence[float] = (0, 0, 0)
-    ) -> list[Contour]:
-        """The contours in which a plane cuts the solids, each point on the surface and in the plane."""
+    def section(self, normal: Sequence[float], point: Sequence[float] = (0, 0, 0)) -> list[Contour]:
+        """The contours in which a plane cuts the solids, on the surface and in the plane."""
         from moldloft.implicit.fields import triple
 
         found = self._core.section(triple(normal, "normal"), triple(point, "point"))
@@ -235,13 +235,11 @@ class Facets:
         """
         return _drawn([(n, self.section(n, point)) for n in normals], point, width)
 
-    def write(
-        self, path: str | os.PathLike[str], *, format: str | None = None
-    ) -> Path:
+    def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> Path:
         """Write the facets to a file, whole or not at all; the ending tells the format.
 
-        ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` hold solids and sheets; wires and points go
-        into ``obj`` and ``vtp``, the others refuse them.
+        ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` hold solids and sheets; wires and
+        points go into ``obj`` and ``vtp``, the others refuse them.
         """
         from moldloft.files import Output, commit
 
@@ -312,5 +310,7 @@ def _drawn(
     box = f"{-margin} {-margin} {total + 2 * margin:.3f} {tallest + 2 * margin:.3f}"
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{total + 2 * margin:.3f}mm" '
-        f'height="{tallest + 2 * margin:.3f}mm" viewBox="{box}">\n' + "\n".join(parts) + "\n</svg>\n"
+        f'height="{tallest + 2 * margin:.3f}mm" viewBox="{box}">\n'
+        + "\n".join(parts)
+        + "\n</svg>\n"
     )

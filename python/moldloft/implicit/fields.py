@@ -35,10 +35,10 @@ def points_of(points: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
 
 
 class Field:
-    """An implicit function f(x, y, z): solid where negative, surface where zero, air where positive.
+    """An implicit function f(x, y, z): solid where negative, zero on the surface, air elsewhere.
 
-    Fields are combined by ``+ - *`` with fields and numbers, ``/`` by a number, ``**`` a whole number
-    and the functions of this module; :func:`abs` gives a sheet. They never change.
+    Fields are combined by ``+ - *`` with fields and numbers, ``/`` by a number, ``**`` a whole
+    number and the functions of this module; :func:`abs` gives a sheet. They never change.
 
     Examples
     --------
@@ -76,8 +76,11 @@ class Field:
 
     @property
     def degree(self) -> int:
-        """Degree as a polynomial: numbers 0, planes 1, sums the larger, products the sum, functions one
-        more, functions from outside 100."""
+        """Degree as a polynomial.
+
+        Numbers 0, planes 1, sums the larger, products the sum, functions one more, functions from
+        outside 100.
+        """
         return self._core.degree
 
     @property
@@ -231,12 +234,12 @@ def plane(normal: Triple, point: Triple) -> Field:
 
 
 def sphere(centre: Triple, radius: float, *, distance: bool = False) -> Field:
-    """The ball ``|X - centre|^2 - radius^2``, or with ``distance`` the distance from its surface."""
+    """The ball ``|X - centre|^2 - radius^2``; with ``distance`` the distance from its surface."""
     return Field(_core.Field.sphere(triple(centre, "centre"), float(radius), distance))
 
 
 def cylinder(point: Triple, direction: Triple, radius: float, *, distance: bool = False) -> Field:
-    """The infinite cylinder about the line through a point, or with ``distance`` the distance from it."""
+    """The infinite cylinder about a line; with ``distance`` the distance from its surface."""
     p, d = triple(point, "point"), triple(direction, "direction")
     return Field(_core.Field.cylinder(p, d, float(radius), distance))
 
@@ -257,8 +260,10 @@ def torus(centre: Triple, direction: Triple, major: float, minor: float) -> Fiel
 def cyclide(
     centre: Triple, direction: Triple, along: Triple, major: float, minor: float, change: float
 ) -> Field:
-    """The Dupin cyclide: a ring whose tube has the radius ``minor - change`` towards ``along`` and
-    ``minor + change`` opposite."""
+    """The Dupin cyclide: a ring whose tube is thinner on one side.
+
+    Its radius is ``minor - change`` towards ``along`` and ``minor + change`` opposite.
+    """
     p, d, a = triple(centre, "centre"), triple(direction, "direction"), triple(along, "along")
     return Field(_core.Field.cyclide(p, d, a, float(major), float(minor), float(change)))
 
@@ -282,8 +287,8 @@ def function(
         Takes the low and high corner of a box and returns numbers below and above all values in it.
         Wide ones cost time, wrong ones correctness.
     lipschitz
-        Instead of a range: values differ by at most this times the distance of their points. Without
-        either, nothing is known over boxes, and every box of the division is looked at.
+        Instead of a range: values differ by at most this times the distance of their points.
+        Without either, nothing is known over boxes, and every box of the division is looked at.
 
     What the function raises, or a wrong shape that it returns, becomes a :class:`moldloft.Error`.
 

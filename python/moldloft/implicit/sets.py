@@ -156,7 +156,7 @@ def _corners(low: Triple | None, high: Triple | None) -> tuple[list[float], list
 
 
 class Set:
-    """A set of points: the solid sides of fields under ``|``, ``&``, ``-``, ``^`` and complement (``-``).
+    """A set of points: the solid sides of fields under ``|``, ``&``, ``-``, ``^`` and complement.
 
     Sets never change and share their parts, so holding on to an operand is all that undo needs.
 
@@ -349,7 +349,9 @@ class Set:
         found = self._core.bounds(float(accuracy))
         return None if found is None else (np.array(found[0]), np.array(found[1]))
 
-    def mass(self, low: Triple | None = None, high: Triple | None = None, *, depth: int = 6) -> Mass:
+    def mass(
+        self, low: Triple | None = None, high: Triple | None = None, *, depth: int = 6
+    ) -> Mass:
         """Volume, centroid and inertia within a box, each as a proved bracket and a best value.
 
         Parameters
@@ -439,10 +441,10 @@ class Set:
         depth
             Cells of the 2^depth-th part of the longest side; by default 6.
         accuracy
-            Instead: how far the middles of triangles are from the surface at most, kept by refining.
+            Instead: how far the middles of triangles are from the surface at most, by refining.
         before
-            Facets of a similar set in the same box at the same depth: boxes in which the set did not
-            change are taken over. The result is the same, bit for bit.
+            Facets of a similar set in the same box at the same depth: boxes in which the set did
+            not change are taken over. The result is the same, bit for bit.
         limit
             The most cells that the surface may pass through.
         """
@@ -484,8 +486,8 @@ class Set:
         angle
             Angle of view from top to bottom, in radians.
         lights
-            :class:`Sun` and :class:`Lamp`; by default a sun over the left shoulder and a weak one from
-            the right.
+            :class:`Sun` and :class:`Lamp`; by default a sun over the left shoulder and a weak one
+            from the right.
         ambient
             Light from everywhere.
         shadows

@@ -1,6 +1,6 @@
 //! Eight by eight by eight cells: signs at the corners, crossings of the edges, vertices.
 
-use super::cell::{Case, NONE, case, faces_of, start_corner};
+use super::cell::{Case, NONE, case, face_edges, faces_of, start_corner};
 use super::grid::Grid;
 use super::vertex::{Placed, Solver, Surfaces};
 use crate::set::Leaf;
@@ -185,7 +185,18 @@ impl Block {
                         let half = |k: usize| if k == axis { 0.0 } else { 0.5 * grid.step };
                         let middle = corner(at) + Vec3::new(half(0), half(1), half(2));
                         let solid = tape.eval::<f64>(&middle, registers) <= 0.0;
-                        block.joins[index] |= u8::from(solid) << face;
+                        let on = |e: usize| {
+                            let start = start_corner(e);
+                            let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
+                            &crossings[crossing_at[3 * corner_index(c) + e / 4] as usize]
+                        };
+                        let mut touch = || {
+                            let ring = face_edges(axis, face % 2).map(on);
+                            let first = signs >> ((face % 2) << axis) & 1 == 1;
+                            touching(ring, first, face, &sides, leaves, grid.goal, solver)
+                        };
+                        // Bodies that only touch there stay apart.
+                        block.joins[index] |= u8::from(solid && !touch()) << face;
                     }
                     let case = block.case(cell);
                     let several = case.loops > 1;
@@ -214,6 +225,39 @@ impl Block {
         crossings.retain(|c| c.at.iter().all(|&x| (x as usize) < SIDE));
         block.crossings = crossings;
         Ok(block)
+    }
+}
+
+/// True when the two pieces of air on an ambiguous face whose solid corners would be joined come together at
+/// one point: then the solids only touch. `ring` are the crossings round the face, `first` says that
+/// its first corner is solid.
+fn touching(
+    ring: [&Crossing; 4],
+    first: bool,
+    face: usize,
+    cell: &Box3,
+    leaves: &[Leaf],
+    goal: f64,
+    solver: &mut Solver,
+) -> bool {
+    // The pairs round the two air corners; edge k joins corners k and k + 1.
+    let pairs = if first { [[0, 1], [2, 3]] } else { [[3, 0], [1, 2]] };
+    let (mut low, mut high) = (cell.low.to_array(), cell.high.to_array());
+    let at = if face.is_multiple_of(2) { low[face / 2] } else { high[face / 2] };
+    (low[face / 2], high[face / 2]) = (at, at);
+    let side = Box3 { low: low.into(), high: high.into() };
+    let mut corner = |[a, b]: [usize; 2]| {
+        let (p, q) = (ring[a], ring[b]);
+        if p.leaf == q.leaf {
+            return None;
+        }
+        let both = [p.leaf.min(q.leaf), p.leaf.max(q.leaf)];
+        let placed = solver.place(leaves, &both, (p.point + q.point) * 0.5, &side, goal);
+        (placed.residual <= goal).then_some(placed.point)
+    };
+    match pairs.map(&mut corner) {
+        [Some(p), Some(q)] => p.distance(q) <= 100.0 * goal,
+        _ => false,
     }
 }
 

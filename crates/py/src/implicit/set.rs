@@ -7,8 +7,8 @@ use crate::arrays;
 use crate::error::plain_error;
 use crate::work::interruptible;
 use moldloft_field::{
-    Affine, Attributes, Caster, FieldError, Light, Membership, Options, Portrait, Ray, Resolution,
-    Set, facets_of,
+    Affine, Attributes, Caster, FieldError, Light, Membership, Options, Pieces, Portrait, Ray,
+    Resolution, Set, facet_mixed,
 };
 use moldloft_num::{Box3, Vec3};
 use numpy::{PyArray1, PyReadonlyArray2};
@@ -291,12 +291,12 @@ impl PySet {
             let over = region(set, given(corners))?;
             let options = Options { limit, cancel: Some(cancel), ..Options::new(resolution) };
             let plain = set.leaves().iter().all(|l| !l.primitive.is_sheet());
-            let pieces = match (&before, plain) {
-                (Some(before), true) => {
-                    let facets = moldloft_field::refacet(set, &over, &options, Some(&**before))?;
-                    moldloft_field::Pieces::Solid(Arc::new(facets))
-                }
-                _ => facets_of(set, &over, &options)?,
+            // Only what is given is taken over: what a caller times or counts is what was done.
+            let pieces = if plain {
+                let facets = moldloft_field::refacet(set, &over, &options, before.as_deref())?;
+                Pieces::Solid(Arc::new(facets))
+            } else {
+                Pieces::Mixed(facet_mixed(set, &over, &options)?)
             };
             Ok((pieces, over))
         })?;
