@@ -17,6 +17,21 @@ def blocks(page: str, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.parametrize("text", blocks("implicit.md", "sdl"))
+def test_the_programs_of_the_page_on_implicit_solids_run(text: str) -> None:
+    assert not moldloft.loads(text).diagnostics
+
+
+def test_the_python_of_the_page_on_implicit_solids_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (block,) = blocks("implicit.md", "python")
+    block = block.replace('picture("cup.png", samples=2)', 'picture("cup.png", size=(80, 60))')
+    exec(compile(block, "implicit.md", "exec"), {})
+    assert {p.name for p in tmp_path.iterdir()} == {"cup.3mf", "cup.svg", "cup.png"}
+
+
 @pytest.fixture
 def yacht(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)

@@ -163,6 +163,11 @@ pub(crate) fn declared_at<T: Scalar>(
     let m = modules.get(origin.module as usize);
     match m.program[origin.stmt].kind {
         StmtKind::Object { name, .. } => Some(name.span),
+        StmtKind::Declare { items, .. } => {
+            let mut items = m.program[items].iter();
+            let item = items.find(|item| m.program.name(item.name.symbol) == &*object.name)?;
+            Some(item.name.span)
+        }
         _ => None,
     }
 }

@@ -242,6 +242,11 @@ impl Document {
         }
         match self.modules.get(0).program[origin.stmt].kind {
             StmtKind::Object { name, .. } => Ok((origin.stmt, name.span)),
+            // `field f = ...;` and `set s = ...;`
+            StmtKind::Declare { items, .. } => match &self.modules.get(0).program[items] {
+                [item] => Ok((origin.stmt, item.name.span)),
+                _ => elsewhere("its statement makes several objects"),
+            },
             _ => elsewhere("it has no statement"),
         }
     }
@@ -269,9 +274,13 @@ fn other_meaning(m: &Module, symbol: Symbol) -> Option<Span> {
     let mut objects = 0;
     while let Some(id) = stack.pop() {
         match m.program[id].kind {
-            StmtKind::Declare { items, .. } => {
+            StmtKind::Declare { items, ty, .. } => {
                 if let Some(item) = m.program[items].iter().find(|d| d.name.symbol == symbol) {
-                    return Some(item.name.span);
+                    objects += 1;
+                    // A field or set is an object.
+                    if objects > 1 || !matches!(ty.0, sdl::Type::Field | sdl::Type::Set) {
+                        return Some(item.name.span);
+                    }
                 }
             }
             StmtKind::Param { name, .. } if name.symbol == symbol => return Some(name.span),

@@ -429,3 +429,16 @@ fn curves_surfaces_and_bodies_become_fields() {
     ));
     assert!(open[0].contains("not-closed"), "{open:?}");
 }
+
+#[test]
+fn declared_fields_and_sets_are_renamed_and_deleted() {
+    let mut model =
+        sound("field f = sphere({0, 0, 0}, 1);\nset s = set(f);\nset t = s & -set(f);\n");
+    assert!(model.delete("f").is_err());
+    model.rename("f", "ball").unwrap();
+    assert!(model.text().contains("field ball = sphere") && model.text().contains("set(ball);"));
+    model.delete("t").unwrap();
+    assert!(!model.text().contains("set t") && !model.has_errors());
+    assert_eq!(model.graph().find("t"), None);
+    assert!(model.rename("s", "ball").is_err());
+}
