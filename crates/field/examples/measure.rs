@@ -48,12 +48,12 @@ fn main() {
         let f = common::facets(&set, &common::cube(4.0), depth);
         told(&format!("depth {depth}"), &f);
         if depth > 6 {
-            for accuracy in [1.6e-3, 1e-3, 6e-4] {
+            for accuracy in [3e-4, 1e-4] {
                 let mut simple = None;
                 let time = best(1, || simple = f.simplified(accuracy).ok());
                 if let Some(simple) = simple {
                     told(
-                        &format!("  simplified to {accuracy:.0e} in {:.0} ms", time * 1e3),
+                        &format!("  simplified to {accuracy:.1e} in {:.0} ms", time * 1e3),
                         &simple,
                     );
                 }
