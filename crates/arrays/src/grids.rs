@@ -2,8 +2,9 @@
 
 use crate::value::{Lattice, Points, surface};
 use moldloft_grid::{
-    Blend, Edge, Elliptic, Faces, GridError, Method, Metric, Sheet, Wall, elliptic, folded_cells,
-    framed, quality, transfinite, transfinite_block,
+    Blend, Edge, Elliptic, Faces, GridError, Hyperbolic, Method, Metric, Sheet, Side, Wall,
+    elliptic, folded_cells, framed, hyperbolic, hyperbolic_curve, quality, transfinite,
+    transfinite_block,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
@@ -336,6 +337,102 @@ fn on_surface<T: Real>(sheet: &Sheet<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 
             .in_field(4));
     }
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
+}
+
+/// A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
+/// and Steger 1992): lines leave it at right angles, with the layers at given heights.
+///
+/// Off a surface, along s_i x s_j: the value is the list of layers, the surface first. Off a curve in a
+/// plane, to the left of its direction as seen against `normal`: the value is the surface whose line
+/// g[k,] is layer k. `sides` says what happens at edges, as "i1 pole, j1 symmetry z, jn symmetry z":
+/// "pole" for an edge that is one point, "symmetry x", "y" or "z" for one that stays in a plane of
+/// constant x, y or z, "periodic" for two that are one line; edges that are not named are free. The
+/// ends of a curve are "i1" and "im". A layer with folded cells is refused: allow more smoothing, or
+/// march less far.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "hyperbolic",
+    example = "curve c = uniform(0, 1, 9) * {1, 0, 0}; \
+               surface g = hyperbolic(c, list(0, 0.1, 0.3)); assert |g[3,5] - {0.5, 0.3, 0}| < 1e-9;"
+)]
+pub struct HyperbolicGrid<T: Scalar> {
+    /// The surface, or the curve.
+    s: Value<T>,
+    /// The distances of the layers, the first 0; kept on plane surfaces, less where they are convex.
+    heights: crate::value::Farray<T>,
+    /// What happens at edges.
+    #[field(default = "")]
+    sides: Arc<str>,
+    /// Smoothing: 0 for none, 1 for as much as keeps most concave surfaces from folding.
+    #[field(default = 0.3, min = 0, max = 10)]
+    smoothing: T,
+    /// Normal of the plane of a curve; z if not given.
+    normal: Option<Vec3<T>>,
+}
+
+impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let heights = self.heights.row().map_err(|fault| fault.in_field(1))?;
+        let is_curve =
+            matches!(&self.s, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
+        let sides = sides(&self.sides, is_curve)?;
+        let smoothing = self.smoothing.re();
+        let place = |error: GridError| {
+            let heights = matches!(error, GridError::Heights { .. });
+            let folded = matches!(error, GridError::Folded { .. });
+            let fault = fault(error);
+            if heights {
+                crate::spline::moved(fault, 1)
+            } else if folded {
+                fault.help("more smoothing, smaller heights, or sides at the edges keep cells from folding")
+            } else {
+                fault
+            }
+        };
+        if is_curve {
+            let Points(curve) = Points::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+            let normal = self.normal.unwrap_or_else(|| Vec3::of(0.0, 0.0, 1.0));
+            let ends = [sides[0], sides[1]];
+            let grid = hyperbolic_curve(&curve, normal, &heights, ends, smoothing);
+            return grid.map(surface).map_err(place);
+        }
+        let Lattice(sheet) = Lattice::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+        let layers =
+            hyperbolic(&sheet, &Hyperbolic { heights, sides, smoothing }).map_err(place)?;
+        Ok(Value::list(layers.into_iter().map(surface)))
+    }
+}
+
+fn sides(text: &str, is_curve: bool) -> Result<[Side; 4], Fault> {
+    let mut sides = [Side::Free; 4];
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let words: Vec<&str> = part.split_whitespace().collect();
+        let bad = || {
+            let expected =
+                "\"i1 pole\", \"j1 symmetry z\", \"im periodic\" and the like".to_string();
+            unknown(part, "side", expected, 2)
+        };
+        let at = EDGES.iter().position(|(name, _)| Some(name) == words.first());
+        let at = at.filter(|at| !is_curve || *at < 2).ok_or_else(bad)?;
+        sides[at] = match words[1..] {
+            ["free"] => Side::Free,
+            ["pole"] => Side::Pole,
+            ["periodic"] => Side::Periodic,
+            ["symmetry", "x"] => Side::Symmetry(0),
+            ["symmetry", "y"] => Side::Symmetry(1),
+            ["symmetry", "z"] => Side::Symmetry(2),
+            _ => return Err(bad()),
+        };
+    }
+    for pair in [[0, 1], [2, 3]] {
+        // Two edges are one line, or neither is the other.
+        if pair.iter().any(|k| sides[*k] == Side::Periodic) {
+            pair.iter().for_each(|k| sides[*k] = Side::Periodic);
+        }
+    }
+    Ok(sides)
 }
 
 fn metric(word: &str) -> Result<Metric, Fault> {

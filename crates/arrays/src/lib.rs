@@ -107,6 +107,7 @@ pub fn rows() -> Vec<Row> {
         locate::Intersect,
         grids::Tfi,
         grids::EllipticGrid,
+        grids::HyperbolicGrid,
         grids::QualityOf,
         grids::Folds,
         grids::Report,

@@ -478,7 +478,7 @@ impl<T: Scalar> Build<T> for Makels<T> {
 }
 
 /// The same fault about another field.
-fn moved(fault: Fault, field: usize) -> Fault {
+pub fn moved(fault: Fault, field: usize) -> Fault {
     let mut other = Fault::new(fault.id, fault.message.clone());
     if let Some(expected) = &fault.expected {
         other = other.expected(expected.clone());

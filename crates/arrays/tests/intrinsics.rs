@@ -423,3 +423,23 @@ fn grids_of_numbers_are_no_rows() {
     assert_eq!(refused("distc", &[line, grid.clone()]), ("wrong-shape", Some(1), None));
     assert_eq!(refused("argmin", &[grid]).0, "wrong-shape");
 }
+
+#[test]
+fn marched_grids() {
+    let line = curve(&[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]]);
+    let grid = points(&ok("hyperbolic", &[line.clone(), farray(&[0.0, 0.5, 1.5])]));
+    assert!(grid[8..].iter().all(|p| (p.y - 1.5).abs() < 1e-12 && p.z.abs() < 1e-12));
+    let Value::List(layers) =
+        ok("hyperbolic", &[hill(6, 5), farray(&[0.0, 0.05]), text("j1 symmetry y, jn symmetry y")])
+    else {
+        panic!()
+    };
+    assert!(points(&layers[1]).iter().step_by(5).all(|p| p.y == 0.0));
+    assert_eq!(
+        refused("hyperbolic", &[line.clone(), farray(&[0.0, -1.0])]),
+        ("not-monotone", Some(1), None)
+    );
+    let sides = [line, farray(&[0.0, 1.0]), text("j1 pole")];
+    assert_eq!(refused("hyperbolic", &sides), ("unknown-word", Some(2), None));
+    assert_eq!(refused("hyperbolic", &[number(1.0), farray(&[0.0, 1.0])]).0, "wrong-class");
+}

@@ -1,10 +1,10 @@
-//! Structured grids: interpolation from their edges, smoothing, and their quality.
+//! Structured grids: interpolation from their edges, smoothing, marching, and their quality.
 //!
 //! A surface grid is a [`Sheet`] of m by n points kept as three component planes; a volume grid is
 //! a list of sheets. All functions are generic over the scalar, so a grid carries its derivatives;
 //! all give the same bits at any number of threads.
 //!
-//! `edges -> transfinite -> elliptic -> quality`
+//! `edges -> transfinite -> elliptic -> quality`, `surface, heights -> hyperbolic -> layers`
 //!
 //! Invariant: this crate knows no entity, no file and no language, and depends on `num` only.
 
@@ -13,6 +13,7 @@ mod block;
 mod control;
 mod elliptic;
 mod error;
+mod hyperbolic;
 mod lines;
 mod quality;
 mod sheet;
@@ -21,5 +22,6 @@ pub use blend::{Blend, transfinite};
 pub use block::{Faces, transfinite_block};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic};
 pub use error::{Corner, GridError};
+pub use hyperbolic::{Hyperbolic, Side, hyperbolic, hyperbolic_curve};
 pub use quality::{Metric, folded_cells, quality};
 pub use sheet::{Edge, Sheet, framed};

@@ -674,7 +674,13 @@ fn read_text(bytes: &[u8]) -> Result<(Vec<Lattice>, Variant), ReadError> {
         (words.whole[k] && x.abs() < 1e15).then_some(x as i64)
     };
     let mut nearest: Option<(usize, u128, bool, usize)> = None;
+    // One number in the first line and several in the next: the number of blocks, then sizes.
+    let line = |k: usize| words.lines.get(k);
+    let alone = line(0) != line(1) && line(1).is_some() && line(1) == line(2);
     for multi in [true, false] {
+        if alone && !multi {
+            continue;
+        }
         for axes in [3, 2] {
             let blocks = if multi { whole(0).unwrap_or(0) } else { 1 };
             let start = usize::from(multi);
