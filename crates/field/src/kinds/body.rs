@@ -88,7 +88,7 @@ pub enum Pieces {
     /// Of a set without sheets.
     Solid(Arc<Facets>),
     /// Of one with.
-    Mixed(Mixed),
+    Mixed(Arc<Mixed>),
 }
 
 /// The facets of a set within a box.
@@ -101,7 +101,7 @@ pub fn facets_of(
     options: &Options,
 ) -> Result<Pieces, FieldError> {
     if set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
-        Ok(Pieces::Mixed(facet_mixed(set, over, options)?))
+        Ok(Pieces::Mixed(Arc::new(facet_mixed(set, over, options)?)))
     } else {
         Ok(Pieces::Solid(cache::facet(set, over, options)?))
     }
@@ -129,7 +129,9 @@ impl Pieces {
             Pieces::Solid(facets) => Pieces::Solid(Arc::new(facets.simplified(accuracy)?)),
             Pieces::Mixed(mixed) => {
                 let solid = mixed.solid.simplified(accuracy)?;
-                Pieces::Mixed(Mixed { solid, ..mixed })
+                let (sheets, wires) = (mixed.sheets.clone(), mixed.wires.clone());
+                let points = mixed.points.clone();
+                Pieces::Mixed(Arc::new(Mixed { solid, sheets, wires, points }))
             }
         })
     }

@@ -296,7 +296,7 @@ impl PySet {
                 let facets = moldloft_field::refacet(set, &over, &options, before.as_deref())?;
                 Pieces::Solid(Arc::new(facets))
             } else {
-                Pieces::Mixed(facet_mixed(set, &over, &options)?)
+                Pieces::Mixed(Arc::new(facet_mixed(set, &over, &options)?))
             };
             Ok((pieces, over))
         })?;
