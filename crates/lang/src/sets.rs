@@ -44,7 +44,8 @@ pub(crate) fn binary<T: Real>(
     let combined = matches!(op, BinaryOp::Union | BinaryOp::Intersection);
     let plane = |v: &Value<T>| matches!(v, Value::Plane(_));
     // Of planes alone, too, the solid sides can be combined.
-    if !is_implicit(a) && !is_implicit(b) && !(combined && plane(a) && plane(b)) {
+    let concerned = is_implicit(a) || is_implicit(b) || combined && plane(a) && plane(b);
+    if !concerned {
         return None;
     }
     let sets = matches!(a, Value::Set(_)) || matches!(b, Value::Set(_)) || combined;

@@ -22,7 +22,6 @@ fn on_level<T: Real>(along: &Along<T>, level: LevelOf<T>, name: &str) -> Result<
     let field = level.plain_field();
     let solution = curve_level(&plain, &level.plain(&field), along.start)
         .map_err(|report| no_intersection(&report, "curve", name))?;
-    drop(field);
     let system = OnLevel { curve: &along.curve, level };
     let [t] = refined(&system, solution.at, T::zero()).ok_or_else(tangent)?;
     Ok((t, found(&solution.report, ANOTHER)))
