@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import moldloft
+import moldloft.grids
 from moldloft.cli import main
 from moldloft.cli.repl import Session
 from moldloft.errors import Error, ModelError
@@ -64,6 +65,23 @@ def test_run_does_not_follow_links_out_of_the_folder(tmp_path: Path) -> None:
     (out / "link").symlink_to(elsewhere)
     assert main(["run", str(program), "-o", str(out)]) == 1
     assert list(elsewhere.iterdir()) == []
+
+
+def test_run_writes_grids(tmp_path: Path) -> None:
+    program = tmp_path / "p.sdl"
+    program.write_text(
+        "surface s[3, 2], t[2, 2] = {0, 0, 9}; farray x = uniform(0, 2, 3);"
+        "for (j = 1:2) s[, j] = {x, j + 0*x, 0*x};"
+    )
+    out = tmp_path / "out"
+    assert main(["run", str(program), "-o", str(out), "--to", "p3d", "vts", "stl"]) == 0
+    blocks = moldloft.grids.read_plot3d(out / "p.p3d")[0]
+    model = moldloft.load(program)
+    assert [b.shape[:2] for b in blocks] == [(3, 2), (2, 2)]
+    np.testing.assert_array_equal(blocks[0].reshape(3, 2, 3), model["s"])
+    assert (out / "p.stl").stat().st_size > 84
+    program.write_text("float x = 1;")
+    assert main(["run", str(program), "-o", str(out), "--to", "p3d"]) == 1
 
 
 def test_eval_of_arrays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

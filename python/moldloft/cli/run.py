@@ -6,9 +6,12 @@ import argparse
 from pathlib import Path
 
 from moldloft.cli.console import add_model, open_model, print_json, report
-from moldloft.errors import FileError
+from moldloft.errors import Error, FileError
+from moldloft.models import Model
 
 __all__ = ["add", "run"]
+
+_GRIDS = ("p3d", "vts", "stl")
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -20,6 +23,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         default=".",
         help="folder for the files that the program writes, by default here",
+    )
+    parser.add_argument(
+        "--to",
+        metavar="FORMAT",
+        nargs="+",
+        action="extend",
+        choices=list(_GRIDS),
+        default=[],
+        help="the surfaces of the program as structured grids: " + ", ".join(_GRIDS),
     )
     parser.add_argument("--json", action="store_true", help="one object: lines printed, files")
 
@@ -33,6 +45,8 @@ def run(options: argparse.Namespace) -> int:
         for line in model.printed:
             print(line)
     written = [] if failed else _write(Path(options.output), model.written)
+    if options.to and not failed:
+        written += _grids(model, Path(options.output) / Path(options.model).stem, options.to)
     if options.json:
         files = [{"path": str(path), "bytes": path.stat().st_size} for path in written]
         diagnostics = [d.to_dict() for d in model.diagnostics]
@@ -44,6 +58,27 @@ def run(options: argparse.Namespace) -> int:
         for path in written:
             print(f"wrote {path} ({path.stat().st_size} bytes)")
     return 1 if failed else 0
+
+
+def _grids(model: Model, stem: Path, formats: list[str]) -> list[Path]:
+    """Writes the surfaces among the variables, in the order of their declaration."""
+    from moldloft import grids
+
+    variables = model._document.variables()
+    found = [value for _, shape, value in variables if shape.startswith("surface[")]
+    if not found:
+        raise Error("error: the program has no surface to write")
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    written: list[Path] = []
+    for name in dict.fromkeys(formats):
+        path = stem.with_suffix(f".{name}")
+        if name == "vts":
+            written += grids.write_vts(path, found)
+        elif name == "p3d":
+            written.append(grids.write_plot3d(path, found))
+        else:
+            written.append(grids.write_stl(path, found))
+    return written
 
 
 def _write(folder: Path, files: dict[str, bytes]) -> list[Path]:
