@@ -118,10 +118,12 @@ def test_examples_run(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[s
         points[: body.shape[0] * body.shape[1]], body.transpose(1, 0, 2).reshape(-1, 3)
     )
     # Grids of a family are nested.
-    assert main(["eval", program, "--refine", "1", "--json", "body"]) == 0
-    fine = np.array(json.loads(capsys.readouterr().out)[0])
-    tolerance = 1e-12
-    assert np.abs(fine[::2, ::2] - body).max() < tolerance
+    plane = "upper" if name == "half" else "top"
+    for times in (1, 2):
+        assert main(["eval", program, "--refine", str(times), "--json", "body", plane]) == 0
+        for found, grid in zip(json.loads(capsys.readouterr().out), ["body", plane], strict=True):
+            fine = np.array(found)[:: 2**times, :: 2**times]
+            assert np.abs(fine - coarse[grid]).max() < 1e-12
 
 
 def test_repl() -> None:
