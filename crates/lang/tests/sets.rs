@@ -135,7 +135,7 @@ fn derivatives_equal_differences() {
     );
     let texts = [
         "volume(s, {-1,-1,-1}, {2,2,2})",
-        "centroid(s, {-1,-1,-1}, {2,2,2}).x",
+        "mass_centre(s, {-1,-1,-1}, {2,2,2}).x",
         "inertia(s, {-1,-1,-1}, {2,2,2})[1].x",
         "nearest(s, {-3, a, r}, {-1,-1,-1}, {2,2,2}).y",
         "hit(s, {-3, a, 0.1}, {1, r/10, 0}, 9)",
@@ -211,9 +211,9 @@ fn sets_are_objects_or_variables() {
 fn moved_sets_are_where_they_were_moved() {
     holds(
         "set block = cuboid({0, 0, 0}, {1, 2, 3}); float tol = 1e-9;
-         assert |centroid(translated(block, {1, 1, 1})) - {1.5, 2, 2.5}| < tol;
-         assert |centroid(turned(block, axis, radians(90))) - {-1, 0.5, 1.5}| < tol;
-         assert |centroid(mirrored(block, \"x=0\")) - {-0.5, 1, 1.5}| < tol;
+         assert |mass_centre(translated(block, {1, 1, 1})) - {1.5, 2, 2.5}| < tol;
+         assert |mass_centre(turned(block, axis, radians(90))) - {-1, 0.5, 1.5}| < tol;
+         assert |mass_centre(mirrored(block, \"x=0\")) - {-0.5, 1, 1.5}| < tol;
          assert abs(volume(scaled(block, 2, {1, 2, 3})) - 48) < tol;
          assert abs(volume(stretched(block, axis, 3)) - 18) < tol;
          assert abs(volume(tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1})) - 1/6) < tol;

@@ -112,10 +112,10 @@ measure!(
 measure!(
     Centroid,
     Vector,
-    "centroid",
+    "mass_centre",
     "The centre of mass of a set within a box.",
     "How well two volumes, of a box divided once more, agree; by default 1e-6 of the box's volume.",
-    "set half = set(sphere({0, 0, 0}, 1)) & set(plane({0, 0, -1}, {0, 0, 0})); assert abs(centroid(half).z - 0.375) < 1e-4;",
+    "set half = set(sphere({0, 0, 0}, 1)) & set(plane({0, 0, -1}, {0, 0, 0})); assert abs(mass_centre(half).z - 0.375) < 1e-4;",
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
         if m.volume().re() <= 0.0 {
