@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from moldloft import grids
 from moldloft.errors import Error, FileError
 from moldloft.grids import Plot3DVariant
