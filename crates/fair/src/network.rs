@@ -126,8 +126,8 @@ impl Network {
         Ok(self)
     }
 
-    /// The net with rims that keep what neighbours share with it: at u = 0 and 1, then at v = 0 and
-    /// 1. On clamped knots the position is one row of points, tangents are two and curvature three;
+    /// The net with rims that keep what neighbours share with it: at both ends of u, then of v.
+    /// On clamped knots the position is one row of points, tangents are two and curvature three;
     /// these do not move by a bit, in the joint optimum and in passes. Rims of a closed direction are
     /// none.
     ///

@@ -8,6 +8,9 @@
 //!
 //! Invariant: this crate knows no entity, no file and no language, and depends on `num` only.
 
+// `!(a > b)` refuses NaN, `a <= b` lets it pass.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 mod blend;
 mod block;
 mod control;

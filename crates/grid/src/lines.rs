@@ -291,9 +291,7 @@ impl<T: Real, const C: usize> Group<'_, T, C> {
         let (mut up_before, mut up) = (load(&above, 0), load(&above, 1));
         let (mut down_before, mut down) = (load(&below, 0), load(&below, 1));
         store[0][0] = [T::zero(); LANES];
-        for c in 0..C {
-            store[0][1 + c] = before[c];
-        }
+        store[0][1..=C].copy_from_slice(&before[..C]);
         for j in 1..n - 1 {
             let after = load(&own, j + 1);
             let (up_after, down_after) = (load(&above, j + 1), load(&below, j + 1));

@@ -144,7 +144,7 @@ mod tests {
         let b = body();
         assert_eq!(b.at([59, 19, 0]), b.layer(0)[1199]);
         assert_eq!(b.planes[0][59], 3.0);
-        let files = write_vts(&[b.clone()], "body").unwrap();
+        let files = write_vts(std::slice::from_ref(&b), "body").unwrap();
         assert_eq!((files.len(), files[0].name.as_str()), (1, "body.vts"));
         let text = String::from_utf8_lossy(&files[0].bytes).into_owned();
         assert!(text.contains("WholeExtent=\"0 59 0 19 0 0\""));

@@ -59,6 +59,7 @@ fn sound(crossing: &Crossing<'_>, found: &Branches) {
             let gap = match crossing.other {
                 Other::Plane(plane) => plane.distance(x).abs(),
                 Other::Surface(o) => o.jet(s.q[2], s.q[3], Order::Zero).p.distance(x),
+                Other::Level(field) => field.value(x).abs(),
             };
             assert!(gap < 1e-11 * crossing.size && x.distance(s.x) < 1e-11 * crossing.size);
             assert!(s.q.iter().all(|q| (-1e-9..=1.0 + 1e-9).contains(q)), "{s:?}");

@@ -88,14 +88,14 @@ impl<T: Real> FromValue<T> for Rims {
             Value::List(items) if items.len() == 4 => {
                 let mut ends = [End::Free; 4];
                 for (end, item) in ends.iter_mut().zip(items.iter()) {
-                    *end = one(&*text(item)?)?;
+                    *end = one(&text(item)?)?;
                 }
                 Ok(Self(ends))
             }
             Value::List(items) => Err(Fault::new("wrong-count", "a surface has four rims")
                 .expected("a word, or four of them for v = 0, u = 1, v = 1 and u = 0")
                 .found(format!("{} items", items.len()))),
-            other => Ok(Self([one(&*text(other)?)?; 4])),
+            other => Ok(Self([one(&text(other)?)?; 4])),
         }
     }
 }

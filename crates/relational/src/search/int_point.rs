@@ -130,7 +130,7 @@ fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, 
             let back = step(Vec3::lifted(x))?;
             return Ok(Point::free(Vec3::lifted(x) - back.map(|b| b - b.re())));
         }
-        x = x - back;
+        x -= back;
         last = length;
         if !x.is_finite() {
             break;

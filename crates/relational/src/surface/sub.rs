@@ -223,9 +223,9 @@ impl<T: Real> Surface<T> for Patch<T> {
         us: &[f64],
         vs: &[f64],
         points: &mut [Vec3<T>],
-        mut normals: Option<&mut [Vec3<T>]>,
+        normals: Option<&mut [Vec3<T>]>,
     ) {
-        if let Some(normals) = normals.as_deref_mut() {
+        if let Some(normals) = normals {
             let rows: Vec<_> =
                 us.iter().map(|&u| Bi1::parameters(T::from(u), T::zero()).0).collect();
             let columns: Vec<_> =
