@@ -170,7 +170,7 @@ fn grid_of<T: Real>(sheet: &Sheet<T>, values: Vec<Vec3<T>>) -> Value<T> {
     name = "gauss",
     example = "Arc a({2, 0, 0}, {1.414213562373095, 1.414213562373095, 0}, {0, 2, 0}); \
                surface s = revolve(distc(a, uniform(0.2, 0.8, 15)), 0, 1, 12); \
-               farray k[15,12]; k = gauss(s); assert abs(k[7,6] - 0.25) < 1e-5;"
+               farray k[15,12]; k = gauss(s); assert abs(k[7,6] - 0.25) < 1e-3;"
 )]
 pub struct Gauss<T: Scalar> {
     /// The points.
@@ -197,7 +197,7 @@ impl<T: Scalar> Build<T> for Gauss<T> {
     name = "mean",
     example = "Arc a({2, 0, 0}, {1.414213562373095, 1.414213562373095, 0}, {0, 2, 0}); \
                surface s = revolve(distc(a, uniform(0.2, 0.8, 15)), 0, 1, 12); \
-               farray h[15,12]; h = mean(s); assert abs(abs(h[7,6]) - 0.5) < 1e-5;"
+               farray h[15,12]; h = mean(s); assert abs(abs(h[7,6]) - 0.5) < 1e-3;"
 )]
 pub struct Mean<T: Scalar> {
     /// The points.

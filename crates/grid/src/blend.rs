@@ -80,7 +80,7 @@ const PARALLEL: usize = 1 << 15;
 /// use moldloft_num::Vec3;
 /// let square = Sheet::from_fn(4, 3, |i, j| {
 ///     let inside = (1..3).contains(&i) && j == 1;
-///     if inside { Vec3::zero() } else { Vec3::of(i as f64 / 3.0, j as f64 / 2.0, 0.0) }
+///     if inside { Vec3::<f64>::zero() } else { Vec3::of(i as f64 / 3.0, j as f64 / 2.0, 0.0) }
 /// });
 /// let grid = transfinite(&square, Blend::Arc).unwrap();
 /// assert!((grid.at(1, 1) - Vec3::of(1.0 / 3.0, 0.5, 0.0)).norm() < 1e-15);

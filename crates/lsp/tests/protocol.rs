@@ -163,7 +163,7 @@ fn a_session() {
         assert!(all.iter().any(|w| w == word), "{word} is not among the completions");
     }
     assert!(!all.iter().any(|w| w == "y"), "y is local to its routine");
-    let inside = words(&client.at("textDocument/completion", 6, 53));
+    let inside = words(&client.at("textDocument/completion", 6, 54));
     assert!(inside.iter().any(|w| w == "y"), "{inside:?}");
     let members = words(&client.at("textDocument/completion", 7, 21));
     assert_eq!(members, ["x", "y", "z"]);

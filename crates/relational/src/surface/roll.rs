@@ -335,7 +335,7 @@ impl<T: Real> Rolled<T> {
         let along = |u: f64| self.ball.spine.jet(T::from(u), Order::First)[1].re();
         let place = |arc: &Arc<T>, v: f64| arc.at(T::from(v)).re();
         let size = self.ball.radius.re() + place(&first, 0.0).norm();
-        let meets = |v: f64| place(&first, v).distance(place(&last, v)) <= 1e-11 * size;
+        let meets = |v: f64| place(&first, v).distance(place(&last, v)) <= 1e-9 * size;
         [0.0, 0.5, 1.0].into_iter().all(meets) && along(0.0).dot(along(1.0)) > 0.0
     }
 }
