@@ -175,7 +175,15 @@ impl<T: Real> Ball<T> {
                 let t = T::from(i as f64 / STATIONS as f64);
                 let w = self.spine.on_surface(t, Order::Zero).unwrap_or_default()[0].re();
                 let centre = self.spine.jet(t, Order::Zero)[0].re();
-                let [p, q] = nearest_on_surface(&second, centre, last).at;
+                // A search from the last station does not cross a seam.
+                let near = nearest_on_surface(&second, centre, last);
+                let place = second.jet(near.at[0], near.at[1], Order::Zero).p;
+                let found = if place.distance(centre) > 1e-3 * self.radius.re() {
+                    nearest_on_surface(&second, centre, None)
+                } else {
+                    near
+                };
+                let [p, q] = found.at;
                 last = Some([p, q]);
                 [w.x, w.y, p, q]
             })
