@@ -22,7 +22,7 @@ def body(three: bool = True) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("layout", "double", "multi", "three", "big", "blank"),
-    itertools.product(("text", "stream", "records"), *[(True, False)] * 5),
+    list(itertools.product(("text", "stream", "records"), *[(True, False)] * 5)),
 )
 def test_plot3d_comes_back(
     tmp_path: Path, layout: str, double: bool, multi: bool, three: bool, big: bool, blank: bool
