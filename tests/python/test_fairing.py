@@ -648,7 +648,7 @@ def test_wrong_use(cli):
     assert "no such file" in cli("fair", "nowhere.csv", "--tol", "1", status=1).stderr
     assert "1 to 1" in cli("fair", DATA / "wigley.p3d", "--tol", 1, "--block", 2, status=1).stderr
     assert (
-        "for curves"
+        "a place of a surface is U,V"
         in cli("fair", DATA / "wigley.p3d", "--tol", 1, "--through", "0.5=1,1", status=1).stderr
     )
 
