@@ -97,9 +97,11 @@ def main() -> None:
     seconds, mass = best(3, lambda: part.mass(LOW, HIGH, depth=7))
     low, high = mass.volume_bracket
     print(f"mass at depth 7: {1e3 * seconds:.1f} ms, {mass.volume:.6f} in [{low:.4f}, {high:.4f}]")
-    if missing("manifold3d"):
+    try:
+        import manifold3d
+    except ImportError as error:
+        missing("manifold3d", error)
         return
-    import manifold3d
 
     for depth in depths[:2]:
         edge = 8 / 2**depth
