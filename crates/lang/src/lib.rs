@@ -40,6 +40,7 @@ mod known;
 mod later;
 mod library;
 mod looks;
+mod loops;
 mod measures;
 mod member;
 mod model_file;
