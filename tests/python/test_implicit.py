@@ -344,6 +344,23 @@ def test_rails_are_checked():
     assert abs(corner.field((t, 0, t))) < 1e-15
 
 
+def test_work_that_goes_on_unseen_does_not_end_the_interpreter_badly(tmp_path):
+    """The thread is still in the user's function, and wants to return to it, when Python ends."""
+    script = tmp_path / "leaves.py"
+    script.write_text(
+        "import threading, time\n"
+        "from moldloft import implicit as im\n"
+        "slow = im.function(lambda p: (time.sleep(0.05), p[:, 0])[1])\n"
+        "def work():\n"
+        "    im.Set(slow).facets((-1, -1, -1), (1, 1, 1), depth=5)\n"
+        "threading.Thread(target=work, daemon=True).start()\n"
+        "time.sleep(0.5)\n"
+        "print('left')\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "left\n", "")
+
+
 def test_everything_and_nothing_in_a_box():
     facets = im.everything().facets((0, 0, 0), (1, 1, 1), depth=4)
     assert facets.closed and abs(facets.volume - 1) < 1e-12

@@ -9,7 +9,7 @@ use crate::mesh::PyMesh;
 use crate::portrait::portrait;
 use crate::search::Searches;
 use crate::value::to_python;
-use crate::work::interruptible;
+use crate::work::{interruptible, interruptible_shared};
 use crate::write;
 use moldloft_diag::Sources;
 use moldloft_host::FileWorld;
@@ -67,7 +67,7 @@ impl PyDocument {
         work: impl FnOnce(&mut Document) -> R + Send + 'static,
     ) -> PyResult<R> {
         let inner = self.inner.clone();
-        interruptible(py, &self.cancel, move || {
+        interruptible_shared(py, &self.cancel, move || {
             work(&mut inner.lock().unwrap_or_else(PoisonError::into_inner))
         })
     }

@@ -1,5 +1,6 @@
 //! A user's Python function as a row of the registry.
 
+use crate::work::visit_python;
 use moldloft_num::{Dual, Dual4, Real, Vec3};
 use moldloft_registry::{
     Array, Body, Class, Context, Fault, Field, Foreign, Row, Unit, Value, Vectors,
@@ -105,12 +106,15 @@ impl PythonFunction {
                 .in_field(k)
             })?);
         }
-        let (shape, numbers) = Python::attach(|py| self.call_python(py, encoded)).map_err(|e| {
-            let text = Python::attach(|py| e.value(py).to_string());
-            let kind = Python::attach(|py| {
-                e.get_type(py).name().map(|n| n.to_string()).unwrap_or_default()
-            });
-            Fault::new("function-failed", format!("{} raised {kind}: {text}", self.name))
+        let called = visit_python(|py| {
+            self.call_python(py, encoded).map_err(|e| {
+                let text = e.value(py).to_string();
+                let kind = e.get_type(py).name().map(|n| n.to_string()).unwrap_or_default();
+                Fault::new("function-failed", format!("{} raised {kind}: {text}", self.name))
+            })
+        });
+        let (shape, numbers) = called.unwrap_or_else(|| {
+            Err(Fault::new("cancelled", "the interpreter of the Python function is ending"))
         })?;
         decode(&shape, &numbers).ok_or_else(|| {
             Fault::new(

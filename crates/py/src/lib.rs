@@ -24,11 +24,13 @@ mod value;
 mod work;
 mod write;
 
-use pyo3::prelude::*;
+use pyo3::pymodule;
 
 /// The compiled part of Moldloft.
 #[pymodule]
 mod _core {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
     const __version__: &str = env!("CARGO_PKG_VERSION");
@@ -57,4 +59,9 @@ mod _core {
     use crate::sketch::{PySketch, sketch_reference};
     #[pymodule_export]
     use crate::value::Shape;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::work::register(module)
+    }
 }

@@ -3,7 +3,7 @@
 use crate::arrays;
 use crate::document::{PyDocument, wrong_class};
 use crate::error::plain_error;
-use crate::work::interruptible;
+use crate::work::interruptible_shared;
 use moldloft_locate::branches::{Branches, CutSurface};
 use moldloft_locate::march::{Branch, Crossing, End};
 use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
@@ -99,7 +99,7 @@ fn answered<const N: usize>(
         }
         all
     };
-    if large { interruptible(py, cancel, all) } else { Ok(py.detach(all)) }
+    if large { interruptible_shared(py, cancel, all) } else { Ok(py.detach(all)) }
 }
 
 type Answers<'py> = (
@@ -227,7 +227,7 @@ fn met<'py>(
         Value::Surface(surface) => {
             if let With::Curve(curve) = with {
                 let roots = move || all_curve_surface(&*curve, &*surface);
-                let roots = interruptible(py, cancel, roots)?;
+                let roots = interruptible_shared(py, cancel, roots)?;
                 // Ours are u and v, theirs is t.
                 return points_dict(py, &roots, &[1, 2], &[0]);
             }
@@ -259,7 +259,8 @@ fn met<'py>(
                 points_dict(py, &roots, &[0], &[])
             }
             With::Curve(other) => {
-                let roots = interruptible(py, cancel, move || all_curve_curve(&*curve, &*other))?;
+                let roots =
+                    interruptible_shared(py, cancel, move || all_curve_curve(&*curve, &*other))?;
                 let size = roots.roots.iter().map(|r| r.xyz.norm()).fold(1.0, f64::max);
                 // Where curves do not meet, the search gives the place where they come nearest.
                 let met = |r: &moldloft_locate::Root<2>| r.residual <= 1e-8 * size;
@@ -267,7 +268,8 @@ fn met<'py>(
                 points_dict(py, &Roots { roots: kept, ..roots }, &[0], &[1])
             }
             With::Surface(other, _) => {
-                let roots = interruptible(py, cancel, move || all_curve_surface(&*curve, &*other))?;
+                let roots =
+                    interruptible_shared(py, cancel, move || all_curve_surface(&*curve, &*other))?;
                 points_dict(py, &roots, &[0], &[1, 2])
             }
         },

@@ -1,11 +1,11 @@
-//! Long work without Python's lock, and Ctrl-C.
+//! Long work without Python's lock, Ctrl-C, and calls into Python from such work.
 
 use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc;
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock, mpsc};
+use std::thread::ThreadId;
+use std::time::{Duration, Instant};
 
 /// How often signals are looked at while work is under way.
 const SIGNALS_EVERY: Duration = Duration::from_millis(50);
@@ -18,8 +18,8 @@ const STACK: usize = 8 << 20;
 
 /// Runs `work` on a thread of its own, without Python's lock, and looks out for Ctrl-C.
 ///
-/// After Ctrl-C `cancel` is set and the exception raised. Work that does not look at it goes on
-/// unseen until it ends, and calls that need what it holds wait for it.
+/// After Ctrl-C `cancel` is set, and stays so, and the exception raised. Work that does not look at
+/// it goes on unseen until it ends, and calls that need what it holds wait for it.
 pub fn interruptible<R: Send + 'static>(
     py: Python<'_>,
     cancel: &AtomicBool,
@@ -33,7 +33,11 @@ pub fn interruptible<R: Send + 'static>(
     std::thread::Builder::new().stack_size(STACK).spawn(run)?;
     let receiver = Mutex::new(receiver);
     let receive = |wait: Duration| {
-        py.detach(|| receiver.lock().expect("only this thread locks it").recv_timeout(wait))
+        py.detach(|| {
+            let received = receiver.lock().expect("only this thread locks it").recv_timeout(wait);
+            stay_out();
+            received
+        })
     };
     loop {
         match receive(SIGNALS_EVERY) {
@@ -43,10 +47,81 @@ pub fn interruptible<R: Send + 'static>(
                 if let Err(interrupt) = py.check_signals() {
                     cancel.store(true, Ordering::Relaxed);
                     let _ = receive(PATIENCE);
-                    cancel.store(false, Ordering::Relaxed);
                     return Err(interrupt);
                 }
             }
         }
     }
+}
+
+/// [`interruptible`] for a flag that later work shares: it is lowered again after an interrupt.
+pub fn interruptible_shared<R: Send + 'static>(
+    py: Python<'_>,
+    cancel: &AtomicBool,
+    work: impl FnOnce() -> R + Send + 'static,
+) -> PyResult<R> {
+    let outcome = interruptible(py, cancel, work);
+    cancel.store(false, Ordering::Relaxed);
+    outcome
+}
+
+/// How many threads are in Python on behalf of work of ours.
+static VISITORS: AtomicUsize = AtomicUsize::new(0);
+
+/// The interpreter is about to end: nobody enters any more.
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// How long the end of the interpreter waits for calls that are under way.
+const LEAVING: Duration = Duration::from_secs(10);
+
+/// One visit to Python; the count falls even if the visit panics.
+struct Visit;
+
+impl Drop for Visit {
+    fn drop(&mut self) {
+        VISITORS.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+/// Calls Python from work that may go on unseen; `None` once the interpreter is ending.
+///
+/// A thread that asks for Python's lock while the interpreter ends is killed by it, and with it, as
+/// Rust cannot unwind through that, the process. So the end waits for those inside and lets nobody in.
+pub fn visit_python<R>(call: impl FnOnce(Python<'_>) -> R) -> Option<R> {
+    VISITORS.fetch_add(1, Ordering::SeqCst);
+    let _visit = Visit;
+    if CLOSED.load(Ordering::SeqCst) {
+        return None;
+    }
+    Some(Python::attach(call))
+}
+
+/// Keeps a daemon thread from going back to an interpreter that is ending; the process ends it.
+fn stay_out() {
+    while CLOSED.load(Ordering::SeqCst) && CLOSER.get() != Some(&std::thread::current().id()) {
+        std::thread::park();
+    }
+}
+
+/// The thread that ends the interpreter; what it still calls goes on as ever.
+static CLOSER: OnceLock<ThreadId> = OnceLock::new();
+
+/// Runs at the interpreter's end (`atexit`): closes the door and waits for those inside.
+#[pyfunction]
+fn close(py: Python<'_>) {
+    let _ = CLOSER.set(std::thread::current().id());
+    CLOSED.store(true, Ordering::SeqCst);
+    py.detach(|| {
+        let begin = Instant::now();
+        while VISITORS.load(Ordering::SeqCst) > 0 && begin.elapsed() < LEAVING {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    });
+}
+
+/// Has the interpreter call [`close`] when it ends.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let close = wrap_pyfunction!(close, module)?;
+    module.py().import("atexit")?.call_method1("register", (close,))?;
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! Primitives that are Python functions.
 
+use crate::work::visit_python;
 use moldloft_field::{Interval, Oracle};
 use moldloft_num::{Box3, Field, Vec3};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -77,18 +78,19 @@ impl PythonOracle {
         (oracle, slot)
     }
 
-    /// The result, or NaN with the exception kept.
+    /// The result, or NaN with the exception kept; NaN too once the interpreter is ending.
     fn kept<R>(&self, nothing: R, call: impl FnOnce(Python<'_>) -> PyResult<R>) -> R {
         if lock(&self.slot).is_some() {
             return nothing;
         }
-        Python::attach(|py| match call(py) {
-            Ok(result) => result,
-            Err(error) => {
+        match visit_python(call) {
+            Some(Ok(result)) => result,
+            Some(Err(error)) => {
                 lock(&self.slot).get_or_insert(error);
                 nothing
             }
-        })
+            None => nothing,
+        }
     }
 
     fn array<'py>(py: Python<'py>, points: &[Vec3]) -> PyResult<Bound<'py, PyArray2<f64>>> {
