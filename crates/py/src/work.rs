@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, OnceLock, mpsc};
+use std::sync::{Arc, Mutex, OnceLock, mpsc};
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
@@ -25,6 +25,23 @@ pub fn interruptible<R: Send + 'static>(
     cancel: &AtomicBool,
     work: impl FnOnce() -> R + Send + 'static,
 ) -> PyResult<R> {
+    let slot = Arc::new(Mutex::new(None));
+    let result = slot.clone();
+    let run = move || {
+        let made = work();
+        *slot.lock().expect("nothing panics while it is locked") = Some(made);
+    };
+    unseen(py, cancel, Box::new(run))?;
+    let made = result.lock().expect("nothing panics while it is locked").take();
+    Ok(made.expect("the work has ended without panic"))
+}
+
+/// [`interruptible`] without the type of its result, so that it is compiled once.
+fn unseen(
+    py: Python<'_>,
+    cancel: &AtomicBool,
+    work: Box<dyn FnOnce() + Send + 'static>,
+) -> PyResult<()> {
     let (sender, receiver) = mpsc::channel();
     let run = move || {
         // After an interrupt nobody receives; that is no fault.
@@ -41,7 +58,7 @@ pub fn interruptible<R: Send + 'static>(
     };
     loop {
         match receive(SIGNALS_EVERY) {
-            Ok(Ok(result)) => return Ok(result),
+            Ok(Ok(())) => return Ok(()),
             Ok(Err(panic)) => resume_unwind(panic),
             Err(_) => {
                 if let Err(interrupt) = py.check_signals() {
