@@ -115,6 +115,30 @@ def test_the_command_tells_all_of_it(tmp_path, capsys: pytest.CaptureFixture[str
     assert "divisions-contradict" in told.out + told.err
 
 
+def test_a_check_tells_what_contradicts_itself_in_panels_and_cells(
+    tmp_path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "m.sdl"
+    path.write_text(BOX.replace("{0, 2}", "{9, 2}"))
+    assert main(["check", str(path)]) == 0
+    assert "divisions-contradict" in capsys.readouterr().err
+    # Two floors that cross make a solid that is inside out at one end.
+    path.write_text(
+        "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0); AbsPoint D(4, 3, 0);"
+        "Line a(A, B); Line b(C, D); RuledSurf S(a, b); AbsPoint E(0, 0, 2); AbsPoint F(4, 0, -2);"
+        "AbsPoint G(0, 3, 2); AbsPoint H(4, 3, -2); Line e(E, F); Line g(G, H); RuledSurf T(e, g);"
+        "RuledSolid V(S, T, divisions = {4, 2, 2});"
+    )
+    for command in (["check"], ["build", "-o", str(tmp_path)]):
+        assert main([*command, str(path)]) == 0
+        told = capsys.readouterr().err
+        assert "negative-jacobian" in told and "8 of the 16 cells of `V`" in told, told
+        assert "in cell (" in told and "move its faces apart" in told
+    assert main(["check", str(path), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [d["id"] for d in data["diagnostics"]] == ["negative-jacobian"]
+
+
 def test_model_files_keep_what_is_said_of_panels():
     text = (
         "AbsPoint a(0, 0, 0); AbsPoint b(1, 0, 0); AbsPoint c(0, 2, 0); AbsPoint d(1, 2, 0);"

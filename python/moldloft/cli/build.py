@@ -11,6 +11,7 @@ from typing import Any
 from moldloft.cli.console import (
     Progress,
     add_model,
+    block_problems,
     open_model,
     print_json,
     report,
@@ -158,6 +159,7 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
     report(model.diagnostics)
     if mesh.patches and not mesh.closed:
         report(model.junctions())
+    report(block_problems(model))
     data = facts(model, mesh, floating, written)
     data["closure"] = mesh.closure(level=options.level)
     if options.json:

@@ -3,8 +3,19 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
-from moldloft.cli.console import Progress, add_model, open_model, print_json, report
+from moldloft.cli.console import (
+    Progress,
+    add_model,
+    block_problems,
+    open_model,
+    print_json,
+    report,
+)
+
+if TYPE_CHECKING:
+    from moldloft._core import Diagnostic
 
 __all__ = ["add", "run"]
 
@@ -15,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quality",
         action="store_true",
-        help="make panels too: joins, what is open, and the worst panels of each patch",
+        help="corners that miss their neighbours, what is open, and the worst panels of each patch",
     )
     parser.add_argument("--json", action="store_true", help="diagnostics as data")
 
@@ -26,12 +37,17 @@ def run(options: argparse.Namespace) -> int:
         progress.stage(f"checking {options.model}")
         model = open_model(options)
         mesh = None
-        if options.quality and not any(d.is_error for d in model.diagnostics):
-            progress.stage("making panels")
+        cells: list[Diagnostic] = []
+        if not any(d.is_error for d in model.diagnostics):
+            # What contradicts itself in the joins is known when panels and cells are divided.
+            progress.stage("dividing")
             mesh = model.mesh()
-        diagnostics = list(model.diagnostics)
-        if mesh is not None:
+            cells = block_problems(model)
+        diagnostics = [*model.diagnostics, *cells]
+        if options.quality and mesh is not None:
             diagnostics += model.junctions()
+        else:
+            mesh = None
     errors = sum(d.is_error for d in diagnostics)
     if options.json:
         data = {"ok": errors == 0, "diagnostics": [d.to_dict() for d in diagnostics]}

@@ -19,6 +19,7 @@ __all__ = [
     "Progress",
     "add_model",
     "assignment",
+    "block_problems",
     "open_model",
     "print_json",
     "report",
@@ -86,6 +87,19 @@ def report(diagnostics: list[Diagnostic]) -> None:
     """Prints diagnostics on standard error."""
     for diagnostic in diagnostics:
         print(str(diagnostic), file=sys.stderr)
+
+
+def block_problems(model: Model) -> list[Diagnostic]:
+    """What is wrong with the cells of the model's solids, if it has any: folded ones, and joins."""
+    from moldloft.errors import ModelError
+
+    facts = (model._document.object(name) for name in model.objects)
+    if not any(fact["ok"] and fact["class"] == "solid" for fact in facts):
+        return []
+    try:
+        return model.blocks().problems
+    except ModelError as error:
+        return list(error.diagnostics)
 
 
 def print_json(data: Any) -> None:
