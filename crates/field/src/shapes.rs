@@ -384,6 +384,7 @@ impl<T: Real> Oracle<T> for Inside<T> {
             volume: self.body.volume.re(),
             area: self.body.area.re(),
             centroid: self.body.centroid.re(),
+            border: None,
         };
         Arc::new(Inside {
             body: Arc::new(body),

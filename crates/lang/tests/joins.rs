@@ -6,6 +6,7 @@ use common::{Random, ids, open, rounds, sound, told};
 use moldloft_lang::{Document, Panelled};
 use moldloft_model::Remark;
 use moldloft_num::Vec3;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -455,4 +456,184 @@ fn five_thousand_patches_take_linear_time() {
         seconds.push(shortest);
     }
     assert!(seconds[2] < 60.0 * seconds[1].max(1e-3), "{seconds:?}");
+}
+
+/// The numbers of components and of open loops, when nothing was remarked; panels face alike.
+fn pieces(document: &mut Document) -> (usize, usize) {
+    let p = panelled(document);
+    assert!(p.panelling.remarks().is_empty(), "{:?}", p.panelling.remarks());
+    let report = p.mesh.report();
+    assert!(report.manifold && report.oriented, "{report:?}");
+    (report.components, report.open_loops.len())
+}
+
+/// The area of a patch of the mesh.
+fn area(p: &Panelled, name: &str) -> f64 {
+    let patch = p.mesh.patches().iter().find(|p| p.info.name == name).expect("a patch");
+    let at = |v: u32| p.mesh.positions()[v as usize];
+    let faces = &p.mesh.topology().faces()[patch.faces.clone()];
+    let half = |f: &[u32; 4]| (at(f[2]) - at(f[0])).cross(at(f[3]) - at(f[1])).norm() / 2.0;
+    faces.iter().map(half).sum()
+}
+
+#[test]
+fn a_rolled_fillet_joins_what_is_left_of_both_surfaces() {
+    let text = "param float r = 0.5 in [0.2, 1.5];
+        AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0); AbsPoint D(4, 3, 0); Line a(A, B);
+        Line b(C, D); RuledSurf floor(a, b, visible = 0); AbsPoint E(0, 2, -1); AbsPoint F(4, 2, -1);
+        AbsPoint G(0, 2, 3); AbsPoint H(4, 2, 3); Line c(E, F); Line d(G, H); RuledSurf wall(c, d, visible = 0);
+        RollFillet S(floor, wall, r, side2 = 1, divisions = {10, 6}); ContactSnake low(S, 1);
+        ContactSnake high(S, 2); EdgeSnake front(1, floor); EdgeSnake top(3, wall);
+        SubSurf deck({front, low}, divisions = {0, 4}); SubSurf bulkhead({high, top}, divisions = {0, 5});";
+    let mut d = sound(text);
+    let start = panelled(&mut d).panelling.topology().clone();
+    assert_eq!(divisions(&mut d, "deck"), [10, 4]);
+    assert_eq!(divisions(&mut d, "bulkhead"), [10, 5]);
+    let mut random = Random::new(7);
+    for r in [0.5, 0.2, 1.5].into_iter().chain((0..rounds(500)).map(|_| random.between(0.2, 1.5))) {
+        d.set(&[("r".into(), r)]).unwrap();
+        assert_eq!(pieces(&mut d), (1, 1), "r = {r}");
+        let p = panelled(&mut d);
+        assert_eq!(*p.panelling.topology(), start, "r = {r}");
+        assert!((area(&p, "deck") - 4.0 * (2.0 - r)).abs() < 1e-11, "r = {r}");
+        assert!((area(&p, "bulkhead") - 4.0 * (3.0 - r)).abs() < 1e-11, "r = {r}");
+        // Six chords of a quarter of a circle.
+        let arc = 12.0 * r * (std::f64::consts::PI / 24.0).sin();
+        assert!((area(&p, "S") - 4.0 * arc).abs() < 1e-11, "r = {r}");
+    }
+    // The snakes lie on the parents, where the ball touches.
+    d.set(&[("r".into(), 0.5)]).unwrap();
+    let near = |d: &mut Document, text: &str, want: Vec3| {
+        let found = common::vector(d, text);
+        assert!(found.distance(want) < 1e-12, "{text}: {found:?}");
+    };
+    near(&mut d, "low(0.25)", Vec3::of(1.0, 1.5, 0.0));
+    near(&mut d, "high(0.75)", Vec3::of(3.0, 2.0, 0.5));
+    // The vertices move as their derivatives say, along the contacts, too.
+    let exact = d.jacobian(&["r".into()]).unwrap();
+    let h = 1e-5;
+    let mut at = |r: f64| {
+        d.set(&[("r".into(), r)]).unwrap();
+        panelled(&mut d).mesh.positions().to_vec()
+    };
+    let (least, most) = (at(0.5 - h), at(0.5 + h));
+    for (k, slope) in exact[0].iter().enumerate() {
+        let difference = (most[k] - least[k]) / (2.0 * h);
+        assert!(slope.distance(difference) < 1e-9, "vertex {k}: {slope:?}, {difference:?}");
+    }
+    assert!(exact[0].iter().any(|slope| slope.norm() > 0.9));
+    // And those of a fillet between snakes are these.
+    let between = text.replace(
+        "RollFillet S(floor, wall, r, side2 = 1,",
+        "UVSnake m(floor, \"v\", 0.5*r); UVSnake n(wall, \"v\", 0.7); FilletSurf S(m, n,",
+    );
+    assert_eq!(pieces(&mut sound(&between)), (1, 1));
+    let wrong = open(&text.replace("ContactSnake low(S, 1)", "ContactSnake low(floor, 1)"));
+    assert!(ids(&wrong).contains(&"no-contact".to_string()), "{:?}", told(&wrong));
+}
+
+#[test]
+fn a_ball_that_rolls_round_a_mast_joins_it_to_the_deck() {
+    let text = "param float r = 0.5 in [0.3, 0.9];
+        AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z); AbsPoint A(1, 0, -1); AbsPoint B(1, 0, 3);
+        Line side(A, B); RevSurf mast(side, axis, visible = 0); AbsPoint C(-4, -4, 0); AbsPoint D(4, -4, 0);
+        AbsPoint E(-4, 4, 0); AbsPoint F(4, 4, 0); Line c(C, D); Line d(E, F); RuledSurf deck(c, d, visible = 0);
+        AbsMagnet m(mast, 0.4, 0); RollFillet S(m, deck, r, side1 = -1, divisions = {16, 4});
+        ContactSnake foot(S, 1); ContactSnake ring(S, 2); EdgeSnake rim(2, mast);
+        SubSurf shaft({foot, rim}, divisions = {0, 6}); TrimSurf plate(deck, {ring}, whole = 1, nu = 9, nv = 7);";
+    let mut d = sound(text);
+    for r in [0.5, 0.3, 0.9, 0.77] {
+        d.set(&[("r".into(), r)]).unwrap();
+        // Open at the deck's outer edge and at the masthead only.
+        assert_eq!(pieces(&mut d), (1, 2), "r = {r}");
+        assert_eq!(divisions(&mut d, "shaft"), [16, 6]);
+        let p = panelled(&mut d);
+        // A square without a regular polygon of 16 corners; a mast of 16 flat sides.
+        let turn = std::f64::consts::TAU / 16.0;
+        let hole = 8.0 * (1.0 + r) * (1.0 + r) * turn.sin();
+        assert!((area(&p, "plate") - (64.0 - hole)).abs() < 1e-9, "r = {r}");
+        let shaft = 32.0 * (turn / 2.0).sin() * (3.0 - r);
+        assert!((area(&p, "shaft") - shaft).abs() < 1e-9, "r = {r}");
+    }
+}
+
+/// A bent sheet with a window of four snakes: what is left of it, the window, and a strip beside it.
+fn window(trim: &str, inside: &str, strip: &str) -> String {
+    format!(
+        "param float t = 0.3 in [0.2, 0.4];
+         AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0.5); AbsPoint C(4, 0, 0); AbsPoint D(0, 3, 0); AbsPoint E(4, 3, 1);
+         BCurve l({{A, B, C}}); Line m(D, E); RuledSurf S(l, m, visible = 0);
+         AbsMagnet p(S, t, 0.3); AbsMagnet q(S, 0.7, 0.25); AbsMagnet o(S, 0.75, 0.7); AbsMagnet n(S, 0.3, 0.75);
+         AbsMagnet k(S, 0.5, 0.2); BSnake south({{p, k, q}}); LineSnake east(q, o); LineSnake north(n, o);
+         LineSnake west(p, n);
+         TrimSurf rest(S, {{south, east, north, west}}, whole = 1{trim});
+         SubSurf pane({{south, east, north, west}}{inside});
+         AbsPoint F(0, 5, 0); AbsPoint G(4, 5, 0); Line e(F, G); RuledSurf beside(m, e{strip});"
+    )
+}
+
+#[test]
+fn a_trimmed_surface_has_its_neighbours_vertices() {
+    let mut d = sound(&window("", ", divisions = {7, 5}", ", divisions = {9, 3}"));
+    assert_eq!(pieces(&mut d), (1, 1));
+    let p = panelled(&mut d);
+    // Its border has the neighbours' divisions: 2 (7 + 5) round the window, 9 beside the strip, and
+    // 12, as many as its own net, elsewhere.
+    let patch = |name: &str| p.mesh.patches().iter().find(|p| p.info.name == name).unwrap();
+    let vertices = |name: &str| -> BTreeSet<u32> {
+        p.mesh.topology().faces()[patch(name).faces.clone()].iter().flatten().copied().collect()
+    };
+    let shared = |a: &str, b: &str| vertices(a).intersection(&vertices(b)).count();
+    assert_eq!((shared("rest", "pane"), shared("rest", "beside")), (24, 10));
+    let report = p.mesh.report();
+    assert_eq!(report.euler, 1);
+    // Counts flow the other way, too.
+    let mut d = sound(&window(", rim = 6", "", ""));
+    assert_eq!(divisions(&mut d, "pane"), [6, 6]);
+    assert_eq!(pieces(&mut d), (1, 1));
+    // The magnet moves: joined for all places, and with the derivatives of all vertices.
+    let mut d = sound(&window(", nu = 6, nv = 6", ", divisions = {4, 3}", ", divisions = {5, 2}"));
+    let exact = d.jacobian(&["t".into()]).unwrap();
+    let h = 1e-6;
+    let mut at = |t: f64| {
+        d.set(&[("t".into(), t)]).unwrap();
+        assert_eq!(pieces(&mut d), (1, 1));
+        panelled(&mut d).mesh.positions().to_vec()
+    };
+    let (low, high) = (at(0.3 - h), at(0.3 + h));
+    for (k, d) in exact[0].iter().enumerate() {
+        let difference = (high[k] - low[k]) / (2.0 * h);
+        assert!(d.distance(difference) < 1e-7, "vertex {k}: {d:?}, {difference:?}");
+    }
+    assert!(exact[0].iter().any(|d| d.norm() > 0.1));
+    // From the text, and step by step.
+    let text = window("", ", divisions = {7, 5}", "");
+    let mut stepped = sound(&text);
+    let _ = panelled(&mut stepped);
+    stepped.set(&[("t".into(), 0.22)]).unwrap();
+    let _ = panelled(&mut stepped);
+    stepped.set(&[("t".into(), 0.37)]).unwrap();
+    let mut fresh = sound(&text);
+    fresh.set(&[("t".into(), 0.37)]).unwrap();
+    assert_eq!(panelled(&mut fresh).mesh, panelled(&mut stepped).mesh);
+}
+
+#[test]
+fn trimmed_surfaces_join_each_other_and_tell_contradictions() {
+    // Two halves of a sheet on both sides of a snake, without any panel between them.
+    let text = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0); AbsPoint D(4, 3, 0); Line a(A, B);
+        Line b(C, D); RuledSurf S(a, b, visible = 0); AbsMagnet p(S, 0, 0); AbsMagnet q(S, 1, 0);
+        AbsMagnet r(S, 1, 1); AbsMagnet s(S, 0, 1); AbsMagnet m(S, 0.4, 0.6); BSnake cut({q, m, s});
+        LineSnake pq(p, q); LineSnake sp(s, p); LineSnake qr(q, r); LineSnake sr(s, r);
+        TrimSurf low(S, {pq, cut, sp}); TrimSurf high(S, {cut, qr, sr}, orientation = 1);";
+    let mut d = sound(text);
+    assert_eq!(pieces(&mut d), (1, 1));
+    let p = panelled(&mut d);
+    assert!((area(&p, "low") + area(&p, "high") - 12.0).abs() < 1e-12);
+    // `rim` is a statement like `divisions`.
+    let mut d = open(&window(", rim = 12", ", divisions = {7, 12}", ""));
+    let p = panelled(&mut d);
+    let chains: Vec<_> = p.panelling.remarks().iter().map(|r| r.id()).collect();
+    assert_eq!(chains, ["divisions-contradict"; 2], "{:?}", p.panelling.remarks());
+    assert!(p.panelling.remarks()[0].to_string().contains("joined by `south`"));
 }

@@ -1,5 +1,7 @@
+use crate::CurveRef;
 use moldloft_num::{Real, Vec3};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Triangles of a body that belong together, such as those of one implicit surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,11 +16,49 @@ pub struct Group {
     pub triangles: Range<usize>,
 }
 
+/// A curve that the border of a sheet runs along, from its begin to its end.
+#[derive(Clone, Debug)]
+pub struct Hem<T: Real> {
+    /// The curve.
+    pub curve: CurveRef<T>,
+    /// Its divisions, where they are stated.
+    pub stated: Option<u32>,
+    /// Its divisions when nothing else determines them.
+    pub usual: u32,
+}
+
+/// A sheet of triangles whose border runs along curves, so that it can be made anew with the
+/// divisions that its neighbours have there.
+pub trait Hemmed<T: Real>: Send + Sync {
+    /// The curves of the border.
+    fn hems(&self) -> &[Hem<T>];
+
+    /// The sheet whose border has vertices at these parameters of each curve, ascending from 0 to 1,
+    /// and for each curve which of its vertices these are; `None` when such a border crosses itself.
+    fn divided(&self, at: &[Vec<T>]) -> Option<(Facets<T>, Vec<Vec<u32>>)>;
+}
+
+/// The way to make a sheet anew.
+#[derive(Clone)]
+pub struct Border<T: Real>(pub Arc<dyn Hemmed<T>>);
+
+impl<T: Real> PartialEq for Border<T> {
+    fn eq(&self, o: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &o.0)
+    }
+}
+
+impl<T: Real> std::fmt::Debug for Border<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_list().entries(self.0.hems()).finish()
+    }
+}
+
 /// A body bounded by triangles, or an open sheet of them, with its measures.
 ///
 /// For implicit modelling it is the closed mesh from which a set can be made.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Facets<T> {
+pub struct Facets<T: Real> {
     /// The vertices.
     pub points: Vec<Vec3<T>>,
     /// Corners of the triangles, counter-clockwise from outside.
@@ -35,6 +75,8 @@ pub struct Facets<T> {
     pub area: T,
     /// Centre of the volume, or of the area where there is none.
     pub centroid: Vec3<T>,
+    /// For a sheet that joins its neighbours.
+    pub border: Option<Border<T>>,
 }
 
 impl<T: Real> Facets<T> {
@@ -68,7 +110,7 @@ impl<T: Real> Facets<T> {
             middle
         };
         let (groups, wires, dots) = Default::default();
-        Self { points, triangles, groups, wires, dots, volume, area, centroid }
+        Self { points, triangles, groups, wires, dots, volume, area, centroid, border: None }
     }
 
     /// True when vertices and measures are the same bits and the triangles the same.
@@ -86,6 +128,7 @@ impl<T: Real> Facets<T> {
             && self.volume.bits_eq(o.volume)
             && self.area.bits_eq(o.area)
             && self.centroid.bits_eq(o.centroid)
+            && self.border == o.border
     }
 
     /// True when every number in it is finite.

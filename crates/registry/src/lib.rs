@@ -24,7 +24,7 @@ mod value;
 
 pub use args::{Given, arrange, check_evaluated};
 pub use class::Class;
-pub use facets::{Facets, Group};
+pub use facets::{Border, Facets, Group, Hem, Hemmed};
 pub use fault::{Fault, Place};
 pub use found::{Found, FoundStatus};
 pub use head::{HEAD, Head, Panels, Spacing};

@@ -120,6 +120,8 @@ pub struct SurfaceRef<T: Real> {
     pub key: Option<Key>,
     /// How it was found, when that took a search or a fit.
     pub found: Option<Arc<Found>>,
+    /// For a fillet: the snakes on both surfaces along which it touches them, at v = 0 and v = 1.
+    pub contacts: Option<Arc<[CurveRef<T>; 2]>>,
     /// How deep shapes are nested in it, itself included.
     pub depth: u32,
 }
@@ -264,7 +266,14 @@ impl<T: Real> CurveRef<T> {
 impl<T: Real> SurfaceRef<T> {
     /// A surface that holds on to shapes nested `nesting` deep (0 when it holds on to none).
     pub fn new(shape: impl Surface<T> + 'static, nesting: u32) -> Self {
-        Self { shape: Arc::new(shape), key: None, found: None, depth: nesting + 1 }
+        let shape = Arc::new(shape);
+        Self { shape, key: None, found: None, contacts: None, depth: nesting + 1 }
+    }
+
+    /// The same surface as a fillet between two snakes.
+    pub fn with_contacts(mut self, contacts: [CurveRef<T>; 2]) -> Self {
+        self.contacts = Some(Arc::new(contacts));
+        self
     }
 
     /// The same surface with the report of how it was found.

@@ -73,3 +73,13 @@ pub fn of_arc(error: ArcError) -> Fault {
     };
     fault.in_field(0)
 }
+
+/// A number to nine digits, as messages show what was computed.
+pub fn digits(x: f64) -> f64 {
+    format!("{x:.8e}").parse().unwrap_or(x)
+}
+
+/// A parameter from 0 to 1 to nine places.
+pub fn parameter(t: f64) -> f64 {
+    (t * 1e9).round() / 1e9
+}

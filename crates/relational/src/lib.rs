@@ -26,6 +26,7 @@ mod normal;
 mod plane;
 mod point;
 mod relabel;
+mod seam;
 mod search;
 mod snake;
 mod solid;
@@ -115,6 +116,7 @@ pub fn rows() -> Vec<Row> {
         snake::LineSnake,
         snake::BSnake,
         snake::EdgeSnake,
+        snake::ContactSnake,
         snake::UVSnake,
         snake::ArcSnake,
         snake::CSnake,

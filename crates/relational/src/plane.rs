@@ -106,7 +106,7 @@ impl<T: Real> Build<T> for ThreePointPlane<T> {
 #[kind(
     class = Plane,
     columns = "p1 p2",
-    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0.5, 2); TwoPointPlane deck(A, B);"
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, -1, 2); TwoPointPlane deck(A, B);"
 )]
 pub struct TwoPointPlane<T: Real> {
     /// A point of the plane.

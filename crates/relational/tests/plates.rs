@@ -368,6 +368,23 @@ fn a_ball_rolls_round_a_mast() {
         assert!((ring - 0.5).abs() < 1e-11, "{u} {v} {p:?}");
     }
     assert_eq!(fillet.edges().edges[1], Edge::SameAs(3));
+    // Where it touches: on the deck a circle of radius 1.5, on the mast one half above the deck.
+    let touching =
+        common::scene(&format!("{} ContactSnake ring(S, 1); ContactSnake foot(S, 2);", make(0.5)));
+    for k in 0..=20 {
+        let t = f64::from(k) / 20.0;
+        for (name, v) in [("ring", 0.0), ("foot", 1.0)] {
+            let snake = touching.curve(name);
+            let [x, d, _] = snake.jet(t, Order::First);
+            near(x, at(touching.surface("S"), t, v), 1e-12);
+            let (radius, height) = if v == 0.0 { (1.5, 0.0) } else { (1.0, 0.5) };
+            assert!((x.x.hypot(x.y) - radius).abs() < 1e-12 && (x.z - height).abs() < 1e-12);
+            assert!((d.norm() - std::f64::consts::TAU * radius).abs() < 1e-6, "{d:?}");
+            let w = snake.on_surface(t, Order::Zero).unwrap()[0];
+            let parent = snake.surface.as_deref().unwrap();
+            near(parent.jet(w.x, w.y, Order::Zero).p, x, 1e-15);
+        }
+    }
     // Inside the mast a ball larger than it cannot roll.
     let inside =
         format!("{text} RollFillet S(deck, mast, 0.4, side1 = {first}, side2 = {});", -second);
@@ -515,4 +532,23 @@ fn centroids_of_solids() {
     near(scene.point("q").xyz, Vec3::of(1.5, 0.5, 1.5), 1e-11);
     // Volumes 6 and 12.
     near(scene.point("both").xyz, Vec3::of(3.5 / 3.0, 0.5, -1.5), 1e-11);
+}
+
+#[test]
+fn a_fixed_frame_only_moves_the_profile() {
+    // Also along a path with a corner, where no other frame can go.
+    let text = "AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 1); AbsPoint C(3, 2, 0.5); Line l(A, B); Line m(B, C);
+        PolyCurve path({l, m}); AbsPoint P(0, 0.5, 0); AbsPoint Q(0.1, 0.3, 0.6); AbsPoint R(0, -0.5, 0.2);
+        BCurve profile({P, Q, R}); SweepSurf S(profile, path, \"fixed\"); TranSurf T(profile, path);
+        SweepSurf half(profile, path, \"fixed\", scale = {1, 0.5});";
+    let scene = scene(text);
+    for (u, v) in places() {
+        near(at(scene.surface("S"), u, v), at(scene.surface("T"), u, v), 1e-14);
+        let (way, shape) = (scene.curve("path").jet(v, Order::Zero)[0], scene.curve("profile"));
+        let scaled = way + shape.jet(u, Order::Zero)[0] * (1.0 - 0.5 * v);
+        near(at(scene.surface("half"), u, v), scaled, 1e-14);
+    }
+    let upright = fault(&text.replace("\"fixed\");", "\"fixed\", up = {0, 0, 1});"));
+    assert_eq!(upright.id, "unused-argument");
+    assert_eq!(fault(&text.replace(", \"fixed\");", ");")).id, "corner-in-path");
 }

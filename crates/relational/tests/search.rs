@@ -483,8 +483,92 @@ fn geodesics_are_straight_on_what_unrolls_and_great_circles_on_spheres() {
         "{TUBE} RuledSurf R(m, axis); AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(R, 0.1, 0.2); GeoSnake g(p, q);"
     );
     assert_eq!(fault(&two).id, "wrong-surface");
+    // Turns are of a seam that is there.
+    let turned = format!(
+        "{TUBE} AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.8, 0.9); GeoSnake g(p, q, turns_u = 1);"
+    );
+    assert_eq!(fault(&turned).id, "no-seam");
     // Along the rim of a cup the way leaves it.
     let cup = "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z); AbsPoint A(1, 0, 0); AbsPoint B(3, 0, 2);
         Line m(A, B); RevSurf S(m, axis, 0, 3); AbsMagnet p(S, 0.001, 0.1); AbsMagnet q(S, 0.001, 0.9); GeoSnake g(p, q);";
     assert_eq!(fault(cup).id, "leaves-surface");
+}
+
+#[test]
+fn geodesics_run_over_the_seams_of_what_is_closed() {
+    use std::f64::consts::TAU;
+    // A whole pipe of radius 2 and length 4: helices, of each number of turns.
+    let pipe = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(0, 2, 0); AbsPoint B(4, 2, 0);
+        Line m(A, B); RevSurf S(m, axis); AbsMagnet p(S, 0.1, 0.9); AbsMagnet q(S, 0.8, 0.15);
+        GeoSnake g(p, q); GeoSnake back(q, p); GeoSnake within(p, q, turns_v = 0);
+        GeoSnake twice(p, q, turns_v = 2); GeoSnake other(q, p, turns_v = -3); GeoSnake ring(p, p, turns_v = 1); GeoSnake many(p, q, turns_v = 8);";
+    let s = scene(pipe);
+    let check = |name: &str, [u, v]: [f64; 2], [du, dv]: [f64; 2]| {
+        let g = curve(&s, name);
+        let length = f64::hypot(4.0 * du, 2.0 * TAU * dv);
+        for k in 0..=40 {
+            let t = f64::from(k) / 40.0;
+            let [x, d, _] = g.jet(t, Order::First);
+            assert!((d.norm() - length).abs() < 1e-9 * length, "{name} {t} {} {length}", d.norm());
+            let a = TAU * (v + dv * t);
+            let helix = Vec3::of(4.0 * (u + du * t), 2.0 * a.cos(), 2.0 * a.sin());
+            assert!(x.distance(helix) < 1e-9, "{name} {t} {x:?} {helix:?}");
+            let w = g.on_surface(t, Order::Zero).unwrap()[0];
+            assert!((0.0..=1.0).contains(&w.y), "{name} {w:?}");
+        }
+    };
+    check("g", [0.1, 0.9], [0.7, 0.25]);
+    check("back", [0.8, 0.15], [-0.7, -0.25]);
+    check("within", [0.1, 0.9], [0.7, -0.75]);
+    check("twice", [0.1, 0.9], [0.7, 1.25]);
+    check("other", [0.8, 0.15], [-0.7, -2.25]);
+    check("ring", [0.1, 0.9], [0.0, 1.0]);
+    check("many", [0.1, 0.9], [0.7, 7.25]);
+    let [p, q] = ["p", "q"].map(|n| match &s.0.iter().find(|o| o.name == n).unwrap().value {
+        Value::Point(p) => p.xyz,
+        other => panic!("{other:?}"),
+    });
+    for (name, ends) in [("g", [p, q]), ("back", [q, p]), ("twice", [p, q])] {
+        let g = curve(&s, name);
+        assert!(g.end(0.0).bits_eq(ends[0]) && g.end(1.0).bits_eq(ends[1]), "{name}");
+    }
+    let one = pipe.split(" GeoSnake back").next().unwrap();
+    check_derivatives(one, &["g"], 1e-6);
+    // A cone with its top cut off, unrolled: radius r' = slant, angle a sin(alpha), a straight line.
+    let cone = "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z); AbsPoint A(0.6, 0, 0.8); AbsPoint B(3, 0, 4);
+        Line m(A, B); RevSurf S(m, axis); AbsMagnet p(S, 0.5, 0.8); AbsMagnet q(S, 0.9, 0.05); GeoSnake g(p, q);";
+    let s = scene(cone);
+    let g = curve(&s, "g");
+    let sine = 0.6;
+    let slant = |u: f64| 1.0 + 4.0 * u;
+    let flat = |u: f64, v: f64| -> Vec3 {
+        let a = TAU * v * sine;
+        Vec3::of(slant(u) * a.cos(), slant(u) * a.sin(), 0.0)
+    };
+    let (a, b) = (flat(0.5, -0.2), flat(0.9, 0.05));
+    for k in 0..=20 {
+        let t = f64::from(k) / 20.0;
+        let [x, d, _] = g.jet(t, Order::First);
+        assert!((d.norm() - a.distance(b)).abs() < 1e-9, "{} {}", d.norm(), a.distance(b));
+        let on = a + (b - a) * t;
+        let (r, angle) = (on.x.hypot(on.y), on.y.atan2(on.x) / sine);
+        let place = Vec3::of(0.6 * r * angle.cos(), 0.6 * r * angle.sin(), 0.8 * r);
+        assert!(x.distance(place) < 1e-9, "{t} {x:?} {place:?}");
+    }
+    // Closed both ways: the shortest over both seams of a ring, normal to it all along.
+    let ring = "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z); AbsPoint A(4, 0, 0); AbsPoint C(3, 0, 0);
+        AbsPoint D(3, 0, 1); Arc c(A, C, D, type = 6); RevSurf S(c, axis); AbsMagnet p(S, 0.95, 0.95);
+        AbsMagnet q(S, 0.07, 0.08); GeoSnake g(p, q);";
+    let s = scene(ring);
+    let g = curve(&s, "g");
+    let [_, d, _] = g.jet(0.0, Order::First);
+    assert!(d.norm() < 4.0, "{}", d.norm());
+    for k in 1..20 {
+        let t = f64::from(k) / 20.0;
+        let [x, e, dd] = g.jet(t, Order::Second);
+        assert!((e.norm() - d.norm()).abs() < 1e-8);
+        let out = Vec3::of(x.x, x.y, 0.0).normalized().unwrap() * 3.0;
+        let n = (x - out).normalized().unwrap();
+        assert!(dd.cross(n).norm() < 1e-5 * dd.norm(), "{t} {dd:?} {n:?}");
+    }
 }

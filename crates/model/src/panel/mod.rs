@@ -12,6 +12,7 @@
 mod bodies;
 mod divide;
 mod facing;
+mod hems;
 mod join;
 mod junction;
 mod remark;
@@ -25,6 +26,7 @@ pub use remark::{ChainStep, Remark};
 use crate::{Graph, Object};
 use bodies::Body;
 use facing::Facing;
+use hems::HemCounts;
 use join::Joiner;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_num::trace::{Edges, Key};
@@ -102,7 +104,7 @@ type RimEdge = (u32, u32, u32);
 
 /// The counts of divisions of another state of a model, to be kept where they are free.
 #[derive(Clone, Debug, Default)]
-pub struct Nominal(HashMap<Arc<str>, Counts>);
+pub struct Nominal(HashMap<(Arc<str>, Option<u32>), Counts>);
 
 #[derive(Clone, Debug)]
 struct Counts {
@@ -133,7 +135,7 @@ impl Panelling {
         let drafts = drafts(graph);
         let made = skeleton::make(graph, Roots::new(graph, &drafts), &drafts, nominal);
         let count = |frame: &skeleton::Frame| frame.divisions[0] as u64 * frame.divisions[1] as u64;
-        let bodies = bodies::bodies(graph);
+        let mut bodies = bodies::bodies(graph);
         let total = made.skeleton.frames.iter().map(count).sum::<u64>()
             + bodies.iter().map(Body::panels).sum::<u64>();
         if total > MOST_PANELS {
@@ -173,6 +175,17 @@ impl Panelling {
         };
         let mut remarks = made.remarks;
         remarks.extend(joint.apart(&skeleton, &points, size.diagonal()));
+        {
+            let known = if bodies.iter().any(Body::has_border) {
+                Known::new(graph, &skeleton, &names)
+            } else {
+                Known::empty(graph, &skeleton, &names)
+            };
+            let clock = before.map_or(0, |b| b.clock);
+            let unchanged = |object: &Object<f64>| object.changed_at <= clock;
+            let earlier = before.map(|b| (b.bodies.as_slice(), &unchanged as _));
+            bodies::sewn(&mut bodies, &known, &joint, earlier);
+        }
         let whole = before.filter(|b| {
             let alike = b.bodies.len() == bodies.len()
                 && b.bodies.iter().zip(&bodies).all(|(a, b)| a.is_like(b));
@@ -223,7 +236,7 @@ impl Panelling {
                 }
                 _ => Vec::new(),
             });
-            (frame.name.clone(), Counts { divisions: frame.divisions, edges })
+            ((frame.name.clone(), frame.hem), Counts { divisions: frame.divisions, edges })
         });
         Nominal(counts.collect())
     }
@@ -240,7 +253,7 @@ impl Panelling {
         let points = evaluated_all(&self.skeleton, &self.names, graph, |_| None);
         let mut points = points.into_iter().collect::<Option<Vec<_>>>()?;
         set_zeros(&self.skeleton, &self.zeros, &mut points);
-        Some(self.gathered(&points, &self.body_points(graph)?))
+        Some(self.gathered(&points, &self.body_points(graph, &points)?))
     }
 
     /// Of each structured patch, in the order of the topology's: its surface, and (u, v) of each
@@ -521,10 +534,11 @@ pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
     at.head.own_divisions()
 }
 
-/// A surface to be panelled.
+/// A surface to be panelled, or the hem of a sheet.
 struct Draft<'g> {
     object: &'g Object<f64>,
-    surface: &'g SurfaceRef<f64>,
+    surface: SurfaceRef<f64>,
+    hem: Option<HemCounts>,
     edges: Edges<f64>,
     /// The draft of which it is the image, and the number of the map.
     image: Option<(usize, u32)>,
@@ -533,13 +547,37 @@ struct Draft<'g> {
     reversed: bool,
 }
 
-/// The surfaces that take part, in the order of declaration, hidden ones last.
+impl Draft<'_> {
+    /// The divisions that are stated along u and v.
+    fn stated(&self) -> [Option<u32>; 2] {
+        match self.hem {
+            Some(hem) => [hem.stated, None],
+            None => self.object.head.stated_divisions(),
+        }
+    }
+
+    /// The divisions when nothing else determines them.
+    fn usual(&self) -> [u32; 2] {
+        match self.hem {
+            Some(hem) => [hem.usual, 1],
+            None => self.object.head.own_divisions(),
+        }
+    }
+
+    /// What tells it from all others, in any graph.
+    fn identity(&self) -> (Arc<str>, Option<u32>) {
+        (self.object.name.clone(), self.hem.map(|h| h.index))
+    }
+}
+
+/// The surfaces that take part, in the order of declaration, hidden ones after them, and the hems of
+/// sheets last.
 fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
     let mut drafts: Vec<Draft> = Vec::new();
     let draft = |object, meshed| {
-        let surface = surface_of(object)?;
+        let surface = surface_of(object)?.clone();
         let (edges, reversed) = (surface.edges(), reversed(graph, object));
-        Some(Draft { object, surface, edges, image: None, meshed, reversed })
+        Some(Draft { object, surface, hem: None, edges, image: None, meshed, reversed })
     };
     let mut by_key = HashMap::new();
     for object in graph.objects().filter(|o| o.head.shown()) {
@@ -566,6 +604,22 @@ fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
             drafts[at].image = by_key.get(&object.key).map(|&original| (original, map));
         }
         at += 1;
+    }
+    for object in graph.objects().filter(|o| o.head.shown()) {
+        let Some(border) = hems::border(object) else { continue };
+        for (index, hem) in border.hems().iter().enumerate() {
+            let Some(surface) = hems::line(hem) else { continue };
+            let counts = HemCounts { index: index as u32, stated: hem.stated, usual: hem.usual };
+            drafts.push(Draft {
+                object,
+                edges: surface.edges(),
+                surface,
+                hem: Some(counts),
+                image: None,
+                meshed: false,
+                reversed: false,
+            });
+        }
     }
     drafts
 }
@@ -625,10 +679,25 @@ struct Known<'a, T: Scalar> {
 impl<'a, T: Scalar> Known<'a, T> {
     fn new(graph: &'a Graph<T>, skeleton: &'a Skeleton, names: &'a HashMap<Key, Arc<str>>) -> Self {
         let keys: Vec<Option<Key>> = skeleton.frames.iter().map(|f| graph.find(&f.name)).collect();
-        let surface = |key: &Option<Key>| surface_of(graph.get((*key)?)?).cloned();
-        let surfaces: Vec<_> = keys.iter().map(surface).collect();
+        let surface = |(key, frame): (&Option<Key>, &skeleton::Frame)| {
+            let object = graph.get((*key)?)?;
+            match frame.hem {
+                Some(hem) => hems::line(hems::border(object)?.hems().get(hem as usize)?),
+                None => surface_of(object).cloned(),
+            }
+        };
+        let surfaces: Vec<_> = keys.iter().zip(&skeleton.frames).map(surface).collect();
         let edges = surfaces.iter().map(|s| Some(s.as_ref()?.edges())).collect();
         Self { graph, skeleton, names, keys, surfaces, edges }
+    }
+
+    /// What says nothing of any patch, for where nothing is asked.
+    fn empty(
+        graph: &'a Graph<T>,
+        skeleton: &'a Skeleton,
+        names: &'a HashMap<Key, Arc<str>>,
+    ) -> Self {
+        Self { graph, skeleton, names, keys: vec![], surfaces: vec![], edges: vec![] }
     }
 }
 

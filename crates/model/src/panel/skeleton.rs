@@ -51,8 +51,10 @@ pub(super) struct Frame {
     pub image: Option<(usize, u32)>,
     /// True when its panels run against its natural normal, by what its surface says.
     pub reversed: bool,
-    /// False for a hidden surface of which a shown one is the image.
+    /// False for a hidden surface of which a shown one is the image, and for a hem.
     pub meshed: bool,
+    /// For a hem, which of its sheet's.
+    pub hem: Option<u32>,
 }
 
 /// All of it.
@@ -137,8 +139,7 @@ impl Maker<'_, '_> {
     /// Nodes, links and sums.
     fn state(&mut self) {
         for draft in self.drafts {
-            let usual = draft.object.head.own_divisions();
-            let stated = draft.object.head.stated_divisions();
+            let (usual, stated) = (draft.usual(), draft.stated());
             for direction in 0..2 {
                 self.divider.node(stated[direction], Some(usual[direction]));
             }
@@ -220,7 +221,7 @@ impl Maker<'_, '_> {
 
     /// The length of an edge (0..4) or middle line (4 along u, 5 along v) between two parameters.
     fn length(&self, patch: usize, k: usize, from: f64, to: f64) -> f64 {
-        let surface = self.drafts[patch].surface;
+        let surface = &self.drafts[patch].surface;
         let n = LENGTH_STEPS as f64;
         let ts: Vec<f64> =
             (0..=LENGTH_STEPS).map(|i| from + (to - from) * (i as f64 / n)).collect();
@@ -259,7 +260,7 @@ impl Maker<'_, '_> {
     fn recall(&mut self, nominal: &Nominal) {
         self.measured = true;
         for (patch, draft) in self.drafts.iter().enumerate() {
-            let Some(counts) = nominal.0.get(&draft.object.name) else { continue };
+            let Some(counts) = nominal.0.get(&draft.identity()) else { continue };
             for direction in 0..2 {
                 self.divider.wished[side(patch, direction)] =
                     Some(counts.divisions[direction] as u32);
@@ -443,6 +444,7 @@ impl Maker<'_, '_> {
                 image: draft.image,
                 reversed: draft.reversed,
                 meshed: draft.meshed,
+                hem: draft.hem.map(|h| h.index),
             });
         }
         let points = self.roots.places().iter().map(|p| p.points.to_vec()).collect();

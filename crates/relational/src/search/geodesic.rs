@@ -7,6 +7,7 @@
 //! method, and so for the exact derivatives of its solution.
 
 use crate::arguments::{Magnet, common_surface};
+use crate::seam;
 use crate::snake::OnSurface;
 use moldloft_num::trace::Trace;
 use moldloft_num::{CurveFormula, Jet, Order, Real, SurfJet, Vec3, solve_dense};
@@ -16,6 +17,10 @@ use moldloft_registry::{
 
 /// Numbers of spans between nodes that are tried until the path no longer changes.
 const SPANS: [usize; 5] = [8, 16, 24, 36, 54];
+
+/// More of them for paths of several turns, and how many there are for a turn at least.
+const MORE_SPANS: [usize; 3] = [80, 120, 180];
+const SPANS_A_TURN: f64 = 12.0;
 
 /// A path that changes by less than this in u and v is taken.
 const SETTLED: f64 = 1e-11;
@@ -30,32 +35,45 @@ const OUTSIDE: f64 = 1e-9;
 /// neither left nor right on the surface. It is run evenly, so t is the share of its length.
 ///
 /// Of several geodesics it is the one that Newton's method leads to from the straight line of the
-/// parameter plane: on surfaces that are not bent much between the magnets, the shortest. It does not
-/// run across the seam of a closed surface; put the seam elsewhere for that.
+/// parameter plane: on surfaces that are not bent much between the magnets, the shortest. On a closed
+/// surface those over its seam are tried, too, and the shortest is taken (of equal ones that which stays
+/// within the seam); `turns_u` and `turns_v` ask for another. Its place on the surface goes over from 1
+/// to 0 at the seam.
 #[derive(Kind)]
 #[kind(
     class = Snake,
     columns = "relabel m1 m2",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0); AbsPoint C(4, 0, 0); AbsPoint D(0, 0, 2); \
                AbsPoint E(4, 1, 3); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
-               AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.8); GeoSnake s(p, q);"
+               AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.8); GeoSnake s(p, q); \
+               AbsPoint O(0, 0, -4); AbsPoint X(4, 0, -4); Line axis(O, X); AbsPoint F(0, 0, -3); \
+               AbsPoint G(4, 0, -3.5); Line k(F, G); RevSurf R(k, axis); AbsMagnet a(R, 0.1, 0.3); \
+               AbsMagnet b(R, 0.9, 0.9); GeoSnake g(a, b); GeoSnake round(a, b, turns_v = 1);"
 )]
 pub struct GeoSnake<T: Real> {
     /// Where it begins.
     m1: Magnet<T>,
     /// Where it ends, on the same surface.
     m2: Magnet<T>,
+    /// How often it runs over the seam u = 0 forwards, or less than 0 backwards. Not given: 0, or 1 or
+    /// -1 where that is shorter.
+    #[field(min = -10, max = 10)]
+    turns_u: Option<i32>,
+    /// The same for the seam v = 0.
+    #[field(min = -10, max = 10)]
+    turns_v: Option<i32>,
 }
 
 impl<T: Real> Build<T> for GeoSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let Self { m1, m2 } = self;
+        let Self { m1, m2, turns_u, turns_v } = self;
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
         let surface = common_surface(&items, Fault::in_field)?;
-        let ends = [m1.uv, m2.uv];
-        let plain = ends.map(|w| w.map(|x| x.re()));
-        let (gap, iterations, nodes) = solved(&surface, plain)?;
-        let path = Path::new(&surface, ends, &nodes)?;
+        let sheet = Sheet { round: seam::round(&surface), surface: &surface };
+        let plain = [m1.uv, m2.uv].map(|w| w.map(|x| x.re()));
+        let ways = ways(&sheet, plain, [turns_u, turns_v])?;
+        let (turns, (gap, iterations, nodes)) = shortest(&sheet, plain, &ways)?;
+        let path = Path::new(&sheet, [m1.uv, m2.uv], turns, &nodes)?;
         let found = Found {
             status: FoundStatus::Ok,
             residual: gap,
@@ -69,6 +87,106 @@ impl<T: Real> Build<T> for GeoSnake<T> {
         let shape = OnSurface { surface: surface.clone(), path, trace };
         Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting).with_found(found)))
     }
+}
+
+/// A surface that goes on beyond its seams.
+struct Sheet<'s, T: Real> {
+    surface: &'s SurfaceRef<T>,
+    round: [bool; 2],
+}
+
+impl<T: Real> Sheet<'_, T> {
+    fn jet(&self, w: [T; 2], order: Order) -> SurfJet<T> {
+        seam::jet(self.surface, self.round, w, order)
+    }
+}
+
+/// The turns by which ways lead over the seams: those asked for, else none and the way round the
+/// other side.
+fn ways<T: Real>(
+    sheet: &Sheet<T>,
+    [from, to]: [[f64; 2]; 2],
+    asked: [Option<i32>; 2],
+) -> Result<Vec<[f64; 2]>, Fault> {
+    let mut each = [vec![0.0], vec![0.0]];
+    for a in 0..2 {
+        match asked[a] {
+            Some(turns) if turns != 0 && !sheet.round[a] => {
+                let letter = ["u", "v"][a];
+                return Err(Fault::new("no-seam", format!("the surface has no seam {letter} = 0"))
+                    .expected(format!(
+                        "a surface whose edges {letter} = 0 and {letter} = 1 are one"
+                    ))
+                    .found(format!("{turns} turns over it"))
+                    .help(
+                        "close the surface by a full turn, or by curves that end where they begin",
+                    )
+                    .related(sheet.surface.key, "is open")
+                    .in_field(2 + a));
+            }
+            Some(turns) => each[a] = vec![f64::from(turns)],
+            None if sheet.round[a] && to[a] != from[a] => {
+                each[a].push(if to[a] > from[a] { -1.0 } else { 1.0 });
+            }
+            None => {}
+        }
+    }
+    let [us, vs] = &each;
+    Ok(us.iter().flat_map(|&u| vs.iter().map(move |&v| [u, v])).collect())
+}
+
+/// A way has to be shorter by this share to count as such.
+const SHORTER: f64 = 1e-6;
+
+/// What was found: how far the last refinement moved the places, steps, places.
+type Solved = (f64, usize, Vec<[f64; 2]>);
+
+/// The shortest of some ways, with its turns.
+fn shortest<T: Real>(
+    sheet: &Sheet<T>,
+    [from, to]: [[f64; 2]; 2],
+    ways: &[[f64; 2]],
+) -> Result<([f64; 2], Solved), Fault> {
+    let mut best: Option<(f64, [f64; 2], Solved)> = None;
+    let mut refused = None;
+    for &turns in ways {
+        let end = [to[0] + turns[0], to[1] + turns[1]];
+        match solved(sheet, [from, end], turns != [0.0; 2]) {
+            // Over a crease at the seam there is no smooth way.
+            Ok(found) if found.0 > CREASED && ways.len() > 1 && turns != [0.0; 2] => {}
+            Ok(found) => {
+                let length = length(sheet, &found.2);
+                if best.as_ref().is_none_or(|b| length < b.0 * (1.0 - SHORTER)) {
+                    best = Some((length, turns, found));
+                }
+            }
+            Err(fault) => refused = refused.or(Some(fault)),
+        }
+    }
+    match (best, refused) {
+        (Some((_, turns, found)), _) => Ok((turns, found)),
+        (None, Some(fault)) => Err(fault),
+        (None, None) => Err(no_convergence()),
+    }
+}
+
+/// A path that the last refinement moved by more than this is not smooth.
+const CREASED: f64 = 1e-6;
+
+/// Chords by which lengths are compared.
+const CHORDS: usize = 64;
+
+fn length<T: Real>(sheet: &Sheet<T>, places: &[[f64; 2]]) -> f64 {
+    let places = resampled(places, CHORDS);
+    let at = |w: &[f64; 2]| sheet.jet(w.map(T::from), Order::Zero).p.re();
+    places.windows(2).map(|w| at(&w[0]).distance(at(&w[1]))).sum()
+}
+
+fn no_convergence() -> Fault {
+    Fault::new("no-convergence", "no geodesic was found between the magnets")
+        .expected("magnets with a smooth stretch of the surface between them")
+        .found("an iteration from the straight line in u and v that came to no end")
+        .help("put magnets between them, and join the geodesics by PolySnake")
 }
 
 /// The angle of node k of n spans; the node is at t = (1 - cos) / 2.
@@ -109,7 +227,7 @@ fn second_derivatives(n: usize) -> Vec<f64> {
 
 /// The equations at the inner nodes and their matrix by the inner places, in the order u, v of each.
 fn equations<T: Real>(
-    surface: &SurfaceRef<T>,
+    sheet: &Sheet<T>,
     places: &[[T; 2]],
     dd: &[f64],
     with_matrix: bool,
@@ -117,7 +235,7 @@ fn equations<T: Real>(
     let m = places.len();
     let inner = m - 2;
     let order = if with_matrix { Order::Second } else { Order::First };
-    let jets: Vec<SurfJet<T>> = places.iter().map(|&[u, v]| surface.jet(u, v, order)).collect();
+    let jets: Vec<SurfJet<T>> = places.iter().map(|&w| sheet.jet(w, order)).collect();
     let mut rest = Vec::with_capacity(2 * inner);
     let mut matrix = if with_matrix { vec![T::zero(); 4 * inner * inner] } else { Vec::new() };
     for k in 1..m - 1 {
@@ -169,13 +287,14 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |a, x| a.max(x.abs()))
 }
 
-/// The plain places at the nodes: how far the last refinement moved them, steps, places.
+/// The plain places at the nodes, of a way over a seam or not.
 fn solved<T: Real>(
-    surface: &SurfaceRef<T>,
+    sheet: &Sheet<T>,
     [from, to]: [[f64; 2]; 2],
-) -> Result<(f64, usize, Vec<[f64; 2]>), Fault> {
-    let at = |[u, v]: [f64; 2]| surface.jet(T::from(u), T::from(v), Order::Zero).p.re();
-    if at(from).distance(at(to)) == 0.0 {
+    turned: bool,
+) -> Result<Solved, Fault> {
+    let at = |w: [f64; 2]| sheet.jet(w.map(T::from), Order::Zero).p.re();
+    if from == to || (!turned && at(from).distance(at(to)) == 0.0) {
         return Err(Fault::new("coincident-points", "the geodesic has no length")
             .expected("two magnets in different places")
             .found("one place")
@@ -184,7 +303,10 @@ fn solved<T: Real>(
     let mut places: Vec<[f64; 2]> = vec![from, to];
     let mut steps = 0;
     let mut moved = f64::INFINITY;
-    for n in SPANS {
+    let turns = (0..2).map(|a| (to[a] - from[a]).abs()).fold(0.0, f64::max);
+    let more = if turned && turns > 1.0 { &MORE_SPANS[..] } else { &[] };
+    let least = if turned { (SPANS_A_TURN * turns) as usize } else { 0 };
+    for n in SPANS.into_iter().chain(more.iter().copied()).filter(|n| *n >= least) {
         let before = if places.len() == 2 {
             let line = |k: usize| {
                 let t = node(k, n);
@@ -194,7 +316,7 @@ fn solved<T: Real>(
         } else {
             resampled(&places, n)
         };
-        let Some((next, used)) = newton(surface, before.clone(), n) else { break };
+        let Some((next, used)) = newton(sheet, before.clone(), n) else { break };
         steps += used;
         let change = next
             .iter()
@@ -211,13 +333,10 @@ fn solved<T: Real>(
         }
     }
     if places.len() == 2 {
-        return Err(Fault::new("no-convergence", "no geodesic was found between the magnets")
-            .expected("magnets with a smooth stretch of the surface between them")
-            .found("an iteration from the straight line in u and v that came to no end")
-            .help("put magnets between them, and join the geodesics by PolySnake"));
+        return Err(no_convergence());
     }
-    let out = places.iter().flatten().any(|x| *x < -OUTSIDE || *x > 1.0 + OUTSIDE);
-    if out {
+    let outside = |a: usize, x: f64| !sheet.round[a] && !(-OUTSIDE..=1.0 + OUTSIDE).contains(&x);
+    if places.iter().any(|w| outside(0, w[0]) || outside(1, w[1])) {
         let span = |a: usize| {
             let all = places.iter().map(|p| p[a]);
             let (low, high) =
@@ -234,7 +353,7 @@ fn solved<T: Real>(
 
 /// Newton's method at n spans, halving steps that do not help; `None` when it does not settle.
 fn newton<T: Real>(
-    surface: &SurfaceRef<T>,
+    sheet: &Sheet<T>,
     mut places: Vec<[f64; 2]>,
     n: usize,
 ) -> Option<(Vec<[f64; 2]>, usize)> {
@@ -242,7 +361,7 @@ fn newton<T: Real>(
     let lifted =
         |places: &[[f64; 2]]| -> Vec<[T; 2]> { places.iter().map(|p| p.map(T::from)).collect() };
     let plain = |all: Vec<T>| -> Vec<f64> { all.into_iter().map(|x| x.re()).collect() };
-    let (rest, matrix) = equations(surface, &lifted(&places), &dd, true);
+    let (rest, matrix) = equations(sheet, &lifted(&places), &dd, true);
     let (mut rest, mut matrix) = (plain(rest), plain(matrix));
     for step in 1..=MOST_STEPS {
         let mut by = rest.clone();
@@ -261,7 +380,7 @@ fn newton<T: Real>(
                     _ => [0, 1].map(|a| places[k][a] - share * by[2 * (k - 1) + a]),
                 })
                 .collect();
-            let (r, m) = equations(surface, &lifted(&next), &dd, true);
+            let (r, m) = equations(sheet, &lifted(&next), &dd, true);
             let (r, m) = (plain(r), plain(m));
             // Near the solution rounding decides, and the full step is right.
             if largest(&r) < largest(&rest) || length < 1e-9 {
@@ -286,13 +405,22 @@ fn newton<T: Real>(
 /// Chebyshev's of the second kind, so that its ends are the magnets' places to the bit.
 struct Path<T: Real> {
     ends: [[T; 2]; 2],
+    /// The second end without its turns.
+    last: [T; 2],
+    round: [bool; 2],
     coefficients: Vec<[T; 2]>,
 }
 
 impl<T: Real> Path<T> {
-    fn new(surface: &SurfaceRef<T>, ends: [[T; 2]; 2], plain: &[[f64; 2]]) -> Result<Self, Fault> {
+    fn new(
+        sheet: &Sheet<T>,
+        [from, last]: [[T; 2]; 2],
+        turns: [f64; 2],
+        plain: &[[f64; 2]],
+    ) -> Result<Self, Fault> {
         let n = plain.len() - 1;
-        let places = derived(surface, ends, plain).ok_or_else(super::outcome::tangent)?;
+        let ends = [from, [last[0] + turns[0], last[1] + turns[1]]];
+        let places = derived(sheet, ends, plain).ok_or_else(super::outcome::tangent)?;
         let [from, to] = ends;
         // p at node k is what is beyond the line over sin^2 / 4; its coefficients follow from the
         // orthogonality of sines.
@@ -306,14 +434,15 @@ impl<T: Real> Path<T> {
                 })
             })
         };
-        Ok(Self { ends, coefficients: (0..n - 1).map(coefficient).collect() })
+        let coefficients = (0..n - 1).map(coefficient).collect();
+        Ok(Self { ends, last, round: sheet.round, coefficients })
     }
 }
 
 /// The places with what they owe to the model's parameters: one step of Newton's method in T, of
 /// which the real part is left out.
 fn derived<T: Real>(
-    surface: &SurfaceRef<T>,
+    sheet: &Sheet<T>,
     [from, to]: [[T; 2]; 2],
     plain: &[[f64; 2]],
 ) -> Option<Vec<[T; 2]>> {
@@ -324,11 +453,11 @@ fn derived<T: Real>(
         return Some(places);
     }
     let dd = second_derivatives(n);
-    let (rest, _) = equations(surface, &places, &dd, false);
+    let (rest, _) = equations(sheet, &places, &dd, false);
     let mut by: Vec<T> = rest.into_iter().map(|r| r - r.re()).collect();
     if by.iter().any(|r| !r.is_constant()) {
         let at: Vec<[T; 2]> = plain.iter().map(|p| p.map(T::from)).collect();
-        let (_, matrix) = equations(surface, &at, &dd, true);
+        let (_, matrix) = equations(sheet, &at, &dd, true);
         let mut matrix: Vec<T> = matrix.into_iter().map(|x| T::from(x.re())).collect();
         solve_dense(&mut matrix, &mut by).ok()?;
         for k in 1..n {
@@ -346,7 +475,7 @@ impl<T: Real> CurveFormula for Path<T> {
         let y = t * -2.0 + 1.0;
         let s = -t + 1.0;
         let bump = t * s;
-        let [u, v] = [0, 1].map(|a| {
+        let place = [0, 1].map(|a| {
             // Clenshaw's recursion for U_j.
             let (mut b1, mut b2) = (J::zero(), J::zero());
             for c in self.coefficients.iter().rev() {
@@ -355,6 +484,11 @@ impl<T: Real> CurveFormula for Path<T> {
             let [from, to] = [self.ends[0][a], self.ends[1][a]];
             s.scaled(from) + t.scaled(to) + bump * b1
         });
+        let [mut u, mut v] = seam::wrapped(self.round, place);
+        if t.re() == 1.0 {
+            // To the bit, whatever turns were taken off.
+            (u, v) = (u + (self.last[0].re() - u.re()), v + (self.last[1].re() - v.re()));
+        }
         Vec3::new(u, v, J::zero())
     }
 }

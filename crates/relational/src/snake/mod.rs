@@ -1,11 +1,13 @@
 //! Snakes: curves on surfaces, given in the surface's parameter plane.
 
+mod contact;
 mod foil;
 mod isoparametric;
 mod more;
 mod on_surface;
 mod through;
 
+pub use contact::ContactSnake;
 pub use foil::FoilSnake;
 pub use isoparametric::{EdgeSnake, UVSnake, edge_trace};
 pub use more::{ArcSnake, CSnake, ConicSnake, CopySnake, NURBSnake, RelSnake};

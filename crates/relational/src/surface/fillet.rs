@@ -88,6 +88,7 @@ const TRIALS: usize = 16;
 impl<T: Real> Build<T> for FilletSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { snake1, snake2, m1, m2, continuity, direction1, direction2, closed } = self;
+        let contacts = [snake1.curve.clone(), snake2.curve.clone()];
         let side = |snake, length, direction| Side { snake, length, direction, sign: 1.0 };
         let mut fillet = Fillet {
             sides: [side(snake1, m1, direction1), side(snake2, m2, direction2)],
@@ -96,7 +97,8 @@ impl<T: Real> Build<T> for FilletSurf<T> {
         };
         fillet.settle()?;
         fillet.check()?;
-        Ok(Value::Surface(SurfaceRef::new(Columns(fillet), context.nesting)))
+        let surface = SurfaceRef::new(Columns(fillet), context.nesting);
+        Ok(Value::Surface(surface.with_contacts(contacts)))
     }
 }
 

@@ -1,5 +1,6 @@
 use super::inherited;
 use super::ribbon::unit;
+use crate::faults::{digits, parameter};
 use crate::lifted::{bends, tangents};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, Surface, SurfaceFormula, Vec3};
@@ -72,7 +73,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), Fault> {
             let at = surface.jet(T::from(u), T::from(v), Order::Zero).p.re();
             return Err(Fault::new(
                 "no-normal",
-                format!("the surface has no normal at ({u}, {v})"),
+                format!("the surface has no normal at ({}, {})", parameter(u), parameter(v)),
             )
             .expected("a surface with a tangent plane everywhere")
             .found(format!("none at ({}, {}, {})", at.x, at.y, at.z))
@@ -91,8 +92,13 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), Fault> {
         Some((share, u, v)) if share <= 0.0 => {
             let radius = distance.abs() / (1.0 - share);
             Err(Fault::new("cusp", "the offset exceeds the radius of curvature")
-                .expected(format!("a distance less than {radius} on that side"))
-                .found(format!("{} where (u, v) = ({u}, {v})", distance.abs()))
+                .expected(format!("a distance less than {} on that side", digits(radius)))
+                .found(format!(
+                    "{} where (u, v) = ({}, {})",
+                    distance.abs(),
+                    parameter(u),
+                    parameter(v)
+                ))
                 .help("offset by less, or to the other side, or only a part of the surface")
                 .related(surface.key, "is bent too much there")
                 .in_field(1))

@@ -2,14 +2,17 @@ use super::column::{Column, Columns};
 use super::law::law;
 use super::offset::{beside, curvatures, parallel};
 use crate::lifted::tangent;
+use crate::seam;
 use crate::search::{IntSnake, Onto};
+use crate::snake::OnSurface;
 use moldloft_locate::implicit::{Implicit, jets, solve};
 use moldloft_locate::{PlainSurface, nearest_on_surface};
-use moldloft_num::trace::{Edge, Edges};
-use moldloft_num::{Bi1, Jet, Order, Real, Surface, SurfaceFormula, Vec3, lift_law};
+use moldloft_num::trace::{Edge, Edges, Trace};
+use moldloft_num::{Bi1, CurveFormula, Jet, Order, Real, Surface, SurfaceFormula, Vec3, lift_law};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Scalar, SurfaceRef, Value};
 use moldloft_spline::{Arc, BSplineCurve};
+use std::sync;
 
 /// A fillet that a rolling ball leaves between two surfaces: circular arcs from where the ball touches
 /// the first, at v = 0, to where it touches the second, at v = 1; tangent to both.
@@ -21,6 +24,9 @@ use moldloft_spline::{Arc, BSplineCurve};
 /// centre lies in the plane across the way of a ball of `radius`, and arcs are those through both points
 /// of contact, which is still tangent to both surfaces. A ball larger than a radius of curvature of
 /// either surface on its side would turn back, and is refused.
+///
+/// Where it touches, `ContactSnake` gives the snakes on both surfaces that are its edges v = 0 and
+/// v = 1: parts of the surfaces that end in these (`SubSurf`, `TrimSurf`) join the fillet exactly.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -28,8 +34,8 @@ use moldloft_spline::{Arc, BSplineCurve};
     example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0.2); AbsPoint D(4, 3, 0); \
                AbsPoint E(0, 2.5, -1); AbsPoint F(4, 2, -1); AbsPoint G(0, 2.5, 3); AbsPoint H(4, 2.25, 3); \
                Line a(A, B); Line b(C, D); RuledSurf floor(a, b); Line c(E, F); Line d(G, H); \
-               RuledSurf wall(c, d); RollFillet S(floor, wall, 0.5, side2 = -1); \
-               RollFillet more(floor, wall, 0.5, side2 = -1, radii = {0.25, 0.5, 0.75});"
+               RuledSurf wall(c, d); RollFillet S(floor, wall, 0.8); \
+               RollFillet more(floor, wall, 0.5, radii = {0.25, 0.5, 0.75}, visible = 0);"
 )]
 pub struct RollFillet<T: Real> {
     /// The first surface, or a magnet of it near where the ball is meant to touch.
@@ -83,14 +89,23 @@ impl<T: Scalar> Build<T> for RollFillet<T> {
         let spine = spine([&surface1, &surface2], sides.map(|s| radius * s), context)?;
         let found = spine.found.clone();
         let nesting = context.nesting.max(spine.depth);
-        let ball =
-            Ball { surfaces: [surface1.surface, surface2.surface], sides, spine, radius, radii };
+        let surfaces = [surface1.surface, surface2.surface];
+        let round = [seam::round(&surfaces[0]), seam::round(&surfaces[1])];
+        let ball = Ball { surfaces, round, sides, spine, radius, radii };
         let mut fillet = Rolled { stations: ball.stations(), ball, closed: false };
         fillet.check()?;
         fillet.closed = fillet.closes();
-        let mut surface = SurfaceRef::new(Columns(fillet), nesting);
+        let fillet = sync::Arc::new(fillet);
+        let contact = |k: usize| {
+            let surface = fillet.ball.surfaces[k].clone();
+            let path = Contact { fillet: fillet.clone(), k };
+            let shape = OnSurface { surface: surface.clone(), path, trace: Trace::own() };
+            CurveRef::snake(shape, surface, nesting)
+        };
+        let contacts = [contact(0), contact(1)];
+        let mut surface = SurfaceRef::new(Columns(Rolling(fillet)), nesting);
         surface.found = found;
-        Ok(Value::Surface(surface))
+        Ok(Value::Surface(surface.with_contacts(contacts)))
     }
 }
 
@@ -141,6 +156,8 @@ fn spine<T: Scalar>(
 /// A ball that touches two surfaces.
 struct Ball<T: Real> {
     surfaces: [SurfaceRef<T>; 2],
+    /// Which parameters of both run round.
+    round: [[bool; 2]; 2],
     sides: [f64; 2],
     /// The way of the centre of a ball of `radius`.
     spine: CurveRef<T>,
@@ -159,18 +176,20 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// The centre from the place on surface `k`.
-    fn centre<J: Jet<T>>(&self, k: usize, radius: J, [u, v]: [J; 2]) -> Vec3<J> {
+    /// The centre from the place on surface `k`, which may lie beyond its seams.
+    fn centre<J: Jet<T>>(&self, k: usize, radius: J, w: [J; 2]) -> Vec3<J> {
+        let [u, v] = seam::wrapped(self.round[k], w);
         beside(&*self.surfaces[k], radius * self.sides[k], u, v)
     }
 
-    /// Where the ball of `radius` touches at stations along its way.
+    /// Where the ball of `radius` touches at stations along its way, without jumps at seams: beyond
+    /// one, parameters run on past 0 or 1.
     fn stations(&self) -> Vec<[f64; 4]> {
         let second = Beside { ball: self, k: 1 };
         let second: &dyn Surface<T> = &second;
         let second = PlainSurface(second);
         let mut last: Option<[f64; 2]> = None;
-        (0..=STATIONS)
+        let mut all: Vec<[f64; 4]> = (0..=STATIONS)
             .map(|i| {
                 let t = T::from(i as f64 / STATIONS as f64);
                 let w = self.spine.on_surface(t, Order::Zero).unwrap_or_default()[0].re();
@@ -187,7 +206,15 @@ impl<T: Real> Ball<T> {
                 last = Some([p, q]);
                 [w.x, w.y, p, q]
             })
-            .collect()
+            .collect();
+        for k in (0..4).filter(|&k| self.round[k / 2][k % 2]) {
+            for i in 1..all.len() {
+                all[i][k] -= (all[i][k] - all[i - 1][k]).round();
+            }
+            let turns = all[STATIONS / 2][k].floor();
+            all.iter_mut().for_each(|q| q[k] -= turns);
+        }
+        all
     }
 }
 
@@ -244,17 +271,7 @@ impl<T: Real> Rolled<T> {
         let at = (t * STATIONS as f64).floor().clamp(0.0, (STATIONS - 1) as f64);
         let share = t * STATIONS as f64 - at;
         let (a, b) = (self.stations[at as usize], self.stations[at as usize + 1]);
-        // A seam of a closed surface lies between stations that are far apart.
-        let mut q: [f64; 4] = std::array::from_fn(|k| match (b[k] - a[k]).abs() < 0.5 {
-            true => a[k] + share * (b[k] - a[k]),
-            false => {
-                if share < 0.5 {
-                    a[k]
-                } else {
-                    b[k]
-                }
-            }
-        });
+        let mut q: [f64; 4] = std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
         for _ in 0..40 {
             let lifted = q.map(T::from);
             let rest = self.ball.at::<T>(lifted, T::from(t)).map(Real::re);
@@ -285,7 +302,9 @@ impl<T: Real> Rolled<T> {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        let outside = |x: f64| !(-BEYOND..=1.0 + BEYOND).contains(&x);
+        let outside = |k: usize, q: f64| {
+            !self.ball.round[k / 2][k % 2] && !(-BEYOND..=1.0 + BEYOND).contains(&q)
+        };
         for i in 0..=STATIONS {
             let t = i as f64 / STATIONS as f64;
             let radius = self.ball.radius(T::from(t)).re();
@@ -301,7 +320,7 @@ impl<T: Real> Rolled<T> {
                 .in_field(field));
             };
             if self.ball.radii.is_some()
-                && let Some(k) = (0..4).find(|&k| outside(q[k]))
+                && let Some(k) = (0..4).find(|&k| outside(k, q[k]))
             {
                 let which = k / 2;
                 return Err(Fault::new(
@@ -316,7 +335,8 @@ impl<T: Real> Rolled<T> {
             }
             for k in 0..2 {
                 let surface = &self.ball.surfaces[k];
-                let bends = curvatures(surface, q[2 * k], q[2 * k + 1]);
+                let [u, v] = seam::wrapped(self.ball.round[k], [q[2 * k], q[2 * k + 1]]);
+                let bends = curvatures(surface, u, v);
                 let share = |bend: f64| 1.0 - self.ball.sides[k] * radius * bend;
                 let least = bends.into_iter().flatten().map(share).fold(f64::INFINITY, f64::min);
                 if least <= 0.0 {
@@ -325,7 +345,10 @@ impl<T: Real> Rolled<T> {
                         "fillet-turns-back",
                         format!("the fillet turns back at u = {t}"),
                     )
-                    .expected(format!("a radius less than {most}, the radius of curvature there"))
+                    .expected(format!(
+                        "a radius less than {}, the radius of curvature there",
+                        crate::faults::digits(most)
+                    ))
                     .found(radius.to_string())
                     .help("choose a smaller radius, or the other side")
                     .related(surface.key, "is bent more than the ball")
@@ -348,31 +371,81 @@ impl<T: Real> Rolled<T> {
     }
 }
 
-impl<T: Real> Column for Rolled<T> {
-    type Scalar = T;
-    type Across<S: Real> = Arc<S>;
-
-    fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {
+impl<T: Real> Rolled<T> {
+    /// The places of contact at a parameter that is a jet.
+    fn places<J: Jet<T>>(&self, u: J) -> Option<[[J; 2]; 2]> {
         let plain = self.contact(u.re())?;
         let jet = jets(&self.ball, plain, u.value(), J::ORDER)?;
         let [a, b, c, d] = std::array::from_fn(|k| lift_law(&jet.map(|q| q[k]), u));
-        let [first, second] = [&self.ball.surfaces[0], &self.ball.surfaces[1]];
-        let centre = self.ball.centre(0, self.ball.radius(u), [a, b]);
-        Arc::about(first.at(a, b), centre, second.at(c, d)).ok()
+        let round = self.ball.round;
+        Some([seam::wrapped(round[0], [a, b]), seam::wrapped(round[1], [c, d])])
     }
 
-    fn breaks(&self) -> [Vec<f64>; 2] {
+    fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {
+        let places = self.places(u)?;
+        let centre = self.ball.centre(0, self.ball.radius(u), places[0]);
+        let [first, second] = [0, 1].map(|k| self.ball.surfaces[k].at(places[k][0], places[k][1]));
+        Arc::about(first, centre, second).ok()
+    }
+
+    fn breaks(&self) -> Vec<f64> {
         let mut all = self.ball.spine.breaks();
         if let Some(law) = &self.ball.radii {
             all.extend(moldloft_num::Curve::breaks(law));
             all.sort_by(f64::total_cmp);
             all.dedup_by(|b, a| *b - *a < 1e-12);
         }
-        [all, Vec::new()]
+        all
+    }
+}
+
+/// The fillet as a surface.
+struct Rolling<T: Real>(sync::Arc<Rolled<T>>);
+
+impl<T: Real> Column for Rolling<T> {
+    type Scalar = T;
+    type Across<S: Real> = Arc<S>;
+
+    fn across<J: Jet<T>>(&self, u: J) -> Option<Arc<J>> {
+        self.0.across(u)
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        [self.0.breaks(), Vec::new()]
     }
 
     fn edges(&self) -> Edges<T> {
         let edges = Edges::own();
-        if self.closed { edges.with(1, Edge::SameAs(3)) } else { edges }
+        if self.0.closed { edges.with(1, Edge::SameAs(3)) } else { edges }
+    }
+}
+
+/// Where the ball touches surface `k`, as a path in its parameter plane.
+struct Contact<T: Real> {
+    fillet: sync::Arc<Rolled<T>>,
+    k: usize,
+}
+
+/// A contact so near to an edge lies on it: the ball's way ends where one of the two does.
+const ON_EDGE: f64 = 1e-11;
+
+impl<T: Real> CurveFormula for Contact<T> {
+    type Scalar = T;
+
+    fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
+        let Some(places) = self.fillet.places(t) else {
+            return Vec3::of(f64::NAN, f64::NAN, f64::NAN);
+        };
+        let at_edge = |x: J| match x.re() {
+            re if re.abs() <= ON_EDGE => x - re,
+            re if (re - 1.0).abs() <= ON_EDGE => x - (re - 1.0),
+            _ => x,
+        };
+        let [u, v] = places[self.k].map(at_edge);
+        Vec3::new(u, v, J::zero())
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.fillet.breaks()
     }
 }

@@ -1,6 +1,7 @@
 use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
+use crate::seam;
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{
     Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
@@ -15,7 +16,8 @@ use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
 /// fourth run against a walk round the patch; w is the bilinear Coons patch (Coons 1967). Three are
 /// the same with the edge u = 0 a single point, where the first and the third begin. A magnet is a
 /// side without length. Sides that do not meet are refused, never turned round, and so are patches
-/// that are folded.
+/// that are folded. Two sides that run once round a closed surface, from its seam to its seam, make a
+/// closed band.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -169,7 +171,27 @@ impl<T: Real> Patch<T> {
     }
 }
 
+/// How far apart in the other parameter the ends of a side may be that meet at a seam.
+const AT_SEAM: f64 = 1e-9;
+
 impl<T: Real> Patch<T> {
+    /// True when both sides run from the seam of a closed surface round to the seam.
+    fn is_band(&self) -> bool {
+        let Layout::Between(sides) = &self.layout else { return false };
+        let round = seam::round(&self.surface);
+        (0..2).filter(|&a| round[a]).any(|a| {
+            let ways = sides.each_ref().map(|side| {
+                let [from, to] = [0.0, 1.0].map(|t| end(side, t).re().to_array());
+                let meets = (from[1 - a] - to[1 - a]).abs() <= AT_SEAM;
+                meets.then_some((from[a], to[a]))
+            });
+            matches!(
+                ways,
+                [Some((0.0, 1.0)), Some((0.0, 1.0))] | [Some((1.0, 0.0)), Some((1.0, 0.0))]
+            )
+        })
+    }
+
     /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
     fn check_folds(&self) -> Result<(), Fault> {
         let mut all = Vec::with_capacity((TRIALS + 1) * (TRIALS + 1));
@@ -299,8 +321,9 @@ impl<T: Real> Surface<T> for Patch<T> {
                 let across = |p: Option<Key>, q: Option<Key>| {
                     if p.is_some() && p == q { Edge::Pole(p) } else { Edge::Own }
                 };
+                let east = if self.is_band() { Edge::SameAs(3) } else { across(b, c) };
                 Edges {
-                    edges: [edge(first), across(b, c), edge(last), across(a, d)],
+                    edges: [edge(first), east, edge(last), across(a, d)],
                     corners: [a, b, c, d],
                 }
             }

@@ -10,9 +10,11 @@ use moldloft_spline::{BSplineCurve, KnotVector};
 /// path(0)), with F(0) = 1, so that edge v = 0 is the profile.
 ///
 /// The frame "minimal" does not turn about the tangent of the path (rotation-minimising; Wang,
-/// Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows. `twist` and
+/// Juettler, Zheng and Liu 2008); "up" keeps one axis as upright as the tangent allows; "fixed" does
+/// not turn at all, so that the profile is only moved, along a path that may have corners. `twist` and
 /// `scale` are laws along v: the coefficients of a clamped uniform B-spline of degree 3 or less, so
-/// that {a, b} goes linearly from a to b. The twist is right-handed about the tangent.
+/// that {a, b} goes linearly from a to b. The twist is right-handed about the tangent ("fixed": that
+/// at v = 0).
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -21,14 +23,15 @@ use moldloft_spline::{BSplineCurve, KnotVector};
                BCurve path({A, B, C, D}); AbsPoint P(0, 0.5, 0); AbsPoint Q(0.1, 0.3, 0.6); \
                AbsPoint R(0, -0.5, 0.2); BCurve profile({P, Q, R}); SweepSurf S(profile, path); \
                SweepSurf upright(profile, path, \"up\", up = {0, 0.1, 1}); \
-               SweepSurf screw(profile, path, twist = {0, 0, 1.5}, scale = {1, 0.5});"
+               SweepSurf screw(profile, path, twist = {0, 0, 1.5}, scale = {1, 0.5}); \
+               SweepSurf moved(profile, path, \"fixed\", scale = {1, 0.5});"
 )]
 pub struct SweepSurf<T: Real> {
     /// The curve that is carried: edge v = 0.
     profile: CurveRef<T>,
     /// The curve along which it is carried.
     path: CurveRef<T>,
-    /// How the frame moves: "minimal" or "up".
+    /// How the frame moves: "minimal", "up" or "fixed".
     #[field(default = "minimal")]
     frame: std::sync::Arc<str>,
     /// The direction that stays upright with frame = "up"; z if not given.
@@ -57,6 +60,8 @@ pub enum Mode<T> {
     Minimal,
     /// With an axis as near as may be to this direction.
     Up(Vec3<T>),
+    /// Not at all.
+    Fixed,
 }
 
 impl<T: Real> Mode<T> {
@@ -67,12 +72,15 @@ impl<T: Real> Mode<T> {
     pub fn of(frame: &str, up: Option<Vec3<T>>, fields: [usize; 2]) -> Result<Self, Fault> {
         match frame {
             "minimal" if up.is_none() => Ok(Mode::Minimal),
-            "minimal" => Err(Fault::new("unused-argument", "`up` is for frame = \"up\" only")
-                .help("add frame = \"up\", or leave `up` out")
-                .in_field(fields[1])),
+            "fixed" if up.is_none() => Ok(Mode::Fixed),
+            "minimal" | "fixed" => {
+                Err(Fault::new("unused-argument", "`up` is for frame = \"up\" only")
+                    .help("add frame = \"up\", or leave `up` out")
+                    .in_field(fields[1]))
+            }
             "up" => Ok(Mode::Up(up.unwrap_or(Vec3::of(0.0, 0.0, 1.0)))),
             other => Err(Fault::new("unknown-frame", format!("there is no frame \"{other}\""))
-                .expected("\"minimal\" or \"up\"")
+                .expected("\"minimal\", \"up\" or \"fixed\"")
                 .found(format!("\"{other}\""))
                 .in_field(fields[0])),
         }
@@ -105,7 +113,7 @@ impl<T: Real> Moving<T> {
         moving.check().map_err(|fault| fault.in_field(field))?;
         let t = moving.tangent(T::zero());
         let r = match mode {
-            Mode::Minimal => t.perpendicular(),
+            Mode::Minimal | Mode::Fixed => t.perpendicular(),
             Mode::Up(up) => upright(up, t),
         };
         moving.first = [t, r, t.cross(r)];
@@ -138,7 +146,8 @@ impl<T: Real> Moving<T> {
                     .help("take another `up`, or frame = \"minimal\""));
             }
         }
-        for v in self.path.breaks() {
+        let turning = if matches!(self.mode, Mode::Fixed) { vec![] } else { self.path.breaks() };
+        for v in turning {
             let (before, after) = (unit(v - 1e-7)?, unit(v + 1e-7)?);
             if before.distance(after) > CORNER {
                 let angle = before.dot(after).clamp(-1.0, 1.0).acos().to_degrees();
@@ -154,11 +163,12 @@ impl<T: Real> Moving<T> {
         Ok(())
     }
 
-    /// A number of the way the frame moves: 1 minimal, 2 up.
+    /// A number of the way the frame moves: 1 minimal, 2 up, 3 fixed.
     pub fn number(&self) -> u8 {
         match self.mode {
             Mode::Minimal => 1,
             Mode::Up(_) => 2,
+            Mode::Fixed => 3,
         }
     }
 
@@ -213,10 +223,13 @@ impl<T: Real> Moving<T> {
 
     /// The frame at `v`: unit tangent, r, and their product.
     pub fn frame<J: Jet<T>>(&self, v: J) -> [Vec3<J>; 3] {
-        let t = self.tangent(v);
+        let t = match self.mode {
+            Mode::Fixed => return self.first.map(|axis| axis.map(J::fixed)),
+            _ => self.tangent(v),
+        };
         let r = match self.mode {
             Mode::Up(up) => upright(up.map(J::fixed), t),
-            Mode::Minimal => self.lifted(v),
+            _ => self.lifted(v),
         };
         [t, r, t.cross(r)]
     }

@@ -1,19 +1,27 @@
 use crate::arguments::{Snake, common_surface};
+use crate::curve::Segment;
+use crate::snake::{OnSurface, edge_trace};
 use moldloft_mesh::planar_triangles;
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Build, Context, Facets, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{
+    Border, Build, Context, CurveRef, Facets, Fault, Hem, Hemmed, Kind, SurfaceRef, Value,
+};
 use std::sync::Arc;
 
 /// The part of a surface within loops of snakes on it, as triangles.
 ///
 /// Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
 /// itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
-/// one is the boundary of the surface and all loops are holes. Each snake has `rim` equal divisions, and
-/// inside stand the points of the surface's own nu x nv divisions that are not too near the rim; the
-/// triangles between are Delaunay's (in parameters scaled to lengths). All vertices lie on the surface.
+/// one is the boundary of the surface and all loops are holes. Inside stand the points of the surface's
+/// own nu x nv divisions that are not too near the border; the triangles between are Delaunay's (in
+/// parameters scaled to lengths). All vertices lie on the surface.
 ///
-/// Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of its own
-/// that joins its neighbours by identity. The triangles come as they are.
+/// Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
+/// fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
+/// by identity. Divisions flow over such edges from the one to the other; `rim` states those of each
+/// snake, and a contradiction is told.
+///
+/// Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of panels.
 #[derive(Kind)]
 #[kind(
     class = Mesh,
@@ -34,9 +42,9 @@ pub struct TrimSurf<T: Real> {
     /// 1 when the whole surface is kept but for holes.
     #[field(default = 0, min = 0, max = 1)]
     whole: u32,
-    /// Divisions of each snake.
-    #[field(default = 12, min = 1, max = 10_000)]
-    rim: usize,
+    /// Divisions of each snake. Not given: as its neighbours have them, or 12.
+    #[field(min = 1, max = 10_000)]
+    rim: Option<usize>,
     /// Divisions of the surface along u, whose points stand inside.
     #[field(default = 12, min = 1, max = 1000)]
     nu: usize,
@@ -52,19 +60,121 @@ const MEETING: f64 = 1e-6;
 const MARGIN: f64 = 0.35;
 
 impl<T: Real> Build<T> for TrimSurf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, loops, whole, rim, nu, nv } = self;
         let mut items = vec![(surface.key, &surface)];
         items.extend(loops.iter().map(|s| (s.curve.key, &s.surface)));
         common_surface(&items, |fault, k| fault.in_item(k.saturating_sub(1)).in_field(1))?;
-        let scale = scale(&surface);
+        let mut hems = Vec::new();
         let mut cycles = Vec::new();
         if whole == 1 {
-            cycles.push(boundary(nu, nv));
+            let hem = |k: usize, n: usize| {
+                let snake = edge(&surface, k, context.nesting);
+                Hem { curve: snake, stated: None, usual: n as u32 }
+            };
+            hems.extend([hem(0, nu), hem(1, nv), hem(2, nu), hem(3, nv)]);
+            cycles.push(vec![(0, false), (1, false), (2, true), (3, true)]);
         }
-        cycles.extend(chained(&loops, rim)?);
-        let region = Region::new(cycles, scale)?;
-        Ok(Value::Mesh(Arc::new(region.facets(&surface, nu, nv))))
+        let before = hems.len();
+        for cycle in chained(&loops)? {
+            cycles.push(cycle.into_iter().map(|(k, back)| (k + before, back)).collect());
+        }
+        let usual = rim.unwrap_or(USUAL) as u32;
+        let stated = rim.map(|n| n as u32);
+        hems.extend(loops.into_iter().map(|s| Hem { curve: s.curve, stated, usual }));
+        let trimmed = Trimmed { scale: scale(&surface), surface, hems, cycles, inside: [nu, nv] };
+        let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();
+        let at: Vec<Vec<T>> = trimmed.hems.iter().map(|hem| even(hem.usual)).collect();
+        let (mut facets, _) = trimmed.facets(&at)?;
+        facets.border = Some(Border(Arc::new(trimmed)));
+        Ok(Value::Mesh(Arc::new(facets)))
+    }
+}
+
+/// Divisions of a snake when nothing else determines them.
+const USUAL: usize = 12;
+
+/// Edge `k` of a surface as a snake without a name.
+fn edge<T: Real>(surface: &SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef<T> {
+    let ends = [
+        [(0.0, 0.0), (1.0, 0.0)],
+        [(1.0, 0.0), (1.0, 1.0)],
+        [(0.0, 1.0), (1.0, 1.0)],
+        [(0.0, 0.0), (0.0, 1.0)],
+    ];
+    let [from, to] = ends[k].map(|(u, v)| Vec3::of(u, v, 0.0));
+    let trace = edge_trace(surface, k);
+    let shape = OnSurface { surface: surface.clone(), path: Segment { from, to }, trace };
+    CurveRef::snake(shape, surface.clone(), nesting)
+}
+
+/// A surface and what is kept of it.
+struct Trimmed<T: Real> {
+    surface: SurfaceRef<T>,
+    hems: Vec<Hem<T>>,
+    /// The hems of each loop in order, and whether each runs against it.
+    cycles: Vec<Vec<(usize, bool)>>,
+    scale: [f64; 2],
+    /// The net whose points stand inside.
+    inside: [usize; 2],
+}
+
+impl<T: Real> Hemmed<T> for Trimmed<T> {
+    fn hems(&self) -> &[Hem<T>] {
+        &self.hems
+    }
+
+    fn divided(&self, at: &[Vec<T>]) -> Option<(Facets<T>, Vec<Vec<u32>>)> {
+        self.facets(at).ok()
+    }
+}
+
+impl<T: Real> Trimmed<T> {
+    /// The triangles with vertices at these parameters of the hems, and which these vertices are.
+    fn facets(&self, at: &[Vec<T>]) -> Result<(Facets<T>, Vec<Vec<u32>>), Fault> {
+        let mut rims: Vec<Vec<u32>> = at.iter().map(|ts| vec![0; ts.len()]).collect();
+        let mut first = 0;
+        let mut cycles = Vec::with_capacity(self.cycles.len());
+        for cycle in &self.cycles {
+            let mut places: Vec<Place<T>> = Vec::new();
+            let total: usize = cycle.iter().map(|&(hem, _)| at[hem].len() - 1).sum();
+            if total < 3 {
+                return Err(Fault::new("gap", "a loop needs an area")
+                    .expected("three vertices or more")
+                    .found(total.to_string())
+                    .help("give the snakes more divisions")
+                    .in_field(1));
+            }
+            for &(hem, backwards) in cycle {
+                let n = at[hem].len() - 1;
+                for i in 0..=n {
+                    let k = if backwards { n - i } else { i };
+                    // The last is the first of what comes next.
+                    rims[hem][k] = (first + places.len() % total) as u32;
+                    if i < n {
+                        let curve = &self.hems[hem].curve;
+                        let path = curve.on_surface(at[hem][k], Order::Zero);
+                        let [w, ..] = path.expect("a snake knows its place on its surface");
+                        places.push([w.x, w.y]);
+                    }
+                }
+            }
+            first += total;
+            cycles.push(places);
+        }
+        let (region, turned) = Region::new(cycles, self.scale)?;
+        // What was turned round is counted from its other end.
+        let mut first = 0;
+        for (cycle, turned) in self.cycles.iter().zip(turned) {
+            let total: usize = cycle.iter().map(|&(hem, _)| at[hem].len() - 1).sum();
+            if turned {
+                for &(hem, _) in cycle {
+                    rims[hem].iter_mut().for_each(|v| *v = (2 * first + total - 1) as u32 - *v);
+                }
+            }
+            first += total;
+        }
+        Ok((region.facets(&self.surface, self.inside), rims))
     }
 }
 
@@ -84,19 +194,8 @@ fn scale<T: Real>(surface: &SurfaceRef<T>) -> [f64; 2] {
     sums.map(|s| if s > 0.0 && s.is_finite() { s / 25.0 } else { 1.0 })
 }
 
-/// The boundary of the parameter square, counter-clockwise, at a surface's own divisions.
-fn boundary<T: Real>(nu: usize, nv: usize) -> Vec<Place<T>> {
-    let (zero, one) = (T::zero(), T::one());
-    let along = |k: usize, n: usize| T::from(k as f64 / n as f64);
-    let mut all: Vec<Place<T>> = (0..nu).map(|k| [along(k, nu), zero]).collect();
-    all.extend((0..nv).map(|k| [one, along(k, nv)]));
-    all.extend((0..nu).map(|k| [along(nu - k, nu), one]));
-    all.extend((0..nv).map(|k| [zero, along(nv - k, nv)]));
-    all
-}
-
-/// The loops of the snakes, in order.
-fn chained<T: Real>(snakes: &[Snake<T>], rim: usize) -> Result<Vec<Vec<Place<T>>>, Fault> {
+/// The snakes of each loop in order, and whether each runs against it.
+fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Fault> {
     let place = |s: &Snake<T>, t: f64| {
         let [w, ..] = s.path(T::from(t), Order::Zero);
         [w.x, w.y]
@@ -116,7 +215,7 @@ fn chained<T: Real>(snakes: &[Snake<T>], rim: usize) -> Result<Vec<Vec<Place<T>>
     };
     let mut cycles = Vec::new();
     // The loop so far, where it began and where it has come to.
-    let mut open: Option<(Vec<Place<T>>, Place<T>, Place<T>)> = None;
+    let mut open: Option<(Vec<(usize, bool)>, Place<T>, Place<T>)> = None;
     for (k, snake) in snakes.iter().enumerate() {
         let [from, to] = [place(snake, 0.0), place(snake, 1.0)];
         let backwards = match &open {
@@ -136,22 +235,15 @@ fn chained<T: Real>(snakes: &[Snake<T>], rim: usize) -> Result<Vec<Vec<Place<T>>
             },
         };
         let (from, to) = if backwards { (to, from) } else { (from, to) };
-        let (mut points, start) = match open.take() {
-            Some((points, start, _)) => (points, start),
+        let (mut cycle, start) = match open.take() {
+            Some((cycle, start, _)) => (cycle, start),
             None => (Vec::new(), from),
         };
-        points.push(from);
-        points.extend((1..rim).map(|i| {
-            let t = i as f64 / rim as f64;
-            place(snake, if backwards { 1.0 - t } else { t })
-        }));
+        cycle.push((k, backwards));
         if meet(to, start) {
-            if points.len() < 3 {
-                return gap(k, "a loop needs an area".into(), from, to);
-            }
-            cycles.push(points);
+            cycles.push(cycle);
         } else {
-            open = Some((points, start, to));
+            open = Some((cycle, start, to));
         }
     }
     match open {
@@ -208,15 +300,19 @@ fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
 }
 
 impl<T: Real> Region<T> {
-    fn new(mut cycles: Vec<Vec<Place<T>>>, scale: [f64; 2]) -> Result<Self, Fault> {
+    /// The region within loops, and which of them were turned round for it.
+    fn new(mut cycles: Vec<Vec<Place<T>>>, scale: [f64; 2]) -> Result<(Self, Vec<bool>), Fault> {
+        let mut reversed = Vec::with_capacity(cycles.len());
         let flat_of = |cycle: &[Place<T>]| -> Vec<[f64; 2]> {
             cycle.iter().map(|p| flat(p, scale)).collect()
         };
         for (k, cycle) in cycles.iter_mut().enumerate() {
             let turned = area(&flat_of(cycle)) < 0.0;
-            if turned == (k == 0) {
+            let turn = turned == (k == 0);
+            if turn {
                 cycle.reverse();
             }
+            reversed.push(turn);
         }
         let polygons: Vec<Vec<[f64; 2]>> = cycles.iter().map(|c| flat_of(c)).collect();
         let fault = |message: String, found: String| {
@@ -250,10 +346,10 @@ impl<T: Real> Region<T> {
                 }
             }
         }
-        Ok(Self { cycles, scale })
+        Ok((Self { cycles, scale }, reversed))
     }
 
-    fn facets(&self, surface: &SurfaceRef<T>, nu: usize, nv: usize) -> Facets<T> {
+    fn facets(&self, surface: &SurfaceRef<T>, [nu, nv]: [usize; 2]) -> Facets<T> {
         let mut places: Vec<Place<T>> = Vec::new();
         let mut loops: Vec<Vec<usize>> = Vec::new();
         for cycle in &self.cycles {

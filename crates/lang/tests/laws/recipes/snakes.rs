@@ -73,6 +73,19 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let sheet = p.sheet();
             format!("{}, {}", p.magnet(&sheet), p.magnet(&sheet))
         }
+        "ContactSnake" => {
+            let floor = super::surfaces::flat_patch(p, 0.0);
+            let wall = super::surfaces::wall(p);
+            let fillet = match p.random.below(2) {
+                0 => p.object("RollFillet", &format!("{floor}, {wall}, 0.3*w, side2 = 1")),
+                _ => {
+                    let low = p.object("UVSnake", &format!("{floor}, \"v\", 0.3*w"));
+                    let high = p.object("UVSnake", &format!("{wall}, \"v\", 0.6*w"));
+                    p.object("FilletSurf", &format!("{low}, {high}"))
+                }
+            };
+            format!("{fillet}, {}", 1 + p.random.below(2))
+        }
         "IntSnake" => {
             let sheet = p.sheet();
             match p.random.below(2) {

@@ -86,8 +86,9 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "SweepSurf" => {
             let profile = p.curve();
             let [path, ..] = stations(p);
-            match p.random.below(3) {
+            match p.random.below(4) {
                 0 => format!("{profile}, {path}, {divisions}"),
+                3 => format!("{profile}, {path}, \"fixed\", scale = {{1, w}}, {divisions}"),
                 1 => format!("{profile}, {path}, \"up\", up = {{0, 0.1, w}}, {divisions}"),
                 _ => format!("{profile}, {path}, twist = {{0, h}}, scale = {{1, w}}, {divisions}"),
             }
@@ -156,14 +157,7 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "RollFillet" => {
             // A floor, and a wall that stands across its middle.
             let floor = flat_patch(p, 0.0);
-            let wall = [-1.0, 3.0].map(|z| {
-                let ends = [0.0, 4.0].map(|x| {
-                    let (y, dz) = (p.number(2.0, 2.3), p.number(-0.2, 0.2));
-                    p.object("AbsPoint", &format!("{x}, {y} + 0.05*w, {z} + {dz}"))
-                });
-                p.object("Line", &ends.join(", "))
-            });
-            let wall = p.object("RuledSurf", &format!("{}, visible = 0", wall.join(", ")));
+            let wall = wall(p);
             match p.random.below(2) {
                 0 => format!("{floor}, {wall}, 0.3*w, side2 = 1, {divisions}"),
                 _ => {
@@ -297,8 +291,20 @@ fn stations(p: &mut Program) -> [String; 3] {
     })
 }
 
+/// A hidden wall that stands across the middle of a flat patch.
+pub fn wall(p: &mut Program) -> String {
+    let wall = [-1.0, 3.0].map(|z| {
+        let ends = [0.0, 4.0].map(|x| {
+            let (y, dz) = (p.number(2.0, 2.3), p.number(-0.2, 0.2));
+            p.object("AbsPoint", &format!("{x}, {y} + 0.05*w, {z} + {dz}"))
+        });
+        p.object("Line", &ends.join(", "))
+    });
+    p.object("RuledSurf", &format!("{}, visible = 0", wall.join(", ")))
+}
+
 /// A patch that is nearly flat, at the height `z`.
-fn flat_patch(p: &mut Program, z: f64) -> String {
+pub fn flat_patch(p: &mut Program, z: f64) -> String {
     let sides: Vec<String> = [0.0, 3.0]
         .map(|y| {
             let points: Vec<String> = (0..3)

@@ -1,0 +1,74 @@
+use super::edge_trace;
+use moldloft_num::trace::Trace;
+use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+
+/// Where a fillet touches one of its two surfaces: a snake of that surface, and the fillet's edge.
+///
+/// It runs as the fillet's u does. A part of the surface that ends in it (`SubSurf`, `TrimSurf`) has the
+/// fillet's vertices there, by identity: rings at t = 0 and 1 are the corners. Over the seam of a closed
+/// surface it runs on, its place going over from 1 to 0; where the way of a ball that rolls round
+/// begins is chosen by the magnet given to the fillet, and at the seam the snake is without a jump.
+#[derive(Kind)]
+#[kind(
+    class = Snake,
+    columns = "relabel fillet side",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0.2); AbsPoint D(4, 3, 0); \
+               AbsPoint E(0, 2.5, -1); AbsPoint F(4, 2, -1); AbsPoint G(0, 2.5, 3); AbsPoint H(4, 2.25, 3); \
+               Line a(A, B); Line b(C, D); RuledSurf floor(a, b, visible = 0); Line c(E, F); Line d(G, H); \
+               RuledSurf wall(c, d, visible = 0); RollFillet S(floor, wall, 0.8); \
+               ContactSnake low(S, 1); ContactSnake high(S, 2); EdgeSnake front(1, floor); \
+               EdgeSnake top(3, wall); SubSurf deck({front, low}); SubSurf bulkhead({high, top});"
+)]
+pub struct ContactSnake<T: Real> {
+    /// The fillet: a RollFillet or a FilletSurf.
+    fillet: SurfaceRef<T>,
+    /// 1 for its first surface, 2 for its second.
+    #[field(min = 1, max = 2)]
+    side: usize,
+}
+
+impl<T: Real> Build<T> for ContactSnake<T> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+        let Self { fillet, side } = self;
+        let touches = fillet.contacts.as_ref().and_then(|both| both.get(side.wrapping_sub(1)));
+        let Some(curve) = touches.cloned() else {
+            return Err(Fault::new("no-contact", "the surface is no fillet between two others")
+                .expected("a RollFillet or a FilletSurf, and the side 1 or 2")
+                .found(if fillet.contacts.is_some() { "another side" } else { "another surface" })
+                .help(
+                    "of the image of a fillet, take the contacts of the original and their images",
+                )
+                .related(fillet.key, "touches nothing")
+                .in_field(0));
+        };
+        let trace = edge_trace(&fillet, if side == 1 { 0 } else { 2 });
+        let surface = curve.surface.as_deref().cloned().expect("a contact lies on a surface");
+        let nesting = context.nesting.max(curve.depth);
+        Ok(Value::Curve(CurveRef::snake(Contact { curve, trace }, surface, nesting)))
+    }
+}
+
+/// The curve along which a fillet touches, as its edge.
+struct Contact<T: Real> {
+    curve: CurveRef<T>,
+    trace: Trace<T>,
+}
+
+impl<T: Real> Curve<T> for Contact<T> {
+    fn jet(&self, t: T, order: Order) -> CurveJet<T> {
+        self.curve.jet(t, order)
+    }
+    fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
+        self.curve.grid(ts, out);
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
+    }
+    fn trace(&self) -> Trace<T> {
+        self.trace.clone()
+    }
+    fn on_surface(&self, t: T, order: Order) -> Option<CurveJet<T>> {
+        self.curve.on_surface(t, order)
+    }
+}
