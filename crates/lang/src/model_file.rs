@@ -6,7 +6,7 @@
 
 use crate::env::{Environment, Evaluation};
 use crate::interpreter::Inputs;
-use crate::model_file_names::{degrees, is_layer, is_real, system_name, words};
+use crate::model_file_names::{degrees, is_layer, is_real, our_word, system_name, words};
 use crate::panel_attributes;
 use crate::place::{self, NumberPath};
 use crate::program::{NotLiteral, Program};
@@ -199,7 +199,8 @@ impl ModelFileSource {
     /// Sorts the fields of an object by what they are for.
     pub fn sorted(&self, registry: &Registry, line: &Line) -> Sorted {
         let entity = self.model.slice(line.entity);
-        let row = registry.get(entity).filter(|row| row.kind && row.columns.is_some()).cloned();
+        let row = registry.get(our_word(entity));
+        let row = row.filter(|row| row.kind && row.columns.is_some()).cloned();
         let (attributes, fields): (Vec<Written>, Vec<Written>) = self.model[line.fields]
             .iter()
             .partition(|field| matches!(field.kind, FieldKind::Attribute { .. }));

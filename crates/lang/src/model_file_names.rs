@@ -9,6 +9,17 @@ pub(crate) fn is_real(entity: &str) -> bool {
     matches!(entity, "Variable" | "Formula")
 }
 
+/// Our word for an entity of model files that has another one there.
+pub(crate) fn our_word(entity: &str) -> &str {
+    match entity {
+        "CGPoint" => "CentroidPoint",
+        "PolyCurve2" => "PolyCurve",
+        "2PtPlane" => "TwoPointPlane",
+        "3PtPlane" => "ThreePointPlane",
+        other => other,
+    }
+}
+
 /// A formula without its `=` or brackets.
 pub(crate) fn bare(formula: &str) -> &str {
     let inside = formula.strip_prefix('[').map(|f| f.strip_suffix(']').unwrap_or(f));

@@ -557,3 +557,32 @@ fn objects_of_model_files_are_renamed_and_deleted() {
     assert!(!document.text().contains("area") && document.text().contains("EndModel;"));
     assert_eq!(document.params().len(), 1);
 }
+
+#[test]
+fn entities_that_have_other_words_in_model_files_are_read() {
+    let text = "MultiSurf 1.44
+BeginModel;
+AbsPoint A 14 1 / 0 0 0;
+AbsPoint B 14 1 / 4 0 0;
+AbsPoint C 14 1 / 4 2 0;
+AbsPoint D 14 1 / 4 2 3;
+CGPoint g 14 1 / { A B C };
+Line l 11 1 8x4 / * A B;
+Line m 11 1 8x4 / * B C;
+PolyCurve2 p 11 1 8x4 / * { l m };
+3PtPlane flat 11 1 / A B C;
+2PtPlane across 11 1 / A B;
+ProjPoint f 14 1 / D flat;
+EndModel;
+";
+    let mut d = Document::from_text(registry(), Box::new(NoFiles), "words.ms2", text);
+    assert!(d.diagnostics().is_empty(), "{:?}", d.diagnostics());
+    let mut at = |text: &str| match d.eval(text) {
+        Ok(Value::Point(p)) => p.xyz,
+        Ok(Value::Vector(v)) => v,
+        other => panic!("{text}: {other:?}"),
+    };
+    assert!(at("g").distance(Vec3::of(8.0 / 3.0, 2.0 / 3.0, 0.0)) < 1e-15);
+    assert_eq!(at("p(0.75)"), Vec3::of(4.0, 1.0, 0.0));
+    assert_eq!(at("f"), Vec3::of(4.0, 2.0, 0.0));
+}
