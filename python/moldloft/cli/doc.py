@@ -56,8 +56,8 @@ def run(options: argparse.Namespace) -> int:
 
 #: What shows in a picture. Laws, numbers and the model itself have no shape.
 _SHAPES = {
-    "bead", "contours", "curve", "frame", "magnet", "plane", "point", "ring", "snake", "solid",
-    "surface",
+    "bead", "contours", "curve", "frame", "magnet", "mesh", "plane", "point", "ring", "snake",
+    "solid", "surface",
 }  # fmt: skip
 
 
