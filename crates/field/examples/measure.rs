@@ -44,11 +44,15 @@ fn main() {
             println!("{threads} threads, depth {depth}: {:.1} ms, {faces} triangles", time * 1e3);
         }
     }
+    // About 37 000 triangles, to compare with others at that number.
+    let like = common::cube(4.16);
+    let time = best(7, || drop(common::facets(&set, &like, 7)));
+    told(&format!("like libfive's, {:.1} ms", time * 1e3), &common::facets(&set, &like, 7));
     for depth in [6, 7, 8] {
         let f = common::facets(&set, &common::cube(4.0), depth);
         told(&format!("depth {depth}"), &f);
         if depth > 6 {
-            for accuracy in [3e-4, 1e-4] {
+            for accuracy in [3e-4, 2e-4, 1.5e-4] {
                 let mut simple = None;
                 let time = best(1, || simple = f.simplified(accuracy).ok());
                 if let Some(simple) = simple {

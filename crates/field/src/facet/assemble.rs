@@ -14,6 +14,7 @@ use crate::set::Leaf;
 use crate::tape::Tape;
 use moldloft_num::Vec3;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -109,14 +110,16 @@ pub(super) fn assemble(
 }
 
 impl Assembly<'_> {
-    fn block_of(&self, cell: [usize; 3]) -> Option<(usize, [usize; 3])> {
-        let block = *self.at.get(&cell.map(|x| (x / SIDE) as u32))?;
+    /// The block of a cell, most often `near`, and the cell's place in it.
+    fn block_of(&self, near: usize, cell: [usize; 3]) -> Option<(usize, [usize; 3])> {
+        let at = cell.map(|x| (x / SIDE) as u32);
+        let block = if self.blocks[near].1.at == at { near } else { *self.at.get(&at)? };
         Some((block, cell.map(|x| x % SIDE)))
     }
 
     /// The crossing of the edge along `axis` from lattice position `at`.
-    fn crossing(&self, at: [usize; 3], axis: usize) -> Option<&Crossing> {
-        let (block, local) = self.block_of(at)?;
+    fn crossing(&self, near: usize, at: [usize; 3], axis: usize) -> Option<&Crossing> {
+        let (block, local) = self.block_of(near, at)?;
         let key = (local.map(|x| x as u8), axis as u8);
         let list = &self.blocks[block].1.crossings;
         let k = list.partition_point(|c| (c.at, c.axis) < key);
@@ -139,7 +142,7 @@ impl Assembly<'_> {
             cell[c] -= below[1];
             let edge = 4 * a + below[0] + 2 * below[1];
             // The signs at the edge's ends are the same in all four cells, so each has a vertex.
-            let found = self.block_of(cell).and_then(|(owner, local)| {
+            let found = self.block_of(block, cell).and_then(|(owner, local)| {
                 let vertex = self.blocks[owner].1.vertex(local, edge)?;
                 let placed = &self.blocks[owner].1.vertices[vertex].placed;
                 strayed |= placed.strayed;
@@ -150,10 +153,10 @@ impl Assembly<'_> {
             };
             (cells[k], corners[k], points[k]) = (cell, Name::Cell(vertex), point);
         }
-        let mut rim: Vec<Name> = Vec::with_capacity(8);
+        let mut rim: SmallVec<[Name; 8]> = SmallVec::new();
         for k in 0..4 {
             rim.push(corners[k]);
-            rim.extend(self.pin(cells[k], cells[(k + 1) % 4], at, a, solver, part));
+            rim.extend(self.pin(block, [cells[k], cells[(k + 1) % 4]], at, a, solver, part));
         }
         let turned = !crossing.outward;
         let mut push = |t: [Name; 3]| {
@@ -188,8 +191,8 @@ impl Assembly<'_> {
     /// share an edge of the mesh twice: a vertex on the face keeps the edges apart.
     fn pin(
         &self,
-        cell: [usize; 3],
-        next: [usize; 3],
+        near: usize,
+        [cell, next]: [[usize; 3]; 2],
         at: [usize; 3],
         axis: usize,
         solver: &mut Solver,
@@ -198,12 +201,14 @@ impl Assembly<'_> {
         let normal = (0..3).find(|&k| cell[k] != next[k])?;
         let (low, high) = if cell[normal] < next[normal] { (cell, next) } else { (next, cell) };
         let same_loop = |cell: [usize; 3], side: usize| {
-            let (block, local) = self.block_of(cell)?;
+            let (block, local) = self.block_of(near, cell)?;
             let case = self.blocks[block].1.case(local);
+            if !case.ambiguous[2 * normal + side] {
+                return None;
+            }
             let edges = face_edges(normal, side);
             let loops = edges.map(|e| case.loop_of[e]);
-            (case.ambiguous[2 * normal + side] && loops.iter().all(|l| *l == loops[0]))
-                .then_some(())
+            loops.iter().all(|l| *l == loops[0]).then_some(())
         };
         same_loop(low, 1)?;
         same_loop(high, 0)?;
@@ -212,13 +217,13 @@ impl Assembly<'_> {
             let start = start_corner(e);
             ([0, 1, 2].map(|k| high[k] + (start >> k & 1)), e / 4)
         });
-        let (block, local) = self.block_of(high)?;
+        let (block, local) = self.block_of(near, high)?;
         let apart = self.blocks[block].1.first_apart(local, normal);
         let partner = |k: usize| if apart == (k % 2 == 1) { (k + 1) % 4 } else { (k + 3) % 4 };
         let mine = edges.iter().position(|&(p, a)| p == at && a == axis)?;
         let other = partner(mine);
         let (first, second) = (mine.min(other), mine.max(other));
-        let ends = [first, second].map(|k| self.crossing(edges[k].0, edges[k].1));
+        let ends = [first, second].map(|k| self.crossing(near, edges[k].0, edges[k].1));
         let [Some(p), Some(q)] = ends else { return None };
         let mut surfaces = Surfaces::from_slice(&[p.leaf, q.leaf]);
         surfaces.sort_unstable();

@@ -135,7 +135,7 @@ impl Block {
                             continue;
                         }
                         let (point, leaf) =
-                            cross(tape, points[here], points[there], [f0, f1], registers);
+                            cross(tape, [points[here], points[there]], [f0, f1], registers);
                         crossing_at[3 * here + axis] = crossings.len() as u32;
                         crossings.push(Crossing {
                             at: c.map(|x| x as u8),
@@ -261,20 +261,22 @@ fn touching(
     }
 }
 
-/// Where the set changes sign between `p` and `q`, and the leaf that decides there.
+/// How near zero the value at a crossing is, as a share of those at the edge's ends: near enough that it is
+/// a point of both surfaces where two touch.
+const NEAR: f64 = 1e-13;
+
+/// Where the set changes sign between two points, and the leaf that decides there.
 ///
 /// The Illinois rule, with every third step a bisection.
 fn cross(
     tape: &Tape<f64>,
-    p: Vec3,
-    q: Vec3,
+    [p, q]: [Vec3; 2],
     [mut fa, mut fb]: [f64; 2],
     registers: &mut Vec<f64>,
 ) -> (Vec3, u32) {
     let (mut a, mut b) = (0.0f64, 1.0f64);
     let mut side = 0;
-    // A step on from here would move by a millionth of a millionth of the edge.
-    let small = 1e-13 * fa.abs().max(fb.abs());
+    let small = NEAR * fa.abs().max(fb.abs());
     let mut at = |t: f64| {
         let x = p + (q - p) * t;
         let value = tape.eval::<f64>(&x, registers);

@@ -20,51 +20,86 @@ use std::collections::HashMap;
 /// ```
 pub fn crossing_faces(mesh: &Mesh, flagged: Option<&[bool]>) -> Vec<[usize; 2]> {
     let faces = mesh.faces();
+    let corners = |f: usize| [faces[f][0], faces[f][1], faces[f][2]];
+    crossings(mesh.positions(), faces.len(), corners, flagged)
+}
+
+/// As [`crossing_faces`] of `count` triangles with those corners.
+pub(super) fn crossings(
+    positions: &[Vec3],
+    count: usize,
+    names: impl Fn(usize) -> [u32; 3],
+    flagged: Option<&[bool]>,
+) -> Vec<[usize; 2]> {
     let chosen = |f: usize| flagged.is_none_or(|flags| flags[f]);
-    let corners = |f: usize| [0, 1, 2].map(|k| mesh.positions()[faces[f][k] as usize]);
-    // Bins about as large as a triangle.
-    let mut size = 0.0f64;
-    for f in (0..faces.len()).filter(|&f| chosen(f)) {
+    let corners = |f: usize| names(f).map(|v| positions[v as usize]);
+    // Bins twice as large as most triangles are; the longest pass through 32 along a side.
+    let (mut longest, mut sum, mut number) = (0.0f64, 0.0, 0.0);
+    for f in (0..count).filter(|&f| chosen(f)) {
         let [a, b, c] = corners(f);
-        size = size.max(a.distance(b)).max(b.distance(c)).max(c.distance(a));
+        let side = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        longest = longest.max(side);
+        sum += side;
+        number += 1.0;
     }
-    if size == 0.0 {
+    if longest == 0.0 {
         return Vec::new();
     }
-    let bins = |f: usize| {
-        let points = corners(f);
-        let end = |pick: fn(f64, f64) -> f64, k: usize| {
-            (pick(pick(points[0][k], points[1][k]), points[2][k]) / size).floor() as i64
-        };
-        let [x, y, z] = [0, 1, 2].map(|k| end(f64::min, k)..=end(f64::max, k));
+    let size = (2.0 * sum / number).min(longest).max(longest / 32.0);
+    let bins = |b: Box3| {
+        let end = |x: f64| (x / size).floor() as i64;
+        let [x, y, z] = [0, 1, 2].map(|k| end(b.low[k])..=end(b.high[k]));
         x.flat_map(move |i| {
             let z = z.clone();
             y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
         })
     };
     let mut map: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    // Which bins hold something, by a hash of few bits: most are told to be empty without a look.
+    let mut filled = vec![false; 1 << 16];
+    let place = |[i, j, k]: [i64; 3]| {
+        let mix = (i.wrapping_mul(73_856_093))
+            ^ (j.wrapping_mul(19_349_663))
+            ^ (k.wrapping_mul(83_492_791));
+        (mix & 0xFFFF) as usize
+    };
     let mut all = Box3::EMPTY;
-    for f in (0..faces.len()).filter(|&f| chosen(f)) {
-        all = all.union(Box3::around(corners(f)));
-        for bin in bins(f) {
+    for f in (0..count).filter(|&f| chosen(f)) {
+        let own = Box3::around(corners(f));
+        all = all.union(own);
+        for bin in bins(own) {
+            filled[place(bin)] = true;
             map.entry(bin).or_default().push(f);
         }
     }
     let mut pairs = Vec::new();
-    for f in 0..faces.len() {
+    for f in 0..count {
         let own = Box3::around(corners(f));
         if (0..3).any(|k| own.low[k] > all.high[k] || own.high[k] < all.low[k]) {
             continue;
         }
-        let mut near: Vec<usize> = bins(f).filter_map(|b| map.get(&b)).flatten().copied().collect();
+        let inside = Box3 {
+            low: Vec3::from([0, 1, 2].map(|k| own.low[k].max(all.low[k]))),
+            high: Vec3::from([0, 1, 2].map(|k| own.high[k].min(all.high[k]))),
+        };
+        let mut near: Vec<usize> = bins(inside)
+            .filter(|b| filled[place(*b)])
+            .filter_map(|b| map.get(&b))
+            .flatten()
+            .copied()
+            .collect();
         near.sort_unstable();
         near.dedup();
         for g in near {
             if g == f || (g > f && chosen(f)) {
                 continue;
             }
+            let other = Box3::around(corners(g));
+            if (0..3).any(|k| own.low[k] > other.high[k] || own.high[k] < other.low[k]) {
+                continue;
+            }
             let pair = [f.min(g), f.max(g)];
-            if cut(mesh, pair) {
+            if cut(pair.map(&names), pair.map(corners)) {
                 pairs.push(pair);
             }
         }
@@ -91,12 +126,7 @@ fn pierces([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
     (x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0)
 }
 
-fn cut(mesh: &Mesh, pair: [usize; 2]) -> bool {
-    let names = pair.map(|f| {
-        let [a, b, c, _] = mesh.faces()[f];
-        [a, b, c]
-    });
-    let points = names.map(|n| n.map(|v| mesh.positions()[v as usize]));
+fn cut(names: [[u32; 3]; 2], points: [[Vec3; 3]; 2]) -> bool {
     // An edge can pierce the other triangle only if they share none of its ends.
     [(0, 1), (1, 0)].into_iter().any(|(s, t)| {
         (0..3).any(|k| {

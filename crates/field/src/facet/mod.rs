@@ -13,6 +13,7 @@ mod block;
 mod cell;
 mod crossing;
 mod grid;
+mod refine;
 mod simplify;
 pub(crate) mod vertex;
 
@@ -26,6 +27,7 @@ pub use crossing::crossing_faces;
 use grid::Grid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
+use refine::{Rule, refine};
 use smallvec::SmallVec;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -117,6 +119,10 @@ impl Reuse<'_> {
     }
 }
 
+/// The cosine of 20 degrees: normals at the ends of an edge differ by more only where cells are so coarse
+/// that dividing it five times does not help.
+const TURN: f64 = 0.939_692_620_785_908_4;
+
 /// The names of the box's faces.
 const CAPS: [&str; 6] = ["cap -x", "cap +x", "cap -y", "cap +y", "cap -z", "cap +z"];
 
@@ -183,24 +189,36 @@ pub fn refacet(
         Resolution::Depth(depth) => {
             let step = size / 2f64.powi(depth.min(1000) as i32);
             check(step)?;
-            at_step(set, &over, step, options, before)
+            at_step(set, &over, step, f64::INFINITY, options, before)
         }
         Resolution::Accuracy(accuracy) => {
             crate::error::positive("accuracy", accuracy)?;
             let mut step = size / 16.0;
-            let mut facets = at_step(set, &over, step, options, before)?;
-            // The error is of second order, so one estimate nearly hits; a few correct it.
-            for _ in 0..6 {
-                let error = facets.worst_centre();
-                if error <= accuracy {
+            // The error is of second order, so one estimate nearly hits; a few correct it. The few triangles
+            // that are worse than the others then are divided edge by edge.
+            let mut facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            for _ in 0..8 {
+                let mut all = facets.centre_distances();
+                all.sort_by(f64::total_cmp);
+                let (most, worst) = match &all[..] {
+                    [] => break,
+                    [.., worst] => (all[all.len() * 49 / 50], *worst),
+                };
+                if worst <= accuracy {
                     break;
                 }
-                step *= (0.8 * accuracy / error).sqrt().clamp(1e-6, 0.8);
+                if most <= accuracy {
+                    facets = at_step(set, &over, step, accuracy, options, Some(&facets))?;
+                    if facets.worst_centre() <= accuracy {
+                        break;
+                    }
+                }
+                step *= (0.8 * accuracy / most).sqrt().clamp(1e-6, 0.8);
                 let boxes = facets.cells as f64 * (facets.step / step).powi(2);
                 if boxes > options.limit {
                     return Err(FieldError::TooFine { boxes, limit: options.limit });
                 }
-                facets = at_step(set, &over, step, options, before)?;
+                facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
             }
             Ok(facets)
         }
@@ -211,6 +229,7 @@ fn at_step(
     set: &Set,
     over: &Box3,
     step: f64,
+    accuracy: f64,
     options: &Options,
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
@@ -224,7 +243,9 @@ fn at_step(
     // A face of the set that lies in a face of the box is the set's.
     let own = compiled.places.len().saturating_sub(CAPS.len());
     let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
-    let made = assemble::assemble(&grid, &leaves, &divided.blocks);
+    let mut made = assemble::assemble(&grid, &leaves, &divided.blocks);
+    let rule = Rule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
+    refine(&mut made, &leaves, &compiled.tape, rule);
 
     let mut builder = TopologyBuilder::new();
     let broken =
@@ -294,10 +315,11 @@ fn undecided(
 }
 
 /// What a patch says of the leaf it shows.
-fn info(leaf: &Leaf) -> PatchInfo {
+pub(crate) fn info(leaf: &Leaf) -> PatchInfo {
     let kind = leaf.primitive.form().name();
     let name = leaf.attributes.name.clone().unwrap_or_else(|| kind.to_owned());
-    PatchInfo::new(name).coloured(leaf.attributes.colour).of_kind(kind)
+    let tags = leaf.attributes.material.iter().cloned().collect();
+    PatchInfo { tags, ..PatchInfo::new(name).coloured(leaf.attributes.colour).of_kind(kind) }
 }
 
 impl Facets {

@@ -4,6 +4,7 @@
 //! any neighbour, one of an edge only along the edge, one of a corner never. On a cylinder triangles
 //! become long along its axis, which is where most is saved.
 
+use super::refine::{Normals, normals};
 use super::{Facets, crossing_faces, distance, vertex};
 use crate::FieldError;
 use crate::tape::Tape;
@@ -60,6 +61,7 @@ struct Work<'a> {
     stars: Vec<Star>,
     stamps: Vec<u32>,
     locked: &'a [bool],
+    normals: &'a [Normals],
     solver: vertex::Solver,
     accuracy: f64,
 }
@@ -81,31 +83,43 @@ impl Work<'_> {
         ring
     }
 
-    /// The error of moving `v` into `w`; `None` when that must not be.
-    fn error(&mut self, v: u32, w: u32) -> Option<f64> {
+    /// The triangles that go when `v` moves into `w`; `None` when that must not be.
+    fn beside(&self, v: u32, w: u32) -> Option<SmallVec<[u32; 2]>> {
         let (own, other) = (&self.surfaces[v as usize], &self.surfaces[w as usize]);
         if self.locked[v as usize] || own.len() > 2 || !own.iter().all(|s| other.contains(s)) {
             return None;
         }
-        // Exactly two triangles go, or the surface would be torn or pinched.
-        let (a, b) = (self.ring(v), self.ring(w));
-        let shared = a.iter().filter(|x| b.contains(x)).count();
         let beside: SmallVec<[u32; 2]> = self.stars[v as usize]
             .iter()
             .copied()
             .filter(|&t| self.triangles[t as usize].contains(&w))
             .collect();
-        if shared != 2 || beside.len() != 2 {
+        if beside.len() != 2 {
             return None;
         }
-        let patches = [0, 1].map(|k| self.leaves[beside[k] as usize]);
         // Along an edge the two triangles are on its two sides.
-        if own.len() == 2 && patches[0] == patches[1] {
-            return None;
-        }
+        let patches = [0, 1].map(|k| self.leaves[beside[k] as usize]);
+        (own.len() != 2 || patches[0] != patches[1]).then_some(beside)
+    }
+
+    /// True when just two vertices are beside both, or the surface would be torn or pinched.
+    fn stays_whole(&self, v: u32, w: u32) -> bool {
+        let (a, b) = (self.ring(v), self.ring(w));
+        a.iter().filter(|x| b.contains(x)).count() == 2
+    }
+
+    /// The normal of a leaf at a vertex.
+    fn normal(&self, v: u32, leaf: u32) -> Vec3 {
+        let k = self.surfaces[v as usize].iter().position(|&s| s == leaf);
+        k.map_or_else(Vec3::zero, |k| self.normals[v as usize][k])
+    }
+
+    /// The error of moving `v` into `w`, told by the normals of the surface at the vertices: a chord e leaves
+    /// the middle of an arc between normals n and m by |e . (m - n)| / 8. `None` when that must not be.
+    fn error(&self, v: u32, w: u32) -> Option<f64> {
+        let beside = self.beside(v, w)?;
         let mut worst = 0.0f64;
-        let star = self.stars[v as usize].clone();
-        for t in star.into_iter().filter(|t| !beside.contains(t)) {
+        for &t in self.stars[v as usize].iter().filter(|t| !beside.contains(t)) {
             let old = self.triangles[t as usize];
             let new = old.map(|x| if x == v { w } else { x });
             let [p, q, r] = self.corners(old);
@@ -117,21 +131,40 @@ impl Work<'_> {
             if size < THIN * longest || turned < TURN * n.norm() * size {
                 return None;
             }
-            let tape = self.tapes[self.leaves[t as usize] as usize];
-            let places = [(a + b + c) / 3.0, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-            for place in places {
-                worst = worst.max(distance(&mut self.solver, tape, place).abs());
-                // NaN is refused, too.
-                if worst.partial_cmp(&self.accuracy) == Some(Ordering::Greater) || worst.is_nan() {
-                    return None;
-                }
+            let leaf = self.leaves[t as usize];
+            let [l, m, n] = new.map(|x| self.normal(x, leaf));
+            if l == Vec3::zero() || m == Vec3::zero() || n == Vec3::zero() {
+                return None;
+            }
+            let arcs = [(b - a).dot(m - l), (c - b).dot(n - m), (a - c).dot(l - n)];
+            worst = arcs.into_iter().fold(worst, |w, x| w.max(x.abs() / 8.0));
+            if worst > self.accuracy || worst.is_nan() {
+                return None;
             }
         }
         Some(worst)
     }
 
+    /// True when middles and sides of the triangles about `v`, moved into `w`, are near enough, by |f| / |f'|.
+    fn proves(&mut self, v: u32, w: u32) -> bool {
+        let star = self.stars[v as usize].clone();
+        star.into_iter().all(|t| {
+            let old = self.triangles[t as usize];
+            if old.contains(&w) {
+                return true;
+            }
+            let [a, b, c] = self.corners(old.map(|x| if x == v { w } else { x }));
+            let tape = self.tapes[self.leaves[t as usize] as usize];
+            let places = [(a + b + c) / 3.0, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+            // NaN is refused, too.
+            places
+                .into_iter()
+                .all(|place| distance(&mut self.solver, tape, place).abs() <= self.accuracy)
+        })
+    }
+
     /// The cheapest way for a vertex to go.
-    fn candidate(&mut self, v: u32) -> Option<Candidate> {
+    fn candidate(&self, v: u32) -> Option<Candidate> {
         if self.stars[v as usize].is_empty() {
             return None;
         }
@@ -179,6 +212,9 @@ impl Work<'_> {
                 heap.extend(self.candidate(c.from));
                 continue;
             }
+            if !self.stays_whole(c.from, c.into) || !self.proves(c.from, c.into) {
+                continue;
+            }
             let ring = self.ring(c.from);
             self.stamps[c.from as usize] += 1;
             self.collapse(c.from, c.into);
@@ -202,8 +238,9 @@ impl Facets {
         let positions = self.mesh.positions();
         let mut locked = vec![false; positions.len()];
         let before = crossing_faces(&self.mesh, None).len();
+        let normals = normals(positions, &self.surfaces, &self.leaves);
         for _ in 0..TRIES {
-            let (simple, kept) = self.collapsed(accuracy, &locked)?;
+            let (simple, kept) = self.collapsed(accuracy, &locked, &normals)?;
             let crossings = crossing_faces(&simple.mesh, None);
             if crossings.len() <= before {
                 return Ok(simple);
@@ -226,7 +263,12 @@ impl Facets {
     }
 
     /// The facets after all collapses, and the old number of each vertex.
-    fn collapsed(&self, accuracy: f64, locked: &[bool]) -> Result<(Self, Vec<u32>), FieldError> {
+    fn collapsed(
+        &self,
+        accuracy: f64,
+        locked: &[bool],
+        normals: &[Normals],
+    ) -> Result<(Self, Vec<u32>), FieldError> {
         let positions = self.mesh.positions();
         let mut triangles = Vec::new();
         let mut leaves = Vec::new();
@@ -250,6 +292,7 @@ impl Facets {
             stars,
             stamps: vec![0; positions.len()],
             locked,
+            normals,
             solver: vertex::Solver::default(),
             accuracy,
         };

@@ -1,0 +1,411 @@
+//! Bends that the cells are too coarse for: edges along which the normal turns far are divided, and
+//! diagonals beside them turned to lie along the surface.
+//!
+//! This is svLis's rule (divide where the gradient is not narrow) on the finished triangles, so that a
+//! sharp bend costs a few more of them and not a finer grid. A new vertex lies on the same primitives as
+//! the edge that it divides. What the surface does between the ends of an edge is told by the normals there:
+//! a chord e whose ends have normals n and m leaves an arc's middle by |e . (m - n)| / 8.
+
+use super::assemble::Assembled;
+use super::crossing::crossings;
+use super::vertex::{Solver, Surfaces};
+use crate::set::Leaf;
+use crate::tape::Tape;
+use moldloft_num::{Box3, Vec3};
+use rayon::prelude::*;
+use smallvec::SmallVec;
+use std::collections::HashMap;
+
+/// When an edge is divided.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rule {
+    /// The least cosine between the normals at its ends.
+    pub(super) turn: f64,
+    /// How far its middle may be from the surface.
+    pub(super) accuracy: f64,
+    /// Edges up to this long are left as they are.
+    pub(super) shortest: f64,
+    /// Vertices are on their surfaces to this.
+    pub(super) goal: f64,
+}
+
+/// How often edges are divided: each time the distance of their middles is quartered.
+const PASSES: usize = 6;
+/// How often all is done again with what came to cut other triangles left alone.
+const TRIES: usize = 3;
+/// A new vertex is at most this part of its edge away from it, or the part that a corner between the normals at
+/// its ends is, …
+const AWAY: f64 = 0.35;
+/// … but no more than this.
+const FARTHEST: f64 = 1.2;
+/// The least cosine between a triangle and the mean of the surface's normals at its corners.
+const FACING: f64 = 0.2;
+/// The least height of a triangle made by turning a diagonal, as a share of its longest side.
+const THIN: f64 = 0.05;
+/// A diagonal is turned when the squares of distances fall below this part.
+const GAIN: f64 = 0.9;
+
+type Corner = [u32; 3];
+/// Unit normals, one for each of a vertex's surfaces.
+pub(super) type Normals = SmallVec<[Vec3; 1]>;
+
+/// The unit normals of its surfaces at each vertex; zero where there is none.
+pub(super) fn normals(
+    positions: &[Vec3],
+    surfaces: &[SmallVec<[u32; 3]>],
+    leaves: &[Leaf],
+) -> Vec<Normals> {
+    positions
+        .par_iter()
+        .zip(surfaces)
+        .map_init(Solver::default, |solver, (p, on)| {
+            on.iter().map(|&leaf| normal(solver, leaves, leaf, *p)).collect()
+        })
+        .collect()
+}
+
+fn normal(solver: &mut Solver, leaves: &[Leaf], leaf: u32, p: Vec3) -> Vec3 {
+    let slope = solver.gradient(leaves[leaf as usize].primitive.tape(), p).slope;
+    let size = slope.norm();
+    if size > 0.0 && size.is_finite() { slope / size } else { Vec3::zero() }
+}
+
+fn key(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
+struct Work<'a> {
+    rule: Rule,
+    leaves: &'a [Leaf],
+    tape: &'a Tape<f64>,
+    positions: Vec<Vec3>,
+    surfaces: Vec<Surfaces>,
+    normals: Vec<Normals>,
+    triangles: Vec<(u32, Corner)>,
+    /// The triangles beside the edges near bends.
+    edges: HashMap<(u32, u32), SmallVec<[u32; 2]>>,
+    /// Vertices beside which nothing is changed.
+    locked: Vec<bool>,
+    changed: Vec<u32>,
+    solver: Solver,
+}
+
+impl Work<'_> {
+    fn at(&self, v: u32) -> Vec3 {
+        self.positions[v as usize]
+    }
+
+    /// The normal of a leaf at a vertex.
+    fn normal(&self, v: u32, leaf: u32) -> Option<Vec3> {
+        let k = self.surfaces[v as usize].iter().position(|&s| s == leaf)?;
+        let n = self.normals[v as usize][k];
+        (n != Vec3::zero()).then_some(n)
+    }
+
+    /// How far the middle of an edge is from the surface when it has to be divided.
+    fn wanting(&self, leaf: u32, a: u32, b: u32) -> Option<f64> {
+        let (n, m) = (self.normal(a, leaf)?, self.normal(b, leaf)?);
+        let chord = self.at(b) - self.at(a);
+        let away = chord.dot(m - n).abs() / 8.0;
+        let long = chord.norm_sq() > self.rule.shortest * self.rule.shortest;
+        let bent = n.dot(m) < self.rule.turn && away > 1e-3 * chord.norm();
+        (long && (bent || away > self.rule.accuracy)).then_some(away)
+    }
+
+    /// The square of the distance of a triangle's centre from the surface: that of three points of a
+    /// parabola from their mean.
+    fn distance_sq(&self, leaf: u32, t: Corner) -> Option<f64> {
+        let mut sum = 0.0;
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            sum += (self.at(b) - self.at(a)).dot(self.normal(b, leaf)? - self.normal(a, leaf)?);
+        }
+        Some((sum / 18.0).powi(2))
+    }
+
+    /// The cosine between a triangle and the mean of the surface's normals at its corners.
+    fn facing([a, b, c]: [Vec3; 3], normals: [Option<Vec3>; 3]) -> f64 {
+        let n = (b - a).cross(c - a);
+        let mut mean = Vec3::zero();
+        normals.into_iter().flatten().for_each(|m| mean += m);
+        let size = n.norm() * mean.norm();
+        if size == 0.0 { -1.0 } else { n.dot(mean) / size }
+    }
+
+    /// How deep a corner between the normals at the ends of an edge is, as a share of its length, and a little
+    /// more: tan(phi / 2) / 2 for a turn by phi.
+    fn depth(&self, leaf: u32, a: u32, b: u32) -> f64 {
+        let (Some(n), Some(m)) = (self.normal(a, leaf), self.normal(b, leaf)) else { return 0.0 };
+        let cos = n.dot(m);
+        let half = ((1.0 - cos) / (1.0 + cos).max(1e-9)).max(0.0).sqrt();
+        (0.05 + 0.5 * half).min(FARTHEST)
+    }
+
+    fn facing_of(&self, leaf: u32, t: Corner) -> f64 {
+        Self::facing(t.map(|v| self.at(v)), t.map(|v| self.normal(v, leaf)))
+    }
+
+    fn collect_edges(&mut self, near: &[u32]) {
+        for &t in near {
+            let corners = self.triangles[t as usize].1;
+            for k in 0..3 {
+                let beside = self.edges.entry(key(corners[k], corners[(k + 1) % 3])).or_default();
+                beside.push(t);
+            }
+        }
+    }
+
+    /// The edge's triangles, that in which it runs from `a` to `b` first, with their tips.
+    fn beside(&self, (a, b): (u32, u32)) -> Option<[(u32, u32); 2]> {
+        let pair = self.edges.get(&(a, b))?;
+        let [s, t] = pair[..] else { return None };
+        let tip = |t: u32| {
+            let corners = self.triangles[t as usize].1;
+            let k = corners.iter().position(|&v| v == a)?;
+            let forward = corners[(k + 1) % 3] == b;
+            Some((forward, corners.into_iter().find(|&v| v != a && v != b)?))
+        };
+        let ((f, c), (g, d)) = (tip(s)?, tip(t)?);
+        match (f, g) {
+            (true, false) => Some([(s, c), (t, d)]),
+            (false, true) => Some([(t, d), (s, c)]),
+            _ => None,
+        }
+    }
+
+    fn moved(&mut self, edge: (u32, u32), from: u32, to: u32) {
+        if let Some(slot) =
+            self.edges.get_mut(&edge).and_then(|p| p.iter_mut().find(|t| **t == from))
+        {
+            *slot = to;
+        }
+    }
+
+    /// Divides an edge, unless the new vertex would not do.
+    fn divide(&mut self, (a, b): (u32, u32)) -> bool {
+        let Some([(s, c), (t, d)]) = self.beside((a, b)) else { return false };
+        if [a, b, c, d].iter().any(|&v| self.locked[v as usize]) {
+            return false;
+        }
+        let pair = [s, t].map(|x| self.triangles[x as usize].0);
+        let mut on = Surfaces::from_slice(&pair);
+        on.sort_unstable();
+        on.dedup();
+        let (p, q) = (self.at(a), self.at(b));
+        let (middle, length) = ((p + q) * 0.5, p.distance(q));
+        let away =
+            length * pair.map(|leaf| self.depth(leaf, a, b)).into_iter().fold(AWAY, f64::max);
+        let reach = Vec3::of(away, away, away);
+        let around = Box3 { low: middle - reach, high: middle + reach };
+        let placed = self.solver.place(self.leaves, &on, middle, &around, self.rule.goal);
+        if placed.residual > self.rule.goal || placed.point.distance(middle) > away {
+            return false;
+        }
+        let point = placed.point;
+        // Another primitive may cut the place off.
+        let slope = self.solver.gradient(self.leaves[on[0] as usize].primitive.tape(), point).slope;
+        if self.solver.value(self.tape, point).abs() > 10.0 * self.rule.goal * slope.norm() {
+            return false;
+        }
+        let found: Normals =
+            on.iter().map(|&leaf| normal(&mut self.solver, self.leaves, leaf, point)).collect();
+        for (tip, leaf, forward) in [(c, pair[0], true), (d, pair[1], false)] {
+            let Some(k) = on.iter().position(|&x| x == leaf) else { return false };
+            let old = self.facing_of(leaf, if forward { [a, b, tip] } else { [b, a, tip] });
+            let least = FACING.min(old);
+            let (x, y) = if forward { (a, b) } else { (b, a) };
+            for [u, v] in [[Some(x), None], [None, Some(y)]] {
+                let at = |w: Option<u32>| w.map_or(point, |w| self.at(w));
+                let of = |w: Option<u32>| match w {
+                    Some(w) => self.normal(w, leaf),
+                    None => Some(found[k]),
+                };
+                let points = [at(u), at(v), self.at(tip)];
+                if Self::facing(points, [of(u), of(v), self.normal(tip, leaf)]) < least {
+                    return false;
+                }
+            }
+        }
+        let m = self.positions.len() as u32;
+        self.positions.push(point);
+        self.surfaces.push(on);
+        self.normals.push(found);
+        self.locked.push(false);
+        let (s2, t2) = (self.triangles.len() as u32, self.triangles.len() as u32 + 1);
+        self.triangles[s as usize].1 = [a, m, c];
+        self.triangles[t as usize].1 = [m, a, d];
+        self.triangles.push((pair[0], [m, b, c]));
+        self.triangles.push((pair[1], [b, m, d]));
+        self.edges.remove(&key(a, b));
+        self.moved(key(b, c), s, s2);
+        self.moved(key(b, d), t, t2);
+        self.edges.insert(key(a, m), SmallVec::from_slice(&[s, t]));
+        self.edges.insert(key(m, b), SmallVec::from_slice(&[s2, t2]));
+        self.edges.insert(key(m, c), SmallVec::from_slice(&[s, s2]));
+        self.edges.insert(key(m, d), SmallVec::from_slice(&[t, t2]));
+        self.changed.extend([s, t, s2, t2]);
+        true
+    }
+
+    /// Turns the diagonal of the two triangles beside an edge when that brings them nearer to the surface.
+    fn turn(&mut self, (a, b): (u32, u32)) -> bool {
+        let Some([(s, c), (t, d)]) = self.beside((a, b)) else { return false };
+        let leaf = self.triangles[s as usize].0;
+        let locked = [a, b, c, d].iter().any(|&v| self.locked[v as usize]);
+        if locked || self.triangles[t as usize].0 != leaf || self.edges.contains_key(&key(c, d)) {
+            return false;
+        }
+        let (old, new) = ([[a, b, c], [b, a, d]], [[a, d, c], [d, b, c]]);
+        let sum = |pair: [Corner; 2]| {
+            Some(self.distance_sq(leaf, pair[0])? + self.distance_sq(leaf, pair[1])?)
+        };
+        let (Some(before), Some(after)) = (sum(old), sum(new)) else { return false };
+        if after >= GAIN * before {
+            return false;
+        }
+        let facing = |pair: [Corner; 2]| {
+            pair.map(|t| self.facing_of(leaf, t)).into_iter().fold(1.0, f64::min)
+        };
+        let fits = |t: Corner| {
+            let [p, q, r] = t.map(|v| self.at(v));
+            let sides = [(q - p).norm_sq(), (r - q).norm_sq(), (p - r).norm_sq()];
+            let longest = sides.into_iter().fold(0.0, f64::max);
+            (q - p).cross(r - p).norm() >= THIN * longest
+        };
+        if facing(new) < FACING.max(facing(old) - 0.1) || !new.into_iter().all(fits) {
+            return false;
+        }
+        self.triangles[s as usize].1 = new[0];
+        self.triangles[t as usize].1 = new[1];
+        self.edges.remove(&key(a, b));
+        self.moved(key(a, d), t, s);
+        self.moved(key(b, c), s, t);
+        self.edges.insert(key(c, d), SmallVec::from_slice(&[s, t]));
+        self.changed.extend([s, t]);
+        true
+    }
+
+    /// The edges of these triangles that have to be divided, the worst first.
+    fn wanted(&self, triangles: &[u32]) -> Vec<(u32, u32)> {
+        let mut found: Vec<(f64, (u32, u32))> = Vec::new();
+        for &t in triangles {
+            let (leaf, corners) = self.triangles[t as usize];
+            for k in 0..3 {
+                let edge = key(corners[k], corners[(k + 1) % 3]);
+                found.extend(self.wanting(leaf, edge.0, edge.1).map(|away| (away, edge)));
+            }
+        }
+        found.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        let mut seen = std::collections::HashSet::new();
+        found.into_iter().map(|f| f.1).filter(|e| seen.insert(*e)).collect()
+    }
+
+    /// All passes over these triangles.
+    fn run(&mut self, near: &[u32]) {
+        let mut front = near.to_vec();
+        for _ in 0..PASSES {
+            let start = self.changed.len();
+            for edge in self.wanted(&front) {
+                self.divide(edge);
+            }
+            for _ in 0..4 {
+                let mut edges: Vec<(u32, u32)> = self.changed[start..]
+                    .iter()
+                    .flat_map(|&t| {
+                        let c = self.triangles[t as usize].1;
+                        [key(c[0], c[1]), key(c[1], c[2]), key(c[2], c[0])]
+                    })
+                    .collect();
+                edges.sort_unstable();
+                edges.dedup();
+                if edges.into_iter().filter(|&e| self.turn(e)).count() == 0 {
+                    break;
+                }
+            }
+            front = self.changed[start..].to_vec();
+            front.sort_unstable();
+            front.dedup();
+            if front.is_empty() {
+                break;
+            }
+        }
+    }
+}
+
+/// Divides the edges that want it. Where that makes triangles cut others, all is left as it was.
+pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tape: &Tape<f64>, rule: Rule) {
+    let normals = normals(&made.positions, &made.surfaces, leaves);
+    let mut work = Work {
+        rule,
+        leaves,
+        tape,
+        positions: std::mem::take(&mut made.positions),
+        surfaces: std::mem::take(&mut made.surfaces),
+        normals,
+        triangles: std::mem::take(&mut made.triangles),
+        edges: HashMap::new(),
+        locked: Vec::new(),
+        changed: Vec::new(),
+        solver: Solver::default(),
+    };
+    // The triangles at bends, and two rings about them.
+    let bent =
+        |t: &(u32, Corner)| (0..3).any(|k| work.wanting(t.0, t.1[k], t.1[(k + 1) % 3]).is_some());
+    let mut chosen: Vec<bool> = work.triangles.par_iter().map(bent).collect();
+    if chosen.contains(&true) {
+        let mut touched = vec![false; work.positions.len()];
+        for _ in 0..2 {
+            for ((_, t), _) in work.triangles.iter().zip(&chosen).filter(|c| *c.1) {
+                t.iter().for_each(|&v| touched[v as usize] = true);
+            }
+            for ((_, t), chosen) in work.triangles.iter().zip(&mut chosen) {
+                *chosen |= t.iter().any(|&v| touched[v as usize]);
+            }
+        }
+        // The edges about a vertex are known when all its triangles are among them.
+        let mut rim = vec![false; work.positions.len()];
+        for ((_, t), _) in work.triangles.iter().zip(&chosen).filter(|c| !c.1) {
+            t.iter().for_each(|&v| rim[v as usize] = true);
+        }
+        let near: Vec<u32> = (0..chosen.len() as u32).filter(|&t| chosen[t as usize]).collect();
+        attempt(&mut work, &near, rim);
+    }
+    made.positions = work.positions;
+    made.surfaces = work.surfaces;
+    made.triangles = work.triangles;
+}
+
+/// All passes, as often as it takes until no changed triangle cuts another; `kept` are vertices beside which
+/// nothing may change.
+fn attempt(work: &mut Work, near: &[u32], mut kept: Vec<bool>) {
+    let count = work.positions.len();
+    let old: Vec<(u32, Corner)> = work.triangles.clone();
+    for attempt in 0..=TRIES {
+        work.positions.truncate(count);
+        work.surfaces.truncate(count);
+        work.normals.truncate(count);
+        work.triangles.clone_from(&old);
+        work.edges.clear();
+        work.changed.clear();
+        work.locked.clone_from(&kept);
+        if attempt == TRIES {
+            return;
+        }
+        work.collect_edges(near);
+        work.run(near);
+        let mut flagged = vec![false; work.triangles.len()];
+        work.changed.iter().for_each(|&t| flagged[t as usize] = true);
+        let corner = |f: usize| work.triangles[f].1;
+        let cut = crossings(&work.positions, work.triangles.len(), corner, Some(&flagged));
+        if cut.is_empty() {
+            return;
+        }
+        // What was changed there, or beside it, stays next time.
+        let marks: Vec<Vec3> = cut.into_iter().flatten().map(|f| work.at(corner(f)[0])).collect();
+        // About two cells.
+        let reach = 10.0 * work.rule.shortest;
+        for (p, lock) in work.positions.iter().zip(&mut kept) {
+            *lock |= marks.iter().any(|m| m.distance(*p) <= reach);
+        }
+    }
+}
