@@ -14,6 +14,7 @@ mod bounds;
 mod cache;
 mod error;
 mod facet;
+mod facing;
 mod foot;
 mod form;
 mod gap;

@@ -1,5 +1,6 @@
 //! Primitives from the rest of a model: about a curve, beside a surface, inside a closed mesh.
 
+use crate::facing::Facing;
 use crate::interval::Interval;
 use crate::oracle::Oracle;
 use moldloft_locate::{NearestCurve, NearestSurface, PlainCurve, PlainSurface};
@@ -94,13 +95,20 @@ pub struct Near<T: Real> {
     surface: SurfaceRef<T>,
     nearest: Arc<NearestSurface>,
     what: Beside<T>,
+    /// Which way it faces, for its side.
+    facing: Option<Arc<Facing>>,
 }
 
 impl<T: Real> Near<T> {
     /// Of `surface`.
     pub fn new(surface: SurfaceRef<T>, what: Beside<T>) -> Self {
-        let nearest = Arc::new(NearestSurface::new(&PlainSurface(&*surface)));
-        Self { surface, nearest, what }
+        let plain = PlainSurface(&*surface);
+        let nearest = Arc::new(NearestSurface::new(&plain));
+        let facing = match what {
+            Beside::Side => Some(Arc::new(Facing::new(&plain))),
+            Beside::Plate(_) => None,
+        };
+        Self { surface, nearest, what, facing }
     }
 
     fn foot(&self, p: Vec3<T>) -> SurfJet<T> {
@@ -133,14 +141,9 @@ impl<T: Real> Oracle<T> for Near<T> {
             return lipschitz(value, over);
         }
         let far = (over.centre() - self.foot(middle).p.re()).norm();
-        let most = lipschitz(far, over).high;
-        let reach = over.diagonal();
-        // Beside the surface the value is the distance. Beyond its edges the tangent planes turn, so that
-        // little is known of boxes there.
-        if far > 0.5 * reach && value.abs() >= 0.999 * far {
-            Interval { low: (value - reach).max(-most), high: (value + reach).min(most) }
-        } else {
-            Interval { low: -most, high: most }
+        match &self.facing {
+            Some(facing) => facing.range(over, far),
+            None => Interval::ENTIRE,
         }
     }
     fn gradient_range(&self, _: &Box3) -> [Interval; 3] {
@@ -153,6 +156,7 @@ impl<T: Real> Oracle<T> for Near<T> {
         Arc::new(Near {
             surface: SurfaceRef::new(Shown(self.surface.clone()), 0),
             nearest: self.nearest.clone(),
+            facing: self.facing.clone(),
             what: match self.what {
                 Beside::Plate(t) => Beside::Plate(t.re()),
                 Beside::Side => Beside::Side,

@@ -60,7 +60,10 @@ impl<T: Real> Build<T> for PlateOf<T> {
 
 /// The half-space behind a surface: the distance from it, positive on the side of its natural normal.
 ///
-/// Beyond its edges it goes on along the tangent planes there; cut it before these meet.
+/// It is (p - q) . n for the point q of the surface nearest to p and the normal n there: beyond the edges the
+/// half-space goes on along their tangent planes. Where those of two edges come together, and far behind a
+/// surface that bends by more than half a turn, the nearest point jumps, and the side with it: cut it before.
+/// Its ranges hold there, too.
 #[derive(Kind)]
 #[kind(
     class = Field,
