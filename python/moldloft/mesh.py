@@ -26,7 +26,9 @@ class Patch:
     tag: str
     """Its role: ``"wetted"``, ``"lid"``, ``"waterline"``, ``"symmetry"`` or a name."""
     tags: list[str]
-    """All that the model's ``tags`` argument says of it."""
+    """All that the model's ``tags`` argument says of it, and the material of an implicit solid."""
+    colour: int | None
+    """Index of a palette colour, 0 to 15."""
     start: int
     """Its first face."""
     stop: int

@@ -8,7 +8,7 @@
 
 use crate::facet::{Facets, Options, facet};
 use crate::lifted::On;
-use crate::{FieldError, Primitive, Set};
+use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
 use std::collections::HashMap;
@@ -70,6 +70,8 @@ pub struct Mixed {
     pub wires: Vec<Wire>,
     /// The points where three sheets meet.
     pub points: Vec<Dot>,
+    /// The leaves of the set, by which the others are numbered.
+    pub leaves: Vec<Leaf>,
 }
 
 /// The set with its sheets replaced: those of `kept` by everything, others by nothing.
@@ -124,11 +126,11 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
         }
         covered.insert(k, here.clone());
         let facets = facet(&(half(k) & here), over, options)?;
-        let name = leaves[k].attributes.name.clone();
-        let info =
-            PatchInfo::new(name.unwrap_or_else(|| leaf(k).of_sheet().form().name().to_owned()))
-                .coloured(leaves[k].attributes.colour)
-                .of_kind(leaf(k).of_sheet().form().name());
+        let sheet = Leaf {
+            primitive: leaf(k).of_sheet().clone(),
+            attributes: leaves[k].attributes.clone(),
+        };
+        let info = crate::facet::info(&sheet);
         if let Some((mesh, on)) = patch_of(&facets, leaf(k).of_sheet(), info)? {
             sheets.push(Sheet { mesh, leaf: k, on });
         }
@@ -170,7 +172,7 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
             }
         }
     }
-    Ok(Mixed { solid, sheets, wires, points })
+    Ok(Mixed { solid, sheets, wires, points, leaves })
 }
 
 /// What some vertices of facets lie on.

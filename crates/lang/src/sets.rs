@@ -179,13 +179,15 @@ fn row_of(ty: Type) -> Option<&'static str> {
     }
 }
 
-/// A set or field with the name that it is declared under, for its faces.
+/// A set or field with the name that it is declared under, for its faces; a set that has one keeps it.
 pub(crate) fn called<T: Real>(ty: Type, value: Value<T>, name: &str) -> Value<T> {
     match (ty, value) {
         (Type::Field, Value::Field(f)) => Value::Field(f.called(name)),
         (Type::Set, value @ Value::Set(_)) => match set_of(&value) {
-            Some(set) => set_value(set.named(name)),
-            None => value,
+            Some(set) if set.attributes().is_none_or(|a| a.name.is_none()) => {
+                set_value(set.named(name))
+            }
+            _ => value,
         },
         (_, value) => value,
     }

@@ -154,6 +154,7 @@ impl PyMesh {
         dict.set_item("volume", measures.volume)?;
         dict.set_item("vertices", report.map_or(0, |r| r.vertices))?;
         dict.set_item("tags", &patch.info.tags)?;
+        dict.set_item("colour", patch.info.colour)?;
         dict.set_item("quality", self.quality(py, quality)?)?;
         Ok(dict)
     }

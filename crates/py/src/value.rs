@@ -50,6 +50,8 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
             dict.set_item("volume", mesh.volume)?;
             dict.set_item("area", mesh.area)?;
             dict.set_item("centroid", vector(py, mesh.centroid))?;
+            let groups: PyResult<Vec<_>> = mesh.groups.iter().map(|g| group(py, g)).collect();
+            dict.set_item("groups", groups?)?;
             dict.into_any()
         }
         Value::Field(_) => match moldloft_field::primitive_of(value) {
@@ -62,6 +64,22 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
         },
         other => Bound::new(py, Shape { class: other.class() })?.into_any(),
     })
+}
+
+/// A piece of a body: what it is called, and its triangles.
+fn group<'py>(
+    py: Python<'py>,
+    group: &moldloft_registry::Group,
+) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
+    let dict = pyo3::types::PyDict::new(py);
+    dict.set_item("name", &group.name)?;
+    dict.set_item("kind", &group.kind)?;
+    dict.set_item("colour", group.colour)?;
+    dict.set_item("tags", &group.tags)?;
+    dict.set_item("tolerance", group.tolerance)?;
+    dict.set_item("start", group.triangles.start)?;
+    dict.set_item("stop", group.triangles.end)?;
+    Ok(dict)
 }
 
 fn vector<'py>(py: Python<'py>, v: Vec3) -> Bound<'py, PyAny> {

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Triangles of a body that belong together, such as those of one implicit surface.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Its name; in meshes it follows the body's.
     pub name: String,
@@ -12,6 +12,10 @@ pub struct Group {
     pub kind: String,
     /// Index of a palette colour, 0 to 15, when it has one of its own.
     pub colour: Option<u8>,
+    /// What it is called besides, such as its material.
+    pub tags: Vec<String>,
+    /// Distance below which two of its points count as one, when it has one of its own.
+    pub tolerance: Option<f64>,
     /// Its triangles.
     pub triangles: Range<usize>,
 }

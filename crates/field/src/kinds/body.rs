@@ -4,7 +4,7 @@ use super::read::{Solid, fault};
 use super::region::region;
 use crate::facet::{Facets, Options, Resolution};
 use crate::sheets::Mixed;
-use crate::{FieldError, Lifter, Set, cache, facet_mixed};
+use crate::{FieldError, Leaf, Lifter, Set, cache, facet_mixed};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, Context, Facets as Body, Fault, Group, Kind, Point, Value};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub fn options(resolution: Resolution, context: &Context) -> Options {
 /// The surface of a set as triangles: a mesh like any other.
 ///
 /// Its panels are a patch for each primitive that shows, called after the set or field that it came from
-/// (`part.pipe`), with its colour. Solids are closed, oriented and manifold; where the box cuts them, its
+/// (`part.pipe`), with its colour, and its material as a tag. Solids are closed, oriented and manifold; where the box cuts them, its
 /// faces close them (`part.cap -x`). Sheets are open, wires are polylines and points are points. The
 /// members `volume` and `centroid` are corrected for the distance of the triangles from the surface.
 #[derive(Kind)]
@@ -130,8 +130,8 @@ impl Pieces {
             Pieces::Mixed(mixed) => {
                 let solid = mixed.solid.simplified(accuracy)?;
                 let (sheets, wires) = (mixed.sheets.clone(), mixed.wires.clone());
-                let points = mixed.points.clone();
-                Pieces::Mixed(Arc::new(Mixed { solid, sheets, wires, points }))
+                let (points, leaves) = (mixed.points.clone(), mixed.leaves.clone());
+                Pieces::Mixed(Arc::new(Mixed { solid, sheets, wires, points, leaves }))
             }
         })
     }
@@ -150,8 +150,8 @@ impl Pieces {
         let mut triangles: Vec<[u32; 3]> = Vec::new();
         let mut groups = Vec::new();
         let mut names = Names::default();
-        let mut take = |mesh: &moldloft_mesh::Mesh, start: u32| {
-            for patch in mesh.patches() {
+        let mut take = |mesh: &moldloft_mesh::Mesh, start: u32, leaves: &[&Leaf]| {
+            for (patch, leaf) in mesh.patches().iter().zip(leaves) {
                 let first = triangles.len();
                 let faces = &mesh.faces()[patch.faces.clone()];
                 triangles.extend(faces.iter().map(|f| [f[0], f[1], f[2]].map(|v| v + start)));
@@ -159,15 +159,19 @@ impl Pieces {
                     name: names.of(&patch.info.name),
                     kind: patch.info.kind.clone(),
                     colour: patch.info.colour,
+                    tags: patch.info.tags.clone(),
+                    tolerance: leaf.attributes.tolerance,
                     triangles: first..triangles.len(),
                 });
             }
         };
-        take(&solid.mesh, 0);
+        let shown: Vec<&Leaf> = solid.patch_leaves.iter().map(|&l| &solid.leaves[l]).collect();
+        take(&solid.mesh, 0, &shown);
         let (mut wires, mut dots) = (Vec::new(), Vec::new());
         if let Pieces::Mixed(mixed) = self {
+            let leaves = &mixed.leaves;
             for sheet in &mixed.sheets {
-                take(&sheet.mesh, points.len() as u32);
+                take(&sheet.mesh, points.len() as u32, &[&leaves[sheet.leaf]]);
                 points.extend(lifter.moved_on(sheet.mesh.positions(), &sheet.on)?);
             }
             for wire in &mixed.wires {

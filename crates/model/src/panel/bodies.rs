@@ -17,6 +17,7 @@ pub(super) struct Body {
     name: Arc<str>,
     kind: Arc<str>,
     colour: i32,
+    tags: Vec<Arc<str>>,
     reversed: bool,
     facets: Arc<Facets<f64>>,
     /// The parameters at which its border is divided, curve by curve; none when it has no border.
@@ -40,6 +41,7 @@ pub(super) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
                 name: object.name.clone(),
                 kind: object.row.name.as_ref().into(),
                 colour: object.head.colour,
+                tags: object.head.panels.as_ref().map_or(Vec::new(), |p| p.tags.clone()),
                 reversed: object.head.orientation == 1,
                 facets: facets.clone(),
                 divided: Vec::new(),
@@ -134,7 +136,7 @@ fn directed(faces: &[[u32; 4]]) -> HashSet<(u32, u32)> {
 impl Body {
     /// True when it makes the same panels.
     pub fn is_like(&self, o: &Body) -> bool {
-        let heads = (self.colour, self.reversed) == (o.colour, o.reversed);
+        let heads = (self.colour, &self.tags, self.reversed) == (o.colour, &o.tags, o.reversed);
         heads
             && (&self.name, &self.kind) == (&o.name, &o.kind)
             && self.vertices == o.vertices
@@ -211,7 +213,8 @@ impl Body {
         builder.add_vertices(self.own.len())?;
         let info = PatchInfo {
             name: self.name.to_string(),
-            tag: Tag::Wetted,
+            tag: Tag::among(self.tags.iter().map(|t| &**t)),
+            tags: self.tags.iter().map(|t| t.to_string()).collect(),
             colour: Some((self.colour & 15) as u8),
             kind: self.kind.to_string(),
             ..PatchInfo::default()
@@ -224,6 +227,7 @@ impl Body {
                 name: format!("{}.{}", self.name, group.name),
                 kind: group.kind.clone(),
                 colour: group.colour.or(info.colour),
+                tags: info.tags.iter().chain(&group.tags).cloned().collect(),
                 ..info.clone()
             };
             let triangles = &self.facets.triangles[group.triangles.clone()];
