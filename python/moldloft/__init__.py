@@ -99,11 +99,16 @@ _HOMES = {
     "fair": "moldloft.fairing",
 }
 
+# Submodules that may be named after `import moldloft` alone.
+_MODULES = ("fairing", "functions", "grids", "implicit")
+
 
 def __getattr__(name: str) -> object:
     # Names are looked up when first used, so that the command answers at once.
     from importlib import import_module
 
+    if name in _MODULES:
+        return import_module(f"moldloft.{name}")
     home = _HOMES.get(name)
     if home is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

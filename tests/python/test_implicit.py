@@ -75,6 +75,18 @@ def test_arithmetic_is_that_of_numpy():
     assert np.array_equal(cases[2][0](many)[:100], cases[2][0](many[:100]))
 
 
+def test_second_derivatives_are_exact():
+    x, y, z = im.axes()
+    field = x**3 * y - im.sin(z) * x
+    p = np.array([[0.3, -0.7, 1.1], [2.0, 0.5, -0.4]])
+    h = 1e-5
+    for k in range(3):
+        step = h * np.eye(3)[k]
+        slope = (field.gradient(p + step) - field.gradient(p - step)) / (2 * h)
+        assert np.allclose(field.hessian(p)[:, k], slope, atol=1e-8)
+    assert np.array_equal(im.sphere((0, 0, 0), 1).hessian((1, 2, 3)), 2 * np.eye(3))
+
+
 def test_forms_are_remembered_and_moved():
     ball = im.sphere((1, 2, 3), 0.5).translated((1, 0, 0)).scaled(2)
     assert ball.form == {"kind": "sphere", "centre": [4.0, 4.0, 6.0], "radius": 1.0}
@@ -98,6 +110,11 @@ def test_sets_members_winners_and_attributes():
     assert (-a).member((0, 0, 0)) == 1 and (~a).member((5, 0, 0)) == -1
     assert a.member((1, 0, 0)) == 0
     assert both.winner([[0, 0, 0], [1.5, 0, 0]]).tolist() == [0, 1]
+    # Known to be on a surface, whatever rounding says.
+    near = (1 + 1e-6, 0, 0)
+    ball = im.sphere((0, 0, 0), 1)
+    assert a.member(near) == 1 and a.member(near, known=[ball]) == 0
+    assert (a & b).member((0.25, 0.6, 0), known=[ball]) == 0
     first, second = both.leaves
     assert (first.name, first.attributes.colour, first.attributes.tolerance) == ("a", 3, 1e-3)
     assert (second.name, second.attributes.material) == ("both", "brass")
@@ -397,6 +414,47 @@ def test_models_give_fields_and_sets(tmp_path):
     assert trimesh.load(files[0]).is_watertight
     m.write(tmp_path / "tee.3mf")
     assert m["part"].volume > 0 and m.eval("part.volume") > 0
+
+
+def test_attributes_reach_every_triangle_and_the_files(tmp_path):
+    text = """AbsPoint C(0, 0, 0);
+    set ball = attributes(set(sphere(C, 1)), name = "hull", colour = 4,
+        material = "brass", tolerance = 1e-3);
+    set cut = attributes(set(plane({0, 0, 1}, {0, 0, 0.2})), colour = 9);
+    set sheet = attributes(set(abs(plane({1, 0, 0}, {2, 0, 0}))), material = "cloth");
+    SetBody b(ball & cut | sheet & cuboid({1.5, -1, -1}, {2.5, 1, 1}), depth = 5, tags = "part");
+    """
+    m = moldloft.loads(text)
+    patches = {p.name: p for p in m.mesh().patches}
+    # The name that was given stays; the other is that of its declaration.
+    assert set(patches) == {"b.hull", "b.cut", "b.sheet"}
+    hull, cut, sheet = patches["b.hull"], patches["b.cut"], patches["b.sheet"]
+    assert (hull.colour, hull.tags, cut.colour, cut.tags) == (4, ["part", "brass"], 9, ["part"])
+    assert sheet.tags == ["part", "cloth"]
+    groups = {g["name"]: g for g in m.eval("b")["groups"]}
+    assert groups["hull"]["tolerance"] == 1e-3 and groups["cut"]["tolerance"] is None
+    assert groups["hull"]["stop"] - groups["hull"]["start"] == hull.panels
+    assert len(m.mesh(tags="brass").faces) == hull.panels
+    assert "\ng b.hull" in m.write(tmp_path / "b.obj")[0].read_text()
+    assert "brass" in (tmp_path / "b.obj").read_text()
+    m.write(tmp_path / "b.3mf")
+    with zipfile.ZipFile(tmp_path / "b.3mf") as archive:
+        text = archive.read("3D/3dmodel.model").decode()
+    assert text.count("<base ") == 3 and 'name="b.hull" displaycolor="#B84A40"' in text
+    document = m.write(tmp_path / "b.glb")[0].read_bytes()
+    size = int.from_bytes(document[12:16], "little")
+    materials = json.loads(document[20 : 20 + size])["materials"]
+    colours = {k["name"]: tuple(k["pbrMetallicRoughness"]["baseColorFactor"]) for k in materials}
+    assert len(set(colours.values())) == 3 and set(colours) == set(patches)
+    # From Python, triangle by triangle.
+    ball = im.Set(im.sphere((0, 0, 0), 1), colour=4, material="brass", tolerance=1e-3)
+    half = (ball & im.Set(im.axes()[2], colour=9)).facets(depth=4)
+    said = [half.attributes[k] for k in half.primitive]
+    assert {(s["colour"], s["material"], s["tolerance"]) for s in said} == {
+        (4, "brass", 1e-3),
+        (9, None, None),
+    }
+    assert "brass" in half.write(tmp_path / "half.obj").read_text()
 
 
 def test_the_command(tmp_path):

@@ -107,7 +107,7 @@ class Facets:
 
     @property
     def attributes(self) -> list[dict[str, Any]]:
-        """Name, colour, material and tolerance of each patch of the solids, in order."""
+        """Name, colour, material and tolerance of each of :attr:`patches`, in order."""
         return self._core.attributes()
 
     @property

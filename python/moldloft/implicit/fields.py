@@ -70,6 +70,11 @@ class Field:
         flat, shape = points_of(points)
         return self._core.gradients(flat)[1].reshape(*shape, 3)
 
+    def hessian(self, points: ArrayLike) -> Floats:
+        """The exact matrices of second derivatives at points ``(…, 3)``, ``(…, 3, 3)``."""
+        flat, shape = points_of(points)
+        return self._core.hessians(flat).reshape(*shape, 3, 3)
+
     def range(self, low: Triple, high: Triple) -> tuple[float, float]:
         """Proved bounds of the values over a box, rounded outward."""
         return self._core.range(triple(low, "low corner"), triple(high, "high corner"))

@@ -319,13 +319,18 @@ class Set:
         values = self._core.values(flat).reshape(shape)
         return values if shape else float(values)
 
-    def member(self, points: ArrayLike, tolerance: float = 1e-9) -> Any:
+    def member(
+        self, points: ArrayLike, tolerance: float = 1e-9, *, known: Sequence[Field] = ()
+    ) -> Any:
         """-1 in the solid, 0 on the surface, 1 in air, for points ``(…, 3)``.
 
-        A primitive counts as zero where it is at most ``tolerance`` from its surface.
+        A primitive counts as zero where it is at most ``tolerance`` from its surface, and those of
+        ``known`` everywhere: fields of the set on whose surfaces the points are known to lie, whatever
+        rounding says.
         """
         flat, shape = points_of(points)
-        members = self._core.members(flat, float(tolerance)).reshape(shape)
+        cores = [field._core for field in known]
+        members = self._core.members(flat, float(tolerance), cores).reshape(shape)
         return members if shape else int(members)
 
     def winner(self, points: ArrayLike) -> Any:

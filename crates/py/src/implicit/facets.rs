@@ -91,12 +91,17 @@ impl PyFacets {
         self.mesh.patches().iter().enumerate().map(one).collect()
     }
 
-    /// The attributes of each patch of the solids, and of the sheets' leaves.
+    /// The attributes of each patch: those of the solids, then those of the sheets.
     fn attributes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let solid = solid_of(&self.pieces);
         let list = PyList::empty(py);
         for &leaf in &solid.patch_leaves {
             list.append(attributes(py, &solid.leaves[leaf].attributes)?)?;
+        }
+        if let Pieces::Mixed(mixed) = &self.pieces {
+            for sheet in &mixed.sheets {
+                list.append(attributes(py, &mixed.leaves[sheet.leaf].attributes)?)?;
+            }
         }
         Ok(list)
     }

@@ -251,6 +251,22 @@ impl PyField {
         Ok((PyArray1::from_vec(py, all.iter().map(|g| g.value).collect()), slopes))
     }
 
+    /// The matrices of second derivatives, row by row.
+    fn hessians<'py>(
+        &self,
+        py: Python<'py>,
+        at: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let points = points(&at)?;
+        let all: Vec<[Vec3; 3]> = py.detach(|| match self.slots.is_empty() {
+            true => points.par_iter().map(|p| self.inner.hessian(*p).second).collect(),
+            false => points.iter().map(|p| self.inner.hessian(*p).second).collect(),
+        });
+        finished(py, &self.slots, Ok(()))?;
+        let fill = |out: &mut [Vec3]| out.copy_from_slice(all.as_flattened());
+        Ok(arrays::filled(py, [3 * all.len(), 3], fill).0)
+    }
+
     fn range(&self, py: Python<'_>, low: [f64; 3], high: [f64; 3]) -> PyResult<(f64, f64)> {
         let over = box_of(low, high);
         let range = py.detach(|| self.inner.range(&over));

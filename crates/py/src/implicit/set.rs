@@ -227,15 +227,17 @@ impl PySet {
         Ok(PyArray1::from_vec(py, out))
     }
 
-    /// -1 in the solid, 0 on the surface, 1 in air.
+    /// -1 in the solid, 0 on the surface, 1 in air; the points lie on the surfaces of `known`.
     fn members<'py>(
         &self,
         py: Python<'py>,
         at: PyReadonlyArray2<'py, f64>,
         tolerance: f64,
+        known: Vec<PyRef<'py, PyField>>,
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let points = points(&at)?;
-        let one = |p: &Vec3| match self.inner.member(*p, tolerance) {
+        let known: Vec<_> = known.iter().map(|f| f.inner.clone()).collect();
+        let one = |p: &Vec3| match self.inner.member_knowing(*p, tolerance, &known) {
             Membership::Solid => -1i8,
             Membership::Surface => 0,
             Membership::Air => 1,
