@@ -68,17 +68,22 @@ impl Random {
 #[test]
 fn random_trees_are_closed_manifold_and_oriented() {
     let soak = std::env::var_os("MOLDLOFT_SOAK").is_some();
-    let (mut cells, mut undecided) = (0, 0);
+    // Cells through which two edges pass are undecided. They lie about corners and are about as many however
+    // fine the cells are, so their share is told where cells resolve the body: on every tenth tree.
+    let (mut cells, mut undecided) = ([0; 2], [0; 2]);
     for seed in 0..if soak { 10_000 } else { 60 } {
+        let fine = usize::from(seed % 10 == 0);
+        let depth = [5, 7][fine];
         let mut random = Random(seed * 7919 + 1);
         let leaves = 1 + random.below(6);
         let set = random.tree(leaves);
-        let f = facets(&set, &cube(1.2), 5);
+        let f = facets(&set, &cube(1.2), depth);
         if f.mesh.faces().is_empty() {
             continue;
         }
         sound(&f);
-        let (volume, best) = (bracket(&set, &cube(1.2), 5).unwrap().volume(), f.moments().volume());
+        let (volume, best) =
+            (bracket(&set, &cube(1.2), depth).unwrap().volume(), f.moments().volume());
         // Facets miss what is thinner than a cell: up to a cell's volume per undecided cell.
         let slack = f.step.powi(3) * (1.0 + f.undecided.len() as f64);
         assert!(
@@ -93,10 +98,10 @@ fn random_trees_are_closed_manifold_and_oriented() {
             };
             assert!(pair.into_iter().any(near), "seed {seed}: faces {pair:?} cut each other");
         }
-        cells += f.cells;
-        undecided += f.undecided.len();
+        cells[fine] += f.cells;
+        undecided[fine] += f.undecided.len();
     }
-    let share = undecided as f64 / cells as f64;
-    println!("{undecided} of {cells} cells undecided: {share:.2e}");
-    assert!(share < 2e-2, "{share}");
+    let [coarse, fine] = [0, 1].map(|k| undecided[k] as f64 / cells[k] as f64);
+    println!("undecided: {undecided:?} of {cells:?} cells, {coarse:.2e} and {fine:.2e}");
+    assert!(fine < 1e-3 && coarse < 1e-2, "{coarse} {fine}");
 }
