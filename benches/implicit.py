@@ -2,7 +2,9 @@
 
 Manifold takes a Python function of one point, so most of its time is Python's; its times are told
 for what they are. Quality is compared too: distance of triangle centres from the surface,
-self-intersections, volume.
+self-intersections, volume. fidget is timed by a program of its own, `cargo run --release` in
+`benches/fidget`. libfive is in no registry (PyPI has an old source package only): its figures in
+docs/performance.md are those of another day, with fidget's of that day beside them.
 
 Run with `python benches/implicit.py [depth …]` on a release build; RAYON_NUM_THREADS=1 for one
 thread.
