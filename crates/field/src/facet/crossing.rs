@@ -2,6 +2,7 @@
 
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Vec3};
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Pairs of faces of a triangle mesh that cut each other, in order, by the signs of volumes; pairs
@@ -28,7 +29,7 @@ pub fn crossing_faces(mesh: &Mesh, flagged: Option<&[bool]>) -> Vec<[usize; 2]> 
 pub(super) fn crossings(
     positions: &[Vec3],
     count: usize,
-    names: impl Fn(usize) -> [u32; 3],
+    names: impl Fn(usize) -> [u32; 3] + Sync,
     flagged: Option<&[bool]>,
 ) -> Vec<[usize; 2]> {
     let chosen = |f: usize| flagged.is_none_or(|flags| flags[f]);
@@ -72,11 +73,10 @@ pub(super) fn crossings(
             map.entry(bin).or_default().push(f);
         }
     }
-    let mut pairs = Vec::new();
-    for f in 0..count {
+    let with_one = |f: usize| {
         let own = Box3::around(corners(f));
         if (0..3).any(|k| own.low[k] > all.high[k] || own.high[k] < all.low[k]) {
-            continue;
+            return Vec::new();
         }
         let inside = Box3 {
             low: Vec3::from([0, 1, 2].map(|k| own.low[k].max(all.low[k]))),
@@ -87,23 +87,18 @@ pub(super) fn crossings(
             .filter_map(|b| map.get(&b))
             .flatten()
             .copied()
+            .filter(|&g| g != f && (g < f || !chosen(f)))
             .collect();
         near.sort_unstable();
         near.dedup();
-        for g in near {
-            if g == f || (g > f && chosen(f)) {
-                continue;
-            }
-            let other = Box3::around(corners(g));
-            if (0..3).any(|k| own.low[k] > other.high[k] || own.high[k] < other.low[k]) {
-                continue;
-            }
-            let pair = [f.min(g), f.max(g)];
-            if cut(pair.map(&names), pair.map(corners)) {
-                pairs.push(pair);
-            }
-        }
-    }
+        let meets = |g: &usize| {
+            let other = Box3::around(corners(*g));
+            (0..3).all(|k| own.low[k] <= other.high[k] && own.high[k] >= other.low[k])
+        };
+        let pairs = near.into_iter().filter(meets).map(|g| [f.min(g), f.max(g)]);
+        pairs.filter(|pair| cut(pair.map(&names), pair.map(corners))).collect()
+    };
+    let mut pairs: Vec<[usize; 2]> = (0..count).into_par_iter().flat_map_iter(with_one).collect();
     pairs.sort_unstable();
     pairs.dedup();
     pairs
