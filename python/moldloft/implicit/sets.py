@@ -324,9 +324,8 @@ class Set:
     ) -> Any:
         """-1 in the solid, 0 on the surface, 1 in air, for points ``(…, 3)``.
 
-        A primitive counts as zero where it is at most ``tolerance`` from its surface, and those of
-        ``known`` everywhere: fields of the set on whose surfaces the points are known to lie, whatever
-        rounding says.
+        A primitive counts as zero where it is at most ``tolerance`` from its surface. The fields
+        ``known`` do everywhere: on their surfaces the points are known to lie.
         """
         flat, shape = points_of(points)
         cores = [field._core for field in known]
