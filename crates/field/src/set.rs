@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub struct Attributes {
     /// Name.
     pub name: Option<String>,
+    /// True for a name that was asked for: it stays when the set is declared under another.
+    pub given: bool,
     /// Index of a palette colour, 0 to 15.
     pub colour: Option<u8>,
     /// Material.
@@ -27,6 +29,7 @@ impl Attributes {
     pub fn or(&self, outer: &Self) -> Self {
         Self {
             name: self.name.clone().or_else(|| outer.name.clone()),
+            given: if self.name.is_some() { self.given } else { outer.given },
             colour: self.colour.or(outer.colour),
             material: self.material.clone().or_else(|| outer.material.clone()),
             tolerance: self.tolerance.or(outer.tolerance),

@@ -110,6 +110,16 @@ fn attributes_come_from_the_nearest_handle() {
 }
 
 #[test]
+fn a_name_that_was_asked_for_is_told_from_others() {
+    let asked = Attributes { name: Some("hull".into()), given: true, ..Attributes::default() };
+    let a = ball(0.0, 1.0).named("field").with(asked);
+    assert!(a.attributes().is_some_and(|a| a.given && a.name.as_deref() == Some("hull")));
+    let b = a.with(Attributes { colour: Some(3), ..Attributes::default() });
+    assert!(b.attributes().is_some_and(|b| b.given && b.colour == Some(3)));
+    assert!(ball(0.0, 1.0).named("field").attributes().is_some_and(|a| !a.given));
+}
+
+#[test]
 fn solids_from_planes() {
     let box_ = Set::cuboid(v(0.0, 0.0, 0.0), v(1.0, 2.0, 3.0)).unwrap();
     assert_eq!((box_.contents(), box_.degree()), (6, 1));

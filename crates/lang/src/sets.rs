@@ -179,14 +179,13 @@ fn row_of(ty: Type) -> Option<&'static str> {
     }
 }
 
-/// A set or field with the name that it is declared under, for its faces; a set that has one keeps it.
+/// A set or field with the name that it is declared under, for its faces; one that was given by
+/// `attributes` stays.
 pub(crate) fn called<T: Real>(ty: Type, value: Value<T>, name: &str) -> Value<T> {
     match (ty, value) {
         (Type::Field, Value::Field(f)) => Value::Field(f.called(name)),
         (Type::Set, value @ Value::Set(_)) => match set_of(&value) {
-            Some(set) if set.attributes().is_none_or(|a| a.name.is_none()) => {
-                set_value(set.named(name))
-            }
+            Some(set) if set.attributes().is_none_or(|a| !a.given) => set_value(set.named(name)),
             _ => value,
         },
         (_, value) => value,

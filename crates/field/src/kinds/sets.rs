@@ -160,6 +160,7 @@ impl<T: Real> Build<T> for Attributed<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let text = |t: Option<Arc<str>>| t.map(|t| t.to_string());
         Ok(set_value(self.set.0.with(Attributes {
+            given: self.name.is_some(),
             name: text(self.name),
             colour: self.colour.map(|c| c as u8),
             material: text(self.material),

@@ -171,7 +171,13 @@ impl PySet {
         material: Option<String>,
         tolerance: Option<f64>,
     ) -> Self {
-        self.from(self.inner.with(Attributes { name, colour, material, tolerance }))
+        self.from(self.inner.with(Attributes {
+            given: name.is_some(),
+            name,
+            colour,
+            material,
+            tolerance,
+        }))
     }
 
     #[getter]
