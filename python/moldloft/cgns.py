@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from moldloft.models import Model
 
-__all__ = ["Interface", "Zone", "interfaces", "write", "zones"]
+__all__ = ["Interface", "Zone", "interfaces", "weld", "write", "write_grids", "zones"]
 
 _LONGEST = 32
 """Characters of a node's name."""
@@ -197,6 +197,91 @@ def write(model: Model, title: str) -> bytes:
     return memory.getvalue()
 
 
+def weld(points: NDArray[np.float64], tolerance: float) -> NDArray[np.uint32]:
+    """A number for each point, the same for points no further apart than the tolerance.
+
+    Chains of near points become one: what is welded to a point is welded to all that it is welded
+    to.
+
+    >>> weld(np.array([[0.0, 0, 0], [1, 0, 0], [1e-12, 0, 0]]), 1e-9)
+    array([0, 1, 0], dtype=uint32)
+    """
+    parent = list(range(len(points)))
+
+    def root(k: int) -> int:
+        while parent[k] != k:
+            parent[k] = parent[parent[k]]
+            k = parent[k]
+        return k
+
+    cells: dict[tuple[int, ...], list[int]] = {}
+    side = max(tolerance, 1e-300)
+    keys = np.floor(points / side).astype(object) if len(points) else np.empty((0, 3))
+    around = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
+    for number, (point, key) in enumerate(zip(points, keys, strict=True)):
+        for step in around:
+            near = tuple(int(a) + b for a, b in zip(key, step, strict=True))
+            for other in cells.get(near, ()):
+                if float(np.abs(points[other] - point).max()) <= tolerance:
+                    low, high = sorted((root(other), root(number)))
+                    parent[high] = low
+        cells.setdefault(tuple(int(a) for a in key), []).append(number)
+    return np.array([root(k) for k in range(len(points))], dtype=np.uint32)
+
+
+def write_grids(
+    grids: Sequence[NDArray[np.float64]],
+    names: Sequence[str],
+    title: str,
+    tolerance: float = 1e-9,
+) -> bytes:
+    """The file of surfaces of points ``(ni, nj, 3)``: zones, interfaces, free edges as boundaries.
+
+    Edges meet where their points coincide, within ``tolerance`` times the size of all. What meets
+    one to one becomes an interface, seen from both sides; of edges without length (poles) none.
+    """
+    try:
+        import h5py
+    except ImportError as error:
+        raise Error("error: CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
+    if not grids:
+        raise Error("error: cannot write cgns: there is no grid")
+    for number, grid in enumerate(grids, 1):
+        if grid.ndim != 3 or grid.shape[-1] != 3 or min(grid.shape[:2]) < 2:
+            raise Error(
+                f"error: grid {number} has the shape {grid.shape}; CGNS takes (ni, nj, 3) with "
+                "two lines and more each way"
+            )
+        if not np.isfinite(grid).all():
+            raise Error("error: cannot write cgns: a position is not a finite number")
+    positions = np.concatenate([np.asarray(grid, float).reshape(-1, 3) for grid in grids]) + 0.0
+    numbers = np.arange(len(positions), dtype=np.uint32)
+    patches: list[Zone] = []
+    taken: set[str] = set()
+    start = 0
+    edges: list[NDArray[np.uint32]] = []
+    for grid, name in zip(grids, names, strict=True):
+        count = grid.shape[0] * grid.shape[1]
+        own = numbers[start : start + count].reshape(grid.shape[:2])
+        edges += [own[0], own[-1], own[:, 0], own[:, -1]]
+        patches.append(Zone(unique(name, taken), name, "surface", own))
+        start += count
+    rim = np.unique(np.concatenate(edges))
+    size = float(np.ptp(positions, axis=0).max())
+    # Inner points keep their own numbers; those of the edges are shared.
+    shared = numbers.copy()
+    shared[rim] = rim[weld(positions[rim], tolerance * size)]
+    welded = [Zone(zone.name, zone.family, zone.tag, shared[zone.vertices]) for zone in patches]
+    joints = interfaces(welded)
+    memory = io.BytesIO()
+    with h5py.File(memory, "w", track_order=True) as file:
+        base = begin(file, title, 2)
+        _families(base, patches)
+        for z, (zone, same) in enumerate(zip(patches, welded, strict=True)):
+            _zone(base, patches, z, zone, positions, joints, "", same)
+    return memory.getvalue()
+
+
 def begin(file: Any, title: str, dimensions: int) -> Any:
     """The base of a new file, of cells of so many dimensions in space."""
     _root(file)
@@ -256,6 +341,7 @@ def _zone(
     positions: NDArray[np.float64],
     joints: Sequence[Interface],
     symmetry: str,
+    shared: Zone | None = None,
 ) -> None:
     nu, nv = zone.vertices.shape
     sizes = np.array([[nu, nv], [nu - 1, nv - 1], [0, 0]], dtype=np.int32)
@@ -271,7 +357,7 @@ def _zone(
     own = [joint for joint in joints if joint.zone == z]
     if own:
         _connectivity(place, patches, zone, own)
-    _boundaries(place, zone, positions, own, symmetry)
+    _boundaries(place, shared or zone, positions, own, symmetry)
 
 
 def zone_node(zone: Zone) -> str:

@@ -20,6 +20,7 @@ __all__ = [
     "read_aerofoil",
     "read_plot3d",
     "read_points",
+    "write_cgns",
     "write_csv",
     "write_plot3d",
     "write_stl",
@@ -216,6 +217,46 @@ def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
     target = Path(path)
     files = _core.grids_as_vts(_grids(grids), target.stem)
     return commit(target.parent, [Output(name, bytes(data)) for name, data in files])
+
+
+def write_cgns(
+    path: str | Path,
+    grids: Sequence[ArrayLike],
+    names: Sequence[str] | None = None,
+    *,
+    tolerance: float = 1e-9,
+) -> Path:
+    """Write surface grids as structured CGNS, with the interfaces found between them.
+
+    Parameters
+    ----------
+    path
+        The file.
+    grids
+        Arrays (ni, nj, 3).
+    names
+        The zones' names; ``grid1``, ``grid2``, ... by default.
+    tolerance
+        Points of edges are the same when they are no further apart, as a share of the size of all.
+    """
+    target = Path(path)
+    return _commit(path, cgns_bytes(target.name, grids, names, tolerance))
+
+
+def cgns_bytes(
+    name: str,
+    grids: Sequence[ArrayLike],
+    names: Sequence[str] | None = None,
+    tolerance: float = 1e-9,
+) -> bytes:
+    """The content of such a file."""
+    from moldloft import cgns
+
+    arrays = [np.asarray(grid, dtype=np.float64) for grid in grids]
+    words = list(names) if names else [f"grid{k + 1}" for k in range(len(arrays))]
+    if len(words) != len(arrays):
+        raise Error(f"error: {len(arrays)} grids, but {len(words)} names")
+    return cgns.write_grids(arrays, words, Path(name).stem, tolerance)
 
 
 def write_stl(path: str | Path, grids: Sequence[ArrayLike], *, flip: bool = False) -> Path:

@@ -246,7 +246,15 @@ class Model:
     @property
     def written(self) -> dict[str, bytes]:
         """What the program wrote, by file name; ``moldloft run`` puts it on the disk."""
-        return dict(self._document.written())
+        files = dict(self._document.written())
+        for name, blocks in self._document.written_for_cgns():
+            from moldloft import _core, grids
+
+            # CGNS is HDF5: the program left its blocks in Plot3D, the file is made here.
+            found, _ = _core.read_plot3d(files[name])
+            surfaces = [block[:, :, 0, :] for block in found]
+            files[name] = grids.cgns_bytes(name, surfaces, blocks)
+        return files
 
     def refine(self, times: int) -> None:
         """Halve the intervals of all sizes that the program declares by ``refined`` so often.

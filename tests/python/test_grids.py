@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import moldloft
 from moldloft import grids
+from moldloft.cli import main
 from moldloft.errors import Error, FileError
 from moldloft.grids import Plot3DVariant
 
@@ -107,3 +109,165 @@ def test_aerofoils(tmp_path: Path) -> None:
     other = grids.read_aerofoil(path)
     assert other.listing == "lednicer"
     assert np.array_equal(other.points, wedge.points)
+
+
+def nodes(group: object, label: str) -> dict[str, object]:
+    """The children of a CGNS node with a label."""
+    kinds = {k: g.attrs["label"].decode() for k, g in group.items() if "label" in g.attrs}  # type: ignore[attr-defined]
+    return {k: group[k] for k, kind in kinds.items() if kind == label}  # type: ignore[index]
+
+
+def check_cgns(path: Path, given: dict[str, np.ndarray]) -> list[tuple[str, str]]:
+    """Coordinates come back, interfaces join equal points; the pairs of zones that are joined."""
+    h5py = pytest.importorskip("h5py")
+    joined = []
+    with h5py.File(path) as file:
+        (base,) = nodes(file, "CGNSBase_t").values()
+        assert base[" data"][:].tolist() == [2, 3]
+        zones = nodes(base, "Zone_t")
+        assert list(zones) == [f"Z_{name}" for name in given]
+
+        def points(zone: str) -> np.ndarray:
+            grid = zones[zone]["GridCoordinates"]
+            return np.stack([grid[f"Coordinate{c}"][" data"][:].T for c in "XYZ"], axis=-1)
+
+        for name, grid in given.items():
+            ni, nj = grid.shape[:2]
+            sizes = zones[f"Z_{name}"][" data"][:].tolist()
+            assert sizes == [[ni, nj], [ni - 1, nj - 1], [0, 0]]
+            assert np.array_equal(points(f"Z_{name}"), grid + 0.0)
+        for name, zone in zones.items():
+            for one in nodes(
+                zone.get("ZoneGridConnectivity", {}), "GridConnectivity1to1_t"
+            ).values():
+                donor = bytes(one[" data"][:].tobytes()).decode().rstrip("\0")
+                here, there = one["PointRange"][" data"][:], one["PointRangeDonor"][" data"][:]
+                run = [
+                    np.rint(np.linspace(a, b, np.abs(b - a).max() + 1)).astype(int) - 1
+                    for a, b in ((here[0], here[1]), (there[0], there[1]))
+                ]
+                p, q = points(name)[tuple(run[0].T)], points(donor)[tuple(run[1].T)]
+                assert np.abs(p - q).max() <= 1e-9 * 4
+                joined.append((name, donor))
+    return joined
+
+
+def test_cgns_of_arrays(tmp_path: Path) -> None:
+    pytest.importorskip("h5py")
+    upper, lower = body()[:, :10], body()[::-1, 9:] + 1e-12
+    path = grids.write_cgns(tmp_path / "b.cgns", [upper, lower], ["upper", "lower"])
+    joined = check_cgns(path, {"upper": upper, "lower": lower})
+    assert joined == [("Z_upper", "Z_lower"), ("Z_lower", "Z_upper")]
+    # A closed grid meets itself, its poles meet nothing.
+    turn = np.linspace(0, 2 * np.pi, 9)
+    along = np.linspace(0, np.pi, 5)[:, None]
+    ball = np.stack(
+        [np.cos(along) + 0 * turn, np.sin(along) * np.cos(turn), np.sin(along) * np.sin(turn)], -1
+    )
+    path = grids.write_cgns(tmp_path / "ball.cgns", [ball])
+    assert check_cgns(path, {"grid1": ball}) == [("Z_grid1", "Z_grid1")] * 2
+    for bad, match in [
+        ([], "no grid"),
+        ([np.zeros((3, 1, 3))], "two lines"),
+        ([np.full((2, 2, 3), np.nan)], "finite"),
+    ]:
+        with pytest.raises(Error, match=match):
+            grids.write_cgns(tmp_path / "bad.cgns", bad)
+    with pytest.raises(Error, match="names"):
+        grids.write_cgns(tmp_path / "bad.cgns", [ball], ["a", "b"])
+
+
+PROGRAM = """load "stdsubs.sdl"
+surface lower[4,3], upper[4,3];
+for (j = 1:3) {
+    lower[,j] = {uniform(0, 3, 4), j*uniform(1, 1, 4), uniform(0, 0, 4)};
+    upper[,j] = {uniform(0, 3, 4), (2 + j)*uniform(1, 1, 4), uniform(0, 1, 4)*(j - 1)};
+}
+surface nose[3,3];
+for (j = 1:3) nose[,j] = {{0, 0, 0}, {1, j - 2, 0}, {2, 2*j - 4, 1}};
+"""
+
+
+def test_a_program_writes_every_format(tmp_path: Path) -> None:
+    pytest.importorskip("h5py")
+    program = tmp_path / "p.sdl"
+    calls = """
+write_p3d("plain.x", lower, upper);
+write_p3d("odd.x", "records single big 2d mark8", lower);
+write_p3d("holes.x", "text single-block", lower, {{1, 0, 1}, {1, 1, 1}, {1, 1, 1}, {0, 1, 1}}.x*0);
+write_vts("two.vts", lower, upper);
+write_vts("out/one.vts", lower);
+write_stl("nose.stl", nose);
+write_stl("turned.stl", "flip", nose);
+write_cgns("both.cgns", lower, upper);
+write_csv("edge.csv", lower[,1], upper[4,]);
+surface back = read_p3d("plain.x", 2);
+assert max(|back - upper|) == 0;
+curve edge = read_points("edge.csv");
+assert edge.d1 == 7 and max(|edge[1:4] - lower[,1]|) == 0;
+"""
+    calls = calls.replace("{{1, 0, 1}, {1, 1, 1}, {1, 1, 1}, {0, 1, 1}}.x*0", "lower.z")
+    program.write_text(PROGRAM + calls)
+    out = tmp_path / "out"
+    assert main(["run", str(program), "-o", str(out)]) == 0
+    m = moldloft.load(program)
+    lower, upper, nose = (np.asarray(m[name]) for name in ("lower", "upper", "nose"))
+    blocks, found, _ = grids.read_plot3d(out / "plain.x")
+    assert found == Plot3DVariant()
+    assert np.array_equal(blocks[0], lower) and np.array_equal(blocks[1], upper)
+    blocks, found, _ = grids.read_plot3d(out / "odd.x")
+    assert found == Plot3DVariant("records", False, True, False, True, 8)
+    assert np.array_equal(blocks[0], lower)
+    _, found, holes = grids.read_plot3d(out / "holes.x")
+    assert (found.layout, found.multi) == ("text", False)
+    assert holes is not None and not holes[0].any()
+    assert (out / "two.vtm").exists() and (out / "out" / "one.vts").exists()
+    # Four quads, two triangles each, less the two at the pole.
+    assert (out / "nose.stl").stat().st_size == 84 + 50 * 6
+    joined = check_cgns(out / "both.cgns", {"lower": lower, "upper": upper})
+    assert joined == [("Z_lower", "Z_upper"), ("Z_upper", "Z_lower")]
+    assert np.array_equal(grids.read_points(out / "edge.csv")[4:], upper[3])
+    meshio = pytest.importorskip("meshio")
+    facets = [meshio.read(out / name) for name in ("nose.stl", "turned.stl")]
+    for mesh, sign in zip(facets, (1, -1), strict=True):
+        a, b, c = (mesh.points[mesh.cells_dict["triangle"][:, k]] for k in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        assert (area > 0).all()
+        # r_i x r_j of a nose that opens forward along y points along z.
+        assert (sign * np.cross(b - a, c - a)[:, 2] > 0).all()
+    # The same from the command, for all surfaces of the program.
+    assert main(["run", str(program), "-o", str(out), "--to", "cgns", "p3d", "stl", "vts"]) == 0
+    check_cgns(out / "p.cgns", {"lower": lower, "upper": upper, "nose": nose, "back": upper})
+
+
+@pytest.mark.parametrize(
+    ("call", "match"),
+    [
+        ('write_p3d("a.x", "purple", lower);', "no variant"),
+        ('write_p3d("a.x", "single-block", lower, upper);', "single-block"),
+        ('write_p3d("a.x", "2d", upper);', "2-D"),
+        ('write_p3d("a.x", lower, upper.z);', "whole number"),
+        ('write_p3d("a.x");', "other arguments"),
+        ('write_p3d("a.x", "text");', "nothing to write"),
+        ('write_p3d("../a.x", lower);', "outside-folder"),
+        ('write_stl("/a.stl", lower);', "outside-folder"),
+        ('write_stl("a.stl", "upside", lower);', "knows no"),
+        ('write_stl("a.stl", lower[1,]);', "surfaces"),
+        ('write_cgns("a.cgns", lower[1,]);', "no cells"),
+        ('write_vts("a.vts", 3);', "found a number"),
+        ('write_csv("a.csv", lower/0);', "finite"),
+        ('write_p3d("a.x", lower); surface q = read_p3d("a.x", 2);', "no block 2"),
+        ('curve q = read_points("none.csv");', "none.csv"),
+        ('curve q = read_aerofoil("../secret.dat");', "cannot read|outside"),
+    ],
+)
+def test_a_program_writes_wrongly(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], call: str, match: str
+) -> None:
+    program = tmp_path / "p.sdl"
+    program.write_text(PROGRAM + call)
+    assert main(["run", str(program), "-o", str(tmp_path / "out")]) == 1
+    import re
+
+    assert re.search(match, capsys.readouterr().err)
+    assert not (tmp_path / "out").exists()

@@ -162,6 +162,46 @@ def test_repl_reads_a_stream() -> None:
     assert failed.returncode == 1 and "unknown-name" in failed.stderr
 
 
+def test_repl_ends() -> None:
+    for word in ("exit", "quit", "exit();", ":q", ":quit"):
+        done = command("repl", text=f"1 + 1\n{word}\n2 + 2\n")
+        assert (done.returncode, done.stdout) == (0, "2\n"), word
+    # A variable of that name is a variable.
+    assert command("repl", text="float quit = 3\nquit\nexit\n").stdout == "3\n"
+
+
+def test_python_functions_with_arrays() -> None:
+    def raised(c: np.ndarray, by: float) -> np.ndarray:
+        return c + np.array([0, 0, 1.0]) * by
+
+    def radii(c: np.ndarray) -> np.ndarray:
+        return np.sqrt(c[..., 1] ** 2 + c[..., 2] ** 2)
+
+    def sheet(c: np.ndarray, n: float) -> np.ndarray:
+        return np.stack([c * (1 + k) for k in range(int(n))], axis=1)
+
+    text = """load "stdsubs.sdl"
+    param float h = 2;
+    curve c[5]; arc(c, 0, PI, 3);
+    curve up = raised(c, h);
+    farray r = radii(up);
+    surface s = sheet(up, 4);
+    transfinite(s);
+    for (k = 1:3) up = raised(up, h/2) + {0, 0, 1};
+    """
+    functions = {"raised": raised, "radii": radii, "sheet": sheet}
+    m = moldloft.loads(text, functions=functions)
+    assert m["up"].shape == (5, 3) and m["s"].shape == (5, 4, 3)
+    assert np.abs(m["r"] - np.hypot(m["c"][:, 1], 2)).max() < 1e-15
+    assert np.abs(m["up"][:, 2] - 8).max() < 1e-14
+    # Derivatives run through them: dz/dh = 1 + 3/2.
+    assert abs(m.derivative("up[2].z", "h") - 2.5) < 1e-12
+    with pytest.raises(ModelError, match=r"function-failed.*axes don't match|raised"):
+        moldloft.loads(text + "float x = radii(3);", functions=functions)
+    with pytest.raises(ModelError, match=r"wrong-result|returned an array"):
+        moldloft.loads("float x = odd();", functions={"odd": lambda: np.zeros((2, 2, 2, 2))})
+
+
 def test_files_outside_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "secret.txt").write_text("1 2 3")
     folder = tmp_path / "model"

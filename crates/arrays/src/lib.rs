@@ -26,6 +26,8 @@ mod spacing;
 mod spline;
 mod value;
 
+pub use value::called;
+
 use moldloft_registry::Row;
 use moldloft_registry::export::StaticRow;
 
@@ -108,6 +110,7 @@ pub fn rows() -> Vec<Row> {
         locate::Closest,
         locate::Project,
         locate::Intersect,
+        locate::Intersections,
         grids::Tfi,
         grids::EllipticGrid,
         grids::HyperbolicGrid,

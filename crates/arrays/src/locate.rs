@@ -223,10 +223,10 @@ fn nothing<const N: usize>(roots: &Roots<N>, what: &str) -> Fault {
 }
 
 /// Where two shapes with parameters meet: of two curves, or a curve and a surface, the points, in
-/// the order of the first curve's parameter; of two surfaces the longest branch of their
-/// intersection, as a curve of points.
+/// the order of the first curve's parameter; of two surfaces a branch of their intersection, as a
+/// curve of points: the longest, or another by its number.
 ///
-/// Points are found to 1e-12 of the size.
+/// Points are found to 1e-12 of the size. `intersections` gives all branches.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -241,35 +241,82 @@ pub struct Intersect<T: Scalar> {
     a: Value<T>,
     /// A curve or a surface.
     b: Value<T>,
+    /// Which branch, the longest first; of anything but two surfaces there is one.
+    #[field(default = 1, min = 1)]
+    branch: usize,
 }
 
 impl<T: Scalar> Build<T> for Intersect<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let points = match (&self.a, &self.b) {
-            (Value::Curve(a), Value::Curve(b)) => curves(a, b)?,
-            (Value::Curve(a), Value::Surface(b)) | (Value::Surface(b), Value::Curve(a)) => {
-                curve_surface(a, b)?
-            }
-            (Value::Surface(a), Value::Surface(b)) => surfaces(a, b)?,
-            (a, b) => {
-                let field = usize::from(matches!(a, Value::Curve(_) | Value::Surface(_)));
-                let other = [a, b][field];
-                let found = other.class().a();
-                let fault = Fault::new(
-                    "wrong-class",
-                    format!("expected a curve or a surface, found {found}"),
-                )
-                .expected("a curve or a surface with parameters")
-                .found(found);
-                return Err(match other {
-                    Value::Vectors(_) => fault.help("makecc(c) or makecs(s) makes one of points"),
-                    _ => fault,
-                }
-                .in_field(field));
-            }
-        };
-        Ok(crate::value::curve(points))
+        let (count, found) = meetings(&self.a, &self.b, Some(self.branch - 1))?;
+        match found.into_iter().next() {
+            Some(points) => Ok(crate::value::curve(points)),
+            None => Err(Fault::new("no-solution", format!("there is no branch {}", self.branch))
+                .expected(format!("a branch from 1 to {count}"))
+                .found(self.branch.to_string())
+                .in_field(2)),
+        }
     }
+}
+
+/// All branches of the intersection of two surfaces as a list of curves, the longest first; of other
+/// shapes the one curve that `intersect` gives.
+///
+/// `foreach (c in intersections(p, q))` walks through them, `intersections(p, q)[2]` is the second.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "intersections",
+    example = "Line a({0, 0, 0}, {1, 0, 0}); Line b({0, 1, 0}, {1, 1, 0}); RuledSurf r(a, b); \
+               BCurve w({{0, 0.5, 1}, {0.5, 0.5, -3}, {1, 0.5, 1}}); \
+               Line y({0, 0, 1}, {0, 1, 1}); TranSurf t(y, w); \
+               float n = 0; foreach (c in intersections(r, t)) n += 1; assert n == 2;"
+)]
+pub struct Intersections<T: Scalar> {
+    /// A curve or a surface.
+    a: Value<T>,
+    /// A curve or a surface.
+    b: Value<T>,
+}
+
+impl<T: Scalar> Build<T> for Intersections<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let (_, found) = meetings(&self.a, &self.b, None)?;
+        Ok(Value::list(found.into_iter().map(crate::value::curve)))
+    }
+}
+
+/// How many branches there are, and the points of all of them or of the one asked for (from 0).
+fn meetings<T: Real>(
+    a: &Value<T>,
+    b: &Value<T>,
+    only: Option<usize>,
+) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
+    let points = match (a, b) {
+        (Value::Curve(a), Value::Curve(b)) => curves(a, b)?,
+        (Value::Curve(a), Value::Surface(b)) | (Value::Surface(b), Value::Curve(a)) => {
+            curve_surface(a, b)?
+        }
+        (Value::Surface(a), Value::Surface(b)) => return surfaces(a, b, only),
+        (a, b) => {
+            let field = usize::from(matches!(a, Value::Curve(_) | Value::Surface(_)));
+            let other = [a, b][field];
+            let found = other.class().a();
+            let fault = Fault::new(
+                "wrong-class",
+                format!("expected a pcurve or a psurface, found {found}"),
+            )
+            .expected("a curve or a surface with parameters")
+            .found(found);
+            return Err(match other {
+                Value::Vectors(_) => fault.help("makecc(c) or makecs(s) makes one of points"),
+                _ => fault,
+            }
+            .in_field(field));
+        }
+    };
+    Ok((1, if only.unwrap_or(0) == 0 { vec![points] } else { Vec::new() }))
 }
 
 fn curves<T: Real>(a: &CurveRef<T>, b: &CurveRef<T>) -> Result<Vec<Vec3<T>>, Fault> {
@@ -331,17 +378,29 @@ fn curve_surface<T: Real>(
         .collect())
 }
 
-fn surfaces<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>) -> Result<Vec<Vec3<T>>, Fault> {
+fn surfaces<T: Real>(
+    a: &SurfaceRef<T>,
+    b: &SurfaceRef<T>,
+    only: Option<usize>,
+) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
     let (p, q) = (PlainSurface(&**a), PlainSurface(&**b));
-    let branches = Crossing::with_surface(&p, &q).branches().branches;
+    let mut branches = Crossing::with_surface(&p, &q).branches().branches;
     let length = |branch: &Branch| -> f64 {
         branch.stations.windows(2).map(|w| w[0].x.distance(w[1].x)).sum()
     };
-    let longest = branches
-        .iter()
-        .max_by(|x, y| length(x).total_cmp(&length(y)))
-        .ok_or_else(|| none("the two surfaces", f64::INFINITY))?;
-    Ok(longest
+    if branches.is_empty() {
+        return Err(none("the two surfaces", f64::INFINITY));
+    }
+    // Stable: branches of one length stay in the order in which they were found.
+    branches.sort_by(|x, y| length(y).total_cmp(&length(x)));
+    let wanted = |k: &usize| only.is_none_or(|only| only == *k);
+    let points = (0..branches.len()).filter(wanted).map(|k| along_branch(a, b, &branches[k]));
+    Ok((branches.len(), points.collect()))
+}
+
+/// The points of a branch, with derivatives.
+fn along_branch<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>, branch: &Branch) -> Vec<Vec3<T>> {
+    branch
         .stations
         .iter()
         .map(|station| {
@@ -365,5 +424,5 @@ fn surfaces<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>) -> Result<Vec<Vec3<T>
                 f.p - Vec3::lifted(f.u.re()) * step[0] - Vec3::lifted(f.v.re()) * step[1]
             })
         })
-        .collect())
+        .collect()
 }

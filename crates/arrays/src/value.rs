@@ -41,10 +41,30 @@ fn not_finite(index: usize) -> Fault {
         .in_item(index)
 }
 
-fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
+/// What a value is, in the words of the array language.
+pub fn called<T: Real>(value: &Value<T>) -> &'static str {
+    match value {
+        Value::Numbers(_) => "an farray",
+        Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)) => "a surface",
+        Value::Vectors(_) => "a curve",
+        Value::Curve(_) => "a parametric curve (pcurve)",
+        Value::Surface(_) => "a parametric surface (psurface)",
+        other => other.class().a(),
+    }
+}
+
+fn wrong<T: Real, R>(expected: &'static str, value: &Value<T>) -> Result<R, Fault> {
+    let found = called(value);
+    let fault = Fault::new("wrong-class", format!("expected {expected}, found {found}"))
+        .expected(expected)
+        .found(found);
     Err(match value {
-        Value::Unset => Fault::new("missing-argument", format!("{} is missing", class.a())),
-        _ => Fault::wrong_class(class, value.class()),
+        Value::Unset => Fault::new("missing-argument", format!("{expected} is missing")),
+        // Arrays of points and shapes with parameters are easily taken for each other.
+        Value::Curve(_) => fault.help("take points of it first: distc(curve, uniform(0, 1, 50))"),
+        Value::Surface(_) => fault
+            .help("take points of it first: dists(surface, uniform(0, 1, 50), uniform(0, 1, 30))"),
+        _ => fault,
     })
 }
 
@@ -93,7 +113,7 @@ impl<T: Scalar> FromValue<T> for Vectors<T> {
                 let points = items.iter().enumerate().map(each).collect::<Result<Vec<_>, _>>()?;
                 (ArrayShape::Row(points.len()), points)
             }
-            other => return wrong(Class::Vectors, other),
+            other => return wrong("a curve or a surface", other),
         };
         match items.iter().position(|p| !p.is_finite()) {
             Some(index) => Err(not_finite(index)),
@@ -105,11 +125,14 @@ impl<T: Scalar> FromValue<T> for Vectors<T> {
 impl<T: Scalar> FromValue<T> for Points<T> {
     const CLASS: Class = Class::Vectors;
     fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        if !matches!(value, Value::Vectors(_) | Value::List(_)) {
+            return wrong("a curve", value);
+        }
         let Vectors { shape, items } = Vectors::from_value(value)?;
         match shape {
             ArrayShape::Row(_) => Ok(Self(items)),
             _ => Err(Fault::new("wrong-shape", format!("expected a curve [n], found {shape}"))
-                .expected("a row of vectors: a curve")
+                .expected("a curve [n]")
                 .found(format!("a surface {shape}"))
                 .help("take one of its lines: s[1,] or s[,1]")),
         }
@@ -119,11 +142,14 @@ impl<T: Scalar> FromValue<T> for Points<T> {
 impl<T: Scalar> FromValue<T> for Net<T> {
     const CLASS: Class = Class::Vectors;
     fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        if !matches!(value, Value::Vectors(_) | Value::List(_)) {
+            return wrong("a surface", value);
+        }
         let Vectors { shape, items } = Vectors::from_value(value)?;
         match shape {
             ArrayShape::Grid(m, n) => Ok(Self { m, n, points: items }),
             _ => Err(Fault::new("wrong-shape", format!("expected a surface [m,n], found {shape}"))
-                .expected("a grid of vectors: a surface")
+                .expected("a surface [m,n]")
                 .found(format!("a curve {shape}"))),
         }
     }
@@ -283,11 +309,11 @@ impl<T: Scalar> FromValue<T> for Lattice<T> {
                 ArrayShape::Grid(m, n) => Ok(Self(Sheet::new(m, n, a.planes.clone()))),
                 shape => {
                     Err(Fault::new("wrong-shape", format!("expected a surface, found {shape}"))
-                        .expected("a grid of vectors: a surface [m,n]")
+                        .expected("a surface [m,n]")
                         .found(format!("a curve {shape}")))
                 }
             },
-            other => wrong(Class::Vectors, other),
+            other => wrong("a surface", other),
         }
     }
 }

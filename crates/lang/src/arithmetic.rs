@@ -4,32 +4,60 @@
 //! needed. Kinds and shapes are compared when an operator is met, so faults come in the order of the
 //! text and before any element is touched; what has no array in it is computed at once.
 
-use crate::fused::{Code, Src, Tape};
+use crate::env::Binding;
+use crate::fused::{Cell, Code, Origin, Src, Tape};
 use crate::interpreter::{Interpreter, silent};
 use crate::intrinsics;
 use crate::module::Module;
 use crate::ops;
+use crate::recipe::{Course, Key, Kind, Recorder};
+use crate::variables::Called as _;
 use crate::variables::{self, shape_text};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_num::Real;
 use moldloft_registry::{Array, ArrayShape, Body, Scalar, Value, Vectors};
 use moldloft_syntax::sdl::{
-    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, List, Step, UnaryOp,
+    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, List, Step, Symbol, UnaryOp,
 };
+use smallvec::SmallVec;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// An operand: a value, or rows of a tape.
+/// An operand: a value and where a recording finds it again, or rows of a tape.
 #[derive(Clone, Debug)]
 pub(crate) enum Operand<T: Real> {
-    Value(Value<T>),
+    Value(Value<T>, Cell),
     Lanes(Lanes),
 }
 
 /// A row or grid that a tape computes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lanes {
-    shape: ArrayShape,
+    pub shape: ArrayShape,
     what: What,
+}
+
+impl Lanes {
+    /// The results of a tape that make up its elements.
+    pub fn roots(&self) -> SmallVec<[Src; 3]> {
+        match self.what {
+            What::Number(a) => SmallVec::from_slice(&[a]),
+            What::Vector(v) => SmallVec::from_slice(&v),
+        }
+    }
+
+    /// The array of the rows of its roots.
+    pub fn value<T: Real>(&self, rows: SmallVec<[Vec<T>; 3]>) -> Value<T> {
+        let shape = self.shape;
+        let mut rows = rows.into_iter();
+        let mut next = || rows.next().expect("a row for each root");
+        match self.what {
+            What::Number(_) => Value::Numbers(Arc::new(Array { shape, items: next() })),
+            What::Vector(_) => {
+                Value::Vectors(Arc::new(Vectors { shape, planes: [next(), next(), next()] }))
+            }
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -39,22 +67,14 @@ enum What {
 }
 
 /// The functions whose results a tape checks, by the number of the check.
-type Calls = Vec<(Span, &'static str)>;
+pub(crate) type Calls = Vec<(Span, &'static str)>;
 
 type Operated<T> = Result<Operand<T>, Diagnostic>;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The value of an expression whose outermost operator is element-wise.
     pub fn arithmetic(&mut self, m: &Module, id: ExprId) -> Result<Value<T>, Diagnostic> {
-        let mut work = Work { tape: self.tapes.pop().unwrap_or_default(), calls: Vec::new() };
-        let value = match self.operated(m, id, &mut work) {
-            Ok(Operand::Value(value)) => Ok(value),
-            Ok(Operand::Lanes(lanes)) => self.computed(&lanes, &mut work),
-            Err(diagnostic) => Err(work.earlier(diagnostic)),
-        };
-        work.tape.clear();
-        self.tapes.push(work.tape);
-        value
+        self.worked(m, id, |this, work| this.operated(m, id, work))
     }
 
     /// The value of `target op value`, for `+=` and its like.
@@ -65,44 +85,92 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         op: BinaryOp,
         value: ExprId,
     ) -> Result<Value<T>, Diagnostic> {
-        let mut work = Work { tape: self.tapes.pop().unwrap_or_default(), calls: Vec::new() };
         let spans = [target, value].map(|e| m.program[e].span);
-        let value = self.operated(m, value, &mut work).and_then(|right| {
-            let old = self.expr(m, target)?;
-            let old = Operand::Value(self.read(old, spans[0])?);
-            let new = self
-                .combined(m, op, old, right, spans, &mut work)
-                .map_err(|d| d.or_at(spans[1]))?;
-            self.value_of(new, &mut work)
-        });
-        let value = value.map_err(|d| work.earlier(d));
-        work.tape.clear();
-        self.tapes.push(work.tape);
-        let value = value?;
+        let value = self.worked(m, value, |this, work| {
+            let right = this.operated(m, value, work)?;
+            let old = this.leaf(m, target, true, work)?;
+            this.combined(m, op, old, right, spans, work).map_err(|d| d.or_at(spans[1]))
+        })?;
         self.charge(&value, spans[1])?;
         Ok(value)
+    }
+
+    /// What comes of an expression, by its recipe when it has one that fits, else through the tree.
+    fn worked(
+        &mut self,
+        m: &Module,
+        id: ExprId,
+        tree: impl Fn(&mut Self, &mut Work<T>) -> Operated<T>,
+    ) -> Result<Value<T>, Diagnostic> {
+        let key = Key::of(m, id);
+        let (read, record) = match self.by_recipe(m, key) {
+            Course::Done(value) => return value,
+            Course::Tree { read, record } => (read, record),
+        };
+        let mut work = Work {
+            tape: self.tapes.pop().unwrap_or_default(),
+            calls: Vec::new(),
+            ready: read.into(),
+            recorder: record.map(|_| self.recorder()),
+        };
+        let operand = tree(self, &mut work);
+        let lanes = match &operand {
+            Ok(Operand::Lanes(lanes)) => Some(*lanes),
+            // Scalars have no recipe.
+            Ok(Operand::Value(..)) => {
+                work.give_up();
+                None
+            }
+            Err(_) => None,
+        };
+        let value = match operand {
+            Ok(Operand::Value(value, _)) => Ok(value),
+            Ok(Operand::Lanes(lanes)) => self.computed(&lanes, &mut work),
+            Err(diagnostic) => Err(work.earlier(diagnostic, &mut self.slots)),
+        };
+        if let Some(misfits) = record {
+            self.keep_recipe(key, misfits, lanes.filter(|_| value.is_ok()), &mut work);
+        }
+        work.tape.clear();
+        self.tapes.push(work.tape);
+        value
     }
 
     /// The elements of rows of a tape.
     fn computed(&mut self, lanes: &Lanes, work: &mut Work<T>) -> Result<Value<T>, Diagnostic> {
         let spare = &mut self.spare;
-        let roots: &[Src] = match &lanes.what {
-            What::Number(a) => std::slice::from_ref(a),
-            What::Vector(v) => v,
-        };
-        let rows = work.tape.run(roots, lanes.shape, |n| spare.take(n)).map_err(|check| {
-            let (span, name) = work.calls[check];
-            not_finite(name).at(span)
-        })?;
-        let shape = lanes.shape;
-        let mut rows = rows.into_iter();
-        let mut next = || rows.next().expect("a row for each root");
-        Ok(match lanes.what {
-            What::Number(_) => Value::Numbers(Arc::new(Array { shape, items: next() })),
-            What::Vector(_) => {
-                Value::Vectors(Arc::new(Vectors { shape, planes: [next(), next(), next()] }))
+        let take = |n| spare.take(n);
+        let done = work.tape.run(&lanes.roots(), lanes.shape, &mut self.slots, take);
+        match done {
+            Ok(rows) => Ok(lanes.value(rows)),
+            Err(check) => {
+                let (span, name) = work.calls[check];
+                Err(not_finite(name).at(span))
             }
-        })
+        }
+    }
+
+    /// A part of an expression that is no operator, executed as it stands; an object is read when
+    /// `read`.
+    fn leaf(&mut self, m: &Module, id: ExprId, read: bool, work: &mut Work<T>) -> Operated<T> {
+        if let ExprKind::Number(literal) = m.program[id].kind {
+            let x = T::from(m.program[literal].value);
+            return Ok(Operand::Value(Value::Number(x), work.noted(|r| r.literal(x))));
+        }
+        // Another expression than this one was read when a name has come to mean something else: then it
+        // was a name alone, or the component of one, and reading it has changed nothing.
+        let (value, object) = match work.ready.pop_front() {
+            Some((read, value)) if read == id => (value?, false),
+            _ => {
+                let value = self.expr(m, id)?;
+                let object = matches!(value, Value::Object(_) | Value::List(_));
+                (if read { self.read(value, m.program[id].span)? } else { value }, object)
+            }
+        };
+        let kind = Kind::of(&value).filter(|_| !object);
+        let depth = self.depth;
+        let cell = work.noted(|r| r.leaf(m, (id, read), depth, kind));
+        Ok(Operand::Value(value, cell))
     }
 
     fn value_of(
@@ -111,9 +179,19 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         work: &mut Work<T>,
     ) -> Result<Value<T>, Diagnostic> {
         match operand {
-            Operand::Value(value) => Ok(value),
-            Operand::Lanes(lanes) => self.computed(&lanes, work),
+            Operand::Value(value, _) => Ok(value),
+            Operand::Lanes(lanes) => {
+                work.give_up();
+                self.computed(&lanes, work)
+            }
         }
+    }
+
+    /// True when an expression names a variable that holds vectors.
+    fn names_vectors(&self, m: &Module, id: ExprId) -> bool {
+        let bound = m.program.as_name(id).and_then(|s| self.lookup(m.names[s.0 as usize]));
+        let what = bound.map(|bound| &bound.what);
+        matches!(what, Some(Binding::Variable { value: Value::Vectors(_), .. }))
     }
 
     /// The operand that an expression is, objects read.
@@ -127,20 +205,25 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             | ExprKind::List(_) => true,
             ExprKind::Binary { op, .. } => is_elementwise(op),
             ExprKind::Member { base, name, .. } => {
-                // A component of an expression; of a name it is read as it stands.
+                // A component of an expression or of rows; of other names it is read as it stands.
                 axis(m.program.name(name)).is_some()
-                    && !matches!(m.program[base].kind, ExprKind::Name(_) | ExprKind::Index { .. })
+                    && (self.names_vectors(m, base)
+                        || !matches!(
+                            m.program[base].kind,
+                            ExprKind::Name(_) | ExprKind::Index { .. }
+                        ))
             }
             ExprKind::Call { callee, args } => self.elementary(m, callee, args).is_some(),
             _ => false,
         };
         if !inner {
-            let value = self.expr(m, id)?;
-            return self.read(value, expr.span).map(Operand::Value);
+            return self.leaf(m, id, true, work);
         }
         if !self.deeper(expr.span) {
             return Err(silent());
         }
+        let depth = self.depth;
+        work.noting(|r| r.at_depth(depth));
         let operand = self.operator(m, expr.kind, expr.span, work);
         self.depth -= 1;
         operand.map_err(|d| d.or_at(expr.span))
@@ -157,10 +240,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Paren(inner) => self.operated(m, inner, work),
             ExprKind::Magnitude(inner) => {
                 let operand = self.operated(m, inner, work)?;
+                let plain = self.plain_operators;
                 Ok(match operand {
-                    Operand::Value(ref value) => match work.lanes(value, !self.plain_operators) {
+                    Operand::Value(ref value, cell) => match work.lanes(value, cell, !plain) {
                         Some(lanes) => Operand::Lanes(work.magnitude(lanes)),
-                        None => Operand::Value(ops::magnitude(value)?),
+                        None => {
+                            let cell = work.noted(|r| r.magnitude(cell));
+                            Operand::Value(ops::magnitude(value)?, cell)
+                        }
                     },
                     Operand::Lanes(lanes) => Operand::Lanes(work.magnitude(lanes)),
                 })
@@ -184,21 +271,47 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     Operand::Lanes(Lanes { shape, what: What::Vector(v) }) => {
                         Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
                     }
+                    Operand::Value(value @ Value::Vectors(_), cell) if !self.plain_operators => {
+                        match work.lanes(&value, cell, true) {
+                            Some(Lanes { shape, what: What::Vector(v) }) => {
+                                Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
+                            }
+                            _ => {
+                                work.give_up();
+                                let component = variables::component(&value, c);
+                                let value = component.ok_or_else(silent)?;
+                                Ok(Operand::Value(value, Cell::NONE))
+                            }
+                        }
+                    }
                     other => {
+                        let cell = match &other {
+                            Operand::Value(_, cell) => *cell,
+                            Operand::Lanes(_) => Cell::NONE,
+                        };
                         let value = self.value_of(other, work)?;
-                        variables::component(&value, c).map(Operand::Value).ok_or_else(|| {
-                            let found = value.class().a();
-                            Diagnostic::error(
-                                "unknown-member",
-                                format!("{found} has no `{}`", m.program.name(name)),
-                            )
-                            .expected(crate::member::names(&value).join(", "))
-                        })
+                        match variables::component(&value, c) {
+                            Some(component) => {
+                                let cell = work.noted(|r| r.component(cell, c));
+                                Ok(Operand::Value(component, cell))
+                            }
+                            None => {
+                                let found = value.called();
+                                Err(Diagnostic::error(
+                                    "unknown-member",
+                                    format!("{found} has no `{}`", m.program.name(name)),
+                                )
+                                .expected(crate::member::names(&value).join(", ")))
+                            }
+                        }
                     }
                 }
             }
             ExprKind::Call { callee, args } => {
                 let (name, function) = self.elementary(m, callee, args).expect("checked above");
+                if let Some(symbol) = m.program.as_name(callee) {
+                    work.noting(|r| r.called(symbol));
+                }
                 let args: Vec<ExprId> = m.program[args].iter().map(|a| a.value).collect();
                 self.elementwise(m, name, function, &args, span, work)
             }
@@ -212,11 +325,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let lanes = match &operand {
             Operand::Lanes(lanes) => Some(*lanes),
-            Operand::Value(value) => work.lanes(value, !self.plain_operators),
+            Operand::Value(value, cell) => work.lanes(value, *cell, !self.plain_operators),
         };
         Ok(match (lanes, operand) {
             (Some(lanes), _) => Operand::Lanes(work.mapped(lanes, Code::Neg)),
-            (None, Operand::Value(value)) => Operand::Value(ops::negated(&value)?),
+            (None, Operand::Value(value, cell)) => {
+                let cell = work.noted(|r| r.negated(cell));
+                Operand::Value(ops::negated(&value)?, cell)
+            }
             (None, lanes) => lanes,
         })
     }
@@ -227,7 +343,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         for item in &m.program[items] {
             if let ChainItem::Operand(expr) = item {
                 let operand = self.operated(m, *expr, work)?;
-                sets |= matches!(&operand, Operand::Value(value) if ops::is_set(value));
+                sets |= matches!(&operand, Operand::Value(value, _) if ops::is_set(value));
                 operands.push(Some((*expr, operand)));
             }
         }
@@ -247,9 +363,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     let signed = match (op, operand) {
                         (UnaryOp::Not, operand) => {
                             let value = self.value_of(operand, work)?;
-                            Operand::Value(
-                                crate::expr::unary(op, &value).map_err(|d| d.or_at(span))?,
-                            )
+                            let value =
+                                crate::expr::unary(op, &value).map_err(|d| d.or_at(span))?;
+                            Operand::Value(value, Cell::NONE)
                         }
                         (op, operand) => {
                             self.signed(op, operand, work).map_err(|d| d.or_at(span))?
@@ -279,7 +395,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let array = items.len() == 3 && is_operator(m, item);
             values.push(match array {
                 true => self.operated(m, item, work)?,
-                false => Operand::Value(self.expr(m, item)?),
+                false => self.leaf(m, item, false, work)?,
             });
         }
         if values.len() == 3 && !self.plain_operators && !work.tape.is_long() {
@@ -287,7 +403,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .iter()
                 .filter_map(|value| match value {
                     Operand::Lanes(lanes) => Some(*lanes),
-                    Operand::Value(value) => work.lanes(value, true),
+                    Operand::Value(value, cell) => work.lanes(value, *cell, true),
                 })
                 .collect();
             if let [
@@ -301,12 +417,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 return Ok(Operand::Lanes(Lanes { shape, what: What::Vector([x, y, z]) }));
             }
         }
+        let cells: Vec<Cell> = values.iter().map(Operand::cell).collect();
         let mut all = Vec::with_capacity(values.len());
         for value in values {
             all.push(self.value_of(value, work)?);
         }
+        let cell = match cells[..] {
+            [a, b, c] => work.noted(|r| r.braces([a, b, c])),
+            _ => Cell::NONE,
+        };
         let spans: Vec<Span> = m.program[items].iter().map(|&e| m.program[e].span).collect();
-        ops::braces(all.clone()).map(Operand::Value).map_err(|d| {
+        ops::braces(all.clone()).map(|value| Operand::Value(value, cell)).map_err(|d| {
             let shapes: Vec<String> = all.iter().map(shape_text).collect();
             let first = shapes.iter().position(|s| *s != shapes[0]).unwrap_or(0);
             self.differing(m, d, [spans[0], spans[first]], [&shapes[0], &shapes[first]])
@@ -325,7 +446,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     ) -> Operated<T> {
         let arrays = [&a, &b].map(|o| match o {
             Operand::Lanes(_) => true,
-            Operand::Value(value) => matches!(value, Value::Numbers(_) | Value::Vectors(_)),
+            Operand::Value(value, _) => matches!(value, Value::Numbers(_) | Value::Vectors(_)),
         });
         if !self.plain_operators && arrays.contains(&true) && !work.tape.is_long() {
             let operands = [&a, &b].map(|o| work.operand(o));
@@ -344,9 +465,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 }
             }
         }
+        let cells = [a.cell(), b.cell()];
         let (a, b) = (self.value_of(a, work)?, self.value_of(b, work)?);
+        let cell = work.noted(|r| r.binary(op, cells[0], cells[1]));
         ops::binary(op, &a, &b)
-            .map(Operand::Value)
+            .map(|value| Operand::Value(value, cell))
             .map_err(|d| self.differing(m, d, spans, [&shape_text(&a), &shape_text(&b)]))
     }
 
@@ -425,10 +548,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             intrinsics::Elementary::Unary(_) => 1,
             intrinsics::Elementary::Binary(_) => 2,
         };
-        let name_id = m.names[symbol.0 as usize];
         let plain = args.len() == wanted && m.program[args].iter().all(|a| a.name.is_none());
-        let hidden = self.lookup(name_id).is_some() || self.env.routines.contains_key(&name_id);
-        (plain && !hidden).then_some((name, function))
+        (plain && !self.hides_function(m, symbol)).then_some((name, function))
+    }
+
+    /// True when a name means something of the program's own.
+    pub fn hides_function(&self, m: &Module, symbol: Symbol) -> bool {
+        let name = m.names[symbol.0 as usize];
+        self.lookup(name).is_some() || self.env.routines.contains_key(&name)
     }
 
     fn elementwise(
@@ -470,6 +597,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 return Ok(Operand::Lanes(Lanes { shape: shapes[0], what: What::Number(src) }));
             }
         }
+        let cells: Vec<Cell> = operands.iter().map(Operand::cell).collect();
+        let cell = work.noted(|r| r.function(name, function, &cells));
         let mut values = Vec::with_capacity(2);
         for operand in operands {
             values.push(self.value_of(operand, work)?);
@@ -490,11 +619,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !value.is_finite() {
             return Err(not_finite(name).at(span));
         }
-        Ok(Operand::Value(value))
+        Ok(Operand::Value(value, cell))
     }
 }
 
-fn not_finite(name: &str) -> Diagnostic {
+pub(crate) fn not_finite(name: &str) -> Diagnostic {
     Diagnostic::error("not-finite", format!("the result of {name} is not a finite number"))
         .expected("arguments inside the function's domain")
 }
@@ -539,7 +668,14 @@ enum Loosely<T> {
 #[derive(Clone, Copy)]
 enum Number<T> {
     Src(Src),
-    Const(T),
+    Const(T, Origin),
+}
+
+/// The components of a vector as constants.
+fn constants<T: Real>(v: moldloft_num::Vec3<T>, cell: Cell) -> Loosely<T> {
+    let [x, y, z] = v.to_array();
+    let of = |x, part| Number::Const(x, Origin::of(cell, part));
+    Loosely::Vector([of(x, 0), of(y, 1), of(z, 2)])
 }
 
 /// True when the operator takes such kinds, whatever their shapes.
@@ -567,17 +703,46 @@ fn described<T>(operand: Loose<T>) -> String {
 
 /// A tape under way.
 pub(crate) struct Work<T: Real> {
-    tape: Tape<T>,
-    calls: Calls,
+    pub tape: Tape<T>,
+    pub calls: Calls,
+    /// Leaves that were read already, the next first.
+    ready: VecDeque<(ExprId, Result<Value<T>, Diagnostic>)>,
+    /// Notes what is done, for a recipe.
+    pub recorder: Option<Recorder<T>>,
+}
+
+impl<T: Real> Operand<T> {
+    fn cell(&self) -> Cell {
+        match self {
+            Operand::Value(_, cell) => *cell,
+            Operand::Lanes(_) => Cell::NONE,
+        }
+    }
 }
 
 impl<T: Real> Work<T> {
+    /// Notes something that has a value, while that is wanted.
+    fn noted(&mut self, note: impl FnOnce(&mut Recorder<T>) -> Cell) -> Cell {
+        self.recorder.as_mut().map_or(Cell::NONE, note)
+    }
+
+    fn noting(&mut self, note: impl FnOnce(&mut Recorder<T>)) {
+        if let Some(recorder) = &mut self.recorder {
+            note(recorder);
+        }
+    }
+
+    /// There will be no recipe.
+    fn give_up(&mut self) {
+        self.noting(|r| r.given_up = true);
+    }
+
     /// The fault of a check that comes before another fault in the order of the text.
-    fn earlier(&mut self, diagnostic: Diagnostic) -> Diagnostic {
+    fn earlier(&mut self, diagnostic: Diagnostic, slots: &mut Vec<Vec<T>>) -> Diagnostic {
         if self.calls.is_empty() || diagnostic.id == "not-finite" {
             return diagnostic;
         }
-        match self.tape.first_failure() {
+        match self.tape.first_failure(slots) {
             Some(check) => {
                 let (span, name) = self.calls[check];
                 not_finite(name).at(span)
@@ -587,13 +752,17 @@ impl<T: Real> Work<T> {
     }
 
     /// An array as rows of the tape.
-    fn lanes(&mut self, value: &Value<T>, wanted: bool) -> Option<Lanes> {
+    fn lanes(&mut self, value: &Value<T>, cell: Cell, wanted: bool) -> Option<Lanes> {
         if !wanted || self.tape.is_long() {
             return None;
         }
         Some(match value {
-            Value::Numbers(a) => Lanes { shape: a.shape, what: What::Number(self.tape.numbers(a)) },
-            Value::Vectors(a) => Lanes { shape: a.shape, what: What::Vector(self.tape.vectors(a)) },
+            Value::Numbers(a) => {
+                Lanes { shape: a.shape, what: What::Number(self.tape.numbers(a, cell)) }
+            }
+            Value::Vectors(a) => {
+                Lanes { shape: a.shape, what: What::Vector(self.tape.vectors(a, cell)) }
+            }
             _ => return None,
         })
     }
@@ -601,16 +770,12 @@ impl<T: Real> Work<T> {
     fn operand(&mut self, operand: &Operand<T>) -> Option<Loose<T>> {
         let lanes = match operand {
             Operand::Lanes(lanes) => *lanes,
-            Operand::Value(Value::Number(x)) => {
-                return Some((None, Loosely::Number(Number::Const(*x))));
+            Operand::Value(Value::Number(x), cell) => {
+                return Some((None, Loosely::Number(Number::Const(*x, Origin::of(*cell, 0)))));
             }
-            Operand::Value(Value::Vector(v)) => {
-                return Some((None, Loosely::Vector(v.to_array().map(Number::Const))));
-            }
-            Operand::Value(Value::Point(p)) => {
-                return Some((None, Loosely::Vector(p.xyz.to_array().map(Number::Const))));
-            }
-            Operand::Value(value) => self.lanes(value, true)?,
+            Operand::Value(Value::Vector(v), cell) => return Some((None, constants(*v, *cell))),
+            Operand::Value(Value::Point(p), cell) => return Some((None, constants(p.xyz, *cell))),
+            Operand::Value(value, cell) => self.lanes(value, *cell, true)?,
         };
         Some((
             Some(lanes.shape),
@@ -624,7 +789,7 @@ impl<T: Real> Work<T> {
     fn src(&mut self, number: &Number<T>) -> Src {
         match number {
             Number::Src(src) => *src,
-            Number::Const(x) => self.tape.constant(*x),
+            Number::Const(x, origin) => self.tape.constant(*x, *origin),
         }
     }
 
@@ -706,7 +871,10 @@ impl<T: Real> Work<T> {
             }
             (BinaryOp::Caret, Number(x), Number(y)) => {
                 let whole = match y {
-                    self::Number::Const(k) => ops::whole_power(k),
+                    self::Number::Const(k, origin) => {
+                        self.noting(|r| r.exponent(origin, k));
+                        ops::whole_power(k)
+                    }
                     self::Number::Src(_) => None,
                 };
                 let x = self.src(&x);

@@ -7,6 +7,7 @@ use crate::format::{self, Item};
 use crate::interpreter::{Interpreter, silent};
 use crate::module::Module;
 use crate::section::{Place, Section};
+use crate::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
@@ -33,7 +34,7 @@ pub struct Builtin {
 }
 
 /// All built-in functions, in the order of the reference.
-pub const BUILTINS: [Builtin; 14] = [
+pub const BUILTINS: [Builtin; 22] = [
     Builtin {
         name: "format",
         signature: "format(pattern, ...)",
@@ -118,6 +119,54 @@ pub const BUILTINS: [Builtin; 14] = [
         doc: "Into how many parts each interval of refined(n) is cut: 1, 2, 4, ...",
         example: "assert refinement() >= 1;",
     },
+    Builtin {
+        name: "write_p3d",
+        signature: "write_p3d(name, words, s1, s2, ...)",
+        doc: "Writes surfaces as a Plot3D file: stream, records or text; single; single-block; 2d; planes; big; iblank; mark8.",
+        example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", \"records single\", s); surface t = read_p3d(\"s.x\"); assert t.d1 == 3;",
+    },
+    Builtin {
+        name: "write_vts",
+        signature: "write_vts(name, s1, s2, ...)",
+        doc: "Writes surfaces as VTK structured grids: one .vts, or several with their .vtm.",
+        example: "surface s[3,2] = {1, 2, 3}; write_vts(\"s.vts\", s);",
+    },
+    Builtin {
+        name: "write_stl",
+        signature: "write_stl(name, words, s1, s2, ...)",
+        doc: "Writes surfaces as binary STL, triangles without area at poles left out; \"flip\" turns the normals round.",
+        example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
+    },
+    Builtin {
+        name: "write_cgns",
+        signature: "write_cgns(name, s1, s2, ...)",
+        doc: "Writes surfaces as structured CGNS zones with the interfaces where their edges have the same points.",
+        example: "surface s[3,2] = {1, 2, 3}; write_cgns(\"s.cgns\", s);",
+    },
+    Builtin {
+        name: "write_csv",
+        signature: "write_csv(name, c1, c2, ...)",
+        doc: "Writes points as lines of x,y,z under a heading, all digits kept.",
+        example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;",
+    },
+    Builtin {
+        name: "read_p3d",
+        signature: "read_p3d(name, block)",
+        doc: "A surface of a Plot3D file of any variant, by the number of its block (1).",
+        example: "surface s[3,2] = {1, 2, 3}; write_p3d(\"s.x\", s); assert read_p3d(\"s.x\", 1).d2 == 2;",
+    },
+    Builtin {
+        name: "read_points",
+        signature: "read_points(name)",
+        doc: "The points of a text with two or three numbers to a line, as a curve.",
+        example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); curve d = read_points(\"c.csv\");",
+    },
+    Builtin {
+        name: "read_aerofoil",
+        signature: "read_aerofoil(name)",
+        doc: "A section of a coordinate file in Selig's or Lednicer's listing: tail, upper side, nose, lower side, tail.",
+        example: "file f = open(\"a.dat\", \"w\"); write(f, \"a wedge\"); for (x = 1:0:-.25) write(f, format(\"%g %g\", x, .1*x)); for (x = .25:1:.25) write(f, format(\"%g %g\", x, -.1*x)); close(f); assert read_aerofoil(\"a.dat\").d1 == 9;",
+    },
 ];
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
@@ -172,6 +221,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             "format" | "write" | "read" => (1, usize::MAX),
             "open" => (1, 3),
             "refinement" => (0, 0),
+            "write_p3d" | "write_vts" | "write_stl" | "write_cgns" | "write_csv" => (2, usize::MAX),
+            "read_p3d" => (1, 2),
             _ => (1, 1),
         };
         if !(least..=most).contains(&given.len()) {
@@ -244,7 +295,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Ok(Value::Number(step / self.parts()))
             }
             "refinement" => Ok(Value::Number(T::from(self.parts()))),
-            _ => Err(silent()),
+            name => self.grid_file(m, name, &given),
         }
     }
 
@@ -253,7 +304,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// A whole number of at least 1.
-    fn whole(&mut self, m: &Module, arg: ExprId) -> Result<f64, Diagnostic> {
+    pub fn whole(&mut self, m: &Module, arg: ExprId) -> Result<f64, Diagnostic> {
         let n = self.number(m, arg)?.re();
         if n.fract() == 0.0 && (1.0..=1e9).contains(&n) {
             return Ok(n);
@@ -264,13 +315,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .found(n.to_string()))
     }
 
-    fn text(&mut self, m: &Module, arg: ExprId) -> Result<Arc<str>, Diagnostic> {
+    pub fn text(&mut self, m: &Module, arg: ExprId) -> Result<Arc<str>, Diagnostic> {
         match self.operand(m, arg)? {
             Value::Text(text) => Ok(text),
             other => Err(Diagnostic::error("wrong-type", "expected a text")
                 .at(m.program[arg].span)
                 .expected("a text")
-                .found(other.class().a())),
+                .found(other.called())),
         }
     }
 
@@ -448,7 +499,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let Some(shape @ ArrayShape::Grid(..)) = shape_of(value) else {
             return Err(Diagnostic::error("wrong-type", "expected a surface")
                 .expected("a surface (a grid of vectors)")
-                .found(value.class().a()));
+                .found(value.called()));
         };
         let whole = place.section.unwrap_or(Section::whole(shape));
         let Section::Grid(a, b) = whole else { return Err(silent()) };
@@ -505,7 +556,7 @@ fn shape_of<T: Real>(value: &Value<T>) -> Option<ArrayShape> {
 }
 
 fn unwritable<T: Real>(value: &Value<T>) -> Diagnostic {
-    let found = value.class().a();
+    let found = value.called();
     Diagnostic::error("wrong-type", format!("{found} cannot be written"))
         .expected("numbers, texts, vectors and arrays")
         .found(found)

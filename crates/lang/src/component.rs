@@ -12,6 +12,7 @@ use crate::env::{Binding, Bound, Frame};
 use crate::interpreter::{Flow, Interpreter, silent};
 use crate::module::{Module, Name};
 use crate::variables;
+use crate::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, Ident, List, StmtKind};
@@ -44,7 +45,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 return Err(Diagnostic::error("wrong-class", "a component is made from a file")
                     .at(at)
                     .expected("the name of a file")
-                    .found(other.class().a()));
+                    .found(other.called()));
             }
         };
         let module = self.modules.load(self.current, &path, at, &mut self.loader)?;

@@ -429,6 +429,12 @@ impl Document {
         self.plain.env.files.written()
     }
 
+    /// The written files that the host is to make CGNS of, with the names of their blocks: what was
+    /// written is Plot3D, plain binary in double precision.
+    pub fn written_for_cgns(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.plain.env.files.cgns()
+    }
+
     /// The variables that the program's own files declare: name, type with extents, and value.
     pub fn variables(&self) -> Vec<(String, String, Value<f64>)> {
         let names = (0..self.modules.name_count() as u32).map(crate::module::Name);

@@ -8,6 +8,7 @@ use crate::ops;
 use crate::place;
 use crate::section::{Place, Section, Selection};
 use crate::variables;
+use crate::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Real, Vec3};
@@ -86,7 +87,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             other => Err(Diagnostic::error("wrong-type", "expected a number")
                 .at(m.program[id].span)
                 .expected("a number")
-                .found(other.class().a())),
+                .found(other.called())),
         }
     }
 
@@ -301,7 +302,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             other => self.read(other, m.program[base].span)?,
         };
         let Some(extents) = variables::extents(&value) else {
-            let class = value.class().a();
+            let class = value.called();
             return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
                 .expected("a row, grid or list before [")
                 .found(class));
@@ -342,7 +343,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if extents.is_empty() {
             let class = match place.section {
                 Some(_) => "a single element",
-                None => value.class().a(),
+                None => value.called(),
             };
             return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
                 .expected("a row, grid or list before [")
@@ -566,7 +567,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return ops::binary(BinaryOp::Dot, &value, &right);
         }
         let known = crate::member::names(&value);
-        Err(Diagnostic::error("unknown-member", format!("{} has no `{word}`", value.class().a()))
+        Err(Diagnostic::error("unknown-member", format!("{} has no `{word}`", value.called()))
             .at(m.program.member_span(id))
             .expected(known.join(", "))
             .suggest(&word, known.iter().copied()))
@@ -725,7 +726,7 @@ pub(crate) fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Evaluated<T> {
             Value::Number(x) => Ok(Value::Number(T::from(f64::from(u8::from(x.re() == 0.0))))),
             other => Err(Diagnostic::error("wrong-operand", "`not` takes a condition")
                 .expected("a comparison or a number")
-                .found(other.class().a())),
+                .found(other.called())),
         },
     }
 }
@@ -807,7 +808,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
         (Value::Field(_) | Value::Set(_), [p]) => crate::sets::at(value, p),
         (Value::Field(_) | Value::Set(_), _) => Err(count("one point, as in f({1, 2, 3})")),
         (other, _) => {
-            let class = other.class().a();
+            let class = other.called();
             Err(Diagnostic::error("not-callable", format!("{class} cannot be called"))
                 .expected("a curve, surface, relabel, field, set or function")
                 .found(class))

@@ -36,6 +36,8 @@ pub(crate) fn predeclared(name: &str) -> Option<f64> {
 pub(crate) struct Files {
     open: BTreeMap<u32, Open>,
     written: IndexMap<String, Vec<u8>>,
+    /// Files that the host makes CGNS of, and the names of their blocks.
+    cgns: IndexMap<String, Vec<String>>,
     bytes: usize,
 }
 
@@ -123,7 +125,7 @@ impl Files {
                 // What this run wrote is seen before what is on the disk.
                 let own = inside(path).ok().and_then(|name| self.written.get(&name));
                 let text = match own {
-                    Some(bytes) => String::from_utf8_lossy(bytes).into_owned(),
+                    Some(bytes) => moldloft_syntax::decode(bytes, path)?.to_string(),
                     None => {
                         let read = world.read(path, Some(from)).map_err(|e| {
                             Diagnostic::error("cannot-read", e.message).maybe_help(e.help)
@@ -143,6 +145,7 @@ impl Files {
                     )
                     .help("close it first"));
                 }
+                self.cgns.shift_remove(&name);
                 let file = self.written.entry(name.clone()).or_default();
                 if mode == Mode::Write {
                     self.bytes -= file.len();
@@ -153,6 +156,45 @@ impl Files {
         };
         self.open.insert(unit, open);
         Ok(unit)
+    }
+
+    /// The content of a file: what this run wrote, or what is on the disk.
+    pub fn bytes(&self, world: &dyn World, from: &str, path: &str) -> Result<Vec<u8>, Diagnostic> {
+        if let Some(bytes) = inside(path).ok().and_then(|name| self.written.get(&name)) {
+            return Ok(bytes.clone());
+        }
+        let read = world.read(path, Some(from));
+        let read =
+            read.map_err(|e| Diagnostic::error("cannot-read", e.message).maybe_help(e.help))?;
+        Ok(read.bytes.to_vec())
+    }
+
+    /// A whole file.
+    pub fn put(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Diagnostic> {
+        let name = inside(path)?;
+        if self.open.values().any(|o| matches!(o, Open::Write { name: n } if *n == name)) {
+            let message = format!("`{name}` is open for writing already");
+            return Err(Diagnostic::error("unit-in-use", message).help("close it first"));
+        }
+        self.cgns.shift_remove(&name);
+        let replaced = self.written.get(&name).map_or(0, Vec::len);
+        self.bytes = self.bytes - replaced + bytes.len();
+        if self.bytes > MOST_BYTES {
+            return Err(too_much());
+        }
+        self.written.insert(name, bytes);
+        Ok(())
+    }
+
+    /// The host is to make CGNS of a file that was put, of blocks with these names.
+    pub fn for_cgns(&mut self, path: &str, names: Vec<String>) -> Result<(), Diagnostic> {
+        self.cgns.insert(inside(path)?, names);
+        Ok(())
+    }
+
+    /// The files that the host makes CGNS of: what was written is Plot3D.
+    pub fn cgns(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks.as_slice()))
     }
 
     pub fn close(&mut self, unit: u32) -> Result<(), Diagnostic> {
@@ -171,8 +213,7 @@ impl Files {
         };
         self.bytes += text.len();
         if self.bytes > MOST_BYTES {
-            return Err(Diagnostic::error("too-much-output", "the program writes too much")
-                .expected(format!("at most {MOST_BYTES} bytes in all files")));
+            return Err(too_much());
         }
         let file = self.written.get_mut(name).expect("entered by open");
         file.extend_from_slice(text.as_bytes());
@@ -247,6 +288,11 @@ impl Files {
     pub fn written(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.written.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
     }
+}
+
+fn too_much() -> Diagnostic {
+    Diagnostic::error("too-much-output", "the program writes too much")
+        .expected(format!("at most {MOST_BYTES} bytes in all files"))
 }
 
 fn predeclared_unit(unit: u32) -> bool {

@@ -5,7 +5,9 @@ use crate::env::{Binding, Bound, Environment, Frame, Param};
 use crate::fused::Tape;
 use crate::known::Known;
 use crate::module::{Loader, Module, Modules, Name, RoutineAt};
+use crate::recipe::Slots;
 use crate::section::Place;
+use crate::variables::Called as _;
 use crate::variables::{self, Taken};
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Span, nearest};
@@ -119,7 +121,10 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub(crate) current: usize,
     /// Tapes and memory that are not in use.
     pub tapes: Vec<Tape<T>>,
+    pub slots: Vec<Vec<T>>,
     pub spare: Spare<T>,
+    /// What is known of expressions that are executed again.
+    pub recipes: Slots<T>,
     pub plain_operators: bool,
     /// True once the note on the misprint of 1992 was given.
     pub misprint_told: bool,
@@ -166,7 +171,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             assigned: HashMap::new(),
             current: 0,
             tapes: Vec::new(),
+            slots: Vec::new(),
             spare: Spare::default(),
+            recipes: Slots::default(),
             plain_operators,
             misprint_told: false,
             abandoned: false,
@@ -546,7 +553,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             other => Err(Diagnostic::error("wrong-condition", "a condition must be a number")
                 .at(m.program[expr].span)
                 .expected("a comparison, or a number (0 is false)")
-                .found(other.class().a())),
+                .found(other.called())),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Elementary functions, as rows: element by element over numbers and rows of numbers.
 
+use crate::variables::Called as _;
 use moldloft_num::Real;
 use moldloft_registry::{
     Array, Body, Class, Context, DefaultValue, Fault, Field, Row, Unit, Value,
@@ -23,7 +24,7 @@ const fn argument(name: &'static str, help: &'static str) -> Field {
 }
 
 fn not_a_number<T: Real>(value: &Value<T>, field: usize) -> Fault {
-    let found = value.class().a();
+    let found = value.called();
     Fault::new("wrong-class", format!("expected a number or a row of numbers, found {found}"))
         .expected("a number or an farray")
         .found(found)

@@ -135,8 +135,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             other => {
                 return Err(Diagnostic::error("not-a-list", "foreach walks through a list")
                     .at(m.program[list].span)
-                    .expected("a list, farray or row of vectors")
-                    .found(other.class().a()));
+                    .expected("a list, an farray or a curve")
+                    .found(variables::a(other)));
             }
         };
         let name = m.names[variable.symbol.0 as usize];

@@ -4,6 +4,7 @@ use crate::document::{Document, Source};
 use crate::env::Evaluation;
 use crate::interpreter::Inputs;
 use crate::program::Program;
+use crate::variables::Called as _;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::{Mesh, measure, measure_patch};
@@ -123,7 +124,7 @@ impl Document {
                                 format!("`{text}` has no derivative"),
                             )
                             .expected("a number, a vector, or a row or grid of them")
-                            .found(value.class().a()),
+                            .found(value.called()),
                         ]
                     })?);
                 }

@@ -4,6 +4,7 @@ use crate::env::{Binding, Bound, Environment, Param};
 use crate::model_file::{Outcome, Producer, Sorted, Trouble, wrong};
 use crate::model_file_names::{bare, plain_name, words};
 use crate::module::{Module, Modules};
+use crate::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Graph;
 use moldloft_registry::{Scalar, Value};
@@ -138,7 +139,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         self.env.globals.clear();
         match value {
             Ok(Value::Number(x)) if x.is_finite() => Ok(x),
-            Ok(other) => Err(bad(format!("it is {}, not a finite number", other.class().a()))),
+            Ok(other) => Err(bad(format!("it is {}, not a finite number", other.called()))),
             Err(diagnostic) if diagnostic.id == crate::interpreter::SILENT => {
                 Err(bad("it depends on something that failed".into()))
             }

@@ -22,7 +22,7 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
         Value::Numbers(a) => Elements::Numbers(a),
         Value::Vectors(a) => Elements::Vectors(a),
         other => {
-            let class = other.class().a();
+            let class = crate::variables::a(other);
             let help = match other {
                 Value::Curve(_) => Some(
                     "a pcurve is only assigned, passed and returned; compute with its points: \
@@ -38,7 +38,7 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
                 "wrong-operand",
                 format!("`{op}` does not take {class}"),
             )
-            .expected("numbers, vectors, or rows and grids of them")
+            .expected("numbers, vectors, farrays, curves or surfaces")
             .found(class)
             .maybe_help(help));
         }
@@ -171,7 +171,11 @@ pub(crate) fn binary<T: Real>(
     let word = op.spelling();
     let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
     let undefined = || {
-        let found = format!("{} {word} {}", a.class().name(), b.class().name());
+        let name = |value: &Value<T>| {
+            let of = crate::variables::a(value);
+            of.split_once(' ').map_or(of, |(_, name)| name)
+        };
+        let found = format!("{} {word} {}", name(a), name(b));
         let d = Diagnostic::error("wrong-operand", format!("`{word}` is not defined for {found}"));
         match op {
             BinaryOp::Add | BinaryOp::Sub => d.help(
@@ -237,14 +241,14 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
             _ => return Err(unsupported(op, "texts")),
         },
         _ => {
-            let found = format!("{} and {}", a.class().a(), b.class().a());
+            let found = format!("{} and {}", crate::variables::a(a), crate::variables::a(b));
             return Err(Diagnostic::error(
                 "wrong-operand",
                 format!("`{}` compares numbers, not {found}", op.spelling()),
             )
             .expected("two numbers")
             .found(found)
-            .help("compare a component, or take min() or max() of a row first"));
+            .help("compare a component, or take min() or max() of an farray first"));
         }
     };
     Ok(Value::Number(T::from(f64::from(u8::from(holds)))))

@@ -3,6 +3,7 @@
 use crate::env::{Binding, Origin};
 use crate::interpreter::{Interpreter, silent};
 use crate::module::Module;
+use crate::variables::Called as _;
 use moldloft_diag::Diagnostic;
 use moldloft_field::{Primitive, field_value, primitive_of, set_of, set_value};
 use moldloft_model::{Declaration, Extent, Failure};
@@ -17,7 +18,7 @@ fn is_implicit<T: Real>(value: &Value<T>) -> bool {
 }
 
 fn undefined<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Diagnostic {
-    let (word, found) = (op.spelling(), format!("{} and {}", a.class().a(), b.class().a()));
+    let (word, found) = (op.spelling(), format!("{} and {}", a.called(), b.called()));
     let d = Diagnostic::error("wrong-operand", format!("`{word}` is not defined for {found}"))
         .found(found);
     match op {
@@ -79,7 +80,7 @@ fn of_fields<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<
             };
             Diagnostic::error("field-division", "a field is divided by numbers other than 0 only")
                 .expected("a number other than 0")
-                .found(b.class().a())
+                .found(b.called())
                 .help(help)
         })?,
         BinaryOp::Caret => {
@@ -292,7 +293,7 @@ pub(crate) fn at<T: Real>(shape: &Value<T>, place: &Value<T>) -> Result<Value<T>
         }
         other => Err(Diagnostic::error("wrong-type", "a field is asked at a point")
             .expected("a point, a vector, or a row or grid of vectors")
-            .found(other.class().a())),
+            .found(other.called())),
     }
 }
 

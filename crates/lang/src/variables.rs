@@ -33,6 +33,19 @@ pub(crate) fn type_of<T: Real>(value: &Value<T>) -> Type {
     }
 }
 
+pub(crate) use moldloft_arrays::called as a;
+
+/// [`a`] as a method.
+pub(crate) trait Called {
+    fn called(&self) -> &'static str;
+}
+
+impl<T: Real> Called for Value<T> {
+    fn called(&self) -> &'static str {
+        a(self)
+    }
+}
+
 /// The word of a type and what it holds.
 pub(crate) fn described(ty: Type) -> &'static str {
     match ty {
@@ -42,7 +55,7 @@ pub(crate) fn described(ty: Type) -> &'static str {
         Type::File => "a file",
         Type::Vector => "a vector",
         Type::Farray => "an farray (a row of numbers)",
-        Type::Curve => "a curve (a row of vectors)",
+        Type::Curve => "a curve (a row of points)",
         Type::Surface => "a surface (a grid of vectors)",
         Type::Pcurve => "a parametric curve",
         Type::Psurface => "a parametric surface",
@@ -58,11 +71,7 @@ pub(crate) fn described(ty: Type) -> &'static str {
 /// When the type holds no such value.
 pub(crate) fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnostic> {
     let wrong = |value: &Value<T>| {
-        let found = match value {
-            Value::Curve(_) => "a parametric curve (pcurve)",
-            Value::Surface(_) => "a parametric surface (psurface)",
-            other => other.class().a(),
-        };
+        let found = a(value);
         let help = match (ty, value) {
             (Type::Curve, Value::Curve(_)) => Some("take points of it: distc(c, uniform(0, 1, n))"),
             (Type::Surface, Value::Surface(_)) => Some("take points of it: dists(s, u, v)"),
@@ -285,7 +294,7 @@ fn fill<T: Real>(
             .found(from.to_string())
     };
     let wrong = |expected: &str, value: &Value<T>| {
-        let found = value.class().a();
+        let found = a(value);
         Diagnostic::error("wrong-type", format!("expected {expected}, found {found}"))
             .expected(expected.to_string())
             .found(found)
@@ -333,7 +342,7 @@ fn fill<T: Real>(
                         put(plane, shape, section, from);
                     }
                 }
-                other => return Err(wrong("a vector, or a row or grid of them", other)),
+                other => return Err(wrong("a vector, a curve or a surface", other)),
             }
         }
         (Value::Vectors(array), Some(c)) => {
@@ -404,10 +413,10 @@ pub(crate) fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<
         other => {
             return Err(Diagnostic::error(
                 "not-indexable",
-                format!("{} has no elements to index", other.class().a()),
+                format!("{} has no elements to index", other.called()),
             )
             .expected("a row, grid or list")
-            .found(other.class().a()));
+            .found(other.called()));
         }
     })
 }
@@ -436,7 +445,7 @@ pub(crate) fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<
     match place.component {
         None => Ok(value),
         Some(c) => component(&value, c).ok_or_else(|| {
-            Diagnostic::error("not-indexable", format!("{} has no components", value.class().a()))
+            Diagnostic::error("not-indexable", format!("{} has no components", value.called()))
         }),
     }
 }

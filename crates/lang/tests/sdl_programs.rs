@@ -522,3 +522,37 @@ fn examples_of_built_in_functions_run() {
         assert!(document.diagnostics().is_empty());
     }
 }
+
+/// The language has every function that its description names.
+#[test]
+fn all_functions_are_there() {
+    let names = "abs sqrt exp log log10 sin cos tan asin acos atan atan2 sinh cosh tanh floor ceil round sign \
+        min max mod div hypot sum prod argmin argmax dot norm len cumlen centroid bbox_min bbox_max reverse swap \
+        join spread_i spread_j list points d1 d2 translate scale mirror rotate revolve frame uniform cosine \
+        geometric geometric2 d_sinh d_tanh d_tanhx redist makecc makelc makecs makels distc dists evalc derivc \
+        lengthc curvc project closest intersect intersections curvature torsion gauss mean normals tfi elliptic \
+        hyperbolic quality report fair format open close read write write_p3d write_vts write_stl write_cgns \
+        write_csv read_p3d read_points read_aerofoil count next more rewind";
+    let built_in: Vec<&str> = moldloft_lang::BUILTINS.iter().map(|b| b.name).collect();
+    for name in names.split_whitespace() {
+        let row = registry().rows().any(|row| row.name == name && !row.kind);
+        assert!(row || built_in.contains(&name), "{name}");
+    }
+    for (library, routines) in [
+        (
+            0,
+            "line dline arc curdist transfinite blend bezier ellipse conic fillet revolve_sub stack ruled copy_edge sweep extrude helix",
+        ),
+        (
+            1,
+            "set_fwd_ogive set_barrel set_rear_ogive get_fwd_shoulder set_fin_root set_fin_cnt set_fin_loc set_fin_roll set_off_fin_sp set_sting mk_missile_body",
+        ),
+        (2, "naca4 naca4l naca4s naca4m naca5 naca16 naca6 naca66tmb"),
+    ] {
+        let wanted = ["stdsubs.sdl", "mslbody.sdl", "naca.sdl"][library];
+        let text = moldloft_lang::LIBRARIES.iter().find(|(name, _)| *name == wanted).unwrap().1;
+        for routine in routines.split_whitespace() {
+            assert!(text.contains(&format!("subroutine {routine}(")), "{wanted}: {routine}");
+        }
+    }
+}

@@ -251,6 +251,12 @@ impl PyDocument {
         self.lock(py).printed().to_vec()
     }
 
+    /// The written files that are to become CGNS, and the names of their blocks.
+    fn written_for_cgns(&self, py: Python<'_>) -> Vec<(String, Vec<String>)> {
+        let document = self.lock(py);
+        document.written_for_cgns().map(|(name, all)| (name.to_owned(), all.to_vec())).collect()
+    }
+
     /// What the program wrote: names and contents; nothing is on the disk yet.
     fn written<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyBytes>)> {
         let document = self.lock(py);

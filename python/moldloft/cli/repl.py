@@ -27,7 +27,8 @@ Blocks go on over lines until their brackets close.
 :text      the program so far
 :undo      takes back the last line
 :save FILE writes the program
-:quit      ends (so does Ctrl-D)"""
+:quit      ends (so do exit, quit and Ctrl-D)"""
+_ENDS = {":quit", ":q", "exit", "quit", "exit()", "quit()"}
 
 
 class Session:
@@ -89,6 +90,10 @@ class Session:
         self.model._document.set_text(self._before.pop())
         return True
 
+    def names(self) -> set[str]:
+        """The names of the variables."""
+        return {name for name, _, _ in self.model._document.variables()}
+
     def variables(self) -> list[str]:
         """A line for each variable."""
         return [f"{name}: {shape}" for name, shape, _ in self.model._document.variables()]
@@ -143,7 +148,7 @@ def run(options: argparse.Namespace) -> int:
         print(str(diagnostic), file=sys.stderr)
     with _line_editor(session) if terminal else contextlib.nullcontext():
         if terminal:
-            print("moldloft repl: :help lists the commands, :quit ends", file=sys.stderr)
+            print("moldloft repl: :help lists the commands, exit ends", file=sys.stderr)
         while True:
             try:
                 entry = _read(terminal)
@@ -152,7 +157,9 @@ def run(options: argparse.Namespace) -> int:
             except KeyboardInterrupt:
                 print(file=sys.stderr)
                 continue
-            if entry.strip() in (":quit", ":q"):
+            # A program may have a variable of such a name.
+            word = entry.strip().rstrip(";").strip()
+            if word in _ENDS and word not in session.names():
                 break
             try:
                 lines = _command(session, entry.strip())

@@ -11,7 +11,7 @@ from moldloft.models import Model
 
 __all__ = ["add", "run"]
 
-_GRIDS = ("p3d", "vts", "stl")
+_GRIDS = ("p3d", "vts", "stl", "cgns")
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +65,8 @@ def _grids(model: Model, stem: Path, formats: list[str]) -> list[Path]:
     from moldloft import grids
 
     variables = model._document.variables()
-    found = [value for _, shape, value in variables if shape.startswith("surface[")]
+    named = {name: value for name, shape, value in variables if shape.startswith("surface[")}
+    found = list(named.values())
     if not found:
         raise Error("error: the program has no surface to write")
     stem.parent.mkdir(parents=True, exist_ok=True)
@@ -76,6 +77,8 @@ def _grids(model: Model, stem: Path, formats: list[str]) -> list[Path]:
             written += grids.write_vts(path, found)
         elif name == "p3d":
             written.append(grids.write_plot3d(path, found))
+        elif name == "cgns":
+            written.append(grids.write_cgns(path, found, list(named)))
         else:
             written.append(grids.write_stl(path, found))
     return written
