@@ -27,13 +27,15 @@ fn enough<T>(points: &[T], least: usize) -> Result<(), Fault> {
 /// the inverse radius of the circle through them; at an end that of its neighbour.
 ///
 /// Of curves with a parameter there are `curvc` and `curvature`.
+///
+/// `curvature(c)` of a curve of points is the same; `curvature(c, t)` asks a parametric curve.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
     function,
     name = "curvatures",
     example = "Arc a({2, 0, 0}, {0, 2, 0}, {-2, 0, 0}); \
-               farray k = curvatures(distc(a, uniform(0, 1, 9))); assert abs(k[3] - 0.5) < 1e-12;"
+               farray k = curvature(distc(a, uniform(0, 1, 9))); assert abs(k[3] - 0.5) < 1e-12 and k[3] == curvatures(distc(a, uniform(0, 1, 9)))[3];"
 )]
 pub struct Curvatures<T: Scalar> {
     /// The points, three or more.
@@ -72,9 +74,9 @@ impl<T: Scalar> Build<T> for Curvatures<T> {
 #[kind(
     class = Numbers,
     function,
-    name = "torsions",
+    name = "torsion",
     example = "curve c[9]; for (i = 1:9) c[i] = {cos(0.1 * i), sin(0.1 * i), 0.1 * i}; \
-               farray t = torsions(c); assert abs(t[5] - 0.5) < 0.01;"
+               farray t = torsion(c); assert abs(t[5] - 0.5) < 0.01;"
 )]
 pub struct Torsions<T: Scalar> {
     /// The points, four or more.

@@ -151,6 +151,7 @@ fn solve<T: Real, const C: usize, const CONTROLLED: bool>(
                 below: std::array::from_fn(|c| {
                     taken.map(|r| &other[c][(row(r) - 1) / 2 * n..][..n])
                 }),
+                in_turn: (1..LANES).all(|l| taken[l] == taken[l - 1] + 1),
                 control: control.filter(|_| CONTROLLED).map(|control| {
                     taken.map(|r| {
                         [&control.along[row(r) * n..][..n], &control.across[row(r) * n..][..n]]
@@ -200,7 +201,10 @@ impl<T: Real, const C: usize, const CONTROLLED: bool> pulp::NullaryFnOnce
     type Output = ();
     #[inline(always)]
     fn call(self) {
-        self.group.eliminate::<CONTROLLED>(self.store);
+        match self.group.in_turn {
+            true => self.group.eliminate::<CONTROLLED, true>(self.store),
+            false => self.group.eliminate::<CONTROLLED, false>(self.store),
+        }
     }
 }
 
@@ -253,6 +257,8 @@ struct Group<'a, T, const C: usize> {
     own: [[&'a [T]; LANES]; C],
     above: [[&'a [T]; LANES]; C],
     below: [[&'a [T]; LANES]; C],
+    /// True when the row below each lane but the first is the one above the lane before it.
+    in_turn: bool,
     control: Option<[[&'a [T]; 2]; LANES]>,
 }
 
@@ -279,7 +285,7 @@ impl<T: Real, const C: usize> Group<'_, T, C> {
     /// = -A (U + D + p/2 (U - D)) + B X / 2, with U and D the points above and below, X four times
     /// the mixed difference, p and q the control terms across and along.
     #[inline(always)]
-    fn eliminate<const CONTROLLED: bool>(&self, store: &mut [[Lanes<T>; 4]]) {
+    fn eliminate<const CONTROLLED: bool, const IN_TURN: bool>(&self, store: &mut [[Lanes<T>; 4]]) {
         let n = self.n;
         // Lengths that the compiler sees, so that the loop needs no checks.
         let (own, above, below) = (cut(&self.own, n), cut(&self.above, n), cut(&self.below, n));
@@ -287,14 +293,22 @@ impl<T: Real, const C: usize> Group<'_, T, C> {
         let load = |rows: &[[&[T]; LANES]; C], j: usize| -> [Lanes<T>; C] {
             std::array::from_fn(|c| gather(&rows[c], j))
         };
+        // Rows in turn share the rows between them: one number is read instead of four.
+        let load_below = |up: &[Lanes<T>; C], j: usize| -> [Lanes<T>; C] {
+            match IN_TURN {
+                true => std::array::from_fn(|c| [below[c][0][j], up[c][0], up[c][1], up[c][2]]),
+                false => load(&below, j),
+            }
+        };
         let (mut before, mut here) = (load(&own, 0), load(&own, 1));
         let (mut up_before, mut up) = (load(&above, 0), load(&above, 1));
-        let (mut down_before, mut down) = (load(&below, 0), load(&below, 1));
+        let (mut down_before, mut down) = (load_below(&up_before, 0), load_below(&up, 1));
         store[0][0] = [T::zero(); LANES];
         store[0][1..=C].copy_from_slice(&before[..C]);
         for j in 1..n - 1 {
             let after = load(&own, j + 1);
-            let (up_after, down_after) = (load(&above, j + 1), load(&below, j + 1));
+            let up_after = load(&above, j + 1);
+            let down_after = load_below(&up_after, j + 1);
             let zero = [T::zero(); LANES];
             let (mut a, mut b, mut g) = (zero, zero, zero);
             let mut mixed = [zero; C];

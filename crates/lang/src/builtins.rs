@@ -172,8 +172,18 @@ pub const BUILTINS: [Builtin; 22] = [
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// The row of a function; that of `makecc` for its misprint of 1992.
-    pub fn row(&mut self, m: &Module, symbol: Symbol, span: Span) -> Option<Arc<Row>> {
+    /// The row of a function called with so many arguments; that of `makecc` for its misprint of 1992.
+    pub fn row(
+        &mut self,
+        m: &Module,
+        symbol: Symbol,
+        count: usize,
+        span: Span,
+    ) -> Option<Arc<Row>> {
+        // Without a parameter it is asked of the points of an array.
+        if count == 1 && m.program.name(symbol) == "curvature" {
+            return self.loader.registry.get("curvatures").cloned();
+        }
         if let Some(row) = &m.rows[symbol.0 as usize] {
             return Some(row.clone());
         }

@@ -650,7 +650,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(value) = self.builtin(m, symbol, args, span) {
             return value;
         }
-        let Some(row) = self.row(m, symbol, span) else {
+        let Some(row) = self.row(m, symbol, args.len(), span) else {
             return Err(self.unknown_function(m, symbol).at(m.program[callee].span));
         };
         let mut given = Given { positional: Vec::with_capacity(args.len()), named: Vec::new() };
@@ -668,6 +668,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let value = if crate::intrinsics::is_quick(&row) {
             T::call(&row, &filled, &self.run.graph().context())
         } else {
+            self.charge_call();
             self.run.call(&row, filled)
         };
         let value =

@@ -257,6 +257,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         Ok(())
     }
 
+    /// Counts a call of a function that takes longer than a statement.
+    pub fn charge_call(&mut self) {
+        self.steps += 16;
+    }
+
     fn declare_routines(&mut self, module: &Module, at: usize) {
         for (k, routine) in module.program.routines().iter().enumerate() {
             let name = module.names[routine.name.symbol.0 as usize];
