@@ -15,8 +15,12 @@ use moldloft_registry::{Array, ArrayShape, Vectors};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Plain numbers that go through a tape together: a few pages of registers, within the first cache.
-const BLOCK_PARTS: usize = 512;
+/// Plain numbers that go through a tape together: some dozen rows of them fit into the first cache.
+const BLOCK_PARTS: usize = 256;
+
+/// Numbers between rows for results on the way, so that their beginnings do not meet in the same sets
+/// of the cache: five lines of it.
+const APART: usize = 40;
 
 /// Where an instruction finds an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -511,7 +515,7 @@ impl<T: Real> Tape<T> {
         mut take: impl FnMut(usize) -> Vec<T>,
     ) -> Result<SmallVec<[Vec<T>; 3]>, usize> {
         while slots.len() < self.slots {
-            slots.push(vec![T::zero(); block::<T>()]);
+            slots.push(vec![T::zero(); block::<T>() + APART]);
         }
         let mut outs: SmallVec<[Vec<T>; 3]> = roots.iter().map(|_| take(count)).collect();
         let failed =

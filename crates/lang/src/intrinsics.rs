@@ -116,9 +116,43 @@ pub(crate) enum Elementary<T> {
     Binary(fn(T, T) -> T),
 }
 
-/// True for the functions of this file, which take no longer than finding their remembered values.
+/// Functions of arrays that take no longer than comparing their arguments with remembered ones.
+const QUICK: [&str; 30] = [
+    "min",
+    "max",
+    "sum",
+    "prod",
+    "argmin",
+    "argmax",
+    "dot",
+    "norm",
+    "len",
+    "cumlen",
+    "centroid",
+    "bbox_min",
+    "bbox_max",
+    "list",
+    "points",
+    "join",
+    "stack",
+    "reverse",
+    "swap",
+    "spread_i",
+    "spread_j",
+    "d1",
+    "d2",
+    "translate",
+    "scale",
+    "mirror",
+    "rotate",
+    "uniform",
+    "cosine",
+    "tfi",
+];
+
+/// True for functions that take no longer than finding their remembered values.
 pub(crate) fn is_quick(row: &Row) -> bool {
-    let own = matches!(&*row.name, "min" | "max" | "sum") || elementary::<f64>(&row.name).is_some();
+    let own = QUICK.contains(&&*row.name) || elementary::<f64>(&row.name).is_some();
     own && matches!(row.body, Body::Native { .. })
 }
 
