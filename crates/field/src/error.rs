@@ -74,6 +74,18 @@ pub enum FieldError {
         /// How many are allowed.
         limit: f64,
     },
+    /// The body is not closed, so it has no inside.
+    NotClosed {
+        /// How many edges have not as many triangles on one side as on the other.
+        edges: usize,
+    },
+    /// A body of so many faces that its set would be larger than allowed.
+    ManyFaces {
+        /// The most primitives that a set may name.
+        most: usize,
+    },
+    /// Round sides of a body touch, or cross, so that no plane beside them parts them.
+    RoundSides,
     /// The caller asked to stop.
     Cancelled,
     /// A primitive had no finite value.
@@ -122,6 +134,13 @@ impl fmt::Display for FieldError {
                 let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);
                 write!(f, "the set has no end towards {end}{axis}: give the box to look at")
             }
+            Self::NotClosed { edges } => {
+                write!(f, "the body is not closed at {edges} edges, so it has no inside")
+            }
+            Self::ManyFaces { most } => {
+                write!(f, "the faces cross each other so much that their set has over {most} parts")
+            }
+            Self::RoundSides => write!(f, "round sides touch each other and cannot be told apart"),
             Self::Cancelled => write!(f, "cancelled"),
             Self::NoValue { at } => {
                 write!(f, "the field has no finite value at ({}, {}, {})", at.x, at.y, at.z)

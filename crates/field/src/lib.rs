@@ -13,6 +13,7 @@ mod blend;
 mod bounds;
 mod cache;
 mod error;
+mod faces;
 mod facet;
 mod facing;
 mod foot;
@@ -43,6 +44,7 @@ pub use blend::{
 };
 pub use bounds::bounds;
 pub use error::FieldError;
+pub use faces::{Profile, Round, Sides, faced};
 pub use facet::{Facets, Options, Resolution, crossing_faces, facet, refacet};
 pub use form::Form;
 pub use gap::{Gap, Shell, gap};

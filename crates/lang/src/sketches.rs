@@ -5,12 +5,13 @@ use crate::interpreter::Interpreter;
 use crate::module::Module;
 use crate::sketch_file::{Drawn, SketchFile};
 use moldloft_diag::{Diagnostic, Span};
+use moldloft_mesh::Mesh;
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Given, Scalar, Value, arrange};
 use moldloft_sketch::curve::{Piece, Traced};
-use moldloft_sketch::{Axis, DimensionFault, PointId, Solid, solid, solve};
+use moldloft_sketch::{Axis, DimensionFault, PointId, RoundFace, Solid, solid, solve};
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -284,7 +285,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Value::Number(mass.area),
             Value::Vector(mass.centroid),
         ];
-        self.part(names, "solid", "MeshBody", args, true);
+        let key = self.part(names, "solid", "MeshBody", args, true);
+        if let Some(key) = key.filter(|_| !body.flat && mesh.report().closed) {
+            let args = face_arguments(body, &mesh, key);
+            self.part(names, "body", "FaceSet", args, false);
+        }
         if !body.flat {
             names.members.push(("volume".into(), Value::Number(mass.volume)));
         }
@@ -327,6 +332,29 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 }
 
+/// The arguments of `FaceSet`: the mesh, the face of each triangle, and the round faces.
+fn face_arguments<T: Scalar>(body: &Solid<T>, mesh: &Mesh<T>, key: Key) -> Vec<Value<T>> {
+    let number = |n: usize| T::from((n + 1) as f64);
+    let mut sides = Vec::new();
+    for (n, patch) in mesh.patches().iter().enumerate() {
+        for &[_, _, c, d] in &mesh.faces()[patch.faces.clone()] {
+            sides.extend(std::iter::repeat_n(number(n), if c == d { 1 } else { 2 }));
+        }
+    }
+    let round = |r: RoundFace<T>| {
+        let [p, q, s] = r.profile;
+        [p, q, s, r.shift, Vec3::new(r.sweep, r.scale, number(r.face))]
+    };
+    let rounds: Vec<Vec3<T>> = body.rounds().into_iter().flat_map(round).collect();
+    let rounds = if rounds.is_empty() {
+        Value::Unset
+    } else {
+        Value::Vectors(Arc::new(moldloft_registry::Vectors::row(rounds)))
+    };
+    let sides = Value::Numbers(Arc::new(moldloft_registry::Array::row(sides)));
+    vec![Value::Object(key), sides, rounds]
+}
+
 /// What is being declared, and under which names.
 struct Names<'a, T: Scalar> {
     prefix: &'a str,
@@ -341,7 +369,7 @@ fn is_taken(name: &str) -> bool {
         let number = name.strip_prefix(start).unwrap_or("");
         !number.is_empty() && number.chars().all(|c| c.is_ascii_digit())
     });
-    numbered || matches!(name, "solid" | "volume" | "area" | "centroid")
+    numbered || matches!(name, "solid" | "body" | "volume" | "area" | "centroid")
 }
 
 /// A traced curve as the kind that says it and its arguments.

@@ -222,3 +222,34 @@ fn the_solid_is_a_mesh_of_the_model() {
     // 50 (CREST + 0.75 HEIGHT) at HEIGHT = 60.
     assert!((slope - 50.0 * 61.0).abs() < 1e-6, "{slope}");
 }
+
+/// The body as a set: its faces are the primitives, so that volumes agree to rounding and derivatives by
+/// dimensions are exact.
+#[test]
+fn the_body_is_an_exact_set() {
+    let mut m = model("load \"dam.skt\"; load \"bracket.skt\";");
+    let exact = number(&mut m, "dam.volume");
+    let found = number(&mut m, "volume(dam.body, {-1,-1,-1}, {71,51,91}, 1)");
+    assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
+    let slope = |m: &mut Document, what: &str, by: &str| {
+        let d = m.derivatives(&[what.into()], &[by.into()]).unwrap();
+        let Value::Number(d) = d[0][0] else { panic!() };
+        d
+    };
+    let by = |m: &mut Document, name: &str| {
+        let implicit = slope(m, "volume(dam.body, {-1,-1,-1}, {71,51,91}, 1)", name);
+        let exact = slope(m, "dam.volume", name);
+        assert!(
+            (implicit - exact).abs() < 1e-6 * exact.abs().max(1.0),
+            "{name}: {implicit} {exact}"
+        );
+    };
+    by(&mut m, "dam.HEIGHT");
+    by(&mut m, "dam.CREST");
+    // The fillet is a cylinder, not its chords.
+    let exact = number(&mut m, "bracket.volume");
+    let found = number(&mut m, "volume(bracket.body, accuracy = 1e-3)");
+    assert!((found - exact).abs() < 1e-3, "{found} {exact}");
+    let chords = number(&mut m, "bracket.solid.volume");
+    assert!((chords - exact).abs() < 1e-9);
+}

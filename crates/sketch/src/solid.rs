@@ -636,7 +636,7 @@ impl<T: Real> Assembly<T> {
 
 impl<T: Real> Solid<T> {
     /// The curve of an edge in the direction it is run.
-    fn piece(&self, (e, forward): (usize, bool)) -> Piece<T> {
+    pub(crate) fn piece(&self, (e, forward): (usize, bool)) -> Piece<T> {
         let edge = &self.edges[e];
         let [p, q] = edge.ends.map(|v| self.vertices[v].at);
         let piece = edge.piece.unwrap_or_else(|| Piece::straight(p, q));

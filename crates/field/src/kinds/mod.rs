@@ -2,6 +2,7 @@
 
 mod blends;
 pub mod body;
+mod faced;
 mod measures;
 mod primitives;
 pub mod read;
@@ -40,6 +41,7 @@ pub fn rows() -> Vec<Row> {
         sets::Nothing,
         sets::Attributed,
         sets::Regularized,
+        faced::Polyhedron,
         transforms::Translated,
         transforms::Turned,
         transforms::Mirrored,
@@ -68,6 +70,7 @@ pub fn rows() -> Vec<Row> {
         measures::Bounds,
         primitives::FieldObject,
         sets::SetObject,
+        faced::FaceSet,
         body::SetBody,
     ]
 }

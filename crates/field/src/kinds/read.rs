@@ -127,6 +127,8 @@ pub fn fault(error: &FieldError) -> Fault {
         FieldError::EmptyBox { .. } => "empty-box",
         FieldError::Unbounded { .. } => "unbounded-set",
         FieldError::TooFine { .. } => "too-fine",
+        FieldError::NotClosed { .. } => "not-closed",
+        FieldError::ManyFaces { .. } | FieldError::RoundSides => "faces-tangled",
         FieldError::Cancelled => "cancelled",
         FieldError::NoValue { .. } => "no-value",
     };
@@ -145,6 +147,10 @@ pub fn fault(error: &FieldError) -> Fault {
             fault.expected("a box: {low corner}, {high corner}").help("or cut it with planes")
         }
         FieldError::TooFine { .. } => fault.help("ask for a coarser accuracy, or a smaller box"),
+        FieldError::NotClosed { .. } => fault.expected("a closed, oriented body"),
+        FieldError::ManyFaces { .. } | FieldError::RoundSides => {
+            fault.help("take set(inside(body)), the set by distances from its triangles")
+        }
         FieldError::EmptyBox { .. } => {
             fault.expected("low and high corners that differ along x, y and z")
         }

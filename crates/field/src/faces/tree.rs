@@ -1,0 +1,189 @@
+//! A binary division of space by the planes of faces, and the set that it describes.
+
+use super::polytope::{Level, Polytope};
+
+/// What a piece of a body's surface lies on: a number of a plane or of a round side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// A plane.
+    Flat(usize),
+    /// A round side: the only surface of the body in its cell.
+    Round(usize),
+}
+
+/// A convex piece that contains a piece of the surface.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub side: Side,
+    pub body: Polytope,
+}
+
+/// The division of a convex cell.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Tree {
+    Air,
+    Solid,
+    /// The cell's surface is that round side.
+    Round(usize),
+    /// In front of a plane and behind it.
+    Split {
+        plane: usize,
+        parts: Box<[Tree; 2]>,
+    },
+}
+
+/// Why no division was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tangled {
+    /// Round sides that no plane of theirs parts.
+    Rounds,
+    /// It takes more cells than allowed.
+    Cells,
+}
+
+/// What a division is made from.
+pub(super) struct Divider<'a> {
+    /// The planes: those of flat sides first, then planes beside round ones that may part these.
+    pub planes: &'a [Level],
+    /// How many of them are of flat sides.
+    pub flat: usize,
+    /// Whether a point off the surface is inside.
+    pub inside: &'a dyn Fn(moldloft_num::Vec3) -> bool,
+    /// Distance below which a point is on a plane.
+    pub epsilon: f64,
+    /// How many cells are allowed.
+    pub cells: usize,
+}
+
+impl Divider<'_> {
+    /// Divides a cell by the pieces in it.
+    pub fn divide(&mut self, cell: Polytope, pieces: Vec<Piece>) -> Result<Tree, Tangled> {
+        self.cells = self.cells.checked_sub(1).ok_or(Tangled::Cells)?;
+        let Some(first) = pieces.first() else {
+            return Ok(if (self.inside)(cell.middle()) { Tree::Solid } else { Tree::Air });
+        };
+        if let Side::Round(n) = first.side
+            && pieces.iter().all(|p| p.side == first.side)
+        {
+            return Ok(Tree::Round(n));
+        }
+        let (plane, split) = self.choose(&pieces)?;
+        let level = self.planes[plane];
+        let [front, behind] = split;
+        let part = |level: Level, which: Vec<usize>, this: &mut Self| match cell
+            .cut(&level, this.epsilon)
+        {
+            // A plane that only touches the cell: nothing is on its other side.
+            None => Ok(None),
+            Some(cell) => {
+                let cut = |k: usize| {
+                    let body = pieces[k].body.cut(&level, this.epsilon)?;
+                    Some(Piece { side: pieces[k].side, body })
+                };
+                let inside: Vec<Piece> = which.into_iter().filter_map(cut).collect();
+                this.divide(cell, inside).map(Some)
+            }
+        };
+        let front = part(level, front, self)?;
+        let behind = part(level.turned(), behind, self)?;
+        Ok(match (front, behind) {
+            (Some(front), Some(behind)) => Tree::Split { plane, parts: Box::new([front, behind]) },
+            // The plane bounds the cell and its pieces lie on the boundary: the sides differ.
+            (Some(front), None) => Tree::Split { plane, parts: Box::new([front, Tree::Air]) },
+            (None, Some(behind)) => Tree::Split { plane, parts: Box::new([Tree::Air, behind]) },
+            (None, None) => Tree::Air,
+        })
+    }
+
+    /// The plane to divide by, and which pieces have a part in front of it and behind it.
+    fn choose(&self, pieces: &[Piece]) -> Result<(usize, [Vec<usize>; 2]), Tangled> {
+        let mut wanted: Vec<usize> = Vec::new();
+        for piece in pieces {
+            if let Side::Flat(k) = piece.side
+                && !wanted.contains(&k)
+            {
+                wanted.push(k);
+            }
+        }
+        let rounds_only = wanted.is_empty();
+        if rounds_only {
+            wanted = (self.flat..self.planes.len()).collect();
+        }
+        let mut best: Option<(usize, usize, [Vec<usize>; 2])> = None;
+        for plane in wanted {
+            let level = self.planes[plane];
+            let (mut front, mut behind, mut split) = (Vec::new(), Vec::new(), 0);
+            for (k, piece) in pieces.iter().enumerate() {
+                if piece.side == Side::Flat(plane) {
+                    continue;
+                }
+                let [low, high] = level.range(piece.body.points());
+                let (ahead, back) = (high > self.epsilon, low < -self.epsilon);
+                split += usize::from(ahead && back);
+                if ahead {
+                    front.push(k);
+                }
+                if back {
+                    behind.push(k);
+                }
+            }
+            let parts = front.len() < pieces.len() && behind.len() < pieces.len();
+            if rounds_only && !parts {
+                continue;
+            }
+            // One side free of pieces costs nothing at all; else few cut pieces, then even halves.
+            let lone = front.is_empty() || behind.is_empty();
+            let cost = if lone { 0 } else { 1 + 4 * split + front.len().abs_diff(behind.len()) };
+            if best.as_ref().is_none_or(|b| cost < b.0) {
+                best = Some((cost, plane, [front, behind]));
+            }
+            if cost == 0 {
+                break;
+            }
+        }
+        best.map(|(_, plane, parts)| (plane, parts)).ok_or(Tangled::Rounds)
+    }
+}
+
+/// Whether the set of one division contains that of another within a cell; `false` also when `steps`
+/// do not suffice to tell.
+pub(super) struct Containment<'a> {
+    pub planes: &'a [Level],
+    pub epsilon: f64,
+    pub steps: usize,
+}
+
+impl Containment<'_> {
+    /// Whether `inner` lies within `outer`.
+    pub fn holds(&mut self, inner: &Tree, outer: &Tree, cell: &Polytope) -> bool {
+        if self.steps == 0 {
+            return false;
+        }
+        self.steps -= 1;
+        match (inner, outer) {
+            (Tree::Air, _) | (_, Tree::Solid) => true,
+            (Tree::Round(a), Tree::Round(b)) => a == b,
+            (Tree::Split { plane, parts }, _) => {
+                self.both(*plane, cell, |this, side, part| this.holds(&parts[side], outer, part))
+            }
+            (_, Tree::Split { plane, parts }) => {
+                self.both(*plane, cell, |this, side, part| this.holds(inner, &parts[side], part))
+            }
+            (_, Tree::Air) | (Tree::Solid, Tree::Round(_)) => false,
+        }
+    }
+
+    fn both(
+        &mut self,
+        plane: usize,
+        cell: &Polytope,
+        each: impl Fn(&mut Self, usize, &Polytope) -> bool,
+    ) -> bool {
+        let level = self.planes[plane];
+        let parts = [cell.cut(&level, self.epsilon), cell.cut(&level.turned(), self.epsilon)];
+        parts.iter().enumerate().all(|(side, part)| match part {
+            Some(part) => each(self, side, part),
+            None => true,
+        })
+    }
+}

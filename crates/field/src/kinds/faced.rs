@@ -1,0 +1,116 @@
+//! Bodies by their faces as sets.
+
+use super::read::{fault, set};
+use crate::shapes::Inside;
+use crate::{FieldError, Primitive, Profile, Round, Set, Sides, faced};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Context, Facets, Fault, Kind, Value};
+use std::sync::Arc;
+
+/// The set of a closed body of plane faces: exact half-spaces, one for each plane.
+///
+/// Triangles in one plane make a face. For bodies with thousands of faces, such as a ball of
+/// triangles, take `set(inside(body))`. Faces in one plane share its half-space, also when a change of
+/// a parameter would move them apart.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "polyhedron",
+    example = "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); set s = polyhedron(b); assert abs(volume(s) - 1/6) < 1e-6;"
+)]
+pub struct Polyhedron<T: Real> {
+    /// The body.
+    body: Arc<Facets<T>>,
+}
+
+impl<T: Real> Build<T> for Polyhedron<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let (points, triangles) = (&self.body.points[..], &self.body.triangles[..]);
+        set(faced(&Sides { points, triangles, sides: None, rounds: &[] }))
+            .map_err(|f| f.in_field(0))
+    }
+}
+
+/// A closed body of plane and round faces as a set: half-spaces, cylinders and cones, all exact. The
+/// `body` of a sketch is one.
+///
+/// A round face goes straight from an arc to a copy of it, shifted and scaled. Its five vectors are,
+/// for an arc of an ellipse, centre, half-diameter to the start, the one conjugate to it, shift of the
+/// centre, and {angle, scale, number of the face}; for a parabola, start, point where the tangents of
+/// its ends meet, end, shift, and {0, scale, number of the face}. The scale is 1 for cylinders and 0
+/// for a cone whose apex is the shifted centre. Velocity x shift points outward.
+///
+/// Where faces cross too often for a list of half-spaces, or round faces touch each other, it is the set
+/// by distances from the triangles.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    example = "MeshBody b({{0,0,0}, {1,0,0}, {0,1,0}, {0,0,1}}, {1,3,2, 1,2,4, 2,3,4, 3,1,4}); FaceSet s(b, {1, 2, 3, 4});"
+)]
+pub struct FaceSet<T: Real> {
+    /// The body; triangles of round faces are chords of them.
+    body: Arc<Facets<T>>,
+    /// The number of the face of each triangle; triangles in one plane make a face by default.
+    #[field(default)]
+    faces: Option<Vec<u32>>,
+    /// The round faces, five vectors each.
+    #[field(default)]
+    rounds: Option<Vec<Vec3<T>>>,
+}
+
+impl<T: Real> Build<T> for FaceSet<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let (points, triangles) = (&self.body.points[..], &self.body.triangles[..]);
+        if let Some(faces) = &self.faces
+            && faces.len() != triangles.len()
+        {
+            let (n, m) = (faces.len(), triangles.len());
+            return Err(Fault::new(
+                "wrong-count",
+                format!("{n} numbers of faces for {m} triangles"),
+            )
+            .expected(format!("{m} numbers, one for each triangle"))
+            .found(n.to_string())
+            .in_field(1));
+        }
+        let vectors = self.rounds.unwrap_or_default();
+        if !vectors.len().is_multiple_of(5) {
+            let n = vectors.len();
+            return Err(Fault::new("wrong-count", format!("{n} vectors make no round faces"))
+                .expected("five vectors for each")
+                .found(n.to_string())
+                .in_field(2));
+        }
+        let round = |(k, v): (usize, &[Vec3<T>])| {
+            let (sweep, scale, side) = (v[4].x, v[4].y, v[4].z.re());
+            let known = self.faces.as_ref().is_some_and(|f| f.contains(&(side as u32)));
+            if side < 0.0 || side.fract() != 0.0 || !known {
+                let text = format!("there is no face {side}");
+                return Err(Fault::new("out-of-range", text)
+                    .expected("the number of a face")
+                    .found(side.to_string())
+                    .in_field(2)
+                    .in_item(5 * k + 4));
+            }
+            let profile = if sweep.re() == 0.0 {
+                Profile::Parabola([v[0], v[1], v[2]])
+            } else {
+                Profile::Conic { centre: v[0], a: v[1], b: v[2], sweep }
+            };
+            Ok(Round { side: side as u32, profile, shift: v[3], scale })
+        };
+        let rounds: Vec<Round<T>> =
+            vectors.chunks(5).enumerate().map(round).collect::<Result<_, _>>()?;
+        let body = Sides { points, triangles, sides: self.faces.as_deref(), rounds: &rounds };
+        let made = match faced(&body) {
+            Err(FieldError::ManyFaces { .. } | FieldError::RoundSides) => {
+                let closed = Inside::new(self.body.clone());
+                let closed = closed.map_err(|open| FieldError::NotClosed { edges: open.edges });
+                closed.map(|inside| Set::new(&Primitive::user(Arc::new(inside))))
+            }
+            made => made,
+        };
+        Ok(crate::set_value(made.map_err(|e| fault(&e).in_field(0))?))
+    }
+}
