@@ -77,6 +77,15 @@ pub enum FairError {
     },
     /// A curve runs against the neighbour that it should run on from.
     TurnsBack,
+    /// Two surfaces cannot be joined at an edge.
+    Seam {
+        /// The number of the seam in the list given.
+        number: usize,
+        /// Why.
+        why: String,
+    },
+    /// Steps of single points cannot keep more of a seam than its position.
+    SeamsByPasses,
     /// A solver met a matrix that it could not factor.
     Singular,
     /// The problem is larger than the direct solver takes on.
@@ -97,6 +106,11 @@ impl From<moldloft_spline::KnotError> for FairError {
 impl fmt::Display for FairError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Seam { number, why } => write!(f, "seam {}: {why}", number + 1),
+            Self::SeamsByPasses => write!(
+                f,
+                "passes and sweeps keep only the position of seams; tangents and curvature need the joint optimum"
+            ),
             Self::TooFew { expected, actual } => {
                 write!(f, "expected at least {expected} points, found {actual}")
             }

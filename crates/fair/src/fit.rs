@@ -317,7 +317,9 @@ pub fn fit_with<T: Real>(fit: &Fit, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, 
         .collect();
     let problem = squares(rows, vec![[0.0; 3]; offsets.len()], frozen);
     let still = solver::solve(&problem, 0.0, 0.0, 0.0)?;
-    for (c, x) in control.iter_mut().zip(solver::respond(&problem, &still, &offsets, &[], &[])?) {
+    for (c, x) in
+        control.iter_mut().zip(solver::respond(&problem, &still, &offsets, &[], &[], &[])?)
+    {
         *c += Vec3::from(x);
     }
     Ok(control)

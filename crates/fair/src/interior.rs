@@ -24,6 +24,10 @@ const MOST_TRIALS: usize = 12;
 /// Once the complementarity is this share of the certified gap, the rest of the gap is rounding.
 const ROUNDING: f64 = 1e-3;
 
+/// The most unknowns of which a solution that rounding ended is polished all the same: of more, squares
+/// of fourth differences have too few digits left.
+const POLISHED: usize = 1000;
+
 /// The largest matrix of which the measure's share is kept beside the sum.
 const KEPT: usize = 1 << 24;
 
@@ -450,6 +454,7 @@ impl<'a, const D: usize> State<'a, D> {
             iterations,
             misses,
             cones: self.cones.iter().map(|c| (wide(c.u), wide(c.y))).collect(),
+            nu: self.nu,
             active: self.active,
         }
     }
@@ -461,6 +466,7 @@ impl<'a, const D: usize> State<'a, D> {
         offsets: &[[T; 3]],
         radii: &[T],
         values: &[T],
+        pushes: &[[T; 3]],
     ) -> Result<Vec<[T; 3]>, FairError> {
         let zero = [T::zero(); D];
         let count = self.order.place.len();
@@ -478,6 +484,11 @@ impl<'a, const D: usize> State<'a, D> {
         self.cones = cones.map(|c| if centred { c.centred() } else { c }).collect();
         let mut band = self.band()?;
         let mut right = vec![zero; self.unknowns()];
+        for (push, &at) in pushes.iter().zip(&self.order.place) {
+            if at != NONE {
+                right[at as usize] = std::array::from_fn(|r| -push[r]);
+            }
+        }
         let mut push = |rows: &Rows, k: usize, force: [T; D]| {
             let (columns, factors) = rows.row(k);
             for (&c, &a) in columns.iter().zip(factors) {
@@ -695,8 +706,20 @@ pub(crate) fn solve<const D: usize>(
             break;
         }
     }
-    if let Some((_, x, cones, nu)) = best {
+    if let Some((gap, x, cones, nu)) = best {
         (state.x, state.cones, state.nu) = (x, cones, nu);
+        if state.p.norm == Norm::Square && state.unknowns() <= POLISHED {
+            // Where rounding ends the search early, the limits that are reached may show all the same.
+            let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
+            let better = state.polish(&mut band, margin) && {
+                let missed = state.misses().into_iter().fold(0.0, f64::max);
+                missed <= 1e-9 && state.certificate().1 <= gap
+            };
+            if !better {
+                (state.x, state.cones, state.nu) = kept;
+                state.active = None;
+            }
+        }
     }
     Ok(state.solution(iterations))
 }

@@ -21,7 +21,9 @@
 //! - [`optimum`]: the least of a [`Measure`] under hard bounds ([`Bound`]) and linear
 //!   [`Condition`]s, with a [`Certificate`] that does not trust the solver.
 //! - [`deviation`]: certified and sampled distance from the original.
-//! - [`Network`]: nets of surfaces and curves that share points, by passes or jointly.
+//! - [`Network`]: nets of surfaces and curves that share points, by passes or jointly;
+//!   [`Network::joined`] fairs surfaces with common edges as one, tangents and curvature across these
+//!   included ([`Seam`]).
 //! - [`shape`] and [`surface`]: curvature, torsion, combs, monotone pieces, inflections,
 //!   logarithmic curvature graphs, orthotomics; Gaussian and mean curvature, isophotes, highlight
 //!   and reflection lines, zebra, the metric of grids.
@@ -82,6 +84,7 @@ mod fit;
 mod heap;
 mod interior;
 mod job;
+mod joined;
 mod jump;
 mod levels;
 mod limit;
@@ -109,6 +112,7 @@ pub use entity::rows;
 pub use error::FairError;
 pub use fit::{Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters};
 pub use job::{End, Job};
+pub use joined::{Edge, Seam, Sheet};
 pub use jump::Jumps;
 pub use levels::levels;
 pub use limit::{Limit, Motion};

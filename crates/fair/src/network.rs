@@ -3,6 +3,7 @@
 
 use crate::certificate::gap;
 use crate::error::check_finite;
+use crate::joined::{Across, Patch};
 use crate::optimum::{Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, End, FairError, Job, Limit, LocalOptions, Measure, Rows, Space,
@@ -40,6 +41,11 @@ pub struct Network {
     /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
     net: Option<[Space; 2]>,
     weights: Option<Vec<f64>>,
+    /// The nets of joined surfaces.
+    pub(crate) patches: Vec<Patch>,
+    /// What holds across their seams, and how it hangs on the points given.
+    pub(crate) seams: Vec<Condition>,
+    pub(crate) across: Vec<Across>,
 }
 
 impl Network {
@@ -52,9 +58,14 @@ impl Network {
         strands: Vec<Strand>,
         limit: Limit,
     ) -> Result<Self, FairError> {
-        let network = Self { points, limit, strands, kept: Vec::new(), net: None, weights: None };
+        let network = Self::of(points, limit, strands);
         network.check()?;
         Ok(network)
+    }
+
+    fn of(points: Vec<Vec3<f64>>, limit: Limit, strands: Vec<Strand>) -> Self {
+        let (kept, patches, seams, across) = Default::default();
+        Self { points, limit, strands, kept, net: None, weights: None, patches, seams, across }
     }
 
     /// The control net of a surface with point (i, j) at `i * v.count() + j`. Passes run over the
@@ -92,7 +103,8 @@ impl Network {
         let rim = |k: usize, n: usize| k < 2 || k + 2 >= n;
         let corners = !spaces[0].is_closed() && !spaces[1].is_closed();
         let kept = (0..nu * nv).filter(|k| corners && rim(k / nv, nu) && rim(k % nv, nv)).collect();
-        let network = Self { points, limit, strands, kept, net: Some(spaces), weights };
+        let plain = Self::of(points, limit, strands);
+        let network = Self { kept, net: Some(spaces), weights, ..plain };
         network.check()?;
         Ok(network)
     }
@@ -181,6 +193,10 @@ impl Network {
         })
     }
 
+    fn check_seams(&self) -> Result<(), FairError> {
+        if self.seams.is_empty() { Ok(()) } else { Err(FairError::SeamsByPasses) }
+    }
+
     /// Curve `k` as a job of its own, at these points.
     fn job(&self, k: usize, points: &[Vec3<f64>]) -> Job {
         let strand = &self.strands[k];
@@ -239,6 +255,7 @@ impl Network {
     /// As [`crate::local`].
     pub fn passes(&self, passes: usize, steps: usize) -> Result<Vec<Vec3<f64>>, FairError> {
         self.check()?;
+        self.check_seams()?;
         let frozen = self.frozen();
         let mut points = self.points.clone();
         for _ in 0..passes {
@@ -268,6 +285,7 @@ impl Network {
         tolerances: &[T],
     ) -> Result<Vec<Vec3<T>>, FairError> {
         self.check()?;
+        self.check_seams()?;
         let frozen = self.frozen();
         let mut now = points.to_vec();
         for _ in 0..passes {
@@ -333,6 +351,9 @@ impl Network {
 
     /// The Bézier points of the net's displacement and how far control points can move under them.
     fn bezier(&self) -> Option<(Rows, Vec<f64>)> {
+        if !self.patches.is_empty() {
+            return self.patches_bezier();
+        }
         let [su, sv] = self.net.as_ref()?;
         let (bu, bv, nv) = (su.bezier(None), sv.bezier(None), sv.count());
         let mut rows = Rows::new();
@@ -363,6 +384,23 @@ impl Network {
         let (ru, rv) = (su.reach(None), sv.reach(None));
         let reach = ru.iter().flat_map(|a| rv.iter().map(move |b| a * b * spread)).collect();
         Some((rows, reach))
+    }
+
+    /// The same of joined surfaces; a point of several can move as far as the least of them allows.
+    fn patches_bezier(&self) -> Option<(Rows, Vec<f64>)> {
+        let mut all = Rows::new();
+        let mut reach = vec![f64::INFINITY; self.points.len()];
+        for patch in &self.patches {
+            let (rows, own) = patch.net.bezier()?;
+            for k in 0..rows.len() {
+                let (c, f) = rows.row(k);
+                all.push(c.iter().map(|&c| patch.places[c as usize]).zip(f.iter().copied()));
+            }
+            for (&i, r) in patch.places.iter().zip(own) {
+                reach[i] = reach[i].min(r);
+            }
+        }
+        Some((all, reach))
     }
 
     /// A certified bound on the displacement of the surface of a net: the largest Bézier point of
@@ -408,7 +446,9 @@ impl Network {
         points: &[Vec3<T>],
         tolerances: &[T],
     ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
-        self.parts(measure, bound, Vec::new(), accuracy)?.solve_with(points, tolerances, &[])
+        let parts = self.parts(measure, bound, Vec::new(), accuracy)?;
+        // The ratios of seams follow the points given.
+        parts.solve_bent(points, tolerances, &[], &self.bends(points)?)
     }
 
     fn parts(
@@ -419,9 +459,13 @@ impl Network {
         accuracy: f64,
     ) -> Result<Parts<'_>, FairError> {
         self.check()?;
+        let mut conditions = conditions;
+        // Last, so that the caller's keep their numbers.
+        conditions.extend(self.seams.iter().cloned());
         Ok(Parts {
             points: &self.points,
             relative: self.relative(&self.points),
+            centred: self.strands.iter().any(|s| s.weights.is_some()),
             limit: &self.limit,
             measure: self.rows(measure)?,
             norm: measure.norm(),
@@ -444,6 +488,7 @@ impl Network {
         count: usize,
     ) -> Result<(Vec<Vec3<f64>>, Certificate), FairError> {
         self.check()?;
+        self.check_seams()?;
         let n = self.points.len();
         let rows = self.rows(measure)?;
         let gram = rows.gram(n);
@@ -489,6 +534,11 @@ impl Network {
     pub fn sampled(&self, points: &[Vec3<f64>]) -> f64 {
         let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
         let largest = |all: &[Vec3<f64>]| all.iter().map(|m| m.norm()).fold(0.0, f64::max);
+        if !self.patches.is_empty() {
+            let each = self.patches.iter().enumerate();
+            let each = each.map(|(k, p)| p.net.sampled(&self.sheet(k, points)));
+            return each.fold(0.0, f64::max);
+        }
         let Some([u, v]) = &self.net else { return largest(&moved) };
         let Ok(surface) = self.surface(&moved) else { return f64::NAN };
         let steps =

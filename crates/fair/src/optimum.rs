@@ -111,8 +111,7 @@ pub fn optimum(job: &Job, options: &OptimumOptions) -> Result<Optimum, FairError
 }
 
 /// The same for numbers that carry derivatives: `points` and `tolerances` (per control point) have
-/// the real parts of the job, whose curve is polynomial and has no weights, `targets` those of the
-/// values of the options' conditions (empty when these are constant). Derivatives follow from the
+/// the real parts of the job, whose weights are constant, `targets` those of the values of the options' conditions (empty when these are constant). Derivatives follow from the
 /// conditions of optimality by the implicit function theorem; real parts are the bits of
 /// [`optimum`]. Factors of conditions are taken as constant.
 ///
@@ -128,6 +127,9 @@ pub fn optimum_with<T: Real>(
     Parts::of(job, options)?.solve_with(points, tolerances, targets)
 }
 
+/// The number of a condition, and by how much its factors change, point by point.
+pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
+
 /// What curves, nets and networks have in common.
 pub(crate) struct Parts<'a> {
     pub points: &'a [Vec3<f64>],
@@ -138,6 +140,8 @@ pub(crate) struct Parts<'a> {
     pub norm: Norm,
     pub frozen: Vec<bool>,
     pub conditions: Vec<Condition>,
+    /// Whether the measure sees points from their mean, as of rational splines.
+    pub centred: bool,
     /// How many of the conditions are not the caller's.
     pub own: usize,
     /// Bézier points of the displacement, and how far control points can move under them.
@@ -156,6 +160,7 @@ impl<'a> Parts<'a> {
         Ok(Parts {
             points: &job.points,
             relative: job.relative(&job.points),
+            centred: job.weights.is_some(),
             limit: &job.limit,
             measure: job.measure_rows(options.measure)?,
             norm: options.measure.norm(),
@@ -186,6 +191,18 @@ impl<'a> Parts<'a> {
         tolerances: &[T],
         targets: &[T],
     ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+        self.solve_bent(points, tolerances, targets, &[])
+    }
+
+    /// The same where factors of conditions follow the points, too: `bends` are what they change by, for
+    /// conditions of the caller's, with zero real parts.
+    pub fn solve_bent<T: Real>(
+        &self,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+        targets: &[T],
+        bends: &[Bend<T>],
+    ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
         let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
         let (optimum, solution) = self.solved(&frame, &problem)?;
@@ -198,6 +215,12 @@ impl<'a> Parts<'a> {
         }
         let change = |p: &Vec3<T>| *p - Vec3::lifted(p.re());
         let changes: Vec<Vec3<T>> = points.iter().map(change).collect();
+        let middle = if self.centred {
+            let sum = changes.iter().fold(Vec3::zero(), |s: Vec3<T>, c| s + *c);
+            sum / T::from(points.len() as f64)
+        } else {
+            Vec3::zero()
+        };
         let rows = &problem.measure;
         let down = |v: Vec3<T>| {
             let mut out = [T::zero(); 3];
@@ -210,10 +233,9 @@ impl<'a> Parts<'a> {
             .map(|k| {
                 let (columns, factors) = rows.row(k);
                 let entries = columns.iter().zip(factors);
-                down(
-                    entries
-                        .fold(Vec3::zero(), |s, (&c, &f)| s + changes[c as usize].map(|x| x * f)),
-                )
+                down(entries.fold(Vec3::zero(), |s, (&c, &f)| {
+                    s + (changes[c as usize] - middle).map(|x| x * f)
+                }))
             })
             .collect();
         let limits = &problem.bounds.rows;
@@ -239,8 +261,20 @@ impl<'a> Parts<'a> {
                 aim - (c.x * f.x + c.y * f.y + c.z * f.z)
             })
         };
-        let values: Vec<T> = self.conditions.iter().enumerate().map(value).collect();
-        let answers = solver::respond(&problem, &solution, &offsets, &radii, &values)?;
+        let mut values: Vec<T> = self.conditions.iter().enumerate().map(value).collect();
+        // d(A x) = 0 and d(slope + nu A) = 0: both have a share of dA.
+        let mut pushes = vec![[T::zero(); 3]; if bends.is_empty() { 0 } else { points.len() }];
+        for (k, entries) in bends {
+            let k = k + self.own;
+            for (i, f) in entries {
+                let p = optimum.points[*i];
+                values[k] -= f.x * p.x + f.y * p.y + f.z * p.z;
+                for (push, x) in pushes[*i].iter_mut().zip(down(*f)) {
+                    *push += x * solution.nu[k];
+                }
+            }
+        }
+        let answers = solver::respond(&problem, &solution, &offsets, &radii, &values, &pushes)?;
         let faired = (0..points.len()).map(|i| {
             let mut p = Vec3::lifted(optimum.points[i]) + changes[i];
             for (a, x) in frame.axes.iter().zip(answers[i]) {

@@ -65,6 +65,8 @@ pub(crate) struct Solution {
     pub misses: Vec<f64>,
     /// Slacks and duals at the solution, for [`respond`].
     pub cones: Vec<(Pair<3>, Pair<3>)>,
+    /// The multipliers of the conditions.
+    pub nu: Vec<f64>,
     /// The limits that are reached and their forces, when the solution was polished.
     pub active: Option<Active>,
 }
@@ -201,7 +203,8 @@ pub(crate) fn solve(
 }
 
 /// How the displacements answer to small changes of the offsets (per measure row), the radii (per
-/// limit) and the values of the conditions: the implicit function theorem at the solution, where
+/// limit) and the values of the conditions, and to small forces on the points (`pushes`, none when empty,
+/// against the slope of the measure): the implicit function theorem at the solution, where
 /// each cone resists with its stiffness. The changes are numbers with a zero real part.
 ///
 /// # Errors
@@ -212,11 +215,12 @@ pub(crate) fn respond<T: Real>(
     offsets: &[[T; 3]],
     radii: &[T],
     values: &[T],
+    pushes: &[[T; 3]],
 ) -> Result<Vec<[T; 3]>, FairError> {
     let order = Order::of(p);
     match p.dimension {
-        0 | 1 => State::<1>::new(p, order).respond(solution, offsets, radii, values),
-        2 => State::<2>::new(p, order).respond(solution, offsets, radii, values),
-        _ => State::<3>::new(p, order).respond(solution, offsets, radii, values),
+        0 | 1 => State::<1>::new(p, order).respond(solution, offsets, radii, values, pushes),
+        2 => State::<2>::new(p, order).respond(solution, offsets, radii, values, pushes),
+        _ => State::<3>::new(p, order).respond(solution, offsets, radii, values, pushes),
     }
 }

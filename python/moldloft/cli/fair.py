@@ -12,10 +12,10 @@ from moldloft.cli.console import Progress, assignment, print_json
 from moldloft.errors import Error, FairingError
 
 if TYPE_CHECKING:
-    from moldloft.fairing import Fairing, NetworkFairing, Spline, SurfaceFairing
+    from moldloft.fairing import Fairing, NetworkFairing, PatchesFairing, Spline, SurfaceFairing
     from moldloft.fairing.files import GridFile, PointFile
 
-    Result = Fairing | SurfaceFairing | NetworkFairing
+    Result = Fairing | SurfaceFairing | NetworkFairing | PatchesFairing
 
 __all__ = ["add", "run"]
 
@@ -92,6 +92,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         "some, as in u0=curvature,v1=position",
     )
     parser.add_argument(
+        "--seams",
+        choices=["position", "tangent", "curvature"],
+        help="what runs on across common edges of the blocks of a Plot3D file, which are faired "
+        "together; by default curvature",
+    )
+    parser.add_argument(
         "--degree",
         metavar="P[,Q]",
         type=_degrees,
@@ -99,10 +105,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="polynomial degree, by default 3; of surfaces one or two",
     )
     parser.add_argument(
-        "--knots", metavar="FILE", help="knots of the curve: numbers that do not fall"
+        "--knots",
+        metavar="FILE",
+        help="knots of the curve, or of a surface along u: numbers that do not fall",
     )
+    parser.add_argument("--knots-v", metavar="FILE", help="knots of a surface along v")
     parser.add_argument(
-        "--weights", metavar="FILE", help="weights of a rational curve, one per control point"
+        "--weights",
+        metavar="FILE",
+        help="weights of a rational curve or surface, one per control point",
     )
     parser.add_argument(
         "--along",
@@ -344,6 +355,8 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
         ("--rims", options.rims != "corners"),
         ("--normal", options.normal),
         ("--closed-v", options.closed_v),
+        ("--knots-v", options.knots_v),
+        ("--seams", options.seams),
         ("--degree with two numbers", not isinstance(options.degree, int)),
         ("u and v", any(len(at) > 1 for at, _ in [*options.through, *options.tangent])),
     ):
@@ -443,8 +456,9 @@ class _Points(_Source):
             ("--join", options.join),
             ("--rims", options.rims != "corners"),
             ("--count", options.count),
-            ("--knots", options.knots),
+            ("--knots", options.knots or options.knots_v),
             ("--weights", options.weights),
+            ("--seams", options.seams),
             ("--log", options.log),
             ("--degree with two numbers", not isinstance(options.degree, int)),
         ):
@@ -521,14 +535,26 @@ def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
     return out["u"], out["v"]
 
 
+def _grid_weights(path: str | None, shape: tuple[int, int]) -> Any:
+    """The weights of a net, row by row."""
+    numbers = _numbers(path)
+    if numbers is None:
+        return None
+    if len(numbers) != shape[0] * shape[1]:
+        raise FairingError(
+            f"error: {path}: expected {shape[0]} x {shape[1]} weights, found {len(numbers)}"
+        )
+    import numpy as np
+
+    return np.reshape(numbers, shape)
+
+
 def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFairing:
     from moldloft.fairing import fair
 
     for option, given in (
         ("--tangent", options.tangent),
         ("--join", options.join),
-        ("--knots", options.knots),
-        ("--weights", options.weights),
         ("--count", options.count),
         ("--log", options.log),
         ("--fixed", options.fixed),
@@ -556,6 +582,8 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
         "keep": options.keep,
         "passes": options.passes or 1,
         "steps": options.steps,
+        "knots": (_numbers(options.knots), _numbers(options.knots_v)),
+        "weights": _grid_weights(options.weights, grid.shape[:2]),
     }
     return fair(grid, options.tol, **chosen)  # type: ignore[return-value]
 
@@ -566,8 +594,12 @@ class _Grids(_Source):
     def __init__(self, file: GridFile, options: argparse.Namespace) -> None:
         self.file = file
         count = len(file.grids)
-        if options.block is None and count > 1:
-            raise Error(f"error: `{file.path}` has {count} blocks: choose one with --block")
+        self.all = options.block is None and count > 1
+        if options.seams and not self.all:
+            raise Error("error: --seams: for the blocks of a Plot3D file that are faired together")
+        if self.all:
+            self.title = f"{file.path}: {count} blocks"
+            return
         self.at = (options.block or 1) - 1
         if not 0 <= self.at < count:
             raise Error(f"error: --block: expected 1 to {count}, found {options.block}")
@@ -576,9 +608,54 @@ class _Grids(_Source):
         self.title = f"{file.path}{block}: {m} x {n} points"
 
     def fair(self, options: argparse.Namespace) -> Result:
+        if self.all:
+            return self._patches(options)
         return _fair_grid(self.file.grids[self.at], options.role or "control", options)
 
+    def _patches(self, options: argparse.Namespace) -> PatchesFairing:
+        from moldloft.fairing import patches
+
+        for name, given in (
+            ("--closed", options.closed or options.closed_v),
+            ("--mode", options.mode != "optimum"),
+            ("--breaks", options.breaks),
+            ("--fixed", options.fixed),
+            ("--ends", options.ends),
+            ("--knots", options.knots),
+            ("--weights", options.weights),
+            ("--through", options.through),
+            ("--tangent", options.tangent),
+            ("--normal", options.normal),
+            ("--join", options.join),
+            ("--keep", options.keep),
+            ("--count", options.count),
+            ("--log", options.log),
+            ("--plot", options.plot),
+            ("--output as .vts", Path(options.output or "").suffix.lower() == ".vts"),
+        ):
+            if given:
+                raise Error(
+                    f"error: {name}: `{self.file.path}` has {len(self.file.grids)} blocks; choose "
+                    "one with --block"
+                )
+        rims: Any = options.rims
+        if "=" in rims:
+            rims = dict(word.partition("=")[::2] for word in rims.split(","))
+        return patches(
+            self.file.grids,
+            options.tol,
+            seams=options.seams or "curvature",
+            as_=options.role or "fit",
+            degree=options.degree,
+            measure=options.measure,
+            bound=options.bound or "points",
+            rims=rims,
+            motion=_motion(options),
+        )
+
     def write(self, result: Any, path: Path) -> Path:
+        if self.all:
+            return _commit(path, self.file.encoded(list(result.grids)))
         if path.suffix.lower() == ".vts":
             result.write_vtk(path)
             return path

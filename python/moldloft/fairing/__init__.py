@@ -13,8 +13,9 @@ True
 True
 
 A row of points is a curve, a grid ``(m, n, 3)`` the net of a surface; :func:`network` fairs curves
-that share points, such as the lines of a hull. :class:`Spline` and :class:`SplineSurface` answer
-questions about curves and surfaces, :class:`Look` about how light plays on them.
+that share points, such as the lines of a hull, :func:`patches` surfaces that share edges.
+:class:`Spline` and :class:`SplineSurface` answer questions about curves and surfaces, :class:`Look`
+about how light plays on them.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from moldloft.fairing.curve import Fairing, fair_curve
 from moldloft.fairing.network import NetworkFairing, network
+from moldloft.fairing.patches import PatchesFairing, patches
 from moldloft.fairing.report import Finding, Numbers
 from moldloft.fairing.spline import (
     Samples,
@@ -42,6 +44,7 @@ __all__ = [
     "Look",
     "NetworkFairing",
     "Numbers",
+    "PatchesFairing",
     "Samples",
     "Spline",
     "SplineSurface",
@@ -51,6 +54,7 @@ __all__ = [
     "grid_metric",
     "monotone_runs",
     "network",
+    "patches",
 ]
 
 

@@ -1,5 +1,5 @@
 use super::shapes::{self, Ended};
-use super::{Intent, Places, end, faithful, fault, measure, role};
+use super::{Intent, Own, Places, end, faithful, fault, measure, role};
 use crate::FairError;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
@@ -56,6 +56,14 @@ pub struct FairCurve<T: Real> {
     /// begins or ends where this one does. They stay as they are; `ends` is for the other end.
     #[field(default)]
     joins: Option<Vec<CurveRef<T>>>,
+    /// Positive weights of the control points (`as = "control"`), which make it rational and stay as
+    /// they are. They count as constants: derivatives do not go through them.
+    #[field(default)]
+    weights: Option<Vec<T>>,
+    /// Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of them, which
+    /// do not fall; constants too.
+    #[field(default)]
+    knots: Option<Vec<T>>,
 }
 
 /// Ends within this share of the curve's extent are one place.
@@ -63,6 +71,47 @@ const TOGETHER: f64 = 1e-9;
 
 /// The field of the joins.
 const JOINS: usize = 9;
+
+/// The fields of the weights and the knots.
+const WEIGHTS: usize = 10;
+const KNOTS: usize = 11;
+
+impl<T: Real> FairCurve<T> {
+    /// Weights and knots, where they have a meaning.
+    fn own(&self) -> Result<Own, Fault> {
+        let plain =
+            |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
+        let own = Own { knots: plain(&self.knots), weights: plain(&self.weights) };
+        let given =
+            [(own.weights.is_some(), "weights", WEIGHTS), (own.knots.is_some(), "knots", KNOTS)];
+        for (_, what, field) in given.into_iter().filter(|g| g.0) {
+            let refused = |why: &str, expected: &str, found: &str| {
+                Fault::new("not-control", format!("{what} {why}"))
+                    .expected(expected)
+                    .found(found)
+                    .in_field(field)
+            };
+            if &*self.r#as != "control" {
+                let found = format!("as = \"{}\"", self.r#as);
+                return Err(refused("are those of control points", "as = \"control\"", &found));
+            }
+            if what == "weights" && &*self.mode == "faithful" {
+                return Err(refused(
+                    "need the optimum",
+                    "mode = \"optimum\"",
+                    "mode = \"faithful\"",
+                ));
+            }
+            if what == "weights" && self.joins.as_ref().is_some_and(|j| !j.is_empty()) {
+                return Err(refused("and joins do not go together", "one of them", "both"));
+            }
+            if what == "knots" && self.closed == 1 {
+                return Err(refused("are for open curves", "closed = 0", "closed = 1"));
+            }
+        }
+        Ok(own)
+    }
+}
 
 impl<T: Real> FairCurve<T> {
     /// What the curve runs on from at its start and its end, and which of the joins that is.
@@ -156,6 +205,7 @@ fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> Fau
 impl<T: Real> Build<T> for FairCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let neighbours = self.neighbours()?;
+        let own = self.own()?;
         let intent = Intent {
             tolerance: self.tolerance,
             degree: self.degree,
@@ -166,13 +216,28 @@ impl<T: Real> Build<T> for FairCurve<T> {
             end: end(&self.ends, 5)?,
             breaks: self.breaks.unwrap_or_default(),
             joins: neighbours.map(|n| n.map(|(_, derivatives)| derivatives)),
+            own,
         };
         let places = Places { points: 0, tolerance: 1, degree: 7, breaks: 4 };
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
         let joins = neighbours.map(|n| n.map(|(k, _)| k));
-        let (space, control) = intent.spline(&points).map_err(|e| unjoined(e, joins, &places))?;
-        let curve = shapes::curve(&space, &control)
-            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+        let about = |e: FairError| match e {
+            FairError::Weight { .. } | FairError::Count { what: "weights", .. } => {
+                Fault::new("bad-weight", e.to_string()).in_field(WEIGHTS)
+            }
+            FairError::Unsorted { .. }
+            | FairError::Knots(_)
+            | FairError::Count { what: "knots", .. } => {
+                Fault::new("bad-knots", e.to_string()).in_field(KNOTS)
+            }
+            e => unjoined(e, joins, &places),
+        };
+        let (space, control) = intent.spline(&points).map_err(about)?;
+        let made = match &intent.own.weights {
+            Some(weights) => shapes::rational(&space, &control, weights),
+            None => shapes::curve(&space, &control),
+        };
+        let curve = made.map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
         let [first, .., last] = self.points.as_slice() else {
             return Err(Fault::new("too-few-items", "a curve needs points").in_field(0));
         };

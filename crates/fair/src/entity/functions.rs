@@ -46,6 +46,7 @@ impl<T: Real> Build<T> for Fair<T> {
             end: crate::End::Points(2),
             breaks: Vec::new(),
             joins: [None; 2],
+            own: super::Own::default(),
         };
         let places = Places { points: 0, tolerance: 1, degree: 0, breaks: 0 };
         let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;

@@ -3,6 +3,7 @@
 mod curve;
 mod functions;
 mod net;
+mod patches;
 mod shapes;
 mod snake;
 mod surface;
@@ -15,6 +16,7 @@ use crate::{
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{Fault, Row};
+use moldloft_spline::KnotVector;
 
 /// All kinds and functions of this crate, in the order of the reference.
 ///
@@ -30,6 +32,8 @@ pub fn rows() -> Vec<Row> {
         surface::FairSurf::<f64>::row(),
         net::FairNet::<f64>::row(),
         net::NetCurve::<f64>::row(),
+        patches::FairPatches::<f64>::row(),
+        patches::NetSurf::<f64>::row(),
         functions::Fair::<f64>::row(),
         functions::Jumps::<f64>::row(),
         functions::Curvature::<f64>::row(),
@@ -54,6 +58,38 @@ pub(crate) struct Intent<T> {
     /// First and second derivative of what the curve runs on from, at its start and end, by a
     /// parameter that runs as its own.
     pub joins: [Option<[Vec3<T>; 2]>; 2],
+    /// Knots of the control points, and their weights, which stay.
+    pub own: Own,
+}
+
+/// Knots and weights of the user's.
+#[derive(Clone, Default)]
+pub(crate) struct Own {
+    pub knots: Option<Vec<f64>>,
+    pub weights: Option<Vec<f64>>,
+}
+
+impl Own {
+    /// The space of `count` control points on its knots, or on uniform ones.
+    pub fn space(&self, degree: usize, count: usize) -> Result<Space, FairError> {
+        let Some(knots) = &self.knots else {
+            return if count < degree + 2 {
+                Err(FairError::TooFew { expected: degree + 2, actual: count })
+            } else {
+                Space::clamped(degree, count)
+            };
+        };
+        let (expected, actual) = (count + degree + 1, knots.len());
+        if expected != actual {
+            return Err(FairError::Count { what: "knots", expected, actual });
+        }
+        if let Some(index) =
+            knots.windows(2).position(|w| w[0] > w[1] || w[0].is_nan() || w[1].is_nan())
+        {
+            return Err(FairError::Unsorted { index: index + 1 });
+        }
+        Space::open(KnotVector::new(degree, knots.clone())?)
+    }
 }
 
 /// What the given points are.
@@ -169,10 +205,8 @@ impl<T: Real> Intent<T> {
                 let space = if self.closed {
                     let knots = (0..n).map(|k| k as f64 / n as f64).collect();
                     Space::periodic(self.degree, knots, 1.0)?
-                } else if n < self.degree + 2 {
-                    return Err(FairError::TooFew { expected: self.degree + 2, actual: n });
                 } else {
-                    Space::clamped(self.degree, n)?
+                    self.own.space(self.degree, n)?
                 };
                 let faired = self.within(&space, points, Bound::Bezier, marks)?;
                 Ok((space, faired))
@@ -206,7 +240,8 @@ impl<T: Real> Intent<T> {
             End::Points(k) => k,
             end => end.kept(),
         };
-        let held = Self { end: End::Points(end), breaks: self.breaks.clone(), ..*self };
+        let (breaks, own) = (self.breaks.clone(), self.own.clone());
+        let held = Self { end: End::Points(end), breaks, own, ..*self };
         held.within(&space, points, Bound::ControlPoints, indices(&self.breaks, n)?)
     }
 
@@ -221,7 +256,7 @@ impl<T: Real> Intent<T> {
         let mut job = Job {
             space: space.clone(),
             points: points.iter().map(|p| p.re()).collect(),
-            weights: None,
+            weights: self.own.weights.clone(),
             limit: Limit::new(Motion::Ball, vec![self.tolerance.re(); n])?,
             marks,
             ends: [self.end; 2],

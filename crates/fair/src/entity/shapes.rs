@@ -21,6 +21,17 @@ pub(crate) fn curve<T: Real>(
     BSplineCurve::new(knots, places.into_iter().map(|i| points[i]).collect(), None)
 }
 
+/// The rational curve of a space, its control points and their weights.
+pub(crate) fn rational<T: Real>(
+    space: &Space,
+    points: &[Vec3<T>],
+    weights: &[f64],
+) -> Result<BSplineCurve<T>, SplineError> {
+    let (knots, places) = space.knot_vector();
+    let each = places.iter().map(|&i| T::from(weights[i])).collect();
+    BSplineCurve::new(knots, places.into_iter().map(|i| points[i]).collect(), Some(each))
+}
+
 impl<T: Real> Curve<T> for Ended<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.curve.jet(t, order)

@@ -95,6 +95,7 @@ impl<T: Real> Build<T> for FairSnake<T> {
             end,
             breaks: Vec::new(),
             joins: [None; 2],
+            own: super::Own::default(),
         };
         let places = Places { points: 0, tolerance: 1, degree: 5, breaks: 0 };
         let path: Vec<_> =

@@ -1,4 +1,4 @@
-use super::{ACCURACY, Places, Role, faithful, fault, indices, measure, role};
+use super::{ACCURACY, Own, Places, Role, faithful, fault, indices, measure, role};
 use crate::{Bound, End, FairError, Limit, Network, Space, Spacing, interpolate_sharp};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
@@ -8,7 +8,7 @@ use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
 
 /// A grid of points.
-struct Grid<T: Real>(Arc<Vectors<T>>);
+pub(super) struct Grid<T: Real>(pub Arc<Vectors<T>>);
 
 impl<T: Real> FromValue<T> for Grid<T> {
     const CLASS: Class = Class::Vectors;
@@ -67,10 +67,84 @@ pub struct FairSurf<T: Real> {
     /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
     #[field(default = "corners")]
     rims: Rims,
+    /// Positive weights of the control points (`as = "control"`), a grid like the points, which make
+    /// it rational and stay as they are. They count as constants: derivatives do not go through them.
+    #[field(default)]
+    weights: Option<Weights>,
+    /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, which do not
+    /// fall; constants too.
+    #[field(default)]
+    knots_u: Option<Vec<T>>,
+    /// The same along v.
+    #[field(default)]
+    knots_v: Option<Vec<T>>,
+}
+
+/// The fields of weights and knots.
+const WEIGHTS: usize = 10;
+const KNOTS: [usize; 2] = [11, 12];
+
+/// Weights of control points.
+struct Weights {
+    shape: ArrayShape,
+    items: Vec<f64>,
+}
+
+impl<T: Real> FromValue<T> for Weights {
+    const CLASS: Class = Class::Numbers;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Numbers(array) => {
+                let items = array.items.iter().map(|x| x.re()).collect();
+                Ok(Self { shape: array.shape, items })
+            }
+            other => Err(Fault::wrong_class(Class::Numbers, other.class())),
+        }
+    }
+}
+
+impl<T: Real> FairSurf<T> {
+    /// Weights and knots, where they have a meaning.
+    fn own(&self, shape: ArrayShape) -> Result<[Own; 2], Fault> {
+        let plain =
+            |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
+        let own = [&self.knots_u, &self.knots_v].map(|k| Own { knots: plain(k), weights: None });
+        let fields = [
+            (self.weights.is_some(), "weights", WEIGHTS),
+            (own[0].knots.is_some(), "knots", KNOTS[0]),
+            (own[1].knots.is_some(), "knots", KNOTS[1]),
+        ];
+        for (_, what, field) in fields.into_iter().filter(|g| g.0) {
+            if &*self.r#as != "control" {
+                let text = format!("{what} are those of control points");
+                return Err(Fault::new("not-control", text)
+                    .expected("as = \"control\"")
+                    .found(format!("as = \"{}\"", self.r#as))
+                    .in_field(field));
+            }
+        }
+        if let Some(weights) = &self.weights {
+            let refused = |text: &str, expected: String, found: String| {
+                Err(Fault::new("bad-weight", text)
+                    .expected(expected)
+                    .found(found)
+                    .in_field(WEIGHTS))
+            };
+            if weights.shape != shape {
+                let found = weights.shape.to_string();
+                return refused("weights are a grid like the points", shape.to_string(), found);
+            }
+            if &*self.mode == "faithful" {
+                let (expected, found) = ("mode = \"optimum\"", "mode = \"faithful\"");
+                return refused("weights need the optimum", expected.into(), found.into());
+            }
+        }
+        Ok(own)
+    }
 }
 
 /// What the rims keep, in the order of the edges of a surface.
-struct Rims([End; 4]);
+pub(super) struct Rims(pub [End; 4]);
 
 impl<T: Real> FromValue<T> for Rims {
     const CLASS: Class = Class::Any;
@@ -102,10 +176,10 @@ impl<T: Real> FromValue<T> for Rims {
 
 /// A grid of points, as the control points of the spline of `degree` through each of its rows along
 /// the first index; the space, and which rows of control points are breaks.
-type Along<T> = (Space, Vec<Vec3<T>>, Vec<usize>);
+pub(super) type Along<T> = (Space, Vec<Vec3<T>>, Vec<usize>);
 
 /// Fits all lines of a grid `[m, n]` along its first index.
-fn fitted<T: Real>(
+pub(super) fn fitted<T: Real>(
     degree: usize,
     grid: &[Vec3<T>],
     m: usize,
@@ -128,7 +202,7 @@ fn fitted<T: Real>(
 }
 
 /// The grid with its indices exchanged.
-fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
+pub(super) fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
     let n = grid.len() / m;
     (0..n).flat_map(|j| (0..m).map(move |i| grid[i * n + j])).collect()
 }
@@ -163,6 +237,8 @@ impl<T: Real> Build<T> for FairSurf<T> {
             },
         );
         let (marks_u, marks_v) = (marks_u?, marks_v?);
+        let own = self.own(grid.shape)?;
+        let weights = self.weights.as_ref().map(|w| w.items.clone());
         let Rims([south, east, north, west]) = self.rims;
         let rims = [[west, east], [south, north]];
         let make = || -> Result<_, FairError> {
@@ -178,12 +254,12 @@ impl<T: Real> Build<T> for FairSurf<T> {
                 let net = turned(&net, v.count());
                 ([u, v], net, [mu, mv])
             } else {
-                let spaces = [Space::clamped(degree, m)?, Space::clamped(degree, n)?];
+                let spaces = [own[0].space(degree, m)?, own[1].space(degree, n)?];
                 (spaces, grid.points(), [marks_u, marks_v])
             };
             let limit = Limit::ball(net.len(), self.tolerance.re())?;
             let plain = net.iter().map(|p| p.re()).collect();
-            let network = Network::net(spaces.clone(), plain, None, limit)?
+            let network = Network::net(spaces.clone(), plain, weights.clone(), limit)?
                 .with_breaks(&marks[0], &marks[1])?
                 .with_rims(rims)?;
             let tolerances = vec![self.tolerance; net.len()];
@@ -196,9 +272,20 @@ impl<T: Real> Build<T> for FairSurf<T> {
             };
             Ok((spaces, points))
         };
-        let (spaces, points) = make().map_err(|e| fault(e, &places))?;
+        let about = |e: FairError| match e {
+            FairError::Weight { .. } => Fault::new("bad-weight", e.to_string()).in_field(WEIGHTS),
+            FairError::Unsorted { .. }
+            | FairError::Knots(_)
+            | FairError::Count { what: "knots", .. } => {
+                let along = usize::from(own[0].space(self.degree, m).is_ok());
+                Fault::new("bad-knots", e.to_string()).in_field(KNOTS[along])
+            }
+            e => fault(e, &places),
+        };
+        let (spaces, points) = make().map_err(about)?;
         let [u, v] = spaces.map(|s| s.knot_vector().0);
-        let surface = BSplineSurface::new(u, v, points, None)
+        let weights = weights.map(|w| w.into_iter().map(T::from).collect());
+        let surface = BSplineSurface::new(u, v, points, weights)
             .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
         Ok(Value::Surface(SurfaceRef::new(surface, 0)))
     }

@@ -4,7 +4,8 @@ use super::solve::{bound, contradiction, end, get, motion};
 use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
 use crate::arrays;
 use moldloft_fair::{
-    Condition, End, FairError, Limit, Network, NetworkMode, NetworkReport, Space, Strand,
+    Condition, End, FairError, Limit, Network, NetworkMode, NetworkReport, Seam, Sheet, Space,
+    Strand,
 };
 use moldloft_num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -136,6 +137,54 @@ impl Net {
         let (told, points) = solved(py, network, &options)?;
         let (spaces, weights) = (self.spaces.clone(), self.weights.clone());
         Ok((Self { spaces, points, weights }, told))
+    }
+
+    /// Fairs surfaces with common edges together: the faired nets, their seams as (surface, direction,
+    /// end) of both sides, and the report. Tolerances are those of all control points, net after net.
+    #[staticmethod]
+    #[expect(clippy::type_complexity, reason = "a seam is a pair of edges")]
+    fn joined<'py>(
+        py: Python<'py>,
+        nets: Vec<PyRef<'_, Net>>,
+        keeps: &str,
+        options: Bound<'py, PyDict>,
+    ) -> PyResult<(Vec<Self>, Vec<[(usize, usize, usize); 2]>, Bound<'py, PyDict>)> {
+        let radii: Vec<f64> = get(&options, "tolerance")?;
+        let word: String = get(&options, "motion")?;
+        let motion = motion(&word, get(&options, "direction")?)?;
+        let words: [String; 4] = get(&options, "rims")?;
+        let rim = |k: usize| match words[k].as_str() {
+            "corners" => Ok(End::Free),
+            word => end(word),
+        };
+        let rims = [[rim(0)?, rim(1)?], [rim(2)?, rim(3)?]];
+        let mut at = 0;
+        let mut sheets = Vec::new();
+        for net in &nets {
+            let own = radii.get(at..at + net.points.len()).unwrap_or_default().to_vec();
+            at += net.points.len();
+            let limit = Limit::new(motion, own).map_err(fair_error)?;
+            let mut sheet = Sheet::new(net.spaces.clone(), net.points.clone(), limit);
+            sheet.weights.clone_from(&net.weights);
+            sheet.rims = rims;
+            sheets.push(sheet);
+        }
+        let seams = Seam::found(&sheets, end(keeps)?);
+        for seam in &seams {
+            for (k, edge) in seam.sheets.into_iter().zip(seam.edges) {
+                sheets[k].rims[edge.direction][edge.end] = End::Free;
+            }
+        }
+        let network = Network::joined(&sheets, &seams).map_err(fair_error)?;
+        let (told, points) = solved(py, network.clone(), &options)?;
+        let net = |(k, old): (usize, &PyRef<'_, Net>)| Self {
+            spaces: old.spaces.clone(),
+            points: network.sheet(k, &points),
+            weights: old.weights.clone(),
+        };
+        let side = |s: &Seam, k: usize| (s.sheets[k], s.edges[k].direction, s.edges[k].end);
+        let pairs = seams.iter().map(|s| [side(s, 0), side(s, 1)]).collect();
+        Ok((nets.iter().enumerate().map(net).collect(), pairs, told))
     }
 }
 

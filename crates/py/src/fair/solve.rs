@@ -184,12 +184,16 @@ pub fn contradiction(
     owners: &[usize],
     labels: &[String],
 ) -> PyErr {
-    let mut whose: Vec<usize> = conditions.iter().map(|&c| owners[c] + 1).collect();
+    // Those of seams come after the user's.
+    let mut whose: Vec<usize> =
+        conditions.iter().filter_map(|&c| owners.get(c)).map(|owner| owner + 1).collect();
     whose.dedup();
+    let seams = conditions.iter().any(|&c| c >= owners.len());
     let list: Vec<String> = whose.iter().map(usize::to_string).collect();
     let named: Vec<&str> =
         whose.iter().filter_map(|k| labels.get(k - 1)).map(String::as_str).collect();
     let what = match (whose.len(), ends) {
+        (0, _) if seams => "the continuity across seams".to_string(),
         (0, _) => "the conditions of the ends".to_string(),
         (1, false) => format!("condition {}", list[0]),
         (1, true) => format!("condition {} and those of the ends", list[0]),

@@ -125,16 +125,34 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
         "FairCurve" => {
             let closed = p.random.below(3) == 0;
             let points = if closed { ring(p) } else { row(p, 7, 0.0) };
-            let words = match p.random.below(4) {
-                0 => "measure = \"third\", ends = \"position\"",
-                1 => "as = \"points\"",
-                2 if !closed => "breaks = {4}, measure = \"bending\"",
-                _ => "as = \"control\", degree = 2",
+            let mut tolerance = p.number(0.02, 0.2);
+            let words = match p.random.below(6) {
+                0 => "measure = \"third\", ends = \"position\"".to_owned(),
+                1 => "as = \"points\"".to_owned(),
+                2 if !closed => "breaks = {4}, measure = \"bending\"".to_owned(),
+                3 => "mode = \"faithful\"".to_owned(),
+                4 if !closed => {
+                    // A curve that ends at its first point.
+                    let first = points.split(", ").next().expect("a row of seven").to_owned();
+                    let [dy, dz] = [p.number(-0.1, 0.1), p.number(-0.1, 0.1)];
+                    let before = [2.0, 1.0]
+                        .map(|x| p.object("AbsPoint", &format!("-{x}*w, {dy} + 0.2*h, {dz}*{x}")));
+                    let neighbour = p.object(
+                        "BCurve",
+                        &format!("{{{}, {first}}}, degree = 2", before.join(", ")),
+                    );
+                    tolerance = "1.5".to_owned();
+                    format!("joins = {{{neighbour}}}")
+                }
+                _ => "as = \"control\", degree = 2".to_owned(),
             };
-            let tolerance = p.number(0.02, 0.2);
             format!("{{{points}}}, {tolerance}, {words}, closed = {}", u8::from(closed))
         }
-        "FairNet" => net(p),
+        "FairNet" => {
+            let words = ["", ", keep = \"ends\"", ", mode = \"faithful\""][p.random.below(3)];
+            format!("{}{words}", net(p))
+        }
+        "FairPatches" => super::surfaces::patches(p),
         "NetCurve" => {
             let args = net(p);
             let net = p.object("FairNet", &args);

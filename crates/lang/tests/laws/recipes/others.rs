@@ -80,6 +80,17 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
             let end = p.object("TanhRelabel", "2, \"end\"");
             format!("{{{law}, {end}}}")
         }
+        "FaceSet" => {
+            let points = p.points::<4>().join(", ");
+            let body = p.object(
+                "MeshBody",
+                &format!("{{{points}}}, {{1, 3, 2, 1, 2, 4, 2, 3, 4, 3, 1, 4}}"),
+            );
+            match p.random.below(2) {
+                0 => body,
+                _ => format!("{body}, {{1, 2, 3, 4}}"),
+            }
+        }
         "MeshBody" => {
             let points = p.points::<4>().join(", ");
             format!("{{{points}}}, {{1, 3, 2, 1, 2, 4, 2, 3, 4, 3, 1, 4}}")

@@ -251,15 +251,51 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
                 let z = p.number(-0.2, 0.2);
                 writeln!(p.text, "{grid}[{i},{j}] = {{{i}*w, {j}, {z}*h}};").unwrap();
             }
-            let words = match p.random.below(3) {
+            let words = match p.random.below(6) {
                 0 => "as = \"control\"",
                 1 => "breaks_u = {3}",
+                2 => "mode = \"faithful\", passes = 2",
+                3 => "rims = \"position\"",
+                4 => "rims = {\"tangent\", \"corners\", \"corners\", \"curvature\"}",
                 _ => "measure = \"bending\"",
             };
             format!("{grid}, {}, {words}, {divisions}", p.number(0.05, 0.3))
         }
+        "NetSurf" => {
+            let args = patches(p);
+            let net = p.object("FairPatches", &args);
+            format!("{net}, {}, {divisions}", 1 + p.random.below(2))
+        }
         _ => return None,
     })
+}
+
+/// The arguments of two grids with a common row that are faired together.
+pub fn patches(p: &mut Program) -> String {
+    let grids = [0, 4].map(|start| {
+        let grid = p.name("g");
+        writeln!(p.text, "surface {grid}[5, 5];").unwrap();
+        (grid, start)
+    });
+    for i in 1..=9 {
+        for j in 1..=5 {
+            let z = p.number(-0.1, 0.1);
+            for (grid, start) in &grids {
+                let row = i - start;
+                if (1..=5).contains(&row) {
+                    writeln!(p.text, "{grid}[{row},{j}] = {{{i}*w, {j}, {z}*h}};").unwrap();
+                }
+            }
+        }
+    }
+    let words = match p.random.below(4) {
+        0 => "as = \"control\"",
+        1 => "seams = \"tangent\"",
+        2 => "seams = \"position\", rims = \"position\"",
+        _ => "measure = \"bending\"",
+    };
+    let [(a, _), (b, _)] = grids;
+    format!("{{{a}, {b}}}, {}, {words}", p.number(0.5, 0.9))
 }
 
 /// Two nearly parallel bows, so that rulings run across.

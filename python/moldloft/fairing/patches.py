@@ -1,0 +1,226 @@
+"""Fairing of surfaces with common edges."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft import _core
+from moldloft.errors import FairingError
+from moldloft.fairing.arrays import direction, points_of, radii
+from moldloft.fairing.report import lines_of
+from moldloft.fairing.surface import SplineSurface, _rims
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["PatchesFairing", "patches"]
+
+_EDGES = (("u0", "u1"), ("v0", "v1"))
+
+
+@dataclass(frozen=True)
+class PatchesFairing:
+    """Faired surfaces and all that is to be said about them."""
+
+    grids: tuple[Floats, ...]
+    """The faired grids: control points, or where the surfaces have the parameters of the points."""
+    surfaces: tuple[SplineSurface, ...]
+    """The faired surfaces."""
+    originals: tuple[SplineSurface, ...]
+    """The surfaces before."""
+    seams: tuple[tuple[tuple[int, str], tuple[int, str]], ...]
+    """The edges that two of them share: a surface, from 0, and its edge, such as ``"u1"``."""
+    keeps: str
+    """What runs on across seams."""
+    tol: float | None
+    """The largest tolerance; ``None`` for no limit."""
+    as_: str
+    """What the points were: ``"control"`` or ``"fit"``."""
+    measure: str
+    """What there was to be little of."""
+    measure_before: float
+    """The measure over all curves of the nets before."""
+    measure_after: float
+    """The measure of the result."""
+    jumps_before: float
+    """Sum of squared jumps over all curves of the nets before."""
+    jumps_after: float
+    """Sum of squared jumps of the result."""
+    deviation_certified: float
+    """No point of a surface is farther from its original than this."""
+    deviation_sampled: float
+    """The largest distance found by sampling."""
+    value: float
+    """The measure of the result, as the certificate has it."""
+    gap: float
+    """No surfaces within the tolerance, running on alike, measure less than ``value - gap``."""
+    seconds: float
+    """Time of the fairing."""
+
+    @property
+    def gap_relative(self) -> float:
+        """The gap as a share of the measure (at least a trillionth of the one before)."""
+        size = max(self.value, 1e-12 * self.measure_before)
+        return self.gap / size if size > 0 else 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """The report as plain data: what ``moldloft fair --json`` prints."""
+        return {
+            "surfaces": [list(g.shape[:2]) for g in self.grids],
+            "seams": [[[k, e], [m, f]] for (k, e), (m, f) in self.seams],
+            "keeps": self.keeps,
+            "as": self.as_,
+            "mode": "optimum",
+            "measure": self.measure,
+            "tolerance": self.tol,
+            "deviation_certified": self.deviation_certified,
+            "deviation_sampled": self.deviation_sampled,
+            "measure_before": self.measure_before,
+            "measure_after": self.measure_after,
+            "jumps_before": self.jumps_before,
+            "jumps_after": self.jumps_after,
+            "value": self.value,
+            "gap": self.gap,
+            "gap_relative": self.gap_relative,
+            "seconds": self.seconds,
+        }
+
+    def __str__(self) -> str:
+        rows = [
+            (self.measure, f"{self.measure_before:.6e}", f"{self.measure_after:.6e}"),
+            ("squared jumps", f"{self.jumps_before:.6e}", f"{self.jumps_after:.6e}"),
+        ]
+        names = [f"{k + 1}.{e} = {m + 1}.{f}" for (k, e), (m, f) in self.seams]
+        tail = [
+            ("seams", f"{', '.join(names) or 'none'}: continuous {self.keeps}"),
+            (
+                "deviation",
+                f"certified {self.deviation_certified:.6e}, sampled {self.deviation_sampled:.6e}",
+            ),
+            (
+                "certificate",
+                f"{self.value:.9e}, at most {self.gap_relative:.1e} of it left to gain",
+            ),
+            ("time", f"{1e3 * self.seconds:.3g} ms"),
+        ]
+        return lines_of(rows, tail)
+
+
+def patches(
+    surfaces: Sequence[ArrayLike | SplineSurface],
+    tol: float | None,
+    *,
+    seams: str = "curvature",
+    as_: str = "fit",
+    degree: int | tuple[int, int] = 3,
+    measure: str = "second",
+    bound: str = "points",
+    rims: str | Mapping[str, str] = "corners",
+    motion: Any = "ball",
+) -> PatchesFairing:
+    """Fair surfaces that share edges as one, so that they run on across these.
+
+    Where an edge of one surface has the same control points as an edge of another (or of itself),
+    in either direction, there is a seam: its points move for both. Degree and knots along it must
+    agree.
+
+    Parameters
+    ----------
+    surfaces
+        Grids ``(m, n, 3)`` or :class:`SplineSurface`, on clamped knots.
+    tol
+        How far each control point may move; ``None`` for no limit.
+    seams
+        What is continuous across seams: ``"position"``, ``"tangent"`` or ``"curvature"``. The ratio
+        of the speeds of the parameters on both sides is read from the surfaces as they are.
+    as_, degree
+        What the points of grids are, ``"fit"`` or ``"control"``, and of what degree.
+    measure, bound, rims, motion
+        As for surfaces; rims that are seams keep what ``seams`` says.
+
+    Raises
+    ------
+    FairingError
+        When surfaces cannot be joined, or not run on within the tolerance.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, y = np.meshgrid(np.arange(9.0), np.arange(6.0), indexing="ij")
+    >>> z = np.round(0.05 * x * (8 - x) + 0.02 * y * y, 1)
+    >>> grid = np.stack([x, y, z], axis=-1)
+    >>> faired = patches([grid[:5], grid[4:]], 0.2)
+    >>> faired.seams
+    (((0, 'u1'), (1, 'u0')),)
+    >>> a, b = (s.look([u], [0.5]) for s, u in zip(faired.surfaces, (1.0, 0.0)))
+    >>> bool(abs(a.mean - b.mean) < 1e-9)
+    True
+    """
+    if as_ not in ("control", "fit"):
+        raise FairingError(f"error: points of a surface are `control` or `fit`, not `{as_}`")
+    if seams not in ("position", "tangent", "curvature"):
+        raise FairingError(f"error: seams keep position, tangent or curvature, not `{seams}`")
+    if not surfaces:
+        raise FairingError("error: expected surfaces, found none")
+    started = time.perf_counter()
+    before: list[SplineSurface] = []
+    at: list[tuple[Floats, Floats] | None] = []
+    for given in surfaces:
+        if isinstance(given, SplineSurface):
+            before.append(given)
+            at.append(None)
+            continue
+        data, _ = points_of(given, 3)
+        if as_ == "fit":
+            made, places, _ = SplineSurface._interpolated(data, degree, ((), ()))
+            before.append(made)
+            at.append(places)
+        else:
+            before.append(SplineSurface(data, degree=degree))
+            at.append(None)
+    count = sum(s._core.shape[0] * s._core.shape[1] for s in before)
+    word, way = direction(motion)
+    chosen = {
+        "tolerance": radii(tol, count),
+        "motion": word,
+        "direction": way,
+        "rims": _rims(rims),
+        "measure": measure,
+        "mode": "optimum",
+        "bound": bound,
+        "passes": 1,
+        "steps": 0,
+        "conditions": [],
+        "labels": [],
+    }
+    cores, found, told = _core.Net.joined([s._core for s in before], seams, chosen)
+    faired = [SplineSurface._of(core) for core in cores]
+    seconds = time.perf_counter() - started
+    return PatchesFairing(
+        grids=tuple(
+            s.control_points if a is None else s.grid(*a) for s, a in zip(faired, at, strict=True)
+        ),
+        surfaces=tuple(faired),
+        originals=tuple(before),
+        seams=tuple(((k, _EDGES[d][e]), (m, _EDGES[f][g])) for (k, d, e), (m, f, g) in found),
+        keeps=seams,
+        tol=tol,
+        as_=as_,
+        measure=measure,
+        measure_before=told["measure_before"],
+        measure_after=told["measure_after"],
+        jumps_before=told["jumps_before"],
+        jumps_after=told["jumps_after"],
+        deviation_certified=told["certified"],
+        deviation_sampled=told["sampled"],
+        value=told["certificate"]["value"],
+        gap=told["certificate"]["gap"],
+        seconds=seconds,
+    )
