@@ -283,6 +283,7 @@ fn paper(items: &[Item], [l, b, r, t]: [f64; 4]) -> String {
          font-family=\"sans-serif\" font-size=\"13\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
     );
+    let mut taken = Vec::new();
     for item in items {
         let _ = match item {
             Item::Stroke { from, to, colour, width, dashed } => {
@@ -307,7 +308,7 @@ fn paper(items: &[Item], [l, b, r, t]: [f64; 4]) -> String {
             }
             Item::Text { at, shift, text, colour } => {
                 let [x, y] = place(*at);
-                let (x, y) = (x + shift[0], y + shift[1]);
+                let [x, y] = apart([x + shift[0], y + shift[1]], text, &mut taken);
                 writeln!(
                     out,
                     "<text x=\"{x:.2}\" y=\"{y:.2}\" fill=\"{colour}\" stroke=\"#fff\" \
@@ -321,7 +322,43 @@ fn paper(items: &[Item], [l, b, r, t]: [f64; 4]) -> String {
     out
 }
 
+/// Where a text that should begin at `at` stands clear of those before it: there, else up to four lines
+/// lower or higher, whichever is nearest; where none is free, there all the same. Letters count as 0.56
+/// of their height, which is about their mean in sans-serif types.
+fn apart(at: [f64; 2], text: &str, taken: &mut Vec<[f64; 4]>) -> [f64; 2] {
+    const LINE: f64 = 15.0;
+    let width = 13.0 * 0.56 * text.chars().count() as f64;
+    let of = |[x, y]: [f64; 2]| [x, y - 11.0, x + width, y + 3.0];
+    let free = |b: &[f64; 4]| {
+        let clear = |t: &[f64; 4]| b[0] >= t[2] || b[2] <= t[0] || b[1] >= t[3] || b[3] <= t[1];
+        taken.iter().all(clear)
+    };
+    let lower = |k: i32| [at[0], at[1] + LINE * f64::from(k)];
+    let tried = [0, 1, -1, 2, -2, 3, -3, 4, -4].map(lower);
+    let place = tried.into_iter().find(|p| free(&of(*p))).unwrap_or(at);
+    taken.push(of(place));
+    place
+}
+
 /// Names come from people: never markup.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::apart;
+
+    #[test]
+    fn texts_stand_apart() {
+        let mut taken = Vec::new();
+        let places = [(); 3].map(|()| apart([10.0, 50.0], "BASE 8", &mut taken));
+        assert_eq!(places, [[10.0, 50.0], [10.0, 65.0], [10.0, 35.0]]);
+        assert_eq!(apart([60.0, 50.0], "TOE 12", &mut taken), [60.0, 50.0]);
+        // Where all is full a text stands where it should.
+        for _ in 0..20 {
+            apart([10.0, 50.0], "BASE 8", &mut taken);
+        }
+        assert_eq!(apart([10.0, 50.0], "BASE 8", &mut taken), [10.0, 50.0]);
+    }
 }
