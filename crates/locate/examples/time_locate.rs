@@ -1,5 +1,5 @@
 //! Times nearest points and intersections on the 20 x 20 bicubic surface of the comparisons:
-//! `cargo run --release -p moldloft-locate --example time_locate`.
+//! `cargo run --release -p moldloft-locate --example time_locate [near|anywhere|plane|surface]`.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -24,6 +24,8 @@ const REPEATS: usize = 20;
 
 fn main() {
     let begin = Instant::now();
+    let only = std::env::args().nth(1);
+    let wanted = |name: &str| only.as_ref().is_none_or(|o| name.contains(o.as_str()));
     let s = bumpy(20, 7);
     let start = Instant::now();
     let prepared = NearestSurface::new(&s);
@@ -42,6 +44,9 @@ fn main() {
         })
         .collect();
     for (name, points) in [("near", near), ("anywhere", wide)] {
+        if !wanted(name) {
+            continue;
+        }
         let points: Vec<Vec3> = by_place(&points).into_iter().map(|k| points[k as usize]).collect();
         // The least of several runs: what else the machine does only adds.
         let run = |_| {
@@ -59,6 +64,9 @@ fn main() {
         ("a plane", Crossing::with_plane(&s, z), None),
         ("a second such surface", Crossing::with_surface(&s, &other), Some(&second)),
     ] {
+        if !wanted(name) {
+            continue;
+        }
         let timed = |work: &dyn Fn() -> Branches| {
             let (start, mut found) = (seconds(begin), Branches::default());
             for _ in 0..REPEATS {

@@ -3,7 +3,6 @@
 
 use crate::cells::{Cells, Flat, LEAF, Piece};
 use crate::nearest::{TIE, nearest_in_curve, surface_foot};
-use crate::pieces::distance_sq;
 use crate::report::Status;
 use crate::tree::CurveTree;
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
@@ -59,28 +58,37 @@ pub struct NearestSurface {
 #[inline]
 fn nearest_flat(q: Vec3, flat: &Flat) -> ([f64; 2], f64) {
     let [aa, ab, bb] = flat.products;
-    let g = [-q.dot(flat.a), -q.dot(flat.b)];
-    let st = least_quadratic(g, [aa, ab, bb]);
-    let [s, t] = st;
-    (st, (q - flat.a * s - flat.b * t).norm_sq())
+    let [by_det, by_aa, by_bb] = flat.inverses;
+    let (f, g) = (q.dot(flat.a), q.dot(flat.b));
+    let (mut s, mut t) = ((f * bb - ab * g) * by_det, (g * aa - ab * f) * by_det);
+    if !(by_det > 0.0 && s.abs() <= 1.0 && t.abs() <= 1.0) {
+        [s, t] = on_side([-f, -g], flat.products, [by_aa, by_bb], [s, t]);
+    }
+    ([s, t], (q - flat.a * s - flat.b * t).norm_sq())
 }
 
 /// Where g . w + w . H w / 2 is least over the square |w| <= 1, for a matrix that is positive
 /// definite or nearly so.
 #[inline]
 fn least_quadratic(g: [f64; 2], [aa, ab, bb]: [f64; 3]) -> [f64; 2] {
-    let clamp = |x: f64| if x.is_finite() { x.clamp(-1.0, 1.0) } else { 0.0 };
     let det = aa * bb - ab * ab;
     let (s, t) = ((ab * g[1] - g[0] * bb) / det, (ab * g[0] - g[1] * aa) / det);
     if det > 0.0 && s.abs() <= 1.0 && t.abs() <= 1.0 {
         return [s, t];
     }
+    on_side(g, [aa, ab, bb], [1.0 / aa, 1.0 / bb], [s, t])
+}
+
+/// The same where the least of the whole plane, (s, t), is outside: it lies on a side that this is
+/// beyond.
+#[inline]
+fn on_side(g: [f64; 2], [aa, ab, bb]: [f64; 3], by: [f64; 2], [s, t]: [f64; 2]) -> [f64; 2] {
+    let clamp = |x: f64| if x.is_finite() { x.clamp(-1.0, 1.0) } else { 0.0 };
     let value = |s: f64, t: f64| g[0] * s + g[1] * t + 0.5 * (aa * s * s + bb * t * t) + ab * s * t;
-    // The least lies on a side that the free one is beyond.
     let s1 = clamp(s);
-    let t1 = clamp(-(g[1] + ab * s1) / bb);
+    let t1 = clamp(-(g[1] + ab * s1) * by[1]);
     let t2 = clamp(t);
-    let s2 = clamp(-(g[0] + ab * t2) / aa);
+    let s2 = clamp(-(g[0] + ab * t2) * by[0]);
     if value(s1, t1) <= value(s2, t2) { [s1, t1] } else { [s2, t2] }
 }
 
@@ -146,15 +154,13 @@ impl NearestSurface {
             slop,
             boxes: 0,
         };
-        if cells.forks.is_empty() {
+        if cells.quads.is_empty() {
             search.cell(cells, 0);
         } else {
-            // Depth first, the nearer child first; depths are the logarithm of the number of cells.
-            let mut stack = [(0.0, 0u32); 64];
-            let mut top = 1;
-            while top > 0 {
-                top -= 1;
-                let (low, at) = stack[top];
+            // Depth first, the nearest child first; depths are the logarithm of the number of cells.
+            let mut stack: SmallVec<[(f64, u32); 64]> = SmallVec::new();
+            stack.push((0.0, 0));
+            while let Some((low, at)) = stack.pop() {
                 if low >= search.limit * search.limit {
                     continue;
                 }
@@ -162,27 +168,43 @@ impl NearestSurface {
                     search.cell(cells, (at & !LEAF) as usize);
                     continue;
                 }
-                let fork = &cells.forks[at as usize];
-                let d = [distance_sq(&fork.bounds[0], p), distance_sq(&fork.bounds[1], p)];
-                let near = usize::from(d[1] < d[0]);
-                for k in [1 - near, near] {
-                    if d[k] < search.limit * search.limit {
-                        stack[top] = (d[k], fork.below[k]);
-                        top += 1;
+                let quad = &cells.quads[at as usize];
+                let mut order: [(f64, u32); 4] = [(f64::INFINITY, 0); 4];
+                let d = quad.distances_sq(p);
+                let mut count = 0;
+                let most = search.limit * search.limit;
+                for k in 0..4 {
+                    if d[k] < most {
+                        // The farthest first, so that the nearest is on top.
+                        let mut at = count;
+                        while at > 0 && order[at - 1].0 < d[k] {
+                            order[at] = order[at - 1];
+                            at -= 1;
+                        }
+                        order[at] = (d[k], quad.below[k]);
+                        count += 1;
                     }
                 }
+                stack.extend_from_slice(&order[..count]);
             }
         }
-        self.chosen(surface, search)
+        self.chosen(surface, &search)
     }
 
     /// The nearest of the feet that were found.
-    fn chosen(&self, surface: &dyn Surface<f64>, search: Search<'_>) -> Nearest<2> {
+    fn chosen(&self, surface: &dyn Surface<f64>, search: &Search<'_>) -> Nearest<2> {
         let (p, tree) = (search.p, &self.cells.tree);
         let exhausted = search.boxes > MOST_BOXES;
+        // As a rule there is one.
+        if let ([foot], true) = (search.feet.as_slice(), tree.exact) {
+            let xyz = surface.jet(foot.uv[0], foot.uv[1], Order::Zero).p;
+            let status = alone(foot, exhausted);
+            return Nearest { at: foot.uv, xyz, distance: xyz.distance(p), status };
+        }
         let limit = search.limit;
         let mut feet: SmallVec<[(Foot, Vec3); 4]> = SmallVec::new();
-        for mut foot in search.feet.into_iter().filter(|f| f.distance - f.slack <= limit) {
+        for foot in search.feet.iter().filter(|f| f.distance - f.slack <= limit) {
+            let mut foot = *foot;
             if !tree.exact {
                 let exact = surface_foot(surface, p, foot.uv, [[0.0, 1.0]; 2], tree.size);
                 foot.uv = exact.at;
@@ -228,12 +250,8 @@ impl NearestSurface {
         let chosen = chosen.min(places.len() - 1);
         let status = if places.len() > 1 {
             Status::Multiple { count: places.len(), chosen, next }
-        } else if foot.flat || exhausted {
-            Status::Tangent
-        } else if foot.edge {
-            Status::EdgeClamped
         } else {
-            Status::Ok
+            alone(&foot, exhausted)
         };
         Nearest { at: foot.uv, xyz, distance: foot.distance, status }
     }
@@ -249,6 +267,17 @@ impl NearestSurface {
     }
 }
 
+/// The status of a foot that no other is as near as.
+fn alone(foot: &Foot, exhausted: bool) -> Status {
+    if foot.flat || exhausted {
+        Status::Tangent
+    } else if foot.edge {
+        Status::EdgeClamped
+    } else {
+        Status::Ok
+    }
+}
+
 impl<'a> Search<'a> {
     /// Looks for feet in a cell.
     #[inline]
@@ -256,10 +285,11 @@ impl<'a> Search<'a> {
         let flat = &cells.flats[k];
         let away = flat.c - self.p;
         let (_, off) = nearest_flat(-away, flat);
-        let off = off.sqrt();
-        if off - flat.bend >= self.limit {
+        let reach = self.limit + flat.bend;
+        if off >= reach * reach {
             return;
         }
+        let off = off.sqrt();
         // There is a point as near as this.
         self.limit = self.limit.min(off + flat.bend + self.slop);
         let bent = &cells.bents[k];
@@ -303,13 +333,7 @@ impl<'a> Search<'a> {
             self.limit = self.limit.min(high + self.slop);
             w
         } else {
-            let flat = Flat {
-                c: r,
-                a: s,
-                b: t,
-                products: [s.norm_sq(), s.dot(t), t.norm_sq()],
-                bend: 0.0,
-            };
+            let flat = Flat::of(r, s, t, 0.0);
             let (w, off) = nearest_flat(-r, &flat);
             let [f0, f1, f2, f3] = part.far;
             let bend =

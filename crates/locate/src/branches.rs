@@ -38,6 +38,9 @@ const BINS: usize = 48;
 /// A touch is a gap of less than this share of the size.
 const TOUCH: f64 = 1e-9;
 
+/// Planes of cells at a smaller angle than this have no line in common that tells anything.
+const LEAST_SINE: f64 = 0.02;
+
 /// Steps towards a touch.
 const MOST_STEPS: usize = 12;
 
@@ -68,37 +71,64 @@ pub struct Branches {
 }
 
 /// A cell or a part of one.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Part {
     flat: Flat,
-    piece: u32,
+    /// The parallelogram's unit normal, zero where it has none.
+    normal: Vec3,
+    /// Sine of the greatest angle between that and the normals of the surface here, or more.
+    turn: f64,
+    /// The longer side.
+    longest: f64,
+    /// How fast the part's own parameters, from -1 to 1, change in space at most.
+    fastest: [f64; 2],
     middle: [f64; 2],
     half: [f64; 2],
     /// Bounds of third derivatives.
     far: [f64; 4],
+    piece: u32,
 }
 
 impl Part {
     fn of(cells: &Cells, k: usize) -> Self {
         let bent = &cells.bents[k];
-        Self {
-            flat: cells.flats[k],
-            piece: bent.piece,
-            middle: bent.middle,
-            half: bent.half,
-            far: bent.far,
-        }
+        let slack = cells.pieces[bent.piece as usize].slack;
+        let flat = cells.flats[k];
+        Self::with(flat, bent.second, slack, bent.far, [bent.middle, bent.half], bent.piece)
     }
 
-    /// Lengths of the sides, roughly.
-    fn lengths(&self) -> [f64; 2] {
-        [2.0 * self.flat.a.norm(), 2.0 * self.flat.b.norm()]
+    fn with(
+        flat: Flat,
+        [ss, st, tt]: [Vec3; 3],
+        slack: f64,
+        far: [f64; 4],
+        [middle, half]: [[f64; 2]; 2],
+        piece: u32,
+    ) -> Self {
+        let (a, b) = (flat.a, flat.b);
+        let (la, lb) = (a.norm(), b.norm());
+        let n = a.cross(b);
+        let area = n.norm();
+        // How far both tangents change, and with them their product: of the first order exactly.
+        let rest = [
+            0.5 * (far[0] + 2.0 * far[1] + far[2]) + 5.0 * slack,
+            0.5 * (far[1] + 2.0 * far[2] + far[3]) + 5.0 * slack,
+        ];
+        let change = [ss.norm() + st.norm() + rest[0], st.norm() + tt.norm() + rest[1]];
+        let first = (ss.cross(b) + a.cross(st)).norm() + (st.cross(b) + a.cross(tt)).norm();
+        let turned = first + rest[0] * lb + rest[1] * la + change[0] * change[1];
+        let (normal, turn) =
+            if area > 0.0 { (n / area, turned / area) } else { (Vec3::zero(), f64::INFINITY) };
+        let longest = 2.0 * la.max(lb);
+        let [aa, _, bb] = flat.products;
+        let by = flat.inverses[0].max(0.0);
+        let fastest = [(bb * by).sqrt(), (aa * by).sqrt()];
+        Self { flat, normal, turn, longest, fastest, middle, half, far, piece }
     }
 
     /// Both halves along the longer side.
     fn halves(&self, cells: &Cells) -> [Self; 2] {
-        let [la, lb] = self.lengths();
-        let axis = usize::from(lb > la);
+        let axis = usize::from(self.flat.products[2] > self.flat.products[0]);
         let mut half = self.half;
         half[axis] *= 0.5;
         let powers = if axis == 0 { [8.0, 4.0, 2.0, 1.0] } else { [1.0, 2.0, 4.0, 8.0] };
@@ -110,69 +140,196 @@ impl Part {
             let [c, s, t, ss, st, tt] = piece.jet(middle[0], middle[1]);
             let [h, k] = half;
             let (a, b) = (s * h, t * k);
-            let bend = 0.5 * (ss.norm() * h * h + tt.norm() * k * k)
-                + st.norm() * h * k
+            let second = [ss * (h * h), st * (h * k), tt * (k * k)];
+            let bend = 0.5 * (second[0].norm() + second[2].norm())
+                + second[1].norm()
                 + (far[0] + 3.0 * (far[1] + far[2]) + far[3]) / 6.0
                 + piece.slack;
-            let products = [a.norm_sq(), a.dot(b), b.norm_sq()];
-            Self { flat: Flat { c, a, b, products, bend }, middle, half, far, ..*self }
+            let flat = Flat::of(c, a, b, bend);
+            Self::with(flat, second, piece.slack, far, [middle, half], self.piece)
         })
     }
 
-    /// The surface's parameters at the middle, and from and to.
-    fn place(&self, cells: &Cells) -> ([f64; 2], [[f64; 2]; 2]) {
+    /// The part's own parameters at `at` and their rates along `d`, a unit vector; `stretch` is cut to
+    /// what is over the part, which is `reach` wider than its parallelogram.
+    #[inline]
+    fn clip(&self, at: Vec3, d: Vec3, reach: f64, stretch: &mut [f64; 2]) -> [f64; 4] {
+        let Flat { a, b, products: [aa, ab, bb], inverses: [by, ..], .. } = self.flat;
+        let away = at - self.flat.c;
+        let (f, g) = (away.dot(a), away.dot(b));
+        let (df, dg) = (d.dot(a), d.dot(b));
+        let place = [(f * bb - g * ab) * by, (g * aa - f * ab) * by];
+        let rate = [(df * bb - dg * ab) * by, (dg * aa - df * ab) * by];
+        for k in 0..2 {
+            // The lengths of the dual vectors are how fast a parameter changes at most.
+            let limit = 1.0 + 2.0 * reach * self.fastest[k];
+            if rate[k].abs() > 1e-9 * self.fastest[k] {
+                let inverse = 1.0 / rate[k];
+                let (middle, half) = (-place[k] * inverse, limit * inverse.abs());
+                stretch[0] = stretch[0].max(middle - half);
+                stretch[1] = stretch[1].min(middle + half);
+            } else if place[k].abs() > limit {
+                stretch[1] = f64::NEG_INFINITY;
+            }
+        }
+        [place[0], place[1], rate[0], rate[1]]
+    }
+
+    /// The surface's parameters from and to.
+    fn ranges(&self, cells: &Cells) -> [[f64; 2]; 2] {
         let piece = &cells.pieces[self.piece as usize];
         let low = piece.place(self.middle[0] - self.half[0], self.middle[1] - self.half[1]);
         let high = piece.place(self.middle[0] + self.half[0], self.middle[1] + self.half[1]);
-        (piece.place(self.middle[0], self.middle[1]), [[low[0], high[0]], [low[1], high[1]]])
+        [[low[0], high[0]], [low[1], high[1]]]
     }
-}
 
-/// A flat's unit normal, and a bound of how far the normal of its cell turns away from it: tangents
-/// change by twice the bend at most.
-fn normal(flat: &Flat) -> (Vec3, f64) {
-    let n = flat.a.cross(flat.b);
-    let area = n.norm();
-    if area == 0.0 {
-        return (Vec3::zero(), f64::INFINITY);
+    /// The surface's parameters at a place of the part's own, held within it.
+    fn place(&self, cells: &Cells, [s, t]: [f64; 2]) -> [f64; 2] {
+        let at = |k: usize, x: f64| self.middle[k] + self.half[k] * x.clamp(-1.0, 1.0);
+        cells.pieces[self.piece as usize].place(at(0, s), at(1, t))
     }
-    (n / area, 2.0 * flat.bend * (flat.a.norm() + flat.b.norm()) / area)
 }
 
 /// True when two cells certainly have no common point.
-fn apart(a: &Flat, b: &Flat) -> bool {
+#[inline]
+fn apart(p: &Part, q: &Part) -> bool {
+    let (a, b) = (&p.flat, &q.flat);
     let d = b.c - a.c;
     let bend = a.bend + b.bend;
-    let reach =
-        |k: fn(&Vec3) -> f64| k(&a.a).abs() + k(&a.b).abs() + k(&b.a).abs() + k(&b.b).abs() + bend;
-    if d.x.abs() > reach(|v| v.x) || d.y.abs() > reach(|v| v.y) || d.z.abs() > reach(|v| v.z) {
+    let beyond =
+        |n: Vec3, other: &Flat| n.dot(d).abs() - n.dot(other.a).abs() - n.dot(other.b).abs() > bend;
+    if beyond(p.normal, b) || beyond(q.normal, a) {
         return true;
     }
-    let beyond = |p: &Flat, q: &Flat| {
-        let n = p.a.cross(p.b);
-        n.dot(d).abs() - n.dot(q.a).abs() - n.dot(q.b).abs() > bend * n.norm()
+    let reach =
+        |k: fn(&Vec3) -> f64| k(&a.a).abs() + k(&a.b).abs() + k(&b.a).abs() + k(&b.b).abs() + bend;
+    d.x.abs() > reach(|v| v.x) || d.y.abs() > reach(|v| v.y) || d.z.abs() > reach(|v| v.z)
+}
+
+/// All that is below a node of a tree lies between two planes.
+#[derive(Clone, Copy, Debug)]
+struct Slab {
+    normal: Vec3,
+    low: f64,
+    high: f64,
+}
+
+impl Slab {
+    const ALL: Slab = Slab {
+        normal: Vec3 { x: 0.0, y: 0.0, z: 0.0 },
+        low: f64::NEG_INFINITY,
+        high: f64::INFINITY,
     };
-    beyond(a, b) || beyond(b, a)
+
+    /// The slab across the mean normal of parts.
+    fn around(parts: &[Part]) -> Self {
+        let sum = parts.iter().fold(Vec3::zero(), |sum, p| sum + p.normal);
+        let Some(normal) = sum.normalized() else { return Self::ALL };
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for Part { flat, .. } in parts {
+            let (at, reach) = (
+                normal.dot(flat.c),
+                normal.dot(flat.a).abs() + normal.dot(flat.b).abs() + flat.bend,
+            );
+            (low, high) = (low.min(at - reach), high.max(at + reach));
+        }
+        Self { normal, low, high }
+    }
+
+    /// True when a box certainly is outside.
+    #[inline]
+    fn misses(&self, b: &Box3) -> bool {
+        let n = self.normal;
+        let (c, h) = (b.high + b.low, b.high - b.low);
+        let (at, reach) = (n.dot(c), n.x.abs() * h.x + n.y.abs() * h.y + n.z.abs() * h.z);
+        at - reach > 2.0 * self.high || at + reach < 2.0 * self.low
+    }
+}
+
+/// A node of a tree in a search.
+#[derive(Clone, Copy)]
+struct At<'a> {
+    /// Of a fork, or of a cell with [`LEAF`] added.
+    number: u32,
+    bounds: &'a Box3,
+    slab: &'a Slab,
 }
 
 /// A surface cut up for intersections.
 #[derive(Clone, Debug)]
-pub struct CutSurface(Cells);
+pub struct CutSurface {
+    cells: Cells,
+    /// One for each cell.
+    parts: Vec<Part>,
+    /// Around what is below each fork's two children.
+    slabs: Vec<[Slab; 2]>,
+}
 
 impl CutSurface {
-    /// Cuts a surface up.
+    /// Cuts a surface up, for many intersections.
     pub fn new(surface: &dyn Surface<f64>) -> Self {
-        Self(Cells::coarse(surface))
+        Self::of(Cells::fine(surface))
     }
+
+    /// Cuts a surface up for one intersection: into larger cells, which are made smaller where the
+    /// intersection is.
+    fn rough(surface: &dyn Surface<f64>) -> Self {
+        Self::of(Cells::coarse(surface))
+    }
+
+    fn of(cells: Cells) -> Self {
+        let parts: Vec<Part> = (0..cells.flats.len()).map(|k| Part::of(&cells, k)).collect();
+        let mut slabs = vec![[Slab::ALL; 2]; cells.forks.len()];
+        if !cells.forks.is_empty() {
+            fill(&cells, &parts, 0, &mut slabs);
+        }
+        Self { cells, parts, slabs }
+    }
+
+    fn root(&self) -> At<'_> {
+        let (number, bounds) = root(&self.cells);
+        At { number, bounds, slab: &Slab::ALL }
+    }
+
+    /// The children of a fork, the second one first.
+    #[inline]
+    fn below(&self, fork: u32) -> [At<'_>; 2] {
+        let (fork, slabs) = (&self.cells.forks[fork as usize], &self.slabs[fork as usize]);
+        let child =
+            |k: usize| At { number: fork.below[k], bounds: &fork.bounds[k], slab: &slabs[k] };
+        [child(1), child(0)]
+    }
+}
+
+/// Fills in the slabs below a fork; gives the range of its cells, which are in the order of the leaves.
+fn fill(
+    cells: &Cells,
+    parts: &[Part],
+    fork: usize,
+    slabs: &mut [[Slab; 2]],
+) -> std::ops::Range<usize> {
+    let [first, second] = cells.forks[fork].below.map(|below| {
+        let range = match below & LEAF {
+            0 => fill(cells, parts, below as usize, slabs),
+            _ => {
+                let cell = (below & !LEAF) as usize;
+                cell..cell + 1
+            }
+        };
+        (Slab::around(&parts[range.clone()]), range)
+    });
+    slabs[fork] = [first.0, second.0];
+    first.1.start.min(second.1.start)..first.1.end.max(second.1.end)
 }
 
 /// A search under way.
 struct Finder<'a> {
     crossing: Crossing<'a>,
-    first: &'a Cells,
-    second: Option<&'a Cells>,
-    /// Stretches of branches by the place of their first unknowns.
-    bins: Vec<SmallVec<[(u32, u32); 4]>>,
+    first: &'a CutSurface,
+    second: Option<&'a CutSurface>,
+    /// Stretches of branches, and their numbers by the place of their first unknowns.
+    chords: Vec<Chord>,
+    bins: Vec<SmallVec<[u32; 6]>>,
     found: Branches,
     pairs: usize,
 }
@@ -180,19 +337,18 @@ struct Finder<'a> {
 impl Crossing<'_> {
     /// All branches; see the module for what is claimed.
     pub fn branches(&self) -> Branches {
-        let first = CutSurface::new(self.first);
+        let first = CutSurface::rough(self.first);
         match self.other {
             Other::Plane(_) | Other::Level(_) => self.branches_in(&first, None),
-            Other::Surface(second) => self.branches_in(&first, Some(&CutSurface::new(second))),
+            Other::Surface(second) => self.branches_in(&first, Some(&CutSurface::rough(second))),
         }
     }
 
     /// All branches of surfaces that were cut up before: the crossing's first, and its second unless
     /// that is a plane.
     pub fn branches_in(&self, first: &CutSurface, second: Option<&CutSurface>) -> Branches {
-        let (first, second) = (&first.0, second.map(|s| &s.0));
         // Where the pieces are the surface itself they are the quicker to evaluate.
-        let quick = [first.polynomials(), second.and_then(Cells::polynomials)];
+        let quick = [first.cells.polynomials(), second.and_then(|s| s.cells.polynomials())];
         fn chosen<'b>(
             quick: &'b Option<Polynomials<'b>>,
             own: &'b dyn Surface<f64>,
@@ -212,6 +368,7 @@ impl Crossing<'_> {
             crossing,
             first,
             second,
+            chords: Vec::new(),
             bins: vec![SmallVec::new(); BINS * BINS],
             found: Branches {
                 complete: true,
@@ -230,8 +387,14 @@ impl Crossing<'_> {
 }
 
 /// The root of a tree and its box.
-fn root(cells: &Cells) -> (u32, Box3) {
-    (if cells.forks.is_empty() { LEAF } else { 0 }, cells.tree.bounds)
+fn root(cells: &Cells) -> (u32, &Box3) {
+    (if cells.forks.is_empty() { LEAF } else { 0 }, &cells.tree.bounds)
+}
+
+/// Half the way round a box, to compare sizes.
+fn girth(b: &Box3) -> f64 {
+    let side = b.high - b.low;
+    side.x + side.y + side.z
 }
 
 impl Finder<'_> {
@@ -246,60 +409,53 @@ impl Finder<'_> {
 
     fn with_plane(&mut self, plane: &Plane<f64>) {
         let n = plane.normal;
-        let cells = self.first;
         let crosses = |b: &Box3| {
             let half = (b.high - b.low) * 0.5;
             let reach = n.x.abs() * half.x + n.y.abs() * half.y + n.z.abs() * half.z;
             plane.distance(b.centre()).abs() <= reach
         };
-        let (top, bounds) = root(cells);
-        let mut stack = Vec::new();
-        if crosses(&bounds) {
-            stack.push(top);
-        }
-        let mut parts = Vec::new();
-        while let Some(at) = stack.pop() {
-            if at & LEAF == 0 {
-                let fork = &cells.forks[at as usize];
-                for k in [1, 0] {
-                    if crosses(&fork.bounds[k]) {
-                        stack.push(fork.below[k]);
-                    }
-                }
-                continue;
-            }
-            parts.push(Part::of(cells, (at & !LEAF) as usize));
-            while let Some(part) = parts.pop() {
-                let flat = &part.flat;
-                let reach = n.dot(flat.a).abs() + n.dot(flat.b).abs() + flat.bend;
-                if plane.distance(flat.c).abs() > reach {
-                    continue;
-                }
-                if self.exhausted() {
-                    return;
-                }
-                let (m, turn) = normal(flat);
-                let [la, lb] = part.lengths();
-                let simple = m.cross(n).norm() > turn;
-                if simple || la.max(lb) <= self.found.smallest {
-                    self.start(&part, None, simple);
-                } else {
-                    parts.extend(part.halves(cells));
-                }
-            }
-        }
+        self.with_one(crosses, |part| {
+            let flat = &part.flat;
+            let reach = n.dot(flat.a).abs() + n.dot(flat.b).abs() + flat.bend;
+            let meets = plane.distance(flat.c).abs() <= reach;
+            meets.then(|| part.normal.cross(n).norm() > part.turn)
+        });
     }
 
     fn with_level(&mut self, field: &dyn Field<f64>) {
-        let cells = self.first;
         let crosses =
             |b: &Box3| field.bounds(b).is_none_or(|[low, high]| low <= 0.0 && high >= 0.0);
+        self.with_one(crosses, |part| {
+            let flat = &part.flat;
+            let reach = |k: fn(&Vec3) -> f64| k(&flat.a).abs() + k(&flat.b).abs() + flat.bend;
+            let half = Vec3::of(reach(|v| v.x), reach(|v| v.y), reach(|v| v.z));
+            if !crosses(&Box3 { low: flat.c - half, high: flat.c + half }) {
+                return None;
+            }
+            // How far the level's normal turns over the cell, by its second derivatives.
+            let (_, g, h) = field.second_order(flat.c);
+            let steep = g.norm();
+            let bent = h.iter().map(|row| row.norm_sq()).sum::<f64>().sqrt();
+            let all = part.turn + bent * half.norm() / steep;
+            Some(part.normal.cross(g).norm() > all * steep)
+        });
+    }
+
+    /// All cells whose boxes `crosses` lets pass. `judged` gives `None` for a part that the other
+    /// shape certainly does not meet, otherwise whether they meet in one line at most.
+    fn with_one(
+        &mut self,
+        crosses: impl Fn(&Box3) -> bool,
+        judged: impl Fn(&Part) -> Option<bool>,
+    ) {
+        let first = self.first;
+        let cells = &first.cells;
         let (top, bounds) = root(cells);
         let mut stack = Vec::new();
-        if crosses(&bounds) {
+        if crosses(bounds) {
             stack.push(top);
         }
-        let mut parts = Vec::new();
+        let mut parts: Vec<Part> = Vec::new();
         while let Some(at) = stack.pop() {
             if at & LEAF == 0 {
                 let fork = &cells.forks[at as usize];
@@ -310,104 +466,102 @@ impl Finder<'_> {
                 }
                 continue;
             }
-            parts.push(Part::of(cells, (at & !LEAF) as usize));
-            while let Some(part) = parts.pop() {
-                let flat = &part.flat;
-                let reach = |k: fn(&Vec3) -> f64| k(&flat.a).abs() + k(&flat.b).abs() + flat.bend;
-                let half = Vec3::of(reach(|v| v.x), reach(|v| v.y), reach(|v| v.z));
-                if !crosses(&Box3 { low: flat.c - half, high: flat.c + half }) {
-                    continue;
+            let mut next = Some(first.parts[(at & !LEAF) as usize]);
+            while let Some(part) = next {
+                if let Some(simple) = judged(&part) {
+                    if self.exhausted() {
+                        return;
+                    }
+                    if simple || part.longest <= self.found.smallest {
+                        self.start(&part, None, simple);
+                    } else {
+                        parts.extend(part.halves(cells));
+                    }
                 }
-                if self.exhausted() {
-                    return;
-                }
-                // How far the level's normal turns over the cell, by its second derivatives.
-                let (_, g, h) = field.second_order(flat.c);
-                let steep = g.norm();
-                let bent = h.iter().map(|row| row.norm_sq()).sum::<f64>().sqrt();
-                let (m, turn) = normal(flat);
-                let all = turn + bent * half.norm() / steep;
-                let simple = m.cross(g).norm() > all * steep;
-                let [la, lb] = part.lengths();
-                if simple || la.max(lb) <= self.found.smallest {
-                    self.start(&part, None, simple);
-                } else {
-                    parts.extend(part.halves(cells));
-                }
+                next = parts.pop();
             }
         }
     }
 
     fn with_surface(&mut self) {
         let (first, Some(second)) = (self.first, self.second) else { return };
-        let mut stack = vec![(root(first), root(second))];
+        let mut stack = vec![(first.root(), second.root())];
+        stack.retain(|(a, b)| meet(a.bounds, b.bounds));
         let mut parts: Vec<(Part, Part)> = Vec::new();
-        while let Some(((a, box_a), (b, box_b))) = stack.pop() {
-            if !meet(&box_a, &box_b) {
-                continue;
-            }
-            if a & b & LEAF == 0 {
-                let below = |cells: &Cells, at: u32| {
-                    let fork = &cells.forks[at as usize];
-                    [1, 0].map(|k| (fork.below[k], fork.bounds[k]))
-                };
-                let larger = b & LEAF != 0 || box_a.diagonal() >= box_b.diagonal();
-                if a & LEAF == 0 && larger {
-                    stack.extend(below(first, a).map(|c| (c, (b, box_b))));
-                } else {
-                    stack.extend(below(second, b).map(|c| ((a, box_a), c)));
+        while let Some((a, b)) = stack.pop() {
+            if a.number & b.number & LEAF == 0 {
+                let split = a.number & LEAF == 0
+                    && (b.number & LEAF != 0 || girth(a.bounds) >= girth(b.bounds));
+                let (below, other) =
+                    if split { (first.below(a.number), b) } else { (second.below(b.number), a) };
+                for child in below {
+                    if meet(child.bounds, other.bounds)
+                        && !child.slab.misses(other.bounds)
+                        && !other.slab.misses(child.bounds)
+                    {
+                        stack.push(if split { (child, b) } else { (a, child) });
+                    }
                 }
                 continue;
             }
-            let (a, b) = ((a & !LEAF) as usize, (b & !LEAF) as usize);
-            if apart(&first.flats[a], &second.flats[b]) {
-                continue;
+            let p = &first.parts[(a.number & !LEAF) as usize];
+            let q = &second.parts[(b.number & !LEAF) as usize];
+            if !self.pair(p, q, &mut parts) {
+                return;
             }
-            parts.push((Part::of(first, a), Part::of(second, b)));
             while let Some((p, q)) = parts.pop() {
-                if apart(&p.flat, &q.flat) {
-                    continue;
-                }
-                if self.exhausted() {
+                if !self.pair(&p, &q, &mut parts) {
                     return;
-                }
-                let ((m, turn_m), (n, turn_n)) = (normal(&p.flat), normal(&q.flat));
-                let simple = m.cross(n).norm() > turn_m + turn_n;
-                let longest = |p: &Part| p.lengths()[0].max(p.lengths()[1]);
-                let (lp, lq) = (longest(&p), longest(&q));
-                if simple || lp.max(lq) <= self.found.smallest {
-                    self.start(&p, Some(&q), simple);
-                } else if lp >= lq {
-                    parts.extend(p.halves(first).map(|half| (half, q)));
-                } else {
-                    parts.extend(q.halves(second).map(|half| (p, half)));
                 }
             }
         }
     }
 
+    /// Looks at a pair of parts; pairs of their halves are left in `parts`. False when there were too
+    /// many.
+    fn pair(&mut self, p: &Part, q: &Part, parts: &mut Vec<(Part, Part)>) -> bool {
+        if apart(p, q) {
+            return true;
+        }
+        if self.exhausted() {
+            return false;
+        }
+        let turn = p.turn + q.turn;
+        let simple = p.normal.cross(q.normal).norm_sq() > turn * turn;
+        if simple || p.longest.max(q.longest) <= self.found.smallest {
+            self.start(p, Some(q), simple);
+        } else if p.longest >= q.longest {
+            parts.extend(p.halves(&self.first.cells).map(|half| (half, *q)));
+        } else if let Some(second) = self.second {
+            parts.extend(q.halves(&second.cells).map(|half| (*p, half)));
+        }
+        true
+    }
+
     /// Starts a branch from a pair unless one passes there.
     fn start(&mut self, a: &Part, b: Option<&Part>, simple: bool) {
-        let ((uv, [us, vs]), second) = (a.place(self.first), b.zip(self.second));
-        let (pr, [ps, rs]) = second.map_or(([0.0; 2], [[0.0; 2]; 2]), |(b, cells)| b.place(cells));
-        let ranges = [us, vs, ps, rs];
-        let mut guess = [uv[0], uv[1], pr[0], pr[1]];
+        let second = b.zip(self.second.map(|s| &s.cells));
         let mut x = b.map_or(a.flat.c, |b| (a.flat.c + b.flat.c) * 0.5);
+        let mut places = [0.0; 4];
         match self.straight(a, b, x) {
             // The planes of the cells do not meet where both cells are.
             Straight::Beside => return,
-            Straight::Line { at, reach, places } => {
-                if self.covered(at, reach, &ranges) {
+            Straight::Line { at, reach, places: there } => {
+                let [s, t, ..] = there;
+                if self.covered(at, reach, a.place(&self.first.cells, [s, t])) {
                     return;
                 }
-                x = at;
-                for k in 0..self.crossing.unknowns() {
-                    let [low, high] = ranges[k];
-                    guess[k] = (guess[k] + 0.5 * (high - low) * places[k]).clamp(low, high);
-                }
+                (x, places) = (at, there);
             }
             Straight::Parallel => {}
         }
+        let [s, t, k, l] = places;
+        let [us, vs] = a.ranges(&self.first.cells);
+        let [ps, rs] = second.map_or([[0.0; 2]; 2], |(b, cells)| b.ranges(cells));
+        let ranges = [us, vs, ps, rs];
+        let [u, v] = a.place(&self.first.cells, [s, t]);
+        let [p, r] = second.map_or([0.0; 2], |(b, cells)| b.place(cells, [k, l]));
+        let guess = [u, v, p, r];
         let Some(q) = self.seed(guess, x, &ranges, simple) else {
             if !simple {
                 self.touch(guess, &ranges);
@@ -429,10 +583,15 @@ impl Finder<'_> {
             if (0..2).any(|i| (p[i] - q[i]).abs() > 0.5) {
                 continue;
             }
-            let [us, vs] = [0, 1].map(|i| bins_between(p[i], q[i]));
+            let chord = self.chords.len() as u32;
+            self.chords.push(Chord::new(&pair[0], &pair[1], number, k));
+            // Half a bin more on each side.
+            let more = 0.5 / BINS as f64;
+            let [us, vs] =
+                [0, 1].map(|i| bins_between(p[i].min(q[i]) - more, p[i].max(q[i]) + more));
             for i in us.clone() {
                 for j in vs.clone() {
-                    self.bins[i * BINS + j].push((number, k as u32));
+                    self.bins[i * BINS + j].push(chord);
                 }
             }
         }
@@ -441,74 +600,62 @@ impl Finder<'_> {
 
     /// Where the planes of a pair's cells meet, near both.
     fn straight(&self, a: &Part, b: Option<&Part>, near: Vec3) -> Straight {
-        let (m, _) = normal(&a.flat);
+        let m = a.normal;
         let (n, point, bend) = match (b, self.crossing.other) {
-            (Some(b), _) => (normal(&b.flat).0, b.flat.c, a.flat.bend + b.flat.bend),
+            (Some(b), _) => (b.normal, b.flat.c, a.flat.bend + b.flat.bend),
             (None, Other::Plane(plane)) => (plane.normal, plane.point, a.flat.bend),
             (None, Other::Level(field)) => {
                 // Its tangent plane near the cell, and how far it may bend away from it there.
                 let (f, g, h) = field.second_order(a.flat.c);
-                let Some(n) = g.normalized() else { return Straight::Parallel };
-                let half = 0.5 * (a.lengths()[0] + a.lengths()[1]);
+                let Some(n) = g.normalized() else {
+                    return Straight::Parallel;
+                };
+                let half = a.flat.a.norm() + a.flat.b.norm();
                 let bent = h.iter().map(|row| row.norm_sq()).sum::<f64>().sqrt() / g.norm();
                 (n, a.flat.c - n * (f / g.norm()), a.flat.bend + bent * half * half)
             }
             _ => return Straight::Parallel,
         };
         let d = m.cross(n);
-        let sine = d.norm();
-        if sine < 0.02 {
+        let det = d.norm_sq();
+        if det < LEAST_SINE * LEAST_SINE {
             return Straight::Parallel;
         }
-        let d = d / sine;
+        let by_sine = 1.0 / det.sqrt();
+        let d = d * by_sine;
         // From `near` to the line: a combination of both normals.
         let (e, f, cosine) = (m.dot(a.flat.c - near), n.dot(point - near), m.dot(n));
-        let det = sine * sine;
-        let at = near + m * ((e - cosine * f) / det) + n * ((f - cosine * e) / det);
-        let reach = bend / sine;
+        let by = by_sine * by_sine;
+        let at = near + m * ((e - cosine * f) * by) + n * ((f - cosine * e) * by);
+        let reach = bend * by_sine;
         // The stretch of it over both cells, with what they bend as a margin.
-        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        let mut clip = |part: &Part| -> [[f64; 2]; 2] {
-            let flat = &part.flat;
-            let [aa, ab, bb] = flat.products;
-            let det = aa * bb - ab * ab;
-            let dual = [(flat.a * bb - flat.b * ab) / det, (flat.b * aa - flat.a * ab) / det];
-            dual.map(|w| {
-                let (place, rate) = (w.dot(at - flat.c), w.dot(d));
-                let limit = 1.0 + 2.0 * reach * w.norm();
-                let (p, q) = ((-limit - place) / rate, (limit - place) / rate);
-                if rate.abs() > 1e-9 * w.norm() {
-                    low = low.max(p.min(q));
-                    high = high.min(p.max(q));
-                } else if place.abs() > limit {
-                    high = f64::NEG_INFINITY;
-                }
-                [place, rate]
-            })
-        };
-        let first = clip(a);
-        let second = b.map_or([[0.0; 2]; 2], &mut clip);
+        let mut stretch = [f64::NEG_INFINITY, f64::INFINITY];
+        let first = a.clip(at, d, reach, &mut stretch);
+        let second = b.map_or([0.0; 4], |b| b.clip(at, d, reach, &mut stretch));
+        let [low, high] = stretch;
         if low > high {
             return Straight::Beside;
         }
         let middle = if (low + high).is_finite() { 0.5 * (low + high) } else { 0.0 };
-        let place = |[p, r]: [f64; 2]| p + r * middle;
-        let [s, t] = first.map(place);
-        let [k, l] = second.map(place);
-        Straight::Line { at: at + d * middle, reach, places: [s, t, k, l] }
+        let [s, t, ds, dt] = first;
+        let [k, l, dk, dl] = second;
+        let places = [s + ds * middle, t + dt * middle, k + dk * middle, l + dl * middle];
+        Straight::Line { at: at + d * middle, reach, places }
     }
 
     /// True when a stretch of a branch passes within `reach` of a place of the cell with these
     /// parameters.
-    fn covered(&self, x: Vec3, reach: f64, ranges: &[[f64; 2]; 4]) -> bool {
-        let [us, vs] = [0, 1].map(|i| bins_between(ranges[i][0], ranges[i][1]));
-        us.flat_map(|i| vs.clone().map(move |j| i * BINS + j)).any(|bin| {
-            self.bins[bin].iter().any(|&(branch, k)| {
-                let stations = &self.found.branches[branch as usize].stations;
-                let (off, bow) = off_chord(&stations[k as usize], &stations[k as usize + 1], x);
-                off <= 2.0 * reach + bow
-            })
+    fn covered(&self, x: Vec3, reach: f64, uv: [f64; 2]) -> bool {
+        self.passing(uv).any(|chord| {
+            let far = 2.0 * reach + chord.bow;
+            chord.off_sq(x) <= far * far
         })
+    }
+
+    /// The stretches of branches near a place of the first surface.
+    fn passing(&self, [u, v]: [f64; 2]) -> impl Iterator<Item = &Chord> {
+        let bin = bins_between(u, u).start * BINS + bins_between(v, v).start;
+        self.bins[bin].iter().map(|&k| &self.chords[k as usize])
     }
 
     /// A point of the intersection in or near the pair.
@@ -539,25 +686,24 @@ impl Finder<'_> {
     /// True when a branch that was found passes the point.
     fn passed(&self, q: Unknowns) -> bool {
         let x = self.crossing.first.jet(q[0], q[1], Order::Zero).p;
-        let near = |i: usize| bins_between(q[i] - 0.5 / BINS as f64, q[i] + 0.5 / BINS as f64);
-        let vs = near(1);
-        near(0).flat_map(|i| vs.clone().map(move |j| i * BINS + j)).any(|bin| {
-            self.bins[bin].iter().any(|&(branch, k)| {
-                let stations = &self.found.branches[branch as usize].stations;
-                let (a, b) = (&stations[k as usize], &stations[k as usize + 1]);
-                let (off, _) = off_chord(a, b, x);
-                off <= 0.2 * a.x.distance(b.x) + 1e-6 * self.crossing.size
-                    && match self.crossing.between(a, b, x) {
-                        Some(y) => y.distance(x) <= 1e-7 * self.crossing.size,
-                        None => false,
-                    }
-            })
+        let size = self.crossing.size;
+        self.passing([q[0], q[1]]).any(|chord| {
+            let stations = &self.found.branches[chord.branch as usize].stations;
+            let (a, b) = (&stations[chord.number], &stations[chord.number + 1]);
+            let near = 0.2 * a.x.distance(b.x) + 1e-6 * size;
+            chord.off_sq(x) <= near * near
+                && match self.crossing.between(a, b, x) {
+                    Some(y) => y.distance(x) <= 1e-7 * size,
+                    None => false,
+                }
         })
     }
 
     /// Looks for a place of contact near a pair that is nearly parallel.
     fn touch(&mut self, guess: Unknowns, ranges: &[[f64; 2]; 4]) {
-        let Some(touch) = self.crossing.contact(guess, ranges) else { return };
+        let Some(touch) = self.crossing.contact(guess, ranges) else {
+            return;
+        };
         let size = self.crossing.size;
         let known = self.found.touches.iter().any(|t| t.x.distance(touch.x) < 1e-4 * size);
         if !known && !self.passed(touch.q) {
@@ -567,13 +713,33 @@ impl Finder<'_> {
     }
 }
 
-/// How far a place is from the chord of two stations, and how far the branch bows away from it: an
-/// eighth of its turn.
-fn off_chord(a: &Station, b: &Station, x: Vec3) -> (f64, f64) {
-    let chord = b.x - a.x;
-    let share = ((x - a.x).dot(chord) / chord.norm_sq()).clamp(0.0, 1.0);
-    let bow = 0.125 * chord.norm() * (a.tangent - b.tangent).norm();
-    (x.distance(a.x + chord * share), bow)
+/// The chord of two neighbouring stations.
+struct Chord {
+    from: Vec3,
+    way: Vec3,
+    /// One over its squared length.
+    inverse: f64,
+    /// How far the branch bows away from it: an eighth of its turn.
+    bow: f64,
+    branch: u32,
+    /// Of the first station.
+    number: usize,
+}
+
+impl Chord {
+    fn new(a: &Station, b: &Station, branch: u32, number: usize) -> Self {
+        let way = b.x - a.x;
+        let bow = 0.125 * way.norm() * a.tangent.distance(b.tangent);
+        Self { from: a.x, way, inverse: 1.0 / way.norm_sq(), bow, branch, number }
+    }
+
+    /// The square of the distance of a place.
+    #[inline]
+    fn off_sq(&self, x: Vec3) -> f64 {
+        let away = x - self.from;
+        let share = (away.dot(self.way) * self.inverse).clamp(0.0, 1.0);
+        (away - self.way * share).norm_sq()
+    }
 }
 
 /// What the planes of a pair of cells say.

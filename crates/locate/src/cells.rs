@@ -11,9 +11,10 @@ use crate::pieces::Patch;
 use crate::tree::{Boxes, SurfaceTree};
 use moldloft_num::{Box3, Order, SurfJet, Surface, Vec3};
 
-/// Pieces are halved until they bend by less than this share of their length, for nearest points
-/// and for intersections …
+/// Pieces are halved until they bend by less than this share of their length, for nearest points,
+/// for many intersections, and for one …
 const BEND: f64 = 0.06;
+const FINE_BEND: f64 = 0.05;
 const COARSE_BEND: f64 = 0.12;
 
 /// … but into no more cells than this, each and altogether.
@@ -39,6 +40,8 @@ pub(crate) struct Flat {
     pub b: Vec3,
     /// a . a, a . b, b . b.
     pub products: [f64; 3],
+    /// One over their determinant, a . a and b . b.
+    pub inverses: [f64; 3],
     /// From the point of equal s and t, slack included.
     pub bend: f64,
 }
@@ -71,6 +74,78 @@ pub(crate) struct Fork {
     pub below: [u32; 2],
 }
 
+/// Four boxes of a tree, side by side, and what is below them; where there are fewer, boxes that
+/// contain nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Quad {
+    /// By axis.
+    low: [[f64; 4]; 3],
+    high: [[f64; 4]; 3],
+    /// Index of the quad below, or of a cell with [`LEAF`] added.
+    pub below: [u32; 4],
+}
+
+impl Quad {
+    const EMPTY: Quad =
+        Quad { low: [[f64::INFINITY; 4]; 3], high: [[f64::NEG_INFINITY; 4]; 3], below: [LEAF; 4] };
+
+    /// Squares of the distances of a point.
+    #[inline]
+    pub fn distances_sq(&self, p: Vec3) -> [f64; 4] {
+        let mut sum = [0.0; 4];
+        for axis in 0..3 {
+            for k in 0..4 {
+                let x = p[axis];
+                let d = (self.low[axis][k] - x).max(x - self.high[axis][k]).max(0.0);
+                sum[k] += d * d;
+            }
+        }
+        sum
+    }
+}
+
+/// The same tree with four children each.
+fn quads(forks: &[Fork]) -> Vec<Quad> {
+    let mut out = Vec::with_capacity(forks.len() / 2 + 1);
+    // Forks to be turned into quads, with the place that waits for their number.
+    let mut todo: Vec<(u32, Option<(usize, usize)>)> = Vec::new();
+    if !forks.is_empty() {
+        todo.push((0, None));
+    }
+    while let Some((at, parent)) = todo.pop() {
+        if let Some((quad, k)) = parent {
+            let number: u32 = out.len() as u32;
+            let above: &mut Quad = &mut out[quad];
+            above.below[k] = number;
+        }
+        let mut quad = Quad::EMPTY;
+        let mut count = 0;
+        let number = out.len();
+        let mut add = |bounds: &Box3, below: u32| {
+            for axis in 0..3 {
+                quad.low[axis][count] = bounds.low[axis];
+                quad.high[axis][count] = bounds.high[axis];
+            }
+            quad.below[count] = below;
+            if below & LEAF == 0 {
+                todo.push((below, Some((number, count))));
+            }
+            count += 1;
+        };
+        let fork = &forks[at as usize];
+        for (bounds, &below) in fork.bounds.iter().zip(&fork.below) {
+            if below & LEAF != 0 {
+                add(bounds, below);
+            } else {
+                let inner = &forks[below as usize];
+                (0..2).for_each(|k| add(&inner.bounds[k], inner.below[k]));
+            }
+        }
+        out.push(quad);
+    }
+    out
+}
+
 /// Marks the index of a cell.
 pub(crate) const LEAF: u32 = 1 << 31;
 
@@ -84,6 +159,8 @@ pub(crate) struct Cells {
     pub bents: Vec<Bent>,
     /// The tree; its root is the first. A single cell has none.
     pub forks: Vec<Fork>,
+    /// The same for nearest points, with four children each.
+    pub quads: Vec<Quad>,
 }
 
 /// Bernstein coefficients on [0, 1] to powers of s = 2 x - 1.
@@ -145,11 +222,17 @@ fn most_product(f: &[Vec3; 16], g: &[Vec3; 16]) -> f64 {
 }
 
 impl Flat {
+    /// The parallelogram about `c` with half sides `a` and `b`.
+    pub fn of(c: Vec3, a: Vec3, b: Vec3, bend: f64) -> Self {
+        let [aa, ab, bb] = [a.norm_sq(), a.dot(b), b.norm_sq()];
+        let inverses = [1.0 / (aa * bb - ab * ab), 1.0 / aa, 1.0 / bb];
+        Flat { c, a, b, products: [aa, ab, bb], inverses, bend }
+    }
+
     fn new(patch: &Patch, x: &[Vec3; 16]) -> Self {
         let (a, b) = (x[4], x[1]);
         let high: f64 = (0..16).filter(|k| k / 4 + k % 4 > 1).map(|k| x[k].norm()).sum();
-        let products = [a.norm_sq(), a.dot(b), b.norm_sq()];
-        Flat { c: x[0], a, b, products, bend: high + patch.slack }
+        Self::of(x[0], a, b, high + patch.slack)
     }
 }
 
@@ -207,7 +290,7 @@ impl Piece {
     }
 
     /// Position and first derivatives at (s, t).
-    #[inline]
+    #[inline(always)]
     pub fn first(&self, s: f64, t: f64) -> [Vec3; 3] {
         let mut out = [Vec3::zero(); 3];
         for i in (0..4).rev() {
@@ -244,8 +327,12 @@ impl Cells {
         Self::cut(surface, BEND, true)
     }
 
-    /// Cuts a surface up for intersections, into larger cells without the bounds that only nearest
-    /// points need.
+    /// Cuts a surface up for many intersections, without the bounds that only nearest points need.
+    pub fn fine(surface: &dyn Surface<f64>) -> Self {
+        Self::cut(surface, FINE_BEND, false)
+    }
+
+    /// The same for one intersection, into larger cells.
     pub fn coarse(surface: &dyn Surface<f64>) -> Self {
         Self::cut(surface, COARSE_BEND, false)
     }
@@ -287,7 +374,8 @@ impl Cells {
             bents.push(Bent::new(part, &x, *piece, *place, full));
         }
         let forks = forks(&boxes);
-        Self { tree, pieces, flats, bents, forks }
+        let quads = if full { quads(&forks) } else { Vec::new() };
+        Self { tree, pieces, flats, bents, forks, quads }
     }
 }
 

@@ -93,8 +93,39 @@ const MOST_STATIONS: usize = 20_000;
 /// A place at which the sine of the angle is less than this begins no branch.
 pub(crate) const TANGENT: f64 = 1e-5;
 
-/// Cosine of the largest turn between neighbours: 0.2 rad.
-const LARGEST_TURN: f64 = 0.98;
+/// A step this short, as a share of the size, leaves an error of its square: below rounding.
+const CLOSE: f64 = 1e-8;
+
+/// Both shapes at a place, and what is left of the equations there, as lengths.
+struct View {
+    /// Between the shapes.
+    gap: f64,
+    /// From the plane across.
+    off: f64,
+    /// Of the second shape; of no certain length.
+    normal: Vec3,
+    j: Tangents,
+    k: Option<Tangents>,
+}
+
+/// Position and first derivatives of a surface.
+type Tangents = [Vec3; 3];
+
+#[inline]
+fn tangents(surface: &dyn Surface<f64>, u: f64, v: f64) -> Tangents {
+    let j = surface.jet(u, v, Order::First);
+    [j.p, j.u, j.v]
+}
+
+/// The turn between neighbours that steps aim at, and cosine of the largest, 0.35 rad.
+const TURN: f64 = 0.25;
+const LARGEST_TURN: f64 = 0.94;
+
+/// A step may end this share of it away from where the last two stations lead.
+const ASTRAY: f64 = 0.2;
+
+/// Steps of a walk as shares of the size: the first, the longest, the least.
+const STEPS: [f64; 3] = [1.0 / 48.0, 1.0 / 16.0, 1e-8];
 
 impl<'a> Crossing<'a> {
     /// A surface and a plane.
@@ -189,6 +220,25 @@ impl<'a> Crossing<'a> {
         settled.or_else(|| self.across(guess, x, d))
     }
 
+    /// The same from a guess that is good to half the digits: one Newton step doubles them. Where
+    /// the step is longer than that the iteration goes on.
+    pub fn across_close(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Unknowns> {
+        let view = self.view(guess, x, d);
+        if let Some((q, way)) = self.next(guess, &view, d)
+            && way <= CLOSE * self.size
+        {
+            return Some(q);
+        }
+        self.across_near(guess, x, d)
+    }
+
+    /// The point of the intersection in the plane through `x` across `d` with its tangent, from a
+    /// guess that is good, as a rule.
+    pub fn station_across(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Station> {
+        let q = self.steps(guess, x, d, CLOSE * self.size).map(|s| s.q);
+        self.station(q.or_else(|| self.across(guess, x, d))?)
+    }
+
     /// The point of the intersection at which unknown `k` has a value, near `guess`.
     pub fn at_line(&self, guess: Unknowns, k: usize, value: f64) -> Option<Unknowns> {
         let size = self.size;
@@ -199,26 +249,30 @@ impl<'a> Crossing<'a> {
         })
     }
 
-    fn normals(&self, q: Unknowns) -> (SurfJet<f64>, Option<SurfJet<f64>>, Vec3, Vec3) {
-        let j = self.first.jet(q[0], q[1], Order::First);
-        match self.other {
-            Other::Plane(plane) => (j, None, j.normal(), plane.normal),
-            Other::Level(field) => {
-                let g = field.value_and_gradient(j.p).1;
-                (j, None, j.normal(), g.normalized().unwrap_or_default())
-            }
-            Other::Surface(second) => {
-                let k = second.jet(q[2], q[3], Order::First);
-                (j, Some(k), j.normal(), k.normal())
-            }
-        }
+    /// Both shapes at a place, the first one's unit normal, and a normal of the second.
+    fn normals(&self, q: Unknowns) -> (Tangents, Option<Tangents>, Vec3, Vec3) {
+        let view = self.view(q, Vec3::zero(), Vec3::zero());
+        let [_, u, v] = view.j;
+        (view.j, view.k, u.cross(v).normalized().unwrap_or_default(), view.normal)
     }
 
     /// The direction n1 x n2 at a point that need not lie on the intersection; its length is the
     /// sine of the angle between the shapes.
     pub fn direction(&self, q: Unknowns) -> Vec3 {
         let (_, _, a, b) = self.normals(q);
-        a.cross(b)
+        a.cross(b.normalized().unwrap_or_default())
+    }
+
+    /// How far apart two places with nearly the same unknowns are, on the shape where that is more.
+    pub fn distance(&self, a: &Unknowns, b: &Unknowns) -> f64 {
+        let on = |surface: &dyn Surface<f64>, k: usize| {
+            let j = surface.jet(a[k], a[k + 1], Order::First);
+            (j.u * (b[k] - a[k]) + j.v * (b[k + 1] - a[k + 1])).norm()
+        };
+        match self.other {
+            Other::Surface(second) => on(self.first, 0).max(on(second, 2)),
+            Other::Plane(_) | Other::Level(_) => on(self.first, 0),
+        }
     }
 
     /// The point with its tangent; `None` where the shapes are tangent.
@@ -230,73 +284,101 @@ impl<'a> Crossing<'a> {
     fn station_of(
         &self,
         q: Unknowns,
-        j: &SurfJet<f64>,
-        k: Option<&SurfJet<f64>>,
+        j: &Tangents,
+        k: Option<&Tangents>,
         normal: Vec3,
     ) -> Option<Station> {
-        let d = j.normal().cross(normal);
-        let sine = d.norm();
-        if sine < 1e-7 {
+        let m = j[1].cross(j[2]);
+        let d = m.cross(normal);
+        let length = d.norm();
+        let whole = (m.norm_sq() * normal.norm_sq()).sqrt();
+        if !(length >= 1e-7 * whole && length > 0.0) {
             return None;
         }
-        let tangent = d / sine;
-        let along = |s: &SurfJet<f64>| {
-            let m = [[s.u.norm_sq(), s.u.dot(s.v)], [s.u.dot(s.v), s.v.norm_sq()]];
-            solve(&m, [tangent.dot(s.u), tangent.dot(s.v)])
+        let tangent = d / length;
+        let along = |[_, u, v]: &Tangents| {
+            let m = [[u.norm_sq(), u.dot(*v)], [u.dot(*v), v.norm_sq()]];
+            solve(&m, [tangent.dot(*u), tangent.dot(*v)])
         };
         let [u, v] = along(j)?;
         let [p, r] = match k {
             Some(k) => along(k)?,
             None => [0.0; 2],
         };
-        Some(Station { q, rate: [u, v, p, r], x: j.p, tangent })
+        Some(Station { q, rate: [u, v, p, r], x: j[0], tangent })
+    }
+
+    /// Both shapes at a place near the point in the plane through `x` across `d`.
+    #[inline]
+    fn view(&self, q: Unknowns, x: Vec3, d: Vec3) -> View {
+        let j = tangents(self.first, q[0], q[1]);
+        let off = d.dot(j[0] - x);
+        match self.other {
+            Other::Plane(plane) => {
+                View { gap: plane.distance(j[0]), off, normal: plane.normal, j, k: None }
+            }
+            Other::Level(field) => {
+                // As a length, by the gradient.
+                let (f, g) = field.value_and_gradient(j[0]);
+                let scale = slope_scale(g);
+                View { gap: f * scale, off, normal: g * scale, j, k: None }
+            }
+            Other::Surface(second) => {
+                let k = tangents(second, q[2], q[3]);
+                let gap = (j[0] - k[0]).norm();
+                View { gap, off, normal: k[1].cross(k[2]), j, k: Some(k) }
+            }
+        }
+    }
+
+    /// The place that a Newton step leads to, and how long it is in space.
+    #[inline]
+    fn next(&self, q: Unknowns, view: &View, d: Vec3) -> Option<(Unknowns, f64)> {
+        let ([p, u, v], n) = (view.j, view.normal);
+        let m = [[n.dot(u), n.dot(v)], [d.dot(u), d.dot(v)]];
+        let Some([s, k, l]) = view.k else {
+            let [du, dv] = solve(&m, [view.gap, view.off])?;
+            return Some(([q[0] - du, q[1] - dv, 0.0, 0.0], (u * du + v * dv).norm()));
+        };
+        // The second surface's plane cuts the plane across: two unknowns are left.
+        let gap = p - s;
+        let [du, dv] = solve(&m, [n.dot(gap), view.off])?;
+        let way = u * du + v * dv;
+        let rest = gap - way;
+        let m = [[k.norm_sq(), k.dot(l)], [k.dot(l), l.norm_sq()]];
+        let by = [k.dot(rest), l.dot(rest)];
+        let [dp, dr] = solve(&m, by)?;
+        let way = way.norm().max(rest.norm());
+        Some(([q[0] - du, q[1] - dv, q[2] + dp, q[3] + dr], way))
     }
 
     /// A few plain Newton steps from a good guess towards the point in the plane through `x` across
     /// `d`; `None` when they do not settle at once.
     pub(crate) fn settled(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Station> {
+        self.steps(guess, x, d, 0.0)
+    }
+
+    /// The same; a step of less than `close` is the last one, after which nothing is evaluated again:
+    /// the tangent is that of the place before it.
+    fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, close: f64) -> Option<Station> {
         let mut q = guess;
         let goal = 1e-13 * self.size;
         for round in 0..6 {
             let goal = if round < 5 { goal } else { 10.0 * goal };
-            let j = self.first.jet(q[0], q[1], Order::First);
-            match self.other {
-                Other::Plane(plane) => {
-                    let n = plane.normal;
-                    let r = [plane.distance(j.p), d.dot(j.p - x)];
-                    if r[0].abs().max(r[1].abs()) <= goal {
-                        return self.station_of(q, &j, None, n);
-                    }
-                    let step = solve(&[[n.dot(j.u), n.dot(j.v)], [d.dot(j.u), d.dot(j.v)]], r)?;
-                    q = [q[0] - step[0], q[1] - step[1], 0.0, 0.0];
-                }
-                Other::Level(field) => {
-                    let (f, g) = field.value_and_gradient(j.p);
-                    let scale = slope_scale(g);
-                    let r = [f * scale, d.dot(j.p - x)];
-                    let n = g * scale;
-                    if r[0].abs().max(r[1].abs()) <= goal {
-                        return self.station_of(q, &j, None, n.normalized()?);
-                    }
-                    let step = solve(&[[n.dot(j.u), n.dot(j.v)], [d.dot(j.u), d.dot(j.v)]], r)?;
-                    q = [q[0] - step[0], q[1] - step[1], 0.0, 0.0];
-                }
-                Other::Surface(second) => {
-                    let k = second.jet(q[2], q[3], Order::First);
-                    let (gap, off) = (j.p - k.p, d.dot(j.p - x));
-                    if gap.norm().max(off.abs()) <= goal {
-                        return self.station_of(q, &j, Some(&k), k.normal());
-                    }
-                    // The second surface's plane cuts the plane across: two unknowns are left.
-                    let n = k.u.cross(k.v);
-                    let m = [[n.dot(j.u), n.dot(j.v)], [d.dot(j.u), d.dot(j.v)]];
-                    let [du, dv] = solve(&m, [n.dot(gap), off])?;
-                    let rest = gap - j.u * du - j.v * dv;
-                    let m = [[k.u.norm_sq(), k.u.dot(k.v)], [k.u.dot(k.v), k.v.norm_sq()]];
-                    let [dp, dr] = solve(&m, [k.u.dot(rest), k.v.dot(rest)])?;
-                    q = [q[0] - du, q[1] - dv, q[2] + dp, q[3] + dr];
-                }
+            let view = self.view(q, x, d);
+            let station = |q: Unknowns| self.station_of(q, &view.j, view.k.as_ref(), view.normal);
+            if close == 0.0 && view.gap.abs().max(view.off.abs()) <= goal {
+                return station(q);
             }
+            let (next, way) = self.next(q, &view, d)?;
+            if way <= close {
+                let [u, v, ..] = std::array::from_fn::<f64, 4, _>(|k| next[k] - q[k]);
+                return Some(Station {
+                    x: view.j[0] + view.j[1] * u + view.j[2] * v,
+                    ..station(next)?
+                });
+            }
+            q = next;
             let most = if round == 0 { 0.5 } else { 0.1 };
             if !(0..4).all(|k| (q[k] - guess[k]).abs() < most) {
                 return None;
@@ -309,8 +391,9 @@ impl<'a> Crossing<'a> {
     fn walk(&self, start: Station, sign: f64) -> (Vec<Station>, End) {
         let n = self.unknowns();
         let mut all = vec![start];
-        let mut step = self.size / 48.0;
-        // The way since the last seam, for guesses of the second order.
+        let [first, longest, least] = STEPS.map(|share| share * self.size);
+        let mut step = first;
+        // The stations since the last seam: the two before tell where the next one is.
         let mut since = 0;
         while all.len() < MOST_STATIONS {
             let last = *all.last().expect("it begins with one");
@@ -318,25 +401,25 @@ impl<'a> Crossing<'a> {
             let fastest = last.rate[..n].iter().fold(0.0_f64, |a, r| a.max(r.abs()));
             step = step.min(0.1 / fastest);
             let tangent = last.tangent * sign;
-            let mut guess: Unknowns =
-                std::array::from_fn(|k| last.q[k] + sign * step * last.rate[k]);
-            if since > 0 {
-                let before = &all[all.len() - 2];
-                let share = 0.5 * step * step / last.x.distance(before.x);
-                for k in 0..n {
-                    guess[k] += sign * share * (last.rate[k] - before.rate[k]);
-                }
-            }
+            let (guess, ahead) = if since > 0 {
+                onward(&all[all.len() - 2], &last, step, sign)
+            } else {
+                let q = std::array::from_fn(|k| last.q[k] + sign * step * last.rate[k]);
+                (q, last.x + tangent * step)
+            };
             let x = last.x + tangent * step;
+            let near = if since > 0 { ASTRAY * step } else { 1.5 * step };
             let next = self
-                .settled(guess, x, last.tangent)
-                .or_else(|| self.across(guess, x, last.tangent).and_then(|q| self.station(q)))
+                .steps(guess, x, last.tangent, CLOSE * self.size)
+                .or_else(|| self.station(self.across(guess, x, last.tangent)?))
                 .filter(|s| {
-                    s.tangent.dot(last.tangent) > LARGEST_TURN && s.x.distance(last.x) < 1.5 * step
+                    s.tangent.dot(last.tangent) > LARGEST_TURN
+                        && s.x.distance(last.x) < 1.5 * step
+                        && s.x.distance(ahead) < near
                 });
             let Some(next) = next else {
                 step *= 0.5;
-                if step < 1e-8 * self.size {
+                if step < least {
                     return (all, End::Tangent);
                 }
                 continue;
@@ -345,7 +428,7 @@ impl<'a> Crossing<'a> {
             if out(next.q) {
                 let Some((station, end)) = self.edge_between(&last, &next) else {
                     step *= 0.5;
-                    if step < 1e-8 * self.size {
+                    if step < least {
                         return (all, End::Lost);
                     }
                     continue;
@@ -376,12 +459,10 @@ impl<'a> Crossing<'a> {
                     }
                 }
             }
-            let turn = next.tangent.dot(last.tangent);
+            let turn = next.tangent.distance(last.tangent);
             all.push(next);
             since += 1;
-            if turn > 0.992 {
-                step = (1.5 * step).min(self.size / 24.0);
-            }
+            step = (step * (TURN / turn).clamp(0.5, 1.5)).min(longest);
         }
         (all, End::Lost)
     }
@@ -478,6 +559,25 @@ impl<'a> Crossing<'a> {
         let own = self.across_near(guess, x, a.tangent)?;
         Some(self.first.jet(own[0], own[1], Order::Zero).p)
     }
+}
+
+/// The place a step on from two stations: their cubic by the length, carried on. Also in space.
+fn onward(a: &Station, b: &Station, step: f64, sign: f64) -> (Unknowns, Vec3) {
+    // A chord of turn w is shorter than its arc by w^2 / 24, the way along a tangent by w^2 / 6.
+    let (chord, turn) = (a.x.distance(b.x), a.tangent.distance(b.tangent));
+    let arc = chord * (1.0 + turn * turn / 24.0);
+    let turn = turn * step / arc;
+    let x = 1.0 + step * (1.0 + turn * turn / 6.0) / arc;
+    let (xx, rate) = (x * x, sign * arc);
+    let shares = [
+        1.0 + xx * (2.0 * x - 3.0),
+        (x + xx * (x - 2.0)) * rate,
+        xx * (3.0 - 2.0 * x),
+        xx * (x - 1.0) * rate,
+    ];
+    let [p, r, q, s] = shares;
+    let unknowns = std::array::from_fn(|k| a.q[k] * p + a.rate[k] * r + b.q[k] * q + b.rate[k] * s);
+    (unknowns, a.x * p + a.tangent * r + b.x * q + b.tangent * s)
 }
 
 fn size_by_samples(surface: &dyn Surface<f64>) -> f64 {
