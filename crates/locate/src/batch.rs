@@ -158,9 +158,11 @@ impl NearestSurface {
             search.cell(cells, 0);
         } else {
             // Depth first, the nearest child first; depths are the logarithm of the number of cells.
-            let mut stack: SmallVec<[(f64, u32); 64]> = SmallVec::new();
-            stack.push((0.0, 0));
-            while let Some((low, at)) = stack.pop() {
+            let mut stack = [(0.0, 0u32); 64];
+            let mut top = 1;
+            while top > 0 {
+                top -= 1;
+                let (low, at) = stack[top];
                 if low >= search.limit * search.limit {
                     continue;
                 }
@@ -185,7 +187,8 @@ impl NearestSurface {
                         count += 1;
                     }
                 }
-                stack.extend_from_slice(&order[..count]);
+                stack[top..top + count].copy_from_slice(&order[..count]);
+                top += count;
             }
         }
         self.chosen(surface, &search)

@@ -206,53 +206,12 @@ fn apart(p: &Part, q: &Part) -> bool {
     d.x.abs() > reach(|v| v.x) || d.y.abs() > reach(|v| v.y) || d.z.abs() > reach(|v| v.z)
 }
 
-/// All that is below a node of a tree lies between two planes.
-#[derive(Clone, Copy, Debug)]
-struct Slab {
-    normal: Vec3,
-    low: f64,
-    high: f64,
-}
-
-impl Slab {
-    const ALL: Slab = Slab {
-        normal: Vec3 { x: 0.0, y: 0.0, z: 0.0 },
-        low: f64::NEG_INFINITY,
-        high: f64::INFINITY,
-    };
-
-    /// The slab across the mean normal of parts.
-    fn around(parts: &[Part]) -> Self {
-        let sum = parts.iter().fold(Vec3::zero(), |sum, p| sum + p.normal);
-        let Some(normal) = sum.normalized() else { return Self::ALL };
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for Part { flat, .. } in parts {
-            let (at, reach) = (
-                normal.dot(flat.c),
-                normal.dot(flat.a).abs() + normal.dot(flat.b).abs() + flat.bend,
-            );
-            (low, high) = (low.min(at - reach), high.max(at + reach));
-        }
-        Self { normal, low, high }
-    }
-
-    /// True when a box certainly is outside.
-    #[inline]
-    fn misses(&self, b: &Box3) -> bool {
-        let n = self.normal;
-        let (c, h) = (b.high + b.low, b.high - b.low);
-        let (at, reach) = (n.dot(c), n.x.abs() * h.x + n.y.abs() * h.y + n.z.abs() * h.z);
-        at - reach > 2.0 * self.high || at + reach < 2.0 * self.low
-    }
-}
-
 /// A node of a tree in a search.
 #[derive(Clone, Copy)]
 struct At<'a> {
     /// Of a fork, or of a cell with [`LEAF`] added.
     number: u32,
     bounds: &'a Box3,
-    slab: &'a Slab,
 }
 
 /// A surface cut up for intersections.
@@ -261,8 +220,6 @@ pub struct CutSurface {
     cells: Cells,
     /// One for each cell.
     parts: Vec<Part>,
-    /// Around what is below each fork's two children.
-    slabs: Vec<[Slab; 2]>,
 }
 
 impl CutSurface {
@@ -279,47 +236,21 @@ impl CutSurface {
 
     fn of(cells: Cells) -> Self {
         let parts: Vec<Part> = (0..cells.flats.len()).map(|k| Part::of(&cells, k)).collect();
-        let mut slabs = vec![[Slab::ALL; 2]; cells.forks.len()];
-        if !cells.forks.is_empty() {
-            fill(&cells, &parts, 0, &mut slabs);
-        }
-        Self { cells, parts, slabs }
+        Self { cells, parts }
     }
 
     fn root(&self) -> At<'_> {
         let (number, bounds) = root(&self.cells);
-        At { number, bounds, slab: &Slab::ALL }
+        At { number, bounds }
     }
 
     /// The children of a fork, the second one first.
     #[inline]
     fn below(&self, fork: u32) -> [At<'_>; 2] {
-        let (fork, slabs) = (&self.cells.forks[fork as usize], &self.slabs[fork as usize]);
-        let child =
-            |k: usize| At { number: fork.below[k], bounds: &fork.bounds[k], slab: &slabs[k] };
+        let fork = &self.cells.forks[fork as usize];
+        let child = |k: usize| At { number: fork.below[k], bounds: &fork.bounds[k] };
         [child(1), child(0)]
     }
-}
-
-/// Fills in the slabs below a fork; gives the range of its cells, which are in the order of the leaves.
-fn fill(
-    cells: &Cells,
-    parts: &[Part],
-    fork: usize,
-    slabs: &mut [[Slab; 2]],
-) -> std::ops::Range<usize> {
-    let [first, second] = cells.forks[fork].below.map(|below| {
-        let range = match below & LEAF {
-            0 => fill(cells, parts, below as usize, slabs),
-            _ => {
-                let cell = (below & !LEAF) as usize;
-                cell..cell + 1
-            }
-        };
-        (Slab::around(&parts[range.clone()]), range)
-    });
-    slabs[fork] = [first.0, second.0];
-    first.1.start.min(second.1.start)..first.1.end.max(second.1.end)
 }
 
 /// A search under way.
@@ -495,10 +426,7 @@ impl Finder<'_> {
                 let (below, other) =
                     if split { (first.below(a.number), b) } else { (second.below(b.number), a) };
                 for child in below {
-                    if meet(child.bounds, other.bounds)
-                        && !child.slab.misses(other.bounds)
-                        && !other.slab.misses(child.bounds)
-                    {
+                    if meet(child.bounds, other.bounds) {
                         stack.push(if split { (child, b) } else { (a, child) });
                     }
                 }

@@ -117,15 +117,16 @@ fn tangents(surface: &dyn Surface<f64>, u: f64, v: f64) -> Tangents {
     [j.p, j.u, j.v]
 }
 
-/// The turn between neighbours that steps aim at, and cosine of the largest, 0.35 rad.
-const TURN: f64 = 0.25;
-const LARGEST_TURN: f64 = 0.94;
+/// The turn between neighbours that steps aim at, and cosine of the largest, 0.3 rad.
+const TURN: f64 = 0.2;
+const LARGEST_TURN: f64 = 0.955;
 
-/// A step may end this share of it away from where the last two stations lead.
-const ASTRAY: f64 = 0.2;
+/// A step may end this share of it away from where the last two stations lead: farther off is another
+/// branch, or a bend that asks for shorter steps.
+const ASTRAY: f64 = 0.05;
 
 /// Steps of a walk as shares of the size: the first, the longest, the least.
-const STEPS: [f64; 3] = [1.0 / 48.0, 1.0 / 16.0, 1e-8];
+const STEPS: [f64; 3] = [1.0 / 48.0, 1.0 / 24.0, 1e-8];
 
 impl<'a> Crossing<'a> {
     /// A surface and a plane.
@@ -445,12 +446,24 @@ impl<'a> Crossing<'a> {
                 since = 0;
                 continue;
             }
+            if strays(&last, &next, sign, n) {
+                // It leaves and comes back in between.
+                step *= 0.5;
+                if step < least {
+                    return (all, End::Lost);
+                }
+                continue;
+            }
             if all.len() > 2 {
                 let (before, after) = (
                     (last.x - start.x).dot(start.tangent) * sign,
                     (next.x - start.x).dot(start.tangent) * sign,
                 );
-                let near = start.x.distance(last.x) <= 1.01 * step;
+                let near = start.x.distance(last.x) <= 1.01 * step && {
+                    let (away, way) = (start.x - last.x, next.x - last.x);
+                    let share = away.dot(way) / way.norm_sq();
+                    away.distance(way * share) <= 0.1 * way.norm()
+                };
                 if before < 0.0 && after >= 0.0 && near && last.tangent.dot(start.tangent) > 0.5 {
                     let same = (0..n).all(|k| (last.q[k] - start.q[k]).abs() < 0.3);
                     if same {
@@ -506,7 +519,11 @@ impl<'a> Crossing<'a> {
                     continue;
                 }
                 let Some(station) = self.station(at) else { continue };
-                if station.x.distance(a.x) > 2.0 * b.x.distance(a.x) {
+                // Between them and not where the branch comes back.
+                let way = b.x - a.x;
+                let along = (station.x - a.x).dot(way) / way.norm_sq();
+                let turn = station.tangent.dot(a.tangent);
+                if !(-1e-6..=1.0 + 1e-6).contains(&along) || turn < LARGEST_TURN {
                     continue;
                 }
                 if best.as_ref().is_none_or(|(s, ..)| share < *s) {
@@ -578,6 +595,24 @@ fn onward(a: &Station, b: &Station, step: f64, sign: f64) -> (Unknowns, Vec3) {
     let [p, r, q, s] = shares;
     let unknowns = std::array::from_fn(|k| a.q[k] * p + a.rate[k] * r + b.q[k] * q + b.rate[k] * s);
     (unknowns, a.x * p + a.tangent * r + b.x * q + b.tangent * s)
+}
+
+/// True when the cubic of two stations inside goes over an edge and back between them.
+fn strays(a: &Station, b: &Station, sign: f64, unknowns: usize) -> bool {
+    let run = sign * a.x.distance(b.x);
+    (0..unknowns).any(|k| {
+        [(0.0, 1.0), (1.0, -1.0)].iter().any(|(edge, inward)| {
+            // The distance from the edge and its slope at both.
+            let [d, e] = [a, b].map(|s| inward * (s.q[k] - edge));
+            let [p, r] = [a, b].map(|s| inward * run * s.rate[k]);
+            if !(p < 0.0 && r > 0.0) {
+                return false;
+            }
+            let (bend, twist) = (3.0 * (e - d) - 2.0 * p - r, p + r - 2.0 * (e - d));
+            let x = -p / (bend + (bend * bend - 3.0 * twist * p).max(0.0).sqrt());
+            d + x * (p + x * (bend + x * twist)) < -1e-9
+        })
+    })
 }
 
 fn size_by_samples(surface: &dyn Surface<f64>) -> f64 {

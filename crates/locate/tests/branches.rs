@@ -250,8 +250,9 @@ fn components(g: &[f64], n: usize, xyz: &[Vec3]) -> Vec<f64> {
                 let (a, b) = if down { (i + 1, j) } else { (i, j + 1) };
                 if sign(i, j) != sign(a, b) {
                     let k = top(&mut parent, id(i, j, down));
-                    let b: &mut Box3 = bounds.entry(k).or_insert(Box3::EMPTY);
-                    *b = b.including(xyz[i * n + j]);
+                    let around: &mut Box3 = bounds.entry(k).or_insert(Box3::EMPTY);
+                    // Both ends of the side: a branch may cut off a corner of the square.
+                    *around = around.including(xyz[i * n + j]).including(xyz[a * n + b]);
                 }
             }
         }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{attempt, fault, run, scene};
 use moldloft_num::{Dual4, Order, Vec3};
-use moldloft_registry::{FoundStatus, Point, Value};
+use moldloft_registry::{FoundStatus, Point, Scalar, Value};
 
 /// A quarter of a cylinder of radius 2 about the x axis, from x = 0 to 4: S(u, v).
 const TUBE: &str = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(0, 2, 0);
@@ -189,38 +189,54 @@ fn projected_snakes_lie_on_the_surface_and_have_their_jets() {
     }
 }
 
-/// Every literal of a text, one at a time: derivatives of all points against differences.
-fn check_derivatives(text: &str, names: &[&str], h: f64) {
-    let values = |literals: &mut dyn FnMut(usize, f64) -> Dual4| -> Vec<Vec3<Dual4>> {
-        let scene = run::<Dual4>(text, literals).unwrap();
-        names
-            .iter()
-            .flat_map(|name| match &scene.0.iter().find(|o| o.name == *name).unwrap().value {
-                Value::Point(p) => vec![p.xyz],
-                Value::Curve(c) => [0.0, 0.3, 0.7, 1.0]
-                    .into_iter()
-                    .flat_map(|t| c.jet(Dual4::from(t), Order::First).into_iter().take(2))
-                    .collect(),
-                other => panic!("{other:?}"),
-            })
-            .collect()
+/// What is compared of the objects called `names`: points, and places and tangents of curves.
+fn measured<T: Scalar>(
+    text: &str,
+    names: &[&str],
+    literals: &mut dyn FnMut(usize, f64) -> T,
+) -> Vec<Vec3<T>> {
+    let scene = run::<T>(text, literals).unwrap();
+    let value = |name: &&str| &scene.0.iter().find(|o| o.name == *name).unwrap().value;
+    let of = |value: &Value<T>| match value {
+        Value::Point(p) => vec![p.xyz],
+        Value::Curve(c) => [0.0, 0.3, 0.7, 1.0]
+            .into_iter()
+            .flat_map(|t| c.jet(T::from(t), Order::First).into_iter().take(2))
+            .collect(),
+        other => panic!("{other:?}"),
     };
+    names.iter().map(value).flat_map(of).collect()
+}
+
+/// Every literal of a text: derivatives of all points, four at a time, against differences.
+fn check_derivatives(text: &str, names: &[&str], h: f64) {
+    check_closely(text, names, h, 1e-6);
+}
+
+fn check_closely(text: &str, names: &[&str], h: f64, tolerance: f64) {
     let mut count = 0;
-    values(&mut |k, x| {
+    measured::<f64>(text, names, &mut |k, x| {
         count = count.max(k + 1);
-        Dual4::from(x)
+        x
     });
-    for k in 0..count {
-        let exact = values(&mut |i, x| if i == k { Dual4::seeded(x, 0) } else { x.into() });
-        let moved = |d: f64| values(&mut |i, x| Dual4::from(if i == k { x + d } else { x }));
-        let (a, b) = (moved(h), moved(-h));
-        for ((e, a), b) in exact.iter().zip(&a).zip(&b) {
-            let d = (a.re() - b.re()) / (2.0 * h);
-            let e = e.map(|x| x.eps[0]);
-            assert!(
-                e.distance(d) < 1e-6 * (1.0 + d.norm()),
-                "literal {k}: {e:?} but {d:?}\n{text}"
-            );
+    for first in (0..count).step_by(4) {
+        let seeded =
+            |i: usize, x: f64| if i / 4 * 4 == first { Dual4::seeded(x, i % 4) } else { x.into() };
+        let exact = measured::<Dual4>(text, names, &mut |i, x| seeded(i, x));
+        for k in first..count.min(first + 4) {
+            let mut moved =
+                |d: f64| measured::<f64>(text, names, &mut |i, x| if i == k { x + d } else { x });
+            // Fourth order: the bends of sharp places must not show.
+            let [a, b, c, d] = [h, -h, 2.0 * h, -2.0 * h].map(&mut moved);
+            for (n, e) in exact.iter().enumerate() {
+                let near = (a[n] - b[n]) * (8.0 / (12.0 * h));
+                let difference = near - (c[n] - d[n]) * (1.0 / (12.0 * h));
+                let e = e.map(|x| x.eps[k - first]);
+                assert!(
+                    e.distance(difference) < tolerance * (1.0 + difference.norm()),
+                    "literal {k}, value {n}: {e:?} but {difference:?}\n{text}"
+                );
+            }
         }
     }
     assert!(count > 10);
@@ -317,6 +333,32 @@ fn derivatives_of_intersection_snakes_are_exact() {
         Line post(K, L); AbsPoint M(2.8, 1.5, -2); AbsPoint N(2.8, 1.6, 5); Line v(M, N);
         RevSurf T(v, post, 0.2, 6.3); AbsMagnet z(S, 0.3, 0.5); IntSnake o(z, T);";
     check_derivatives(text, &["p", "q", "s", "o"], 1e-6);
+}
+
+/// Where an intersection bends much, its length is not that of a polynomial between stations; the
+/// derivatives by the length must not show where those are. And a crease that the cut crosses moves.
+#[test]
+fn derivatives_of_intersections_are_exact_at_sharp_bends_and_creases() {
+    // A saddle, and planes just above and below its middle; a hill, and one under its top.
+    for (edge, side, middle, level) in
+        [(-1.0, 1.0, 0.02, 0.032), (-1.0, 1.0, 0.02, -0.01), (0.3, 0.4, 2.6, 0.7)]
+    {
+        let text = format!(
+            "AbsPoint A(0, 0, 0); AbsPoint B(2, 0.1, {edge}); AbsPoint C(4, 0, 0.05); AbsPoint D(0.1, 1, {side});
+             AbsPoint E(2, 1.1, {middle}); AbsPoint F(4, 1, {side}); AbsPoint G(0, 2, 0); AbsPoint H(2, 2.1, {edge});
+             AbsPoint I(4, 2, 0); BCurve k({{A, B, C}}); BCurve l({{D, E, F}}); BCurve n({{G, H, I}});
+             BLoftSurf S({{k, l, n}}); AbsPoint N(2, 1, {level}); AbsPoint P(2.05, 1.1, {top});
+             TwoPointPlane p(N, P); IntSnake c(S, p);",
+            top = level + 9.0
+        );
+        check_closely(&text, &["c"], 1e-4, 1e-8);
+    }
+    let ridge = "AbsPoint M(0, -1, 0.3); AbsPoint N(2, -0.9, 0.5); AbsPoint O(4, -1, 0.6); Line a(M, N); Line b(N, O);
+        PolyCurve o({a, b}); AbsPoint P(0, 3, 0.5); AbsPoint Q(2.2, 2.9, 0.8); AbsPoint R(4, 3, 0.8); Line c(P, Q);
+        Line d(Q, R); PolyCurve q({c, d}); RuledSurf T(o, q); YPlane y(1.3); IntSnake t(T, y);
+        AbsPoint E(-1, 0.3, -2); AbsPoint F(5, 2.1, -2); AbsPoint G(-1, 0.2, 3); AbsPoint H(5, 2.4, 3); Line e(E, F);
+        Line f(G, H); RuledSurf W(e, f); IntSnake x(T, W);";
+    check_closely(ridge, &["t", "x"], 1e-4, 1e-8);
 }
 
 /// A whole tube of radius 2 about the x axis, closed at a seam below y = 2.
@@ -492,6 +534,13 @@ fn geodesics_are_straight_on_what_unrolls_and_great_circles_on_spheres() {
     let cup = "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z); AbsPoint A(1, 0, 0); AbsPoint B(3, 0, 2);
         Line m(A, B); RevSurf S(m, axis, 0, 3); AbsMagnet p(S, 0.001, 0.1); AbsMagnet q(S, 0.001, 0.9); GeoSnake g(p, q);";
     assert_eq!(fault(cup).id, "leaves-surface");
+    // Between opposite places of a sphere there is no end of great circles.
+    let opposite = "AbsPoint O(0, 0, 0); AbsPoint X(3, 0, 0); AbsPoint Y(-3, 0, 0); AbsPoint Z(0, 3, 0); Line axis(O, X);
+        Arc half(X, Z, Y); RevSurf S(half, axis, 0, 6.283185307179586); AbsMagnet p(S, 0.3, 0.2);
+        AbsMagnet q(S, 0.7, 0.7); GeoSnake g(p, q);";
+    let found = fault(opposite);
+    assert_eq!(found.id, "no-convergence");
+    assert!(found.help.iter().any(|text| text.contains("put magnets between them")), "{found:?}");
 }
 
 #[test]

@@ -6,7 +6,11 @@ use super::roots::{MarkSource, Stop, on_its_root, pieces};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Point, Scalar, SurfaceRef};
+use rayon::prelude::*;
 use std::sync::Arc;
+
+/// So many points of a patch are evaluated together.
+const PART: usize = 1024;
 
 /// How the divisions between two stops are spaced: shares of the way in ascending order, without 0
 /// and 1; `None` for even ones.
@@ -123,7 +127,9 @@ pub(super) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4])
     let uv = parameters(edges);
     if uv.iter().flatten().all(|x| x.is_constant()) {
         let real: Vec<[f64; 2]> = uv.iter().map(|p| p.map(T::re)).collect();
-        surface.scattered(&real, &mut points);
+        // In parts on all threads: a patch by itself may be most of a model.
+        let parts = points.par_chunks_mut(PART).zip(real.par_chunks(PART));
+        parts.for_each(|(points, uv)| surface.scattered(uv, points));
     } else {
         for (p, [u, v]) in points.iter_mut().zip(uv) {
             *p = surface.jet(u, v, moldloft_num::Order::Zero).p;

@@ -2,7 +2,7 @@
 
 use super::equations::PlainField;
 use moldloft_locate::PlainSurface;
-use moldloft_locate::implicit::{Implicit, jets, refined, solve};
+use moldloft_locate::implicit::{Implicit, refined, solve};
 use moldloft_locate::march::{Crossing, Other, Unknowns};
 use moldloft_num::trace::Trace;
 use moldloft_num::{
@@ -55,52 +55,124 @@ impl<T: Real> PlainSecond<'_, T> {
     }
 }
 
-/// Points of a piece that its polynomial goes through.
-pub(super) const NODES: usize = 7;
+/// Points of a piece that its polynomials go through.
+pub(super) const NODES: usize = 8;
 
-/// A stretch of the intersection with a polynomial near it: the place is the point of the
-/// intersection across from the polynomial's.
+/// Powers of the length along a piece.
+pub(super) const RUN: usize = NODES + 1;
+
+/// A stretch of the intersection with a cubic near it, both with a parameter y from -1 to 1: the
+/// place is the point of the intersection in the plane across the cubic. The length up to it is a
+/// polynomial to rounding, so that neither it nor its derivatives depend on where pieces end.
 #[derive(Clone, Debug)]
 pub(super) struct Piece<T> {
     /// Length along the snake at which it begins, and its own length.
     pub begin: T,
     pub length: T,
-    /// Powers of 2 x - 1, with x the share of the piece.
-    pub powers: Vec<Vec3<T>>,
-    /// The unknowns at the nodes, where iterations begin.
+    /// The cubic, in powers of y.
+    pub guide: Guide,
+    /// The length from y = -1, in powers of y.
+    pub run: [T; RUN],
+    /// The unknowns in powers of y, nearly: where iterations begin.
     pub places: [Unknowns; NODES],
+    /// True where these are the unknowns to rounding, so that none needs to be solved for.
+    pub exact: bool,
+    /// True where the intersection may bend at its beginning: at a joint or a seam of a surface.
+    pub joint: bool,
+}
+
+/// A cubic in powers of y.
+pub(super) type Guide = [Vec3; 4];
+
+/// Position, first and second derivative of a cubic.
+pub(super) fn on_guide([a, b, c, d]: &Guide, y: f64) -> [Vec3; 3] {
+    [
+        *a + (*b + (*c + *d * y) * y) * y,
+        *b + (*c * 2.0 + *d * (3.0 * y)) * y,
+        *c * 2.0 + *d * (6.0 * y),
+    ]
+}
+
+/// A polynomial in powers of y and its derivative.
+pub(super) fn polynomial<S: Real>(powers: &[S], y: f64) -> [S; 2] {
+    let (mut value, mut slope) = (S::zero(), S::zero());
+    for p in powers.iter().rev() {
+        slope = slope * y + value;
+        value = value * y + *p;
+    }
+    [value, slope]
+}
+
+/// Where the unknowns nearly are.
+pub(super) fn guess(places: &[Unknowns; NODES], y: f64) -> Unknowns {
+    let mut q = places[NODES - 1];
+    for p in places[..NODES - 1].iter().rev() {
+        q = std::array::from_fn(|k| q[k] * y + p[k]);
+    }
+    q
+}
+
+impl<T: Real> Piece<T> {
+    /// Where the length from the beginning of the piece is `run`.
+    pub fn at_length(&self, run: T) -> T {
+        let plain = self.run.map(|x| x.re());
+        let goal = run.re();
+        let mut y = 2.0 * goal / self.length.re() - 1.0;
+        for _ in 0..12 {
+            let [value, slope] = polynomial(&plain, y);
+            let step = (value - goal) / slope;
+            if !step.is_finite() || step.abs() > 0.5 {
+                break;
+            }
+            y -= step;
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        let ([value, _], [_, slope]) = (polynomial(&self.run, y), polynomial(&plain, y));
+        let rest = value - run;
+        T::from(y) - (rest - rest.re()) / slope
+    }
 }
 
 /// X(t) = S(w(t)) on both shapes.
 pub(super) struct Cut<T: Real> {
     pub trace: Trace<T>,
-    pub first: SurfaceRef<T>,
-    pub second: Second<T>,
+    pub both: Both<T>,
     pub pieces: Vec<Piece<T>>,
     pub total: T,
     pub size: f64,
     pub closed: bool,
 }
 
-/// Both shapes at a place of the cut: unit tangent and change of the parameters along it.
-struct Along<T> {
-    w: [T; 2],
+/// The surface and what it is cut by.
+#[derive(Clone)]
+pub(super) struct Both<T: Real> {
+    pub first: SurfaceRef<T>,
+    pub second: Second<T>,
+}
+
+/// Both shapes at a place of the cut: where it is, unit tangent, derivatives by the length.
+pub(super) struct Along<T> {
+    pub x: Vec3<T>,
+    pub tangent: Vec3<T>,
+    /// Of u and v.
     rate: [T; 2],
-    /// Of the second order by the length.
+    /// Of the second order, and that of the place itself.
     bend: [T; 2],
+    pub curvature: Vec3<T>,
 }
 
-/// Nodes on [0, 1]: both ends, denser towards them (Chebyshev and Lobatto).
+/// Nodes on [-1, 1] inside: a surface may go on differently beyond the ends (Chebyshev 1854).
 pub(super) fn node(k: usize) -> f64 {
-    0.5 - 0.5 * Real::cos(k as f64 * std::f64::consts::PI / (NODES - 1) as f64)
+    -Real::cos((k as f64 + 0.5) * std::f64::consts::PI / NODES as f64)
 }
 
-/// The matrix from values at the nodes to powers of 2 x - 1.
+/// The matrix from values at the nodes to powers of y.
 pub(super) fn to_powers() -> [[f64; NODES]; NODES] {
     std::array::from_fn(|column| {
-        let mut matrix: Vec<f64> = (0..NODES)
-            .flat_map(|k| (0..NODES).map(move |p| (2.0 * node(k) - 1.0).powi(p as i32)))
-            .collect();
+        let mut matrix: Vec<f64> =
+            (0..NODES).flat_map(|k| (0..NODES).map(move |p| node(k).powi(p as i32))).collect();
         let mut unit: [f64; NODES] = std::array::from_fn(|k| f64::from(u8::from(k == column)));
         solve_dense(&mut matrix, &mut unit).expect("the nodes are different");
         unit
@@ -109,37 +181,27 @@ pub(super) fn to_powers() -> [[f64; NODES]; NODES] {
 
 pub(super) fn powers_of<T: Real>(
     matrix: &[[f64; NODES]; NODES],
-    values: &[Vec3<T>; NODES],
-) -> Vec<Vec3<T>> {
-    let power =
-        |p: usize| (0..NODES).fold(Vec3::zero(), |sum, k| sum + values[k] * T::from(matrix[k][p]));
-    (0..NODES).map(power).collect()
+    values: &[T; NODES],
+) -> [T; NODES] {
+    let power = |p: usize| (0..NODES).fold(T::zero(), |sum, k| sum + values[k] * matrix[k][p]);
+    std::array::from_fn(power)
 }
 
-/// Value and derivative by x of a polynomial in powers of 2 x - 1.
-pub(super) fn polynomial<T: Real, J: Jet<T>>(powers: &[Vec3<T>], x: J) -> [Vec3<J>; 2] {
-    let y = x * 2.0 - 1.0;
-    let (mut value, mut slope) = (Vec3::<J>::zero(), Vec3::<J>::zero());
-    for p in powers.iter().rev() {
-        slope = slope * y + value;
-        value = value * y + p.map(J::fixed);
-    }
-    [value, slope * J::from(2.0)]
-}
-
-/// A point of both shapes across from a polynomial's.
+/// A point of both shapes across from a cubic's.
 struct Across<'a, T: Real> {
     first: &'a SurfaceRef<T>,
-    powers: &'a [Vec3<T>],
+    guide: &'a Guide,
 }
 
 impl<T: Real> Across<'_, T> {
-    fn level<J: Jet<T>>(&self, point: Vec3<J>, x: J) -> J {
-        let [c, d] = polynomial(self.powers, x);
-        d.dot(point - c)
+    fn level<J: Jet<T>>(&self, point: Vec3<J>, y: J) -> J {
+        let [a, b, c, d] = self.guide.map(Vec3::<J>::lifted);
+        let at = a + (b + (c + d * y) * y) * y;
+        let slope = b + (c * J::from(2.0) + d * (y * 3.0)) * y;
+        slope.dot(point - at)
     }
-    fn gradient(&self, j: &moldloft_num::SurfJet<T>, x: T) -> [T; 2] {
-        let [_, d] = polynomial::<T, T>(self.powers, x);
+    fn gradient(&self, j: &moldloft_num::SurfJet<T>, y: T) -> [T; 2] {
+        let d = Vec3::<T>::lifted(on_guide(self.guide, y.re())[1]);
         [d.dot(j.u), d.dot(j.v)]
     }
 }
@@ -191,92 +253,30 @@ impl<T: Real> Implicit<T, 4> for AcrossSurface<'_, T> {
     }
 }
 
-/// Unknowns with their derivatives by the parameter of a polynomial.
-pub(super) fn derived<T: Real>(
-    first: &SurfaceRef<T>,
-    second: &Second<T>,
-    powers: &[Vec3<T>],
-    q: Unknowns,
-    x: T,
-    order: Order,
-) -> Option<[[T; 2]; 3]> {
-    let across = Across { first, powers };
-    match second {
-        Second::Plane(plane) => jets(&AcrossPlane(across, plane), [q[0], q[1]], x, order),
-        Second::Field(field) => jets(&AcrossField(across, field), [q[0], q[1]], x, order),
-        Second::Surface(surface) => {
-            let all = jets(&AcrossSurface(across, surface), q, x, order)?;
-            Some(all.map(|[u, v, ..]| [u, v]))
+impl<T: Real> Both<T> {
+    /// All unknowns at `y` of a piece, of which `q` are the plain ones, with what they owe to the
+    /// model's parameters.
+    pub fn unknowns(&self, guide: &Guide, q: Unknowns, y: T) -> Option<[T; 4]> {
+        if T::PARTS == 1 {
+            return Some(q.map(T::from));
         }
-    }
-}
-
-impl<T: Real> Cut<T> {
-    /// The piece with the length `s`, and the share of it.
-    fn share(&self, t: T) -> (&Piece<T>, T) {
-        let s = self.total * t;
-        let k = self.pieces.partition_point(|p| p.begin.re() <= s.re()).saturating_sub(1);
-        let piece = &self.pieces[k];
-        (piece, (s - piece.begin) / piece.length)
-    }
-
-    /// (u, v, 0) with derivatives by t.
-    ///
-    /// The parameter is the share of the length, so derivatives are those by the length, from the
-    /// normals of both shapes: they do not depend on where the pieces end.
-    fn place(&self, t: T, order: Order) -> CurveJet<T> {
-        let (piece, x) = self.share(t);
-        let first = PlainSurface(&*self.first);
-        let second = self.second.plain();
-        let crossing = Crossing::local(&first, second.other(), self.size);
-        self.place_near(&crossing, piece, x, order)
-    }
-
-    fn place_near(
-        &self,
-        crossing: &Crossing<'_>,
-        piece: &Piece<T>,
-        x: T,
-        order: Order,
-    ) -> CurveJet<T> {
-        let plain = x.re();
-        let [c, d] = polynomial::<T, T>(&piece.powers, T::from(plain)).map(Vec3::re);
-        let near = (0..NODES)
-            .min_by(|&a, &b| (node(a) - plain).abs().total_cmp(&(node(b) - plain).abs()))
-            .expect("there are nodes");
-        let guess = guess(&piece.places, near, plain);
-        let q = crossing.across_near(guess, c, d / d.norm()).unwrap_or(guess);
-        let flat = |[u, v]: [T; 2], by: T| Vec3::new(u * by, v * by, T::zero());
-        let plain_jet =
-            [flat([T::from(q[0]), T::from(q[1])], T::one()), Vec3::zero(), Vec3::zero()];
-        let Some(all) = self.unknowns(piece, q, x) else { return plain_jet };
-        if order == Order::Zero {
-            return [flat([all[0], all[1]], T::one()), Vec3::zero(), Vec3::zero()];
-        }
-        let Some(along) = self.along(all, d, order) else { return plain_jet };
-        let rate = self.total;
-        [flat(along.w, T::one()), flat(along.rate, rate), flat(along.bend, rate * rate)]
-    }
-
-    /// All unknowns at the share `x` of a piece, with what they owe to the model's parameters.
-    fn unknowns(&self, piece: &Piece<T>, q: Unknowns, x: T) -> Option<[T; 4]> {
-        let across = Across { first: &self.first, powers: &piece.powers };
+        let across = Across { first: &self.first, guide };
         match &self.second {
             Second::Plane(plane) => {
-                let [u, v] = refined(&AcrossPlane(across, plane), [q[0], q[1]], x)?;
+                let [u, v] = refined(&AcrossPlane(across, plane), [q[0], q[1]], y)?;
                 Some([u, v, T::zero(), T::zero()])
             }
             Second::Field(field) => {
-                let [u, v] = refined(&AcrossField(across, field), [q[0], q[1]], x)?;
+                let [u, v] = refined(&AcrossField(across, field), [q[0], q[1]], y)?;
                 Some([u, v, T::zero(), T::zero()])
             }
-            Second::Surface(surface) => refined(&AcrossSurface(across, surface), q, x),
+            Second::Surface(surface) => refined(&AcrossSurface(across, surface), q, y),
         }
     }
 
-    /// Derivatives of u and v by the length at a place, in the direction of `d`: with N = n1 x n2
-    /// for normals that are no unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
-    fn along(&self, [u, v, p, r]: [T; 4], d: Vec3, order: Order) -> Option<Along<T>> {
+    /// Derivatives by the length at a place, in the direction of `d`: with N = n1 x n2 for normals
+    /// that are no unit vectors, T = N / |N| and T' = (N' - T (T . N')) / |N|.
+    pub fn along(&self, [u, v, p, r]: [T; 4], d: Vec3, order: Order) -> Option<Along<T>> {
         let j = self.first.jet(u, v, order);
         let k = match &self.second {
             Second::Surface(surface) => Some(surface.jet(p, r, order)),
@@ -304,8 +304,10 @@ impl<T: Real> Cut<T> {
             solve(&[[s.u.norm_sq(), a], [a, s.v.norm_sq()]], [x.dot(s.u), x.dot(s.v)])
         };
         let rate = in_plane(&j, tangent)?;
-        if order == Order::First {
-            return Some(Along { w: [u, v], rate, bend: [T::zero(); 2] });
+        let mut found =
+            Along { x: j.p, tangent, rate, bend: [T::zero(); 2], curvature: Vec3::zero() };
+        if order != Order::Second {
+            return Some(found);
         }
         // How the normal S_u x S_v changes along the tangent.
         let turn = |s: &SurfJet<T>, [a, b]: [T; 2]| {
@@ -324,42 +326,75 @@ impl<T: Real> Cut<T> {
             },
         };
         let change = dm.cross(n) + m.cross(dn);
-        let curvature = (change - tangent * tangent.dot(change)) / length;
+        found.curvature = (change - tangent * tangent.dot(change)) / length;
         let [a, b] = rate;
         let own = j.uu * (a * a) + j.uv * (a * b * 2.0) + j.vv * (b * b);
-        let bend = in_plane(&j, curvature - own)?;
-        Some(Along { w: [u, v], rate, bend })
+        found.bend = in_plane(&j, found.curvature - own)?;
+        Some(found)
     }
 }
 
-/// The unknowns between two nodes, linearly.
-fn guess(places: &[Unknowns; NODES], near: usize, x: f64) -> Unknowns {
-    let other = if x > node(near) && near + 1 < NODES || near == 0 { near + 1 } else { near - 1 };
-    let share = (x - node(near)) / (node(other) - node(near));
-    std::array::from_fn(|k| places[near][k] + share * (places[other][k] - places[near][k]))
+impl<T: Real> Cut<T> {
+    /// The piece with the share `t` of the length, and the length into it.
+    fn share(&self, t: T) -> (&Piece<T>, T) {
+        let s = self.total * t;
+        let k = self.pieces.partition_point(|p| p.begin.re() <= s.re()).saturating_sub(1);
+        let piece = &self.pieces[k];
+        (piece, s - piece.begin)
+    }
+
+    /// (u, v, 0) with derivatives by t.
+    ///
+    /// The parameter is the share of the length, so derivatives are those by the length, from the
+    /// normals of both shapes: they do not depend on where the pieces end.
+    fn place(&self, t: T, order: Order) -> CurveJet<T> {
+        let first = PlainSurface(&*self.both.first);
+        let second = self.both.second.plain();
+        let crossing = Crossing::local(&first, second.other(), self.size);
+        self.place_of(&crossing, t, order)
+    }
+
+    fn place_of(&self, crossing: &Crossing<'_>, t: T, order: Order) -> CurveJet<T> {
+        let (piece, run) = self.share(t);
+        let y = piece.at_length(run);
+        let [c, d, _] = on_guide(&piece.guide, y.re());
+        let guess = guess(&piece.places, y.re());
+        let solved = || crossing.across_close(guess, c, d / d.norm());
+        let q = if piece.exact { guess } else { solved().unwrap_or(guess) };
+        let flat = |[u, v]: [T; 2], by: T| Vec3::new(u * by, v * by, T::zero());
+        let plain_jet =
+            [flat([T::from(q[0]), T::from(q[1])], T::one()), Vec3::zero(), Vec3::zero()];
+        let Some(all) = self.both.unknowns(&piece.guide, q, y) else { return plain_jet };
+        let w = flat([all[0], all[1]], T::one());
+        if order == Order::Zero {
+            return [w, Vec3::zero(), Vec3::zero()];
+        }
+        let Some(along) = self.both.along(all, d, order) else { return plain_jet };
+        let rate = self.total;
+        [w, flat(along.rate, rate), flat(along.bend, rate * rate)]
+    }
 }
 
 impl<T: Real> Curve<T> for Cut<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        super::on_surface_jet(&self.first, self.place(t, order), order)
+        super::on_surface_jet(&self.both.first, self.place(t, order), order)
     }
 
-    /// Place by place, as single ones; what places of one piece share is made once.
+    /// Place by place, as single ones.
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
-        let first = PlainSurface(&*self.first);
-        let second = self.second.plain();
+        let first = PlainSurface(&*self.both.first);
+        let second = self.both.second.plain();
         let crossing = Crossing::local(&first, second.other(), self.size);
         for (out, &t) in out.iter_mut().zip(ts) {
-            let (piece, x) = self.share(T::from(t));
-            let [w, ..] = self.place_near(&crossing, piece, x, Order::Zero);
-            *out = self.first.jet(w.x, w.y, Order::Zero).p;
+            let [w, ..] = self.place_of(&crossing, T::from(t), Order::Zero);
+            *out = self.both.first.jet(w.x, w.y, Order::Zero).p;
         }
     }
 
-    /// Those of the surfaces that it crosses are ends of pieces.
+    /// Where it crosses joints and seams of the surfaces.
     fn breaks(&self) -> Vec<f64> {
         let share = |p: &Piece<T>| p.begin.re() / self.total.re();
-        self.pieces[1..].iter().map(share).collect()
+        self.pieces[1..].iter().filter(|p| p.joint).map(share).collect()
     }
 
     fn trace(&self) -> Trace<T> {

@@ -1,8 +1,9 @@
 //! Snakes along which a surface meets a plane or another surface.
 
 use super::arguments::{Onto, Target};
-use super::cut::{Cut, NODES, Piece, Second, derived, node, polynomial, powers_of, to_powers};
+use super::cut::{Along, Both, Cut, Second};
 use super::outcome::no_intersection;
+use super::pieces::{Stop, at_seam, fitted, laid};
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, refined, solve};
 use moldloft_locate::march::{Branch, Crossing, End, Other, Station, Unknowns};
@@ -20,8 +21,8 @@ use moldloft_registry::{
 /// that comes nearest to its middle, and others are reported. The snake runs along n1 x n2, the
 /// product of both normals, from edge to edge; or from the magnet `start` to the magnet `end`, which
 /// lie on the intersection and give it their identity there, so that patches join. A closed branch
-/// begins at the place nearest to the magnet, or to S(0.3, 0.4) without one. Each point of it is
-/// solved for by itself, so it lies on both. Across the seam of a closed surface it runs on: its place
+/// begins at the place nearest to the magnet, or to S(0.3, 0.4) without one. Each point of it lies on
+/// both, to rounding. Across the seam of a closed surface it runs on: its place
 /// on the surface goes over from u = 1 to u = 0 there.
 ///
 /// All branches longer than 2 % of the size are found that cross at an angle somewhere. Where the
@@ -327,84 +328,6 @@ fn traced<T: Real>(
     Ok((shape, found))
 }
 
-/// The cubic of both ends' places and tangents, in powers of 2 s - 1.
-fn guide<T: Real>(matrix: &[[f64; NODES]; NODES], a: &Station, b: &Station) -> Vec<Vec3<T>> {
-    let chord = a.x.distance(b.x);
-    let hermite = |s: f64| {
-        let r = 1.0 - s;
-        a.x * (r * r * (1.0 + 2.0 * s))
-            + a.tangent * (chord * r * r * s)
-            + b.x * (s * s * (3.0 - 2.0 * s))
-            - b.tangent * (chord * s * s * r)
-    };
-    powers_of(matrix, &std::array::from_fn(|k| Vec3::lifted(hermite(node(k)))))
-}
-
-/// The speed along a piece may be off by this share of it: lengths are exact to rounding then, so
-/// that they do not depend on where the stations are.
-const SPEED_ACCURACY: f64 = 1e-12;
-
-/// A stretch between stations is halved this many times at most.
-const MOST_HALVINGS: u32 = 8;
-
-/// The stations with others between them, until the speed of each piece is a polynomial.
-fn refined_stations<T: Real>(
-    first: &SurfaceRef<T>,
-    second: &Second<T>,
-    crossing: &Crossing<'_>,
-    matrix: &[[f64; NODES]; NODES],
-    stations: Vec<Station>,
-) -> Vec<Station> {
-    let mut out = vec![stations[0]];
-    for pair in stations.windows(2) {
-        if at_seam(&pair[0], &pair[1]) {
-            out.push(pair[1]);
-            continue;
-        }
-        let mut open = vec![(pair[1], 0)];
-        while let Some((b, halvings)) = open.pop() {
-            let a = out[out.len() - 1];
-            let guide: Vec<Vec3<T>> = guide(matrix, &a, &b);
-            let place = |s: f64| {
-                let [c, d] = polynomial::<T, T>(&guide, T::from(s)).map(Vec3::re);
-                let guess = std::array::from_fn(|k| a.q[k] + s * (b.q[k] - a.q[k]));
-                crossing.across(guess, c, d.normalized()?)
-            };
-            let speed = |s: f64| {
-                let w = derived(first, second, &guide, place(s)?, T::from(s), Order::First)?;
-                let w = w.map(|[u, v]| Vec3::new(u, v, T::zero()));
-                Some(super::on_surface_jet(first, w, Order::First)[1].re().norm())
-            };
-            let fits = || {
-                let mut speeds = [Vec3::zero(); NODES];
-                for (k, value) in speeds.iter_mut().enumerate() {
-                    value.x = speed(node(k))?;
-                }
-                let fit: Vec<Vec3> = powers_of(matrix, &speeds);
-                let off = |s: f64| {
-                    let [p, _] = polynomial::<f64, f64>(&fit, s);
-                    Some((p.x - speed(s)?).abs() <= SPEED_ACCURACY * p.x.abs())
-                };
-                Some(off(0.06)? && off(0.37)? && off(0.94)?)
-            };
-            let middle = || {
-                let mut m = crossing.station(place(0.5)?)?;
-                if m.tangent.dot(a.tangent) < 0.0 {
-                    m.tangent = -m.tangent;
-                    m.rate = m.rate.map(|r| -r);
-                }
-                Some(m)
-            };
-            // Where it cannot be followed the caller finds out.
-            match (halvings < MOST_HALVINGS && fits() == Some(false)).then(middle).flatten() {
-                Some(m) => open.extend([(b, halvings + 1), (m, halvings + 1)]),
-                None => out.push(b),
-            }
-        }
-    }
-    out
-}
-
 /// Cuts the branch to its ends, gives it its length as parameter, with derivatives.
 fn set_up<T: Real>(
     first: &SurfaceRef<T>,
@@ -521,54 +444,13 @@ fn set_up<T: Real>(
             return Err(lost("a place where they are tangent").in_field(1));
         }
     }
-    // Joints of the surfaces between stations become stations, so that pieces are smooth.
-    let lines: Vec<(usize, f64)> = {
-        let mut lines = Vec::new();
-        let mut add = |at: usize, [us, vs]: [Vec<f64>; 2]| {
-            lines.extend(us.into_iter().map(|x| (at, x)));
-            lines.extend(vs.into_iter().map(|x| (at + 1, x)));
-        };
-        add(0, first.joints());
-        if let Second::Surface(surface) = &second {
-            add(2, surface.joints());
-        }
-        lines
-    };
-    let mut stations = vec![branch.stations[0]];
-    for pair in branch.stations.windows(2) {
-        let (a, b) = (&pair[0], &pair[1]);
-        if at_seam(a, b) {
-            stations.push(*b);
-            continue;
-        }
-        let mut between: Vec<(f64, usize, f64)> = lines
-            .iter()
-            .filter(|(k, x)| (a.q[*k] - x) * (b.q[*k] - x) < 0.0)
-            .map(|&(k, x)| ((x - a.q[k]) / (b.q[k] - a.q[k]), k, x))
-            .collect();
-        between.sort_by(|p, q| p.0.total_cmp(&q.0));
-        for (share, k, x) in between {
-            let guess = std::array::from_fn(|i| a.q[i] + share * (b.q[i] - a.q[i]));
-            let station = crossing.at_line(guess, k, x).and_then(|q| crossing.station(q));
-            let last = stations.last().expect("it begins with one").x;
-            if let Some(mut s) = station {
-                if s.tangent.dot(a.tangent) < 0.0 {
-                    s.tangent = -s.tangent;
-                    s.rate = s.rate.map(|r| -r);
-                }
-                let reach = 1e-3 * a.x.distance(b.x);
-                let ordered =
-                    (s.x - last).dot(a.tangent) > reach && (b.x - s.x).dot(a.tangent) > reach;
-                if ordered {
-                    stations.push(s);
-                }
-            }
-        }
-        stations.push(*b);
-    }
+    let stops = with_joints(first, &second, crossing, &branch);
     // The ends, with derivatives.
+    let at_joint = |q: &Unknowns, (unknown, value): (usize, f64)| {
+        edge_point(first, &second, *q, unknown, value)
+    };
     let end_place = |k: usize| -> Option<Vec3<T>> {
-        let station = if k == 0 { stations.first() } else { stations.last() }?;
+        let station = [stops.first(), stops.last()][k]?.station;
         if let Some(magnet) = &ends[k] {
             return Some(first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p);
         }
@@ -576,135 +458,146 @@ fn set_up<T: Real>(
             return None;
         }
         match branch.ends[k] {
-            End::Edge { unknown, value } => edge_point(first, &second, station.q, unknown, value),
+            End::Edge { unknown, value } => at_joint(&station.q, (unknown, value)),
             _ => Some(Vec3::lifted(station.x)),
         }
     };
     let places = [end_place(0), end_place(1)];
     // A closed branch begins in the plane through the magnet across its own direction.
     let shift = match (whole, &ends[0], onto.start) {
-        (true, None, Some(uv)) => closed_start(first, &second, uv, &stations[0]),
+        (true, None, Some(uv)) => closed_start(first, &second, uv, &stops[0].station),
         (true, Some(magnet), _) => {
             let x = first.jet(magnet.uv[0], magnet.uv[1], Order::Zero).p;
-            Some((x, Vec3::lifted(stations[0].tangent)))
+            Some((x, Vec3::lifted(stops[0].station.tangent)))
         }
         _ => None,
     };
-    let matrix = to_powers();
-    let stations = refined_stations(first, &second, crossing, &matrix, stations);
-    // Nothing lies between the two stations at a seam.
-    let pairs: Vec<&[Station]> = stations.windows(2).filter(|p| !at_seam(&p[0], &p[1])).collect();
-    let mut pieces = Vec::with_capacity(pairs.len());
+    let failed = || lost("a place where they are nearly tangent").in_field(1);
+    let fits = fitted(crossing, &stops).ok_or_else(failed)?;
+    let both = Both { first: first.clone(), second: second.clone() };
+    let mut pieces = Vec::with_capacity(fits.len());
     let mut sum = T::zero();
+    for fit in &fits {
+        let piece = laid(&both, fit, sum, at_joint).ok_or_else(failed)?;
+        sum += piece.length;
+        pieces.push(piece);
+    }
+    let (Some(head), Some(tail)) = (pieces.first(), pieces.last()) else { return Err(failed()) };
+    let at_end = |k: usize, order: Order| -> Option<Along<T>> {
+        let (piece, stop, y) =
+            if k == 0 { (head, stops[0], -1.0) } else { (tail, stops[stops.len() - 1], 1.0) };
+        let q = both.unknowns(&piece.guide, stop.station.q, T::from(y))?;
+        both.along(q, stop.station.tangent, order)
+    };
+    // How far the snake's own ends are beyond those of its pieces, as far as they move.
     let mut offsets = [T::zero(); 2];
-    let count = pairs.len();
-    for (i, pair) in pairs.into_iter().enumerate() {
-        let (a, b) = (&pair[0], &pair[1]);
-        let guide = guide(&matrix, a, b);
-        let at = |s: f64, order: Order| -> Option<([CurveJet<T>; 2], Unknowns)> {
-            let [c, d] = polynomial::<T, T>(&guide, T::from(s)).map(Vec3::re);
-            let guess = std::array::from_fn(|k| a.q[k] + s * (b.q[k] - a.q[k]));
-            let q = crossing.across(guess, c, d.normalized()?)?;
-            let w = derived(first, &second, &guide, q, T::from(s), order)?;
-            let w = w.map(|[u, v]| Vec3::new(u, v, T::zero()));
-            Some(([super::on_surface_jet(first, w, order), w], q))
-        };
-        let failed = || lost("a place where they are nearly tangent").in_field(1);
-        // Length as a function of s, from the speed at the nodes.
-        let mut speeds = [Vec3::zero(); NODES];
-        let mut end_jets = [[Vec3::zero(); 3]; 2];
-        for k in 0..NODES {
-            let ([x, _], _) = at(node(k), Order::First).ok_or_else(failed)?;
-            speeds[k] = Vec3::new(x[1].norm(), T::zero(), T::zero());
-            if k == 0 {
-                end_jets[0] = x;
-            } else if k == NODES - 1 {
-                end_jets[1] = x;
-            }
+    for (k, place) in places.iter().enumerate() {
+        if let Some(place) = place {
+            let end = at_end(k, Order::First).ok_or_else(failed)?;
+            let along = Vec3::lifted(end.tangent.re()).dot(*place - end.x);
+            offsets[k] = along - along.re();
         }
-        let speed = powers_of(&matrix, &speeds);
-        let integral = |s: f64| {
-            let y = 2.0 * s - 1.0;
-            speed.iter().enumerate().fold(T::zero(), |sum, (p, c)| {
-                let p = p as i32 + 1;
-                sum + c.x * (0.5 * (y.powi(p) - (-1f64).powi(p)) / f64::from(p))
-            })
-        };
-        let length = integral(1.0);
-        let mut nodes = [Vec3::zero(); NODES];
-        let mut at_nodes = [[0.0; 4]; NODES];
-        for k in 0..NODES {
-            let goal = length * node(k);
-            let mut s = node(k);
-            for _ in 0..4 {
-                let rate = polynomial::<T, T>(&speed, T::from(s))[0].x.re();
-                s = (s - (integral(s) - goal).re() / rate).clamp(0.0, 1.0);
-            }
-            let ([x, _], q) = at(s, Order::First).ok_or_else(failed)?;
-            let rest = integral(s) - goal;
-            let step = (rest - rest.re()) / x[1].norm().re();
-            nodes[k] = x[0] - x[1].map(|d| T::from(d.re())) * step;
-            at_nodes[k] = q;
+    }
+    if let Some((x, d)) = shift {
+        // The branch begins where it crosses the plane d . (X - x) = 0.
+        let level = d.dot(at_end(0, Order::First).ok_or_else(failed)?.x - x);
+        let slope = d.re().dot(stops[0].station.tangent);
+        offsets = [(level - level.re()) * (-1.0 / slope); 2];
+    } else if whole && ends[0].is_none() && onto.start.is_none() {
+        // The branch begins where (X - M) . T is zero, the derivative of which by the length is
+        // 1 + (X - M) . k with the curvature k.
+        let end = at_end(0, Order::Second).ok_or_else(failed)?;
+        let away = end.x - middle(first);
+        let slope = 1.0 + away.re().dot(end.curvature.re());
+        if slope.abs() > 1e-9 {
+            let level = away.dot(end.tangent);
+            offsets = [(level - level.re()) * (-1.0 / slope); 2];
         }
-        for (k, (index, place)) in
-            [(0, &places[0]), (count - 1, &places[1])].into_iter().enumerate()
-        {
-            if i == index
-                && let Some(place) = place
-            {
-                let tangent = end_jets[k][1].re().normalized().ok_or_else(failed)?;
-                let along = Vec3::lifted(tangent).dot(*place - end_jets[k][0]);
-                offsets[k] = along - along.re();
-            }
-        }
-        if i == 0
-            && let Some((x, d)) = shift
-        {
-            // The branch begins where it crosses the plane d . (X - x) = 0.
-            let level = d.dot(end_jets[0][0] - x);
-            let slope = d.re().dot(stations[0].tangent);
-            offsets[0] = (level - level.re()) * (-1.0 / slope);
-            offsets[1] = offsets[0];
-        }
-        if i == 0 && whole && ends[0].is_none() && onto.start.is_none() {
-            // The branch begins where (X - M) . T is zero, the derivative of which by the length is
-            // 1 + (X - M) . k with the curvature k.
-            let ([[x, d, dd], _], _) = at(node(0), Order::Second).ok_or_else(failed)?;
-            let (away, tangent) = (x - middle(first), d / d.norm());
-            let (t, dd) = (tangent.re(), dd.re());
-            let curvature = (dd - t * t.dot(dd)) / d.re().norm_sq();
-            let slope = 1.0 + away.re().dot(curvature);
-            if slope.abs() > 1e-9 {
-                let level = away.dot(tangent);
-                offsets = [(level - level.re()) * (-1.0 / slope); 2];
-            }
-        }
-        pieces.push(Piece {
-            begin: sum,
-            length,
-            powers: powers_of(&matrix, &nodes),
-            places: at_nodes,
-        });
-        sum += length;
     }
     for piece in &mut pieces {
         piece.begin -= offsets[0];
     }
     let total = sum + offsets[1] - offsets[0];
-    Ok(Cut {
-        trace: Trace::own(),
-        first: first.clone(),
-        second,
-        pieces,
-        total,
-        size: crossing.size,
-        closed: whole,
-    })
+    Ok(Cut { trace: Trace::own(), both, pieces, total, size: crossing.size, closed: whole })
 }
 
-/// True for the two stations at a seam: one place, an unknown of which is 0 here and 1 there.
-fn at_seam(a: &Station, b: &Station) -> bool {
-    (0..4).any(|k| (a.q[k] - b.q[k]).abs() > 0.5)
+/// Stations nearer than this share of the way to the next are moved onto a joint.
+const NEAR_JOINT: f64 = 0.1;
+
+/// The stations of a branch, with others at the joints of the surfaces between them, so that pieces
+/// are smooth.
+fn with_joints<T: Real>(
+    first: &SurfaceRef<T>,
+    second: &Second<T>,
+    crossing: &Crossing<'_>,
+    branch: &Branch,
+) -> Vec<Stop> {
+    let mut lines: Vec<(usize, f64)> = Vec::new();
+    let mut add = |at: usize, [us, vs]: [Vec<f64>; 2]| {
+        lines.extend(us.into_iter().map(|x| (at, x)));
+        lines.extend(vs.into_iter().map(|x| (at + 1, x)));
+    };
+    add(0, first.joints());
+    if let Second::Surface(surface) = second {
+        add(2, surface.joints());
+    }
+    let mut stops = vec![Stop::from(branch.stations[0])];
+    let count = branch.stations.len();
+    for (i, pair) in branch.stations.windows(2).enumerate() {
+        let (a, b) = (&pair[0], &pair[1]);
+        let mut next = Some(Stop::from(*b));
+        let mut between: Vec<(f64, usize, f64)> = lines
+            .iter()
+            .filter(|(k, x)| (a.q[*k] - x) * (b.q[*k] - x) < 0.0 && !at_seam(a, b))
+            .map(|&(k, x)| ((x - a.q[k]) / (b.q[k] - a.q[k]), k, x))
+            .collect();
+        between.sort_by(|p, q| p.0.total_cmp(&q.0));
+        for (share, k, x) in between {
+            let guess = std::array::from_fn(|i| a.q[i] + share * (b.q[i] - a.q[i]));
+            let Some(mut s) = crossing.at_line(guess, k, x).and_then(|q| crossing.station(q))
+            else {
+                continue;
+            };
+            if s.tangent.dot(a.tangent) < 0.0 {
+                s.tangent = -s.tangent;
+                s.rate = s.rate.map(|r| -r);
+            }
+            let chord = a.x.distance(b.x);
+            let (after, before) = ((s.x - a.x).dot(a.tangent), (b.x - s.x).dot(a.tangent));
+            let ahead = |stop: &Stop| (s.x - stop.station.x).dot(a.tangent);
+            if after < -1e-9 * chord || before < -1e-9 * chord {
+                continue;
+            }
+            let stop = Stop { station: s, joint: Some((k, x)) };
+            // A station very near it gives way, but for the ends and other joints.
+            let tiny = 1e-7 * crossing.size;
+            let last = stops.len() - 1;
+            let movable = last > 0
+                && stops[last].joint.is_none()
+                && !at_seam(&stops[last].station, &stops[last - 1].station);
+            if movable && ahead(&stops[last]) < NEAR_JOINT * chord {
+                stops[last] = stop;
+            } else if ahead(&stops[last]) > tiny && before > tiny {
+                stops.push(stop);
+            } else {
+                continue;
+            }
+            let seam_next = i + 2 < count && at_seam(b, &branch.stations[i + 2]);
+            if before < NEAR_JOINT * chord && i + 2 < count && !seam_next {
+                next = None;
+            }
+        }
+        stops.extend(next);
+    }
+    // A station may be at a joint already; a branch along one does not cross it.
+    for stop in stops.iter_mut().filter(|stop| stop.joint.is_none()) {
+        let Station { q, rate, .. } = stop.station;
+        let crosses = |&&(k, x): &&(usize, f64)| {
+            (q[k] - x).abs() <= 1e-12 && rate[k].abs() * crossing.size > 1e-3
+        };
+        stop.joint = lines.iter().find(crosses).copied();
+    }
+    stops
 }
 
 /// The place that a closed branch begins nearest to when nothing else is said: one that is beside

@@ -11,8 +11,10 @@ mod int_point;
 mod intersect_snake;
 mod magnets;
 mod outcome;
+mod pieces;
 mod points;
 mod project_snake;
+mod table;
 
 pub use arguments::Onto;
 pub use beads::{IntBead, IntRing, ProjBead, ProjRing, ProxBead, ProxRing, XYZBead, XYZRing};

@@ -4,14 +4,16 @@ use super::arguments::Onto;
 use super::equations::{FootOnSurface, Moving, OnRay, Rays};
 use super::magnets::{foot, on_ray, rays};
 use super::points::MirrorOrSurface;
+use super::table::Table;
 use crate::arguments::Magnet;
-use moldloft_locate::implicit::{Implicit, jets};
+use moldloft_locate::implicit::{Implicit, jets, solve};
 use moldloft_locate::{OUTSIDE, PlainSurface, Range, newton};
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
     Build, Context, CurveRef, Fault, FieldRef, Found, FoundStatus, Kind, Mirror, SurfaceRef, Value,
 };
+use std::sync::OnceLock;
 
 /// The first step along the curve, and the least.
 const STEP: f64 = 1.0 / 64.0;
@@ -20,12 +22,18 @@ const LEAST_STEP: f64 = 1e-9;
 /// A foot may not move farther than this in u or v during a step: then it has jumped.
 const LONGEST_MOVE: f64 = 0.15;
 
+/// A Newton step this short, as a share of the size, leaves an error of its square: below rounding.
+const CLOSE: f64 = 1e-8;
+
+/// Places read from a table may be off by this share of the size.
+const TABLE_ACCURACY: f64 = 1e-13;
+
 /// The projection of a curve onto a surface, point by point, which is a snake: along the surface's
 /// normals, along a direction, or away from a point.
 ///
 /// The foot of the start of the curve is found first, near the magnet if one is given; from there
-/// the projection follows the curve without a jump. Each point of it is solved for by itself, so it
-/// lies on the surface exactly. Where the projection leaves the surface or grazes it, there is no
+/// the projection follows the curve without a jump. Each point of it lies on the surface and is
+/// the projection to rounding. Where the projection leaves the surface or grazes it, there is no
 /// snake.
 #[derive(Kind)]
 #[kind(
@@ -202,6 +210,8 @@ struct Path<T: Real> {
     rays: Option<Rays<T>>,
     size: f64,
     nodes: Vec<Node>,
+    /// Made when a place is asked for first.
+    table: OnceLock<Table<3>>,
 }
 
 /// Follows the projection of the curve from its start to its end.
@@ -222,7 +232,14 @@ fn projected<T: Real>(
     let corners = [0.0, 0.5, 1.0].map(|t| curve.end(t).re());
     let size = moldloft_locate::pieces::size_of(&moldloft_num::Box3::around(corners));
     let point = Moving::Curve(curve);
-    let mut path = Path { surface: onto.surface, point, rays, size, nodes: Vec::new() };
+    let mut path = Path {
+        surface: onto.surface,
+        point,
+        rays,
+        size,
+        nodes: Vec::new(),
+        table: OnceLock::new(),
+    };
     let uv = uv.map(|x| x.re());
     let s = path.ray_length(uv);
     let node = path.solved(0.0, [uv[0], uv[1], s]).ok_or_else(|| grazes(0.0))?;
@@ -289,16 +306,18 @@ impl<T: Real> Path<T> {
         node.rate.iter().all(|x| x.is_finite()).then_some(node)
     }
 
+    /// The unknowns at plain `t`. From a guess that is good to half the digits one Newton step is
+    /// enough; else the iteration is damped.
     fn root(&self, t: f64, guess: [f64; 3]) -> Option<[f64; 3]> {
         let plain = PlainSurface(&*self.surface);
         let wide = Range { low: -0.5, high: 1.5, step: 0.2 };
+        let close = CLOSE * self.size;
         match self.rays {
             None => {
                 let p = self.point.at::<T>(T::from(t)).re();
-                let walk = newton([guess[0], guess[1]], &[wide; 2], self.size, |[u, v]| {
-                    let j = plain.jet(u, v, Order::Second);
+                // Slopes over lengths are lengths.
+                let equations = |j: &SurfJet<f64>| {
                     let r = j.p - p;
-                    // Slopes over lengths are lengths.
                     let (a, b) = (j.u.norm().max(1e-300), j.v.norm().max(1e-300));
                     let cross = j.u.dot(j.v) + j.uv.dot(r);
                     (
@@ -308,22 +327,43 @@ impl<T: Real> Path<T> {
                             [cross / b, (j.v.norm_sq() + j.vv.dot(r)) / b],
                         ],
                     )
+                };
+                let j = plain.jet(guess[0], guess[1], Order::Second);
+                let (rest, matrix) = equations(&j);
+                if let Some([u, v]) = solve(&matrix, rest)
+                    && (j.u * u + j.v * v).norm() <= close
+                {
+                    return Some([guess[0] - u, guess[1] - v, 0.0]);
+                }
+                let walk = newton([guess[0], guess[1]], &[wide; 2], self.size, |[u, v]| {
+                    equations(&plain.jet(u, v, Order::Second))
                 });
                 walk.found.then_some([walk.at[0], walk.at[1], 0.0])
             }
             Some(rays) => {
                 let system = OnRay { surface: &self.surface, point: &self.point, rays };
                 let [p, d] = system.ray::<T>(T::from(t)).map(Vec3::re);
+                let steep = |j: &SurfJet<f64>| j.normal().dot(d).abs() > 1e-5 * d.norm();
+                let equations = |j: &SurfJet<f64>, s: f64| {
+                    let all = [j.u.to_array(), j.v.to_array(), (-d).to_array()];
+                    let matrix: [[f64; 3]; 3] =
+                        std::array::from_fn(|r| std::array::from_fn(|c| all[c][r]));
+                    ((j.p - p - d * s).to_array(), matrix)
+                };
+                let j = plain.jet(guess[0], guess[1], Order::First);
+                let (rest, matrix) = equations(&j, guess[2]);
+                if let Some(step) = solve(&matrix, rest)
+                    && (j.u * step[0] + j.v * step[1]).norm() <= close
+                    && steep(&j)
+                {
+                    return Some(std::array::from_fn(|k| guess[k] - step[k]));
+                }
                 let ranges = [wide, wide, Range::FREE];
                 let walk = newton(guess, &ranges, self.size, |[u, v, s]| {
-                    let j: SurfJet<f64> = plain.jet(u, v, Order::First);
-                    let all = [j.u.to_array(), j.v.to_array(), (-d).to_array()];
-                    let matrix = std::array::from_fn(|r| std::array::from_fn(|c| all[c][r]));
-                    ((j.p - p - d * s).to_array(), matrix)
+                    equations(&plain.jet(u, v, Order::First), s)
                 });
-                let normal = plain.jet(walk.at[0], walk.at[1], Order::First).normal();
-                let steep = normal.dot(d).abs() > 1e-5 * d.norm();
-                (walk.found && steep).then_some(walk.at)
+                let last = plain.jet(walk.at[0], walk.at[1], Order::First);
+                (walk.found && steep(&last)).then_some(walk.at)
             }
         }
     }
@@ -344,16 +384,15 @@ impl<T: Real> Path<T> {
         }
     }
 
-    /// (u, v, 0) at `t` with derivatives.
-    fn place(&self, t: T, order: Order) -> CurveJet<T> {
-        let plain = t.re();
-        let after = self.nodes.partition_point(|node| node.t < plain).min(self.nodes.len() - 1);
+    /// The unknowns at plain `t` by the iteration, from the cubic of the nodes on both sides, which is
+    /// so near that one step does.
+    fn sought(&self, t: f64) -> ([f64; 3], bool) {
+        let after = self.nodes.partition_point(|node| node.t < t).min(self.nodes.len() - 1);
         let node = &self.nodes[after];
         let before = &self.nodes[after.saturating_sub(1)];
-        // The cubic of both nodes is so near that one step of the iteration does.
         let span = node.t - before.t;
         let guess = if span > 0.0 {
-            let x = (plain - before.t) / span;
+            let x = (t - before.t) / span;
             let y = 1.0 - x;
             std::array::from_fn(|k| {
                 before.q[k] * (y * y * (1.0 + 2.0 * x))
@@ -362,15 +401,45 @@ impl<T: Real> Path<T> {
                     - node.rate[k] * (span * x * x * y)
             })
         } else {
-            std::array::from_fn(|k| node.q[k] + node.rate[k] * (plain - node.t))
+            std::array::from_fn(|k| node.q[k] + node.rate[k] * (t - node.t))
         };
-        let q = self.root(plain, guess).unwrap_or(guess);
+        match self.root(t, guess) {
+            Some(q) => (q, true),
+            None => (guess, false),
+        }
+    }
+
+    /// The unknowns at plain `t`.
+    fn unknowns(&self, t: f64) -> [f64; 3] {
+        let table = self.table.get_or_init(|| {
+            let mut ends = vec![0.0];
+            if let Moving::Curve(curve) = &self.point {
+                ends.extend(curve.joints().into_iter().filter(|t| *t > 0.0 && *t < 1.0));
+            }
+            ends.push(1.0);
+            let plain = PlainSurface(&*self.surface);
+            Table::new(
+                &ends,
+                |t| Some(self.sought(t)).filter(|(_, found)| *found).map(|(q, _)| q),
+                |a, b| {
+                    let j = plain.jet(a[0], a[1], Order::First);
+                    let off = (j.u * (b[0] - a[0]) + j.v * (b[1] - a[1])).norm();
+                    off <= TABLE_ACCURACY * self.size
+                },
+            )
+        });
+        table.at(t).unwrap_or_else(|| self.sought(t).0)
+    }
+
+    /// (u, v, 0) at `t` with derivatives.
+    fn place(&self, t: T, order: Order) -> CurveJet<T> {
+        let q = self.unknowns(t.re());
+        let plain = || Vec3::new(T::from(q[0]), T::from(q[1]), T::zero());
+        if T::PARTS == 1 && order == Order::Zero {
+            return [plain(), Vec3::zero(), Vec3::zero()];
+        }
         let Some(all) = self.derived(q, t, order) else {
-            return [
-                Vec3::new(T::from(q[0]), T::from(q[1]), T::zero()),
-                Vec3::zero(),
-                Vec3::zero(),
-            ];
+            return [plain(), Vec3::zero(), Vec3::zero()];
         };
         all.map(|[u, v, _]| Vec3::new(u, v, T::zero()))
     }
@@ -391,8 +460,7 @@ impl<T: Real> Curve<T> for Projected<T> {
         super::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
     }
 
-    /// Place by place, as single ones: each begins at the cubic of the nodes on both sides of it, so
-    /// that its bits do not depend on the others.
+    /// Place by place, as single ones: none depends on the others.
     fn grid(&self, ts: &[f64], out: &mut [Vec3<T>]) {
         for (out, &t) in out.iter_mut().zip(ts) {
             let [w, ..] = self.path.place(T::from(t), Order::Zero);

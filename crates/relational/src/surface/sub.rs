@@ -280,6 +280,20 @@ impl<T: Real> Surface<T> for Patch<T> {
         }
     }
 
+    /// As point by point; the surface is asked for all places at once.
+    fn scattered(&self, uv: &[[f64; 2]], out: &mut [Vec3<T>]) {
+        let inside = |&[u, v]: &[f64; 2]| self.inside(T::from(u), T::from(v));
+        if T::PARTS == 1 {
+            let places: Vec<[f64; 2]> =
+                uv.iter().map(inside).map(|w| [w.x.re(), w.y.re()]).collect();
+            return self.surface.scattered(&places, out);
+        }
+        for (out, uv) in out.iter_mut().zip(uv) {
+            let w = inside(uv);
+            *out = self.surface.jet(w.x, w.y, Order::Zero).p;
+        }
+    }
+
     fn breaks(&self) -> [Vec<f64>; 2] {
         let of = |side: &Side<T>| match side {
             Side::Snake(snake) => snake.curve.breaks(),

@@ -94,9 +94,10 @@ pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {
                     let plane = p.object("XPlane", &format!("{at}*w"));
                     format!("{sheet}, {plane}")
                 }
+                // The wall ends beyond the sheet: where both end at once the snake's end has a kink.
                 _ => {
                     let [a, b, c, d] =
-                        [(1.3, 0.0, -1), (1.6, 2.0, -1), (2.2, 0.0, 1), (1.9, 2.0, 1)]
+                        [(1.3, -0.4, -1), (1.6, 2.4, -1), (2.2, -0.4, 1), (1.9, 2.4, 1)]
                             .map(|(x, y, z)| p.object("AbsPoint", &format!("{x}*w, {y}, {z}")));
                     let (l, m) = (
                         p.object("Line", &format!("{a}, {b}")),

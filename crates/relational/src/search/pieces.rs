@@ -1,0 +1,234 @@
+//! Pieces of an intersection, from stations along it.
+
+use super::cut::{
+    Both, Guide, NODES, Piece, RUN, guess, node, on_guide, polynomial, powers_of, to_powers,
+};
+use moldloft_locate::march::{Crossing, Station, Unknowns};
+use moldloft_num::{Order, Real, Vec3};
+
+/// The speed along a piece may be off by this share of it: lengths are exact to rounding then, so
+/// that they do not depend on where the stations are.
+const SPEED_ACCURACY: f64 = 1e-12;
+
+/// The unknowns along a piece may be off by this share of the size in space: so they lie on both
+/// shapes to rounding.
+const PLACE_ACCURACY: f64 = 1e-13;
+
+/// A stretch between stations is halved this many times at most.
+const MOST_HALVINGS: u32 = 8;
+
+/// Where a fit is compared besides at its ends.
+const CHECKS: [f64; 3] = [-0.95, -0.1, 0.9];
+
+/// A place at which pieces end: a station, and the joint of a surface that it lies on, as the number
+/// of an unknown and its value there.
+#[derive(Clone, Copy)]
+pub(super) struct Stop {
+    pub station: Station,
+    pub joint: Option<(usize, f64)>,
+}
+
+impl From<Station> for Stop {
+    fn from(station: Station) -> Self {
+        Self { station, joint: None }
+    }
+}
+
+/// True for the two stations at a seam: one place, an unknown of which is 0 here and 1 there.
+pub(super) fn at_seam(a: &Station, b: &Station) -> bool {
+    (0..4).any(|k| (a.q[k] - b.q[k]).abs() > 0.5)
+}
+
+/// The cubic of both ends' places and tangents.
+fn cubic(a: &Station, b: &Station) -> Guide {
+    let half = 0.5 * a.x.distance(b.x);
+    let (s, t) = (a.tangent * half, b.tangent * half);
+    let chord = b.x - a.x;
+    [
+        (a.x + b.x) * 0.5 + (s - t) * 0.25,
+        chord * 0.75 - (s + t) * 0.25,
+        (t - s) * 0.25,
+        (s + t) * 0.25 - chord * 0.25,
+    ]
+}
+
+/// A stretch with a cubic near it, in plain numbers.
+pub(super) struct Fit {
+    guide: Guide,
+    /// The unknowns at the nodes.
+    at: [Unknowns; NODES],
+    pub ends: [Stop; 2],
+    /// True after a seam.
+    seam: bool,
+    /// See [`Piece::exact`].
+    exact: bool,
+}
+
+/// The length per y at a point of the intersection across from the guide's: with (X - c) . c' = 0,
+/// X' . c' = c' . c' - (X - c) . c''.
+fn speed<T: Real>([c, d, dd]: [Vec3; 3], x: Vec3<T>, tangent: Vec3<T>) -> T {
+    let [c, d, dd] = [c, d, dd].map(Vec3::<T>::lifted);
+    let speed = (d.dot(d) - (x - c).dot(dd)) / d.dot(tangent);
+    if speed.re() < 0.0 { -speed } else { speed }
+}
+
+/// The matrix of [`to_powers`].
+type Matrix = [[f64; NODES]; NODES];
+
+impl Fit {
+    /// The stretch between two stops, and whether its speed and its places are polynomials.
+    fn new(crossing: &Crossing<'_>, matrix: &Matrix, a: &Stop, b: &Stop) -> Option<(Self, bool)> {
+        let ends = [*a, *b];
+        let (a, b) = (&a.station, &b.station);
+        let guide = cubic(a, b);
+        // The unknowns between, from their values and rates at both ends.
+        let chord = a.x.distance(b.x);
+        let between = |y: f64| -> Unknowns {
+            let (s, r) = (0.5 + 0.5 * y, 0.5 - 0.5 * y);
+            std::array::from_fn(|k| {
+                a.q[k] * (r * r * (1.0 + 2.0 * s))
+                    + a.rate[k] * (chord * r * r * s)
+                    + b.q[k] * (s * s * (3.0 - 2.0 * s))
+                    - b.rate[k] * (chord * s * s * r)
+            })
+        };
+        let found = |y: f64, guess: Unknowns| {
+            let jet = on_guide(&guide, y);
+            let station = crossing.station_across(guess, jet[0], jet[1].normalized()?)?;
+            Some((station.q, speed(jet, station.x, station.tangent)))
+        };
+        let (mut at, mut speeds) = ([[0.0; 4]; NODES], [0.0; NODES]);
+        for k in 0..NODES {
+            (at[k], speeds[k]) = found(node(k), between(node(k)))?;
+        }
+        let (places, fit) = (powers(matrix, &at), powers_of(matrix, &speeds));
+        let near = |y: f64, speed: f64| {
+            let value = polynomial(&fit, y)[0];
+            (value - speed).abs() <= SPEED_ACCURACY * value.abs()
+        };
+        let there = |y: f64, q: &Unknowns| {
+            crossing.distance(q, &guess(&places, y)) <= PLACE_ACCURACY * crossing.size
+        };
+        // At its ends the place is the cubic's and the tangent its own, unless the surface is creased.
+        let along =
+            |k: usize, y: f64| ends[k].joint.is_some() || near(y, on_guide(&guide, y)[1].norm());
+        let mut good = along(0, -1.0) && along(1, 1.0);
+        let mut exact = there(-1.0, &a.q) && there(1.0, &b.q);
+        for y in CHECKS {
+            if good && exact {
+                let (q, speed) = found(y, guess(&places, y))?;
+                good = near(y, speed);
+                exact = there(y, &q);
+            }
+        }
+        Some((Self { guide, at, ends, seam: false, exact }, good && exact))
+    }
+}
+
+/// The unknowns in powers of y, from those in the middle: so rounding is a share of what changes.
+fn powers(matrix: &Matrix, at: &[Unknowns; NODES]) -> [Unknowns; NODES] {
+    let base = at[NODES / 2];
+    let each: [[f64; NODES]; 4] = std::array::from_fn(|k| {
+        let mut all = powers_of(matrix, &std::array::from_fn(|n| at[n][k] - base[k]));
+        all[0] += base[k];
+        all
+    });
+    std::array::from_fn(|p| std::array::from_fn(|k| each[k][p]))
+}
+
+/// The stretches between the stops, halved until the speed of each is a polynomial; `None` where
+/// they cannot be followed.
+pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[Stop]) -> Option<Vec<Fit>> {
+    let matrix = to_powers();
+    let mut all: Vec<Fit> = Vec::with_capacity(stops.len());
+    let mut seam = false;
+    for pair in stops.windows(2) {
+        // Nothing lies between the two stations at a seam.
+        if at_seam(&pair[0].station, &pair[1].station) {
+            seam = true;
+            continue;
+        }
+        let mut a = pair[0];
+        let mut open = vec![(pair[1], 0)];
+        while let Some((b, halvings)) = open.pop() {
+            let (fit, good) = Fit::new(crossing, &matrix, &a, &b)?;
+            let middle = || {
+                let [c, d, _] = on_guide(&fit.guide, 0.0);
+                let guess = guess(&powers(&matrix, &fit.at), 0.0);
+                let mut m = crossing.station_across(guess, c, d.normalized()?)?;
+                if m.tangent.dot(a.station.tangent) < 0.0 {
+                    m.tangent = -m.tangent;
+                    m.rate = m.rate.map(|r| -r);
+                }
+                Some(Stop::from(m))
+            };
+            match (!good && halvings < MOST_HALVINGS).then(middle).flatten() {
+                Some(m) => open.extend([(b, halvings + 1), (m, halvings + 1)]),
+                None => {
+                    all.push(Fit { seam, ..fit });
+                    (a, seam) = (b, false);
+                }
+            }
+        }
+    }
+    Some(all)
+}
+
+/// A piece, and how its ends move along it: the place that is at a joint of the surface is another
+/// one when the model's parameters change. `joint` gives it.
+pub(super) fn laid<T: Real>(
+    both: &Both<T>,
+    fit: &Fit,
+    begin: T,
+    joint: impl Fn(&Unknowns, (usize, f64)) -> Option<Vec3<T>>,
+) -> Option<Piece<T>> {
+    let matrix = to_powers();
+    let (mut speeds, mut xs) = ([T::zero(); NODES], [Vec3::<T>::zero(); NODES]);
+    for k in 0..NODES {
+        let y = node(k);
+        let jet = on_guide(&fit.guide, y);
+        let q = both.unknowns(&fit.guide, fit.at[k], T::from(y))?;
+        let along = both.along(q, jet[1], Order::First)?;
+        speeds[k] = speed(jet, along.x, along.tangent);
+        xs[k] = along.x;
+    }
+    let powers_of_speed = powers_of(&matrix, &speeds);
+    let mut run = [T::zero(); RUN];
+    for (p, c) in powers_of_speed.iter().enumerate() {
+        run[p + 1] = *c / (p + 1) as f64;
+    }
+    let mut length = polynomial(&run, 1.0)[0];
+    run[0] = -polynomial(&run, -1.0)[0];
+    length += run[0];
+    // How far the joint is beyond the end of the piece, as far as it is due to the parameters. On its
+    // own side of the joint: the surface may be bent there.
+    let beyond = |k: usize| -> Option<T> {
+        let at = fit.ends[k].joint.filter(|_| T::PARTS > 1)?;
+        let place = joint(&fit.ends[k].station.q, at)?;
+        let y = [-1.0, 1.0][k];
+        let own = [0, 1, 2].map(|axis| {
+            let values = std::array::from_fn(|n| xs[n][axis]);
+            polynomial(&powers_of(&matrix, &values), y)
+        });
+        let [x, d] = [0, 1].map(|k| Vec3::new(own[0][k], own[1][k], own[2][k]));
+        let tangent = Vec3::<T>::lifted(d.re().normalized()?);
+        let far = tangent.dot(place - x);
+        Some(far - far.re())
+    };
+    if let Some(far) = beyond(0) {
+        run[0] -= far;
+        length -= far;
+    }
+    if let Some(far) = beyond(1) {
+        length += far;
+    }
+    Some(Piece {
+        begin,
+        length,
+        guide: fit.guide,
+        run,
+        places: powers(&matrix, &fit.at),
+        joint: fit.seam || fit.ends[0].joint.is_some(),
+        exact: fit.exact,
+    })
+}
