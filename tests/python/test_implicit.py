@@ -114,7 +114,7 @@ def test_sets_members_winners_and_attributes():
     near = (1 + 1e-6, 0, 0)
     ball = im.sphere((0, 0, 0), 1)
     assert a.member(near) == 1 and a.member(near, known=[ball]) == 0
-    assert (a & b).member((0.25, 0.6, 0), known=[ball]) == 0
+    assert (a & b).member((0.75, 0.6, 0), known=[ball]) == 0
     first, second = both.leaves
     assert (first.name, first.attributes.colour, first.attributes.tolerance) == ("a", 3, 1e-3)
     assert (second.name, second.attributes.material) == ("both", "brass")
