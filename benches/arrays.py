@@ -38,7 +38,7 @@ def least(work: Callable[[], object], seconds: float = 1.0) -> float:
 
 def ours(n: int) -> float:
     """Seconds for one statement on n points."""
-    repeats = max(4, min(2_000, 4_000_000 // n))
+    repeats = max(16, min(2_000, 4_000_000 // n))
     head = "vector p0 = {0, 0, 0}, p1 = {1, 2, 0}, p2 = {3, 2, 1}, p3 = {4, 0, 1};\n"
     head += f"farray u = uniform(0, 1, {n}); curve c[{n}];\n"
 

@@ -15,8 +15,9 @@ use moldloft_registry::{Array, ArrayShape, Vectors};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Plain numbers that go through a tape together: some dozen rows of them fit into the first cache.
-const BLOCK_PARTS: usize = 256;
+/// Plain numbers that go through a tape together: few enough for the first caches, and so many that what
+/// a step costs besides is shared (256 took a fifth longer).
+const BLOCK_PARTS: usize = 512;
 
 /// Numbers between rows for results on the way, so that their beginnings do not meet in the same sets
 /// of the cache: five lines of it.
