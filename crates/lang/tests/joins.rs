@@ -630,6 +630,25 @@ fn trimmed_surfaces_join_each_other_and_tell_contradictions() {
     assert_eq!(pieces(&mut d), (1, 1));
     let p = panelled(&mut d);
     assert!((area(&p, "low") + area(&p, "high") - 12.0).abs() < 1e-12);
+    // A hole of two edges has no area; a hole and its cap close the sheet again.
+    let round = |divisions: &str| {
+        format!(
+            "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 3, 0); AbsPoint D(4, 3, 0); Line a(A, B);
+             Line b(C, D); RuledSurf S(a, b, visible = 0); AbsMagnet m(S, 0.5, 0.5); AbsMagnet k(S, 0.7, 0.5);
+             AbsMagnet l(S, 0.5, 0.7); ArcSnake ring(k, m, l, type = 6); TrimSurf rest(S, {{ring}}, whole = 1);
+             SubSurf cap({{ring, m}}, divisions = {divisions});"
+        )
+    };
+    let mut d = sound(&round("{14, 3}"));
+    assert_eq!(pieces(&mut d), (1, 1));
+    let p = panelled(&mut d);
+    assert!((area(&p, "rest") + area(&p, "cap") - 12.0).abs() < 1e-12);
+    assert_eq!(p.mesh.report().euler, 1);
+    let mut d = open(&round("{2, 3}"));
+    let p = panelled(&mut d);
+    let [remark] = p.panelling.remarks() else { panic!("{:?}", p.panelling.remarks()) };
+    assert_eq!((remark.id(), remark.object()), ("border-not-joined", Some("rest")));
+    assert!(remark.to_string().contains("2 divisions"), "{remark}");
     // `rim` is a statement like `divisions`.
     let mut d = open(&window(", rim = 12", ", divisions = {7, 12}", ""));
     let p = panelled(&mut d);

@@ -21,7 +21,7 @@ const STEPS: usize = 96;
 const PANELS: usize = 8;
 
 /// The picture of a model in which the objects of one kind stand out: shown curves as lines,
-/// points as dots, planes and frames as their outline, solids as their faces. Where there are points
+/// points as dots, planes and frames as their outline, the solids of that kind as their faces. Where there are points
 /// only, the way to each along x, y and z is drawn, too.
 ///
 /// # Errors
@@ -35,7 +35,8 @@ pub fn portrait(
     let panelled = document.panelled().map_err(|d| vec![d])?;
     let graph = document.graph();
     let objects: Vec<_> = graph.objects().filter(|o| o.head.shown()).collect();
-    let solids = objects.iter().filter_map(|o| match o.value() {
+    let subjects = objects.iter().filter(|o| o.row.name == kind);
+    let solids = subjects.filter_map(|o| match o.value() {
         Some(Value::Solid(solid)) => Some((&*o.name, &**solid)),
         _ => None,
     });
@@ -101,7 +102,9 @@ pub fn portrait(
     }
     let graph = document.graph();
     let of_kind = |name: &str| {
-        let object = graph.find(name).and_then(|key| graph.get(key));
+        // The patches of a body are called after it and what they are pieces of.
+        let whole = || graph.find(name.split('.').next()?);
+        let object = graph.find(name).or_else(whole).and_then(|key| graph.get(key));
         object.is_some_and(|o| o.row.name == kind)
     };
     let patches = mesh.patches();

@@ -3,7 +3,7 @@
 
 use super::hems::border;
 use super::spread::along_edge;
-use super::{Joint, Known, Panelling};
+use super::{Joint, Known, Panelling, Remark};
 use crate::{Graph, Object};
 use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_num::{Real, Vec3};
@@ -64,13 +64,15 @@ pub(super) fn with_bodies(base: &Topology, bodies: &[Body]) -> Result<Arc<Topolo
 }
 
 /// Divides the borders of the bodies as the patches that stand for them are, and gives all of their
-/// vertices a number; `before` are those of an earlier state and what it calls unchanged.
+/// vertices a number; `before` are those of an earlier state and what it calls unchanged. Returns what
+/// does not join.
 pub(super) fn sewn(
     bodies: &mut [Body],
     known: &Known<f64>,
     joint: &Joint,
     before: Option<(&[Body], &dyn Fn(&Object<f64>) -> bool)>,
-) {
+) -> Vec<Remark> {
+    let mut remarks = Vec::new();
     let mut hems: HashMap<(Arc<str>, u32), usize> = HashMap::new();
     for (patch, frame) in known.skeleton.frames.iter().enumerate() {
         if let Some(hem) = frame.hem {
@@ -88,7 +90,9 @@ pub(super) fn sewn(
             let twin = all.iter().find(|b| b.name == body.name)?;
             object.is_some_and(unchanged).then_some(twin)
         });
-        body.divide(object, &hems, known, same);
+        if let Some(divisions) = body.divide(object, &hems, known, same) {
+            remarks.push(Remark::Border { patch: body.name.to_string(), divisions });
+        }
         body.vertices = vec![u32::MAX; body.facets.points.len()];
         let numbers = |patch: usize| joint.vertices[patch].iter().step_by(2).copied();
         let mut pending = Vec::new();
@@ -122,6 +126,7 @@ pub(super) fn sewn(
             edges.extend(body.faces().flat_map(sides));
         }
     }
+    remarks
 }
 
 /// The edges of a panel in the direction in which it runs round.
@@ -154,21 +159,20 @@ impl Body {
         self.facets.border.is_some()
     }
 
-    /// Divides its border; a border that would cross itself stays as it was, and joins nothing.
+    /// Divides its border; a border that would cross itself stays as it was and joins nothing, and the
+    /// divisions that would make it are returned.
     fn divide(
         &mut self,
         object: Option<&Object<f64>>,
         hems: &HashMap<(Arc<str>, u32), usize>,
         known: &Known<f64>,
         same: Option<&Body>,
-    ) {
-        let Some(border) = object.and_then(border) else { return };
+    ) -> Option<Vec<usize>> {
+        let border = border(object?)?;
         let count = border.hems().len() as u32;
         let patches: Vec<_> =
             (0..count).map(|k| hems.get(&(self.name.clone(), k)).copied()).collect();
-        let Some(at) = parameters(&patches, known, border.hems().iter().map(|h| h.usual)) else {
-            return;
-        };
+        let at = parameters(&patches, known, border.hems().iter().map(|h| h.usual))?;
         let alike = |a: &[Vec<f64>], b: &[Vec<f64>]| {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b)
         };
@@ -179,10 +183,12 @@ impl Body {
                 (Arc::new(facets), rims)
             }),
         };
-        if let Some((facets, rims)) = made {
-            (self.facets, self.rims) = (facets, rims);
-            (self.hems, self.divided) = (patches, at);
-        }
+        let Some((facets, rims)) = made else {
+            return Some(at.iter().map(|ts| ts.len() - 1).collect());
+        };
+        (self.facets, self.rims) = (facets, rims);
+        (self.hems, self.divided) = (patches, at);
+        None
     }
 
     /// Turns it so that it faces as its neighbours do: these run along common edges the other way.

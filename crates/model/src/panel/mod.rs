@@ -184,7 +184,7 @@ impl Panelling {
             let clock = before.map_or(0, |b| b.clock);
             let unchanged = |object: &Object<f64>| object.changed_at <= clock;
             let earlier = before.map(|b| (b.bodies.as_slice(), &unchanged as _));
-            bodies::sewn(&mut bodies, &known, &joint, earlier);
+            remarks.extend(bodies::sewn(&mut bodies, &known, &joint, earlier));
         }
         let whole = before.filter(|b| {
             let alike = b.bodies.len() == bodies.len()

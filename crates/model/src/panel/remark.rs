@@ -57,6 +57,14 @@ pub enum Remark {
         /// Where.
         at: Vec3,
     },
+    /// The border of a sheet of triangles crosses itself, or has no area, with the divisions that its
+    /// neighbours have; so it joins none of them.
+    Border {
+        /// The sheet.
+        patch: String,
+        /// The divisions of the curves that its border runs along.
+        divisions: Vec<usize>,
+    },
     /// As many more contradictions as are not told one by one.
     More(usize),
 }
@@ -70,6 +78,7 @@ impl Remark {
             }
             Remark::Apart { .. } => "edges-apart",
             Remark::Junction { .. } => "corner-not-joined",
+            Remark::Border { .. } => "border-not-joined",
         }
     }
 
@@ -92,6 +101,7 @@ impl Remark {
             Remark::Junction { .. } => {
                 "build both patches on the same point and the same curves: places are not compared"
             }
+            Remark::Border { .. } => "give it, or its neighbours, more divisions",
             Remark::More(_) => "mend those that are told first",
         }
     }
@@ -100,7 +110,7 @@ impl Remark {
     pub fn object(&self) -> Option<&str> {
         match self {
             Remark::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
-            Remark::Pieces { patch, .. } => Some(patch),
+            Remark::Pieces { patch, .. } | Remark::Border { patch, .. } => Some(patch),
             Remark::Apart { patches, .. } => Some(&patches[1]),
             Remark::Junction { patches, .. } => Some(&patches[0]),
             Remark::More(_) => None,
@@ -167,6 +177,15 @@ impl std::fmt::Display for Remark {
                     "the corner (u, v) = ({u}, {v}) of `{a}` {how} edge {edge} of `{b}` at {along} = \
                      {t:.6} but is not joined to it, at ({}, {}, {})",
                     at.x, at.y, at.z
+                )
+            }
+            Remark::Border { patch, divisions } => {
+                let counts: Vec<String> = divisions.iter().map(usize::to_string).collect();
+                write!(
+                    f,
+                    "the border of `{patch}` crosses itself or has no area with {} divisions, so it \
+                     joins nothing",
+                    counts.join(" + ")
                 )
             }
             Remark::More(n) => write!(f, "{n} more contradictions among divisions"),

@@ -16,8 +16,8 @@ use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
 /// fourth run against a walk round the patch; w is the bilinear Coons patch (Coons 1967). Three are
 /// the same with the edge u = 0 a single point, where the first and the third begin. A magnet is a
 /// side without length. Sides that do not meet are refused, never turned round, and so are patches
-/// that are folded. Two sides that run once round a closed surface, from its seam to its seam, make a
-/// closed band.
+/// that are folded. Two sides that end where they begin, at one point or at the seam of a closed
+/// surface, make a closed band; a closed snake and a magnet within it a whole cap.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -27,8 +27,9 @@ use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
                AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.9, 0.1); AbsMagnet r(S, 0.8, 0.9); \
                AbsMagnet s(S, 0.2, 0.7); AbsMagnet t(S, 0.5, 0.3); BSnake south({p, t, q}); \
                LineSnake east(q, r); LineSnake north(s, r); LineSnake west(p, s); \
-               LineSnake middle(p, r); SubSurf half({south, north}); SubSurf fan({south, r}); \
-               SubSurf three({south, east, middle}); SubSurf part({south, east, north, west});"
+               LineSnake middle(p, r); SubSurf part({south, east, north, west}); \
+               SubSurf half({south, north}, visible = 0); SubSurf fan({south, r}, visible = 0); \
+               SubSurf three({south, east, middle}, visible = 0);"
 )]
 pub struct SubSurf<T: Real> {
     /// Two, three or four snakes and magnets of one surface.
@@ -175,21 +176,26 @@ impl<T: Real> Patch<T> {
 const AT_SEAM: f64 = 1e-9;
 
 impl<T: Real> Patch<T> {
-    /// True when both sides run from the seam of a closed surface round to the seam.
-    fn is_band(&self) -> bool {
+    /// True when both sides end where they begin: at one point object, or at the seam of a closed
+    /// surface that both run round.
+    fn is_closed(&self) -> bool {
         let Layout::Between(sides) = &self.layout else { return false };
         let round = seam::round(&self.surface);
-        (0..2).filter(|&a| round[a]).any(|a| {
-            let ways = sides.each_ref().map(|side| {
-                let [from, to] = [0.0, 1.0].map(|t| end(side, t).re().to_array());
-                let meets = (from[1 - a] - to[1 - a]).abs() <= AT_SEAM;
-                meets.then_some((from[a], to[a]))
-            });
-            matches!(
-                ways,
-                [Some((0.0, 1.0)), Some((0.0, 1.0))] | [Some((1.0, 0.0)), Some((1.0, 0.0))]
-            )
-        })
+        let spans = sides.each_ref().map(|side| [0.0, 1.0].map(|t| end(side, t).re().to_array()));
+        let way = |k: usize, a: usize| spans[k][1][a] - spans[k][0][a];
+        let meets = |a: usize| {
+            let (first, last) = (way(0, a), way(1, a));
+            let turn = if round[a] { first.round().clamp(-1.0, 1.0) } else { 0.0 };
+            (first - turn).abs().max((last - turn).abs()) <= AT_SEAM
+        };
+        let by_name = sides.iter().all(|side| match side {
+            Side::Snake(_) => matches!(ends(side), [Some(a), Some(b)] if a == b),
+            Side::Magnet(_) => true,
+        });
+        let on_edge = |x: f64| x == 0.0 || x == 1.0;
+        let at_seam = |a: usize| round[a] && spans.iter().flatten().all(|w| on_edge(w[a]));
+        let turned = (0..2).any(|a| at_seam(a) && way(0, a).abs() == 1.0);
+        meets(0) && meets(1) && (by_name || turned)
     }
 
     /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
@@ -335,7 +341,7 @@ impl<T: Real> Surface<T> for Patch<T> {
                 let across = |p: Option<Key>, q: Option<Key>| {
                     if p.is_some() && p == q { Edge::Pole(p) } else { Edge::Own }
                 };
-                let east = if self.is_band() { Edge::SameAs(3) } else { across(b, c) };
+                let east = if self.is_closed() { Edge::SameAs(3) } else { across(b, c) };
                 Edges {
                     edges: [edge(first), east, edge(last), across(a, d)],
                     corners: [a, b, c, d],

@@ -27,11 +27,12 @@ use std::sync::Arc;
     class = Mesh,
     columns = "surface loops",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(2, 1, 0.5); AbsPoint C(4, 0, 0); AbsPoint D(0, 3, 0); \
-               AbsPoint E(4, 3, 1); BCurve l({A, B, C}); Line m(D, E); RuledSurf S(l, m); \
-               AbsMagnet p(S, 0.5, 0.45); AbsMagnet q(S, 0.71, 0.45); AbsMagnet r(S, 0.5, 0.7); \
+               AbsPoint E(4, 3, 1); BCurve l({A, B, C}); Line m(D, E); \
+               RuledSurf S(l, m, visible = 0); AbsMagnet p(S, 0.5, 0.45); AbsMagnet q(S, 0.71, 0.45); AbsMagnet r(S, 0.5, 0.7); \
                ArcSnake round(q, p, r, type = 6); AbsMagnet a(S, 0.1, 0.15); AbsMagnet b(S, 0.95, 0.2); \
                AbsMagnet c(S, 0.8, 0.93); LineSnake ab(a, b); LineSnake cb(c, b); LineSnake ca(c, a); \
-               TrimSurf window(S, {round}, whole = 1); TrimSurf part(S, {ab, cb, ca});"
+               TrimSurf window(S, {round}, whole = 1); \
+               TrimSurf part(S, {ab, cb, ca}, visible = 0);"
 )]
 pub struct TrimSurf<T: Real> {
     /// The surface that is trimmed.
