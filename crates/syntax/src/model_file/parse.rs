@@ -265,7 +265,10 @@ impl<'a> Parser<'a> {
             self.optional_semicolon();
             return;
         }
-        let named = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        // Some entities begin with a count: 3PtPlane.
+        let counted = matches!(word.as_bytes(), [n, a, b, ..]
+            if n.is_ascii_digit() && a.is_ascii_uppercase() && b.is_ascii_lowercase());
+        let named = (counted || word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_'))
             && word.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
         if !named || word.eq_ignore_ascii_case("BeginModel") {
             return self.unknown(start, after_gap);
