@@ -223,7 +223,6 @@ impl Body {
             tags: self.tags.iter().map(|t| t.to_string()).collect(),
             colour: Some((self.colour & 15) as u8),
             kind: self.kind.to_string(),
-            ..PatchInfo::default()
         };
         if self.facets.groups.is_empty() {
             return builder.add_faces(info, self.faces());
