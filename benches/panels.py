@@ -58,7 +58,9 @@ def finer(text: str, times: float) -> str:
         return f"divisions = {{{round(int(found[1]) * times)}, {round(int(found[2]) * times)}}}"
 
     text = re.sub(r"divisions = \{(\d+), (\d+)\}", more, text)
-    return re.sub(r"int fine = (\d+);", lambda n: f"int fine = {2 * round(int(n[1]) * times / 2)};", text)
+    return re.sub(
+        r"int fine = (\d+);", lambda n: f"int fine = {2 * round(int(n[1]) * times / 2)};", text
+    )
 
 
 def raised(text: str, panels: int = 20_000) -> str:
