@@ -1,7 +1,7 @@
 //! Unknowns along a curve as polynomials, where these are the solutions to rounding: a table that
 //! places are read from instead of being solved for.
 
-use moldloft_num::{Real, solve_dense};
+use moldloft_num::Real;
 
 /// Points that a polynomial goes through.
 const NODES: usize = 10;
@@ -20,20 +20,25 @@ pub(super) struct Table<const N: usize> {
 struct Span<const N: usize> {
     from: f64,
     until: f64,
-    /// In powers of y from -1 to 1; `None` where the unknowns are no polynomial.
-    powers: Option<[[f64; N]; NODES]>,
+    /// By Chebyshev's polynomials of y from -1 to 1; `None` where the unknowns are no polynomial.
+    terms: Option<[[f64; N]; NODES]>,
+}
+
+fn angle(k: usize) -> f64 {
+    (k as f64 + 0.5) * std::f64::consts::PI / NODES as f64
 }
 
 fn node(k: usize) -> f64 {
-    -Real::cos((k as f64 + 0.5) * std::f64::consts::PI / NODES as f64)
+    Real::cos(angle(k))
 }
 
-fn horner<const N: usize>(powers: &[[f64; N]; NODES], y: f64) -> [f64; N] {
-    let mut q = powers[NODES - 1];
-    for p in powers[..NODES - 1].iter().rev() {
-        q = std::array::from_fn(|k| q[k] * y + p[k]);
+/// The sum of the terms at y (Clenshaw 1955), exact to rounding where powers are not.
+fn sum<const N: usize>(terms: &[[f64; N]; NODES], y: f64) -> [f64; N] {
+    let (mut b, mut c) = ([0.0; N], [0.0; N]);
+    for term in terms[1..].iter().rev() {
+        (b, c) = (std::array::from_fn(|n| 2.0 * y * b[n] - c[n] + term[n]), b);
     }
-    q
+    std::array::from_fn(|n| y * b[n] - c[n] + terms[0][n])
 }
 
 impl<const N: usize> Table<N> {
@@ -44,12 +49,10 @@ impl<const N: usize> Table<N> {
         solved: impl Fn(f64) -> Option<[f64; N]>,
         same: impl Fn(&[f64; N], &[f64; N]) -> bool,
     ) -> Self {
-        let matrix: [[f64; NODES]; NODES] = std::array::from_fn(|column| {
-            let mut all: Vec<f64> =
-                (0..NODES).flat_map(|k| (0..NODES).map(move |p| node(k).powi(p as i32))).collect();
-            let mut unit: [f64; NODES] = std::array::from_fn(|k| f64::from(u8::from(k == column)));
-            solve_dense(&mut all, &mut unit).expect("the nodes are different");
-            unit
+        // From values at the nodes to terms.
+        let matrix: [[f64; NODES]; NODES] = std::array::from_fn(|j| {
+            let share = if j == 0 { 1.0 } else { 2.0 } / NODES as f64;
+            std::array::from_fn(|k| share * Real::cos(j as f64 * angle(k)))
         });
         let mut spans = Vec::new();
         for pair in ends.windows(2) {
@@ -61,26 +64,21 @@ impl<const N: usize> Table<N> {
                     for (k, value) in values.iter_mut().enumerate() {
                         *value = at(node(k))?;
                     }
-                    // From a value in the middle, so that rounding is a share of what changes.
-                    let base = values[NODES / 2];
-                    let mut powers: [[f64; N]; NODES] = std::array::from_fn(|p| {
+                    let terms: [[f64; N]; NODES] = std::array::from_fn(|j| {
                         std::array::from_fn(|n| {
-                            (0..NODES).map(|k| (values[k][n] - base[n]) * matrix[k][p]).sum()
+                            (0..NODES).map(|k| values[k][n] * matrix[j][k]).sum()
                         })
                     });
-                    for (p, b) in powers[0].iter_mut().zip(base) {
-                        *p += b;
-                    }
                     for y in CHECKS {
-                        if !same(&at(y)?, &horner(&powers, y)) {
+                        if !same(&at(y)?, &sum(&terms, y)) {
                             return None;
                         }
                     }
-                    Some(powers)
+                    Some(terms)
                 };
-                let powers = fitted();
-                if powers.is_some() || halvings >= MOST_HALVINGS {
-                    spans.push(Span { from, until, powers });
+                let terms = fitted();
+                if terms.is_some() || halvings >= MOST_HALVINGS {
+                    spans.push(Span { from, until, terms });
                 } else {
                     let middle = 0.5 * (from + until);
                     open.push((middle, until, halvings + 1));
@@ -99,7 +97,7 @@ impl<const N: usize> Table<N> {
         let k = self.spans.partition_point(|span| span.until < t);
         let span = self.spans.get(k)?;
         let y = (2.0 * t - span.from - span.until) / (span.until - span.from);
-        Some(horner(span.powers.as_ref()?, y))
+        Some(sum(span.terms.as_ref()?, y))
     }
 }
 
@@ -126,7 +124,7 @@ mod tests {
         assert!(table.at(-0.1).is_none() && table.at(1.1).is_none());
         let bent = |t: f64| Some([(t - 0.3).abs()]);
         let table = Table::new(&[0.0, 1.0], bent, |a, b| (a[0] - b[0]).abs() <= 1e-14);
-        let open: Vec<_> = table.spans.iter().filter(|s| s.powers.is_none()).collect();
+        let open: Vec<_> = table.spans.iter().filter(|s| s.terms.is_none()).collect();
         assert!(open.len() == 1 && open[0].from < 0.3 && open[0].until > 0.3);
         assert!(table.at(0.3).is_none() && table.at(0.5).is_some());
     }
