@@ -25,6 +25,7 @@ use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
 use polytope::{Level, Polytope};
 use round::Rounded;
+use std::cell::Cell;
 use std::collections::HashMap;
 use tree::{Containment, Divider, Piece, Side, Tangled, Tree};
 
@@ -32,6 +33,8 @@ use tree::{Containment, Divider, Piece, Side, Tangled, Tree};
 const MOST: usize = 100_000;
 /// How many cells are looked at to tell whether one side contains the other.
 const LOOKS: usize = 4_000;
+/// How many in all: what is left undecided then makes the set longer, and stays right.
+const ALL_LOOKS: usize = 30_000;
 /// Points nearer to a plane than this part of the body's diagonal are on it.
 const FLAT: f64 = 1e-9;
 
@@ -120,6 +123,7 @@ pub fn faced<T: Real>(body: &Sides<'_, T>) -> Result<Set<T>, FieldError> {
         planes: &planes,
         epsilon,
         space: bounded.then_some(space),
+        looks: Cell::new(ALL_LOOKS),
     };
     Ok(assembly.set(&tree)?.0)
 }
@@ -262,6 +266,8 @@ struct Assembly<'a, T: Real> {
     /// The space in which one side may be found to contain the other; only for bodies whose outermost
     /// faces bound it.
     space: Option<Polytope>,
+    /// How many cells may still be looked at.
+    looks: Cell<usize>,
 }
 
 impl<T: Real> Assembly<'_, T> {
@@ -286,7 +292,11 @@ impl<T: Real> Assembly<'_, T> {
             trivial
                 || self.space.as_ref().is_some_and(|space| {
                     let (planes, epsilon) = (self.planes, self.epsilon);
-                    Containment { planes, epsilon, steps: LOOKS }.holds(inner, outer, space)
+                    let steps = LOOKS.min(self.looks.get());
+                    let mut containment = Containment { planes, epsilon, steps };
+                    let holds = containment.holds(inner, outer, space);
+                    self.looks.set(self.looks.get() - (steps - containment.steps));
+                    holds
                 })
         };
         let once = many_f + many_b + 1;

@@ -41,8 +41,8 @@ impl<T: Real> Build<T> for Polyhedron<T> {
 /// its ends meet, end, shift, and {0, scale, number of the face}. The scale is 1 for cylinders and 0
 /// for a cone whose apex is the shifted centre. Velocity x shift points outward.
 ///
-/// Where faces cross too often for a list of half-spaces, or round faces touch each other, it is the set
-/// by distances from the triangles.
+/// Of more than 200 faces, or where they cross too often for a list of half-spaces or round faces touch
+/// each other, it is the set by distances from the triangles.
 #[derive(Kind)]
 #[kind(
     class = Set,
@@ -58,6 +58,9 @@ pub struct FaceSet<T: Real> {
     #[field(default)]
     rounds: Option<Vec<Vec3<T>>>,
 }
+
+/// The most faces that a `FaceSet` divides space by: of more, a change would take longer than a moment.
+const MOST: usize = 200;
 
 impl<T: Real> Build<T> for FaceSet<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
@@ -103,7 +106,15 @@ impl<T: Real> Build<T> for FaceSet<T> {
         let rounds: Vec<Round<T>> =
             vectors.chunks(5).enumerate().map(round).collect::<Result<_, _>>()?;
         let body = Sides { points, triangles, sides: self.faces.as_deref(), rounds: &rounds };
-        let made = match faced(&body) {
+        let count = self.faces.as_ref().map_or(triangles.len(), |f| {
+            let mut all = f.clone();
+            all.sort_unstable();
+            all.dedup();
+            all.len()
+        });
+        let divided =
+            if count > MOST { Err(FieldError::ManyFaces { most: MOST }) } else { faced(&body) };
+        let made = match divided {
             Err(FieldError::ManyFaces { .. } | FieldError::RoundSides) => {
                 let closed = Inside::new(self.body.clone());
                 let closed = closed.map_err(|open| FieldError::NotClosed { edges: open.edges });
