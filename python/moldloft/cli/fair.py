@@ -260,6 +260,8 @@ def run(options: argparse.Namespace) -> int:
             files.append(_write_log(result, Path(options.log)))
         if options.plot:
             progress.stage(f"drawing {options.plot}")
+            if not hasattr(result, "plot"):
+                raise Error("error: --plot: several blocks; choose one with --block")
             result.plot(options.plot)
             files.append(options.plot)
     data["files"] = [str(f) for f in files]
