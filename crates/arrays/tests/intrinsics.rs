@@ -134,7 +134,7 @@ fn curvatures() {
         [t.cos(), t.sin(), 0.5 * t]
     };
     let c = curve(&(0..40).map(helix).collect::<Vec<_>>());
-    let t = numbers(&ok("torsions", &[c]));
+    let t = numbers(&ok("torsion", &[c]));
     assert!(t.iter().all(|t| (t - 0.4).abs() < 1e-3), "{:?}", &t[..3]);
     // Sphere of radius 2 from its pole, cylinder, plane.
     let error = |n: usize| {
@@ -395,7 +395,7 @@ fn derivatives_of_moves_and_grids() {
         ("frame", vec![c.clone(), v.clone()], vec![0, 1]),
         ("tangents", vec![c.clone()], vec![0]),
         ("curvatures", vec![c.clone()], vec![0]),
-        ("torsions", vec![c.clone()], vec![0]),
+        ("torsion", vec![c.clone()], vec![0]),
         ("cumlen", vec![c.clone()], vec![0]),
         ("centroid", vec![hill(4, 5)], vec![0]),
         ("norm", vec![c.clone()], vec![0]),
