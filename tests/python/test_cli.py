@@ -224,9 +224,14 @@ def test_ctrl_c_during_a_long_run(model_file, tmp_path):
         "float s = 0;\nfor (int i = 0; i < 2000000000; i = i + 1) { s = s + sin(i); }\n"
         "AbsPoint P(s, 0, 0);\n"
     )
-    command = [sys.executable, "-m", "moldloft", "check", "model.sdl"]
+    # It tells when it begins: a machine may need any time to start Python.
+    begun = "import sys; from moldloft.cli import main; print('begun', flush=True); sys.exit(main())"
+    command = [sys.executable, "-c", begun, "check", "model.sdl"]
     with (tmp_path / "log").open("w") as log:
-        process = subprocess.Popen(command, cwd=tmp_path, stderr=log)
+        process = subprocess.Popen(command, cwd=tmp_path, stderr=log, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    with process.stdout:
+        assert process.stdout.readline().strip() == b"begun"
     time.sleep(0.6)
     if process.poll() is None:
         process.send_signal(signal.SIGINT)

@@ -267,24 +267,29 @@ def test_block_mesh_dict_read_back(blocks):
                 assert np.abs(points[edge] - grid[edge]).max() < 1e-12
         worst = max(worst, float(np.abs(points - grid).max()))
         volume += pyvista.StructuredGrid(*points.transpose(3, 0, 1, 2)).volume
+    # blockMesh puts points between edges, not on the hull: whole blocks are off by some percent.
     assert worst < 0.3
-    assert volume == pytest.approx(blocks.volume, rel=3e-2)
+    assert volume == pytest.approx(blocks.volume, rel=5e-2)
 
 
-def _off(blocks: moldloft.Blocks, every: int) -> float:
-    """How far what blockMesh makes is from the grid."""
+def _off(blocks: moldloft.Blocks, every: int) -> tuple[float, float]:
+    """How far what blockMesh makes is from the grid, and its volume from the grid's."""
     read = _Dictionary(blockmesh.write(blocks, every).decode())
     parts = blockmesh.cut(blocks, every)
-    worst = 0.0
+    worst = volume = 0.0
     for part, block in zip(parts, read.blocks, strict=True):
         own = blocks.blocks[part.block].points
         grid = own[tuple(slice(a, b + 1) for a, b in zip(part.begin, part.end, strict=True))]
-        worst = max(worst, float(np.abs(read.points(block) - grid).max()))
-    return worst
+        points = read.points(block)
+        worst = max(worst, float(np.abs(points - grid).max()))
+        volume += pyvista.StructuredGrid(*points.transpose(3, 0, 1, 2)).volume
+    return worst, abs(volume - blocks.volume) / blocks.volume
 
 
 def test_more_cuts_come_closer(blocks):
-    assert _off(blocks, 5) < _off(blocks, 0) / 4
+    (few, few_volume), (many, many_volume) = _off(blocks, 0), _off(blocks, 5)
+    assert many < few / 4
+    assert many_volume < min(few_volume / 4, 5e-3)
 
 
 def test_folded_blocks_are_refused(tmp_path):
@@ -324,5 +329,5 @@ def test_a_ring_is_cut_for_block_mesh():
     made = model.blocks()
     assert len(made.interfaces) == 1
     assert len(blockmesh.cut(made)) >= 3
-    assert _off(made, 0) < 1e-12
-    assert _off(made, 1) < 1e-12
+    assert max(_off(made, 0)) < 1e-12
+    assert max(_off(made, 1)) < 1e-12

@@ -100,6 +100,7 @@ pub mod shape;
 mod sharp;
 mod solver;
 mod space;
+mod spans;
 pub mod surface;
 #[cfg(test)]
 mod testing;
@@ -126,4 +127,5 @@ pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};
 pub use report::{Mode, Numbers, Report, numbers, report};
 pub use rows::Rows;
 pub use sharp::{Sharp, interpolate_sharp};
+use space::Bezier;
 pub use space::Space;

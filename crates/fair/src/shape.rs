@@ -1,7 +1,8 @@
 //! Curvature and its relatives along a spline, as numbers.
 
 use crate::Space;
-use moldloft_num::{Real, Vec3};
+use crate::spans::each_span;
+use moldloft_num::{Real, Vec3, gauss_points};
 
 /// A curve at one parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +16,20 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// Of the sums of basis functions and their derivatives times control points, and for a rational
+    /// curve of the same with weights (Piegl and Tiller 1997, eq. 4.8).
+    pub(crate) fn of_sums(t: f64, a: [Vec3<f64>; 4], weights: Option<[f64; 4]>) -> Self {
+        let Some(w) = weights else {
+            let [point, derivatives @ ..] = a;
+            return Self { t, point, derivatives };
+        };
+        let point = a[0] * (1.0 / w[0]);
+        let d1 = (a[1] - point * w[1]) * (1.0 / w[0]);
+        let d2 = (a[2] - d1 * (2.0 * w[1]) - point * w[2]) * (1.0 / w[0]);
+        let d3 = (a[3] - d2 * (3.0 * w[1]) - d1 * (3.0 * w[2]) - point * w[3]) * (1.0 / w[0]);
+        Self { t, point, derivatives: [d1, d2, d3] }
+    }
+
     /// The curvature vector's length, |x' x x''| / |x'|^3; 0 where the curve stands still.
     pub fn curvature(&self) -> f64 {
         let [d1, d2, _] = self.derivatives;
@@ -81,16 +96,7 @@ pub fn sample_in(
             w[order] += weight * b;
         }
     }
-    if weights.is_none() {
-        let [point, derivatives @ ..] = a;
-        return Sample { t, point, derivatives };
-    }
-    // The quotient's derivatives (Piegl and Tiller 1997, eq. 4.8).
-    let point = a[0] * (1.0 / w[0]);
-    let d1 = (a[1] - point * w[1]) * (1.0 / w[0]);
-    let d2 = (a[2] - d1 * (2.0 * w[1]) - point * w[2]) * (1.0 / w[0]);
-    let d3 = (a[3] - d2 * (3.0 * w[1]) - d1 * (3.0 * w[2]) - point * w[3]) * (1.0 / w[0]);
-    Sample { t, point, derivatives: [d1, d2, d3] }
+    Sample::of_sums(t, a, weights.is_some().then_some(w))
 }
 
 /// The curve at `t`.
@@ -108,13 +114,8 @@ pub fn samples(
     per_span: usize,
 ) -> Vec<Sample> {
     let mut out = Vec::new();
-    for k in space.spans() {
-        let (a, b) = (space.knot(k), space.knot(k + 1));
-        for i in 0..=per_span {
-            let t = a + (b - a) * (i as f64 / per_span as f64);
-            out.push(sample_in(space, points, weights, k, t));
-        }
-    }
+    let shares = (0..=per_span).map(|i| i as f64 / per_span as f64);
+    each_span(space, points, weights, shares, |samples| out.extend(samples));
     out
 }
 
@@ -226,16 +227,17 @@ pub fn pieces(space: &Space, points: &[Vec3<f64>]) -> usize {
     monotone_runs(&curvatures(&samples(space, points, None, COUNTING)), 1e-3)
 }
 
-/// Length of a polyline through the samples' points, by Simpson's rule on the speeds of each
-/// span: accurate to the fourth order of the step.
+/// The length of the curve, by the 8-point Gauss-Legendre rule on each span.
 pub fn arc_length(space: &Space, points: &[Vec3<f64>], weights: Option<&[f64]>) -> f64 {
-    let spans: Vec<isize> = space.spans().collect();
-    crate::rows::chunked_sum(spans.len(), |i| {
-        let (a, b) = (space.knot(spans[i]), space.knot(spans[i] + 1));
-        moldloft_num::gauss_legendre(a, b, |t: f64| {
-            sample_in(space, points, weights, spans[i], t).derivatives[0].norm()
-        })
-    })
+    let rule = gauss_points(0.0, 1.0);
+    let mut lengths = Vec::new();
+    let mut widths = space.spans().map(|k| space.knot(k + 1) - space.knot(k));
+    each_span(space, points, weights, rule.iter().map(|r| r.0), |samples| {
+        let speed = |(s, (_, w)): (Sample, &(f64, f64))| w * s.derivatives[0].norm();
+        let sum: f64 = samples.zip(&rule).map(speed).sum();
+        lengths.push(sum * widths.next().expect("a width for each span"));
+    });
+    crate::rows::chunked_sum(lengths.len(), |i| lengths[i])
 }
 
 /// A point of the logarithmic curvature graph (Yoshida and Saito 2006).

@@ -192,10 +192,14 @@ impl Space {
 
     /// Values, first and second derivatives of the basis functions of span `k` at `t`.
     pub(crate) fn basis(&self, k: isize, t: f64) -> Basis<f64> {
+        self.local_knots(k).basis_in(self.degree, t, moldloft_num::Order::Second)
+    }
+
+    /// The knots that the basis functions of span `k` have; it is their span `degree`.
+    pub(crate) fn local_knots(&self, k: isize) -> KnotVector {
         let p = self.degree as isize;
         let local: Vec<f64> = (k - p..=k + p + 1).map(|i| self.knot(i)).collect();
-        let knots = KnotVector::new(self.degree, local).expect("a span lies between sorted knots");
-        knots.basis_in(self.degree, t, moldloft_num::Order::Second)
+        KnotVector::new(self.degree, local).expect("a span lies between sorted knots")
     }
 
     /// The polar form of the spline with local coefficients `c` on span `k` at `arguments`
@@ -258,29 +262,11 @@ impl Space {
     /// Calls `f` with each row of [`Space::bezier`], in order along the curve.
     pub(crate) fn each_bezier(&self, weights: Option<&[f64]>, mut f: impl FnMut(&[(usize, f64)])) {
         let p = self.degree;
-        let mut known: Option<(Vec<f64>, Vec<Vec<f64>>)> = None;
-        let mut local = vec![0.0; 2 * p + 2];
+        let mut bezier = Bezier::default();
         let mut entries = vec![(0, 0.0); p + 1];
         let mut last: Option<isize> = None;
         for k in self.spans() {
-            let (a, b) = (self.knot(k), self.knot(k + 1));
-            for (l, i) in local.iter_mut().zip(k - p as isize..) {
-                *l = self.knot(i) - a;
-            }
-            if known.as_ref().is_none_or(|(l, _)| *l != local) {
-                let unit = |arguments: &[f64], at: usize| {
-                    let mut c = vec![0.0; p + 1];
-                    c[at] = 1.0;
-                    self.polar(k, arguments, &mut c)
-                };
-                let points = (0..=p).map(|q| {
-                    let mut arguments = vec![a; p - q];
-                    arguments.extend(std::iter::repeat_n(b, q));
-                    (0..=p).map(|at| unit(&arguments, at)).collect()
-                });
-                known = Some((local.clone(), points.collect()));
-            }
-            let (_, points) = known.as_ref().expect("just made");
+            let points = bezier.rows(self, k);
             // A knot of multiplicity above the degree separates: its first point is its own.
             let shared = match last {
                 Some(before) => (k - before) as usize <= p,
@@ -341,6 +327,39 @@ impl Space {
             }
         }
         reach
+    }
+}
+
+/// The Bézier points of a span over its control points. Spans with the same knots about them, as most
+/// have, share them.
+#[derive(Default)]
+pub(crate) struct Bezier {
+    local: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Bezier {
+    /// A row per Bézier point of span `k`, over [`Space::columns`].
+    pub(crate) fn rows(&mut self, space: &Space, k: isize) -> &[Vec<f64>] {
+        let p = space.degree;
+        let (a, b) = (space.knot(k), space.knot(k + 1));
+        let knots = (0..2 * p as isize + 2).map(|i| space.knot(k - p as isize + i) - a);
+        if self.rows.is_empty() || !knots.clone().eq(self.local.iter().copied()) {
+            self.local.clear();
+            self.local.extend(knots);
+            let unit = |arguments: &[f64], at: usize| {
+                let mut c = vec![0.0; p + 1];
+                c[at] = 1.0;
+                space.polar(k, arguments, &mut c)
+            };
+            let row = |q: usize| {
+                let mut arguments = vec![a; p - q];
+                arguments.extend(std::iter::repeat_n(b, q));
+                (0..=p).map(|at| unit(&arguments, at)).collect()
+            };
+            self.rows = (0..=p).map(row).collect();
+        }
+        &self.rows
     }
 }
 

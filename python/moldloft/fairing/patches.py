@@ -156,7 +156,7 @@ def patches(
     >>> x, y = np.meshgrid(np.arange(9.0), np.arange(6.0), indexing="ij")
     >>> z = np.round(0.05 * x * (8 - x) + 0.02 * y * y, 1)
     >>> grid = np.stack([x, y, z], axis=-1)
-    >>> faired = patches([grid[:5], grid[4:]], 0.2)
+    >>> faired = patches([grid[:5], grid[4:]], 0.4)
     >>> faired.seams
     (((0, 'u1'), (1, 'u0')),)
     >>> a, b = (s.look([u], [0.5]) for s, u in zip(faired.surfaces, (1.0, 0.0)))
