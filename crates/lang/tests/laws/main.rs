@@ -270,7 +270,11 @@ fn check(seed: u64) -> Option<Tally> {
                         tally.missed += 1;
                         continue;
                     }
-                    let folded = (right - left).abs() > 1e3 * tolerance[owner];
+                    let (fold, tolerance) = ((right - left).abs(), tolerance[owner]);
+                    // A small one, of two panels of many, has the derivative on one of its sides.
+                    let sided =
+                        [left, right].iter().any(|x| (x - derivative[i]).abs() <= tolerance);
+                    let folded = fold > 1e3 * tolerance || (fold > 4.0 * tolerance && sided);
                     let what = all.get(owner).map_or("the mesh", String::as_str);
                     assert!(
                         folded,
