@@ -117,7 +117,7 @@ def ocp_grid() -> object:
         for net in (STEM, midship, TRANSOM):
             loft.AddWire(wire(net))
         loft.Build()
-        face = TopoDS.Face_s(TopExp_Explorer(loft.Shape(), TopAbs_FACE).Current())
+        face = TopoDS.Face(TopExp_Explorer(loft.Shape(), TopAbs_FACE).Current())
         surface = BRep_Tool.Surface_s(face)
         u0, u1, v0, v1 = surface.Bounds()
         out = np.empty((NU, NV, 3))
