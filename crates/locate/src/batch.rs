@@ -2,7 +2,7 @@
 //! computed beforehand.
 
 use crate::cells::{Cells, Flat, LEAF, Piece};
-use crate::nearest::{TIE, nearest_in_curve, surface_foot};
+use crate::nearest::{Sought, apart, nearest_in_curve, surface_foot};
 use crate::report::Status;
 use crate::tree::CurveTree;
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
@@ -145,7 +145,8 @@ impl NearestSurface {
         }
         let cells = &self.cells;
         let size = cells.tree.size;
-        let slop = TIE * size;
+        let (exactly, sought) = (p, Sought::new(p, &cells.tree.bounds, size));
+        let (p, slop) = (sought.near, sought.slop);
         let mut search = Search {
             p,
             piece: &cells.pieces[0],
@@ -191,15 +192,19 @@ impl NearestSurface {
                 top += count;
             }
         }
-        self.chosen(surface, &search)
+        let mut found = self.chosen(surface, &search, sought.p);
+        found.distance = apart(found.xyz, exactly);
+        found
     }
 
-    /// The nearest of the feet that were found.
-    fn chosen(&self, surface: &dyn Surface<f64>, search: &Search<'_>) -> Nearest<2> {
+    /// The nearest of the feet that were found; from a point that was pulled nearer they are brought to
+    /// where they are for the point `from` itself.
+    fn chosen(&self, surface: &dyn Surface<f64>, search: &Search<'_>, from: Vec3) -> Nearest<2> {
         let (p, tree) = (search.p, &self.cells.tree);
+        let exact = tree.exact && from == p;
         let exhausted = search.boxes > MOST_BOXES;
         // As a rule there is one.
-        if let ([foot], true) = (search.feet.as_slice(), tree.exact) {
+        if let ([foot], true) = (search.feet.as_slice(), exact) {
             let xyz = surface.jet(foot.uv[0], foot.uv[1], Order::Zero).p;
             let status = alone(foot, exhausted);
             return Nearest { at: foot.uv, xyz, distance: xyz.distance(p), status };
@@ -208,8 +213,8 @@ impl NearestSurface {
         let mut feet: SmallVec<[(Foot, Vec3); 4]> = SmallVec::new();
         for foot in search.feet.iter().filter(|f| f.distance - f.slack <= limit) {
             let mut foot = *foot;
-            if !tree.exact {
-                let exact = surface_foot(surface, p, foot.uv, [[0.0, 1.0]; 2], tree.size);
+            if !exact {
+                let exact = surface_foot(surface, from, foot.uv, [[0.0, 1.0]; 2], tree.size);
                 foot.uv = exact.at;
                 foot.edge = exact.held.iter().any(|h| *h);
                 foot.border = false;
@@ -555,7 +560,7 @@ impl NearestCurve {
         }
         let found = nearest_in_curve(curve, &self.tree, p, None);
         let xyz = curve.jet(found.at[0], Order::Zero)[0];
-        Nearest { at: found.at, xyz, distance: xyz.distance(p), status: found.report.status }
+        Nearest { at: found.at, xyz, distance: apart(xyz, p), status: found.report.status }
     }
 
     /// The box around the curve.

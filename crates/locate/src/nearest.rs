@@ -8,7 +8,61 @@ use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
 
 /// Feet whose distances differ by less than this share of the size are equally near.
-pub(crate) const TIE: f64 = 1e-9;
+const TIE: f64 = 1e-9;
+
+/// So many sizes away a point is taken for one in the same direction at that distance: from there on all
+/// distances agree to 1e-8 of the size in the order that the direction gives them, and what is nearer
+/// would be lost in rounding.
+const FAR: f64 = 1e8;
+
+/// Descents follow slopes, which keep their digits farther out, as long as squares do not overflow.
+const FARTHEST: f64 = 1e60;
+
+/// Pieces that one search looks at before it takes the best it has, as where all points of a curve or
+/// surface are equally near.
+const MOST_LOOKS: [u32; 2] = [4_000, 20_000];
+
+/// The most feet that are told apart.
+const MOST_FEET: usize = 256;
+
+/// The point to which the nearest one is sought.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sought {
+    /// At most [`FAR`] away: for distances.
+    pub near: Vec3,
+    /// At most [`FARTHEST`] away: for descents.
+    pub p: Vec3,
+    /// What rounding makes of distances.
+    pub slop: f64,
+}
+
+impl Sought {
+    /// A point seen from a shape of some size in a box.
+    pub fn new(p: Vec3, bounds: &Box3, size: f64) -> Self {
+        let centre = bounds.centre();
+        let [near, p] = [FAR, FARTHEST].map(|most| pulled(p, centre, most * size));
+        Self { near, p, slop: TIE * size + 4.0 * f64::EPSILON * near.distance(centre) }
+    }
+}
+
+/// The point, or the one in its direction that is as far from the centre as may be.
+fn pulled(p: Vec3, centre: Vec3, most: f64) -> Vec3 {
+    let away = p - centre;
+    let largest = away.x.abs().max(away.y.abs()).max(away.z.abs());
+    // A square of the largest may overflow.
+    if largest <= most && away.norm() <= most {
+        return p;
+    }
+    let direction = away / largest;
+    centre + direction * (most / direction.norm())
+}
+
+/// How far two points are from each other, also where the square of that overflows.
+pub(crate) fn apart(a: Vec3, b: Vec3) -> f64 {
+    let d = a - b;
+    let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
+    if largest < 1e150 { d.norm() } else { (d / largest).norm() * largest }
+}
 
 /// Where a descent ended.
 #[derive(Clone, Copy, Debug)]
@@ -223,6 +277,9 @@ fn nearest_of<const N: usize>(mut feet: Vec<Foot<N>>, p: Vec3, size: f64) -> Vec
     });
     let mut kept: Vec<Foot<N>> = Vec::new();
     for foot in feet {
+        if kept.len() >= MOST_FEET {
+            break;
+        }
         // The same foot, reached from two sides of a seam or of a border between pieces.
         if kept.iter().all(|k| k.xyz.distance(foot.xyz) > 1e-6 * size) {
             kept.push(foot);
@@ -248,8 +305,10 @@ fn nearest_of<const N: usize>(mut feet: Vec<Foot<N>>, p: Vec3, size: f64) -> Vec
 pub fn nearest_on_curve(curve: &dyn Curve<f64>, p: Vec3, start: Option<f64>) -> Solution<1> {
     if let Some(t) = start {
         let ends = [curve.jet(0.0, Order::Zero)[0], curve.jet(0.5, Order::Zero)[0]];
-        let size = size_of(&Box3::around([ends[0], ends[1], curve.jet(1.0, Order::Zero)[0]]));
-        let foot = curve_foot(curve, p, t, [0.0, 1.0], size);
+        let around = Box3::around([ends[0], ends[1], curve.jet(1.0, Order::Zero)[0]]);
+        let size = size_of(&around);
+        let sought = Sought::new(p, &around, size);
+        let foot = curve_foot(curve, sought.p, t, [0.0, 1.0], size);
         if foot.converged {
             return solution(&[t], vec![foot]);
         }
@@ -269,32 +328,35 @@ pub fn nearest_in_curve(
     p: Vec3,
     start: Option<f64>,
 ) -> Solution<1> {
+    let Sought { near, p, slop } = Sought::new(p, &tree.bounds, tree.size);
+    let mut looks = 0;
     let mut order: Vec<(f64, usize)> = tree
         .pieces
         .iter()
         .enumerate()
-        .map(|(k, piece)| (distance_sq(&piece.bounds(), p), k))
+        .map(|(k, piece)| (distance_sq(&piece.bounds(), near), k))
         .collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut best = f64::INFINITY;
     let mut feet = Vec::new();
     for (low, k) in order {
-        if low.sqrt() > best + TIE * tree.size {
+        if low.sqrt() > best + slop {
             break;
         }
         let mut stack = vec![tree.pieces[k]];
         while let Some(piece) = stack.pop() {
-            if distance_sq(&piece.bounds(), p).sqrt() > best + TIE * tree.size {
+            if distance_sq(&piece.bounds(), near).sqrt() > best + slop {
                 continue;
             }
+            looks += 1;
             let [t0, t1] = piece.t;
-            let feet_there = piece.feet(p);
+            let feet_there = piece.feet(near);
             if feet_there == Feet::Elsewhere {
                 continue;
             }
-            if t1 - t0 < 1e-5 || feet_there == Feet::One {
-                let foot = curve_foot(curve, p, 0.5 * (t0 + t1), [t0, t1], tree.size);
-                best = best.min(foot.xyz.distance(p));
+            if t1 - t0 < 1e-5 || feet_there == Feet::One || looks > MOST_LOOKS[0] {
+                let foot = curve_foot(curve, near, 0.5 * (t0 + t1), [t0, t1], tree.size);
+                best = best.min(foot.xyz.distance(near));
                 feet.push(foot);
             } else {
                 stack.extend(piece.halves());
@@ -303,8 +365,8 @@ pub fn nearest_in_curve(
     }
     // From the border of a piece on into the neighbours, and to full accuracy.
     let whole = |foot: Foot<1>| curve_foot(curve, p, foot.at[0], [0.0, 1.0], tree.size);
-    let feet = nearest_of(feet, p, tree.size).into_iter().map(whole).collect();
-    let feet = nearest_of(feet, p, tree.size);
+    let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
+    let feet = nearest_of(feet, near, tree.size);
     solution(&[start.unwrap_or(0.5)], feet)
 }
 
@@ -317,8 +379,10 @@ pub fn nearest_on_surface(
     if let Some(uv) = start {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
         let corners = corners.map(|[u, v]| surface.jet(u, v, Order::Zero).p);
-        let size = size_of(&Box3::around(corners));
-        let foot = surface_foot(surface, p, uv, [[0.0, 1.0]; 2], size);
+        let around = Box3::around(corners);
+        let size = size_of(&around);
+        let sought = Sought::new(p, &around, size);
+        let foot = surface_foot(surface, sought.p, uv, [[0.0, 1.0]; 2], size);
         if foot.converged {
             return solution(&uv, vec![foot]);
         }
@@ -339,17 +403,18 @@ pub fn nearest_in_surface(
     p: Vec3,
     start: Option<[f64; 2]>,
 ) -> Solution<2> {
-    let slop = TIE * tree.size;
+    let Sought { near, p, slop } = Sought::new(p, &tree.bounds, tree.size);
+    let mut looks = 0;
     // A good bound before anything else: the foot near the nearest corner of a piece.
-    let from = tree.patches.iter().map(|patch| patch.net[0].distance(p));
+    let from = tree.patches.iter().map(|patch| patch.net[0].distance(near));
     let corner = from.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |c| c.0);
     let [[u, _], [v, _]] = tree.patches[corner].uv;
-    let foot = surface_foot(surface, p, [u, v], [[0.0, 1.0]; 2], tree.size);
-    let mut best = tree.reach_sq(p).sqrt().min(foot.xyz.distance(p));
+    let foot = surface_foot(surface, near, [u, v], [[0.0, 1.0]; 2], tree.size);
+    let mut best = tree.reach_sq(near).sqrt().min(foot.xyz.distance(near));
     let mut order: Vec<(f64, usize)> = Vec::new();
     tree.boxes.visit(
-        |b| distance_sq(b, p).sqrt() <= best + slop,
-        |k| order.push((distance_sq(&tree.patches[k as usize].bounds(), p), k as usize)),
+        |b| distance_sq(b, near).sqrt() <= best + slop,
+        |k| order.push((distance_sq(&tree.patches[k as usize].bounds(), near), k as usize)),
     );
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut feet: Vec<Foot<2>> = Vec::new();
@@ -359,24 +424,26 @@ pub fn nearest_in_surface(
         }
         let mut stack: Vec<Patch> = vec![tree.patches[k]];
         while let Some(patch) = stack.pop() {
-            let low = distance_sq(&patch.bounds(), p).sqrt();
+            let low = distance_sq(&patch.bounds(), near).sqrt();
             if low > best + slop {
                 continue;
             }
+            looks += 1;
             let [a, b] = patch.lengths();
-            let feet_there = patch.feet(p);
+            let feet_there = patch.feet(near);
             if feet_there == Feet::Elsewhere {
                 continue;
             }
-            if a.max(b) < 1e-5 * tree.size || feet_there == Feet::One {
-                let foot = surface_foot(surface, p, patch.middle(), patch.uv, tree.size);
-                best = best.min(foot.xyz.distance(p));
+            let small = a.max(b) < 1e-5 * tree.size || looks > MOST_LOOKS[1];
+            if small || feet_there == Feet::One {
+                let foot = surface_foot(surface, near, patch.middle(), patch.uv, tree.size);
+                best = best.min(foot.xyz.distance(near));
                 feet.push(foot);
                 continue;
             }
             // The nearer half last, so that it is looked at first.
             let mut parts =
-                patch.halves(usize::from(b > a)).map(|q| (distance_sq(&q.bounds(), p), q));
+                patch.halves(usize::from(b > a)).map(|q| (distance_sq(&q.bounds(), near), q));
             if parts[0].0 < parts[1].0 {
                 parts.swap(0, 1);
             }
@@ -386,7 +453,7 @@ pub fn nearest_in_surface(
     feet.push(foot);
     // From the border of a piece on into the neighbours, and to full accuracy.
     let whole = |foot: Foot<2>| surface_foot(surface, p, foot.at, [[0.0, 1.0]; 2], tree.size);
-    let feet = nearest_of(feet, p, tree.size).into_iter().map(whole).collect();
-    let feet = nearest_of(feet, p, tree.size);
+    let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
+    let feet = nearest_of(feet, near, tree.size);
     solution(&start.unwrap_or([0.5, 0.5]), feet)
 }
