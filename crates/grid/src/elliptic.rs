@@ -1,5 +1,6 @@
 use crate::control::{WallTerms, middlecoff};
-use crate::lines::{Change, Control, Rows, larger, pass, transposed_control};
+use crate::lines::{Change, Control, Rows, larger, transposed_control};
+use crate::zebra::Banks;
 use crate::{Edge, GridError, Sheet};
 use moldloft_num::{Order, Real, Surface, Vec3};
 use rayon::prelude::*;
@@ -71,6 +72,17 @@ pub fn elliptic<T: Real>(
     sheet: &Sheet<T>,
     options: &Elliptic<T>,
 ) -> Result<Smoothed<T>, GridError> {
+    // Rows side by side that fill the widest registers; numbers with derivatives fill several.
+    match T::PARTS {
+        1 => smoothed::<T, 8>(sheet, options),
+        _ => smoothed::<T, 2>(sheet, options),
+    }
+}
+
+fn smoothed<T: Real, const L: usize>(
+    sheet: &Sheet<T>,
+    options: &Elliptic<T>,
+) -> Result<Smoothed<T>, GridError> {
     sheet.check_count(3)?;
     sheet.check_finite()?;
     let size = sheet.size();
@@ -85,11 +97,18 @@ pub fn elliptic<T: Real>(
         components = vec![0, 1, 2];
     }
     let planes: Vec<Vec<T>> = components.iter().map(|&c| sheet.planes[c].clone()).collect();
-    let mut state = State { rows: Rows::of(m, n, &planes), turned: false };
-    let merged = |state: &State<T>| {
-        let rows = if state.turned { state.rows.transposed() } else { state.rows.clone() };
+    let mut points = match &options.on {
+        None => Points::Free(Banks::<T, L>::of(m, n, &planes)),
+        Some((surface, uv)) => Points::On(Constraint {
+            surface: *surface,
+            points: Rows::of(m, n, &planes),
+            rows: Rows::of(m, n, uv),
+        }),
+    };
+    let mut turned = false;
+    let merged = |points: &Points<T, L>, turned: bool| {
         let mut planes = sheet.planes.clone();
-        for (&c, plane) in components.iter().zip(rows.planes()) {
+        for (&c, plane) in components.iter().zip(points.planes(turned)) {
             planes[c] = plane;
         }
         Sheet { m, n, planes }
@@ -100,30 +119,35 @@ pub fn elliptic<T: Real>(
     };
     let mut terms = (options.method == Method::Sorenson && !options.walls.is_empty())
         .then(|| WallTerms::new(sheet, &options.walls));
-    let mut control = base.as_ref().map(|base| [base.clone(), transposed_control(base, m, n)]);
-    let mut constraint = options.on.as_ref().map(|(surface, uv)| {
-        let rows = Rows::of(m, n, uv);
-        Constraint { surface: *surface, rows }
-    });
+    let both = |control: &Control<T>| {
+        let turned = transposed_control(control, m, n);
+        let bank = |m: usize, n: usize, c: &Control<T>| {
+            Banks::<T, L>::of(m, n, &[c.along.clone(), c.across.clone()])
+        };
+        let banks = [bank(m, n, control), bank(n, m, &turned)];
+        ([control.clone(), turned], banks)
+    };
+    let mut control = base.as_ref().map(both);
     let mut change = f64::INFINITY;
     let mut done = 0;
     while done < options.sweeps {
         if let (Some(terms), Some(base)) = (&mut terms, &base) {
-            let now = merged(&state);
+            let now = merged(&points, turned);
             terms.update(&now, &options.walls);
-            let new = terms.control(&now, &options.walls, base);
-            let turned = transposed_control(&new, m, n);
-            control = Some([new, turned]);
+            control = Some(both(&terms.control(&now, &options.walls, base)));
         }
-        let control: Option<&Control<T>> =
-            control.as_ref().map(|both| &both[usize::from(state.turned)]);
+        let way = usize::from(turned);
         let mut square: f64 = 0.0;
         for colour in 0..2 {
-            let moved = match &mut constraint {
-                Some(constraint) => {
-                    constraint.pass(&mut state.rows, colour, options.omega, control)
+            let moved = match (&mut points, &control) {
+                (Points::Free(banks), control) => {
+                    let control = control.as_ref().map(|(_, banks)| &banks[way]);
+                    banks.pass(colour, options.omega, control)
                 }
-                None => pass(&mut state.rows, colour, options.omega, control),
+                (Points::On(constraint), control) => {
+                    let control = control.as_ref().map(|(planes, _)| &planes[way]);
+                    constraint.pass(colour, options.omega, control)
+                }
             };
             square = larger(square, moved);
         }
@@ -136,25 +160,51 @@ pub fn elliptic<T: Real>(
             break;
         }
         if done % TURN == 0 && done < options.sweeps {
-            state.rows = state.rows.transposed();
-            state.turned = !state.turned;
-            if let Some(constraint) = &mut constraint {
+            points.turn();
+            turned = !turned;
+        }
+    }
+    Ok(Smoothed { sheet: merged(&points, turned), sweeps: done, change })
+}
+
+/// The points under way, as rows along j, or along i when they are turned.
+enum Points<'a, T: Real, const L: usize> {
+    Free(Banks<T, L>),
+    On(Constraint<'a, T>),
+}
+
+impl<T: Real, const L: usize> Points<'_, T, L> {
+    /// Rows become columns.
+    fn turn(&mut self) {
+        match self {
+            Points::Free(banks) => banks.transpose(),
+            Points::On(constraint) => {
+                constraint.points = constraint.points.transposed();
                 constraint.rows = constraint.rows.transposed();
             }
         }
     }
-    Ok(Smoothed { sheet: merged(&state), sweeps: done, change })
-}
 
-struct State<T> {
-    rows: Rows<T>,
-    /// True when the rows run along i.
-    turned: bool,
+    /// The planes of the sheet.
+    fn planes(&self, turned: bool) -> Vec<Vec<T>> {
+        match (self, turned) {
+            (Points::Free(banks), false) => banks.planes(),
+            (Points::Free(banks), true) => {
+                let mut banks = banks.clone();
+                banks.transpose();
+                banks.planes()
+            }
+            (Points::On(constraint), false) => constraint.points.planes(),
+            (Points::On(constraint), true) => constraint.points.transposed().planes(),
+        }
+    }
 }
 
 /// Points that stay on a surface: their parameters move instead.
 struct Constraint<'a, T: Real> {
     surface: &'a dyn Surface<T>,
+    points: Rows<T>,
+    /// Their parameters.
     rows: Rows<T>,
 }
 
@@ -165,13 +215,8 @@ impl<T: Real> Constraint<'_, T> {
     /// along the normal is what keeps the grid on the surface. The steps that the row's equations give
     /// are projected to the tangent planes, turned into steps of (u, v), kept inside the surface, and
     /// the points evaluated there.
-    fn pass(
-        &mut self,
-        rows: &mut Rows<T>,
-        colour: usize,
-        omega: f64,
-        control: Option<&Control<T>>,
-    ) -> Change {
+    fn pass(&mut self, colour: usize, omega: f64, control: Option<&Control<T>>) -> Change {
+        let rows = &mut self.points;
         let (m, n) = (rows.m, rows.n);
         let [even, odd] = &mut rows.colours;
         let (own, other) = if colour == 0 { (even, &*odd) } else { (odd, &*even) };

@@ -20,6 +20,7 @@ mod hyperbolic;
 mod lines;
 mod quality;
 mod sheet;
+mod zebra;
 
 pub use blend::{Blend, transfinite};
 pub use block::{Faces, transfinite_block};
