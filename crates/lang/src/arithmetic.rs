@@ -46,6 +46,24 @@ impl Lanes {
         }
     }
 
+    /// The rows of a value of this kind and shape that nothing else holds.
+    pub fn rows_of<'v, T: Real>(
+        &self,
+        value: &'v mut Value<T>,
+    ) -> Option<SmallVec<[&'v mut Vec<T>; 3]>> {
+        let mut rows = SmallVec::new();
+        match (value, self.what) {
+            (Value::Numbers(a), What::Number(_)) if a.shape == self.shape => {
+                rows.push(&mut Arc::get_mut(a)?.items);
+            }
+            (Value::Vectors(a), What::Vector(_)) if a.shape == self.shape => {
+                rows.extend(&mut Arc::get_mut(a)?.planes);
+            }
+            _ => return None,
+        }
+        Some(rows)
+    }
+
     /// The array of the rows of its roots.
     pub fn value<T: Real>(&self, rows: SmallVec<[Vec<T>; 3]>) -> Value<T> {
         let shape = self.shape;
@@ -126,7 +144,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let value = match operand {
             Ok(Operand::Value(value, _)) => Ok(value),
             Ok(Operand::Lanes(lanes)) => self.computed(&lanes, &mut work),
-            Err(diagnostic) => Err(work.earlier(diagnostic, &mut self.slots)),
+            Err(diagnostic) => Err(work.earlier(diagnostic)),
         };
         if let Some(misfits) = record {
             self.keep_recipe(key, misfits, lanes.filter(|_| value.is_ok()), &mut work);
@@ -139,9 +157,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The elements of rows of a tape.
     fn computed(&mut self, lanes: &Lanes, work: &mut Work<T>) -> Result<Value<T>, Diagnostic> {
         let spare = &mut self.spare;
-        let take = |n| spare.take(n);
-        let done = work.tape.run(&lanes.roots(), lanes.shape, &mut self.slots, take);
-        match done {
+        match work.tape.run(&lanes.roots(), lanes.shape, |n| spare.take(n)) {
             Ok(rows) => Ok(lanes.value(rows)),
             Err(check) => {
                 let (span, name) = work.calls[check];
@@ -738,11 +754,11 @@ impl<T: Real> Work<T> {
     }
 
     /// The fault of a check that comes before another fault in the order of the text.
-    fn earlier(&mut self, diagnostic: Diagnostic, slots: &mut Vec<Vec<T>>) -> Diagnostic {
+    fn earlier(&mut self, diagnostic: Diagnostic) -> Diagnostic {
         if self.calls.is_empty() || diagnostic.id == "not-finite" {
             return diagnostic;
         }
-        match self.tape.first_failure(slots) {
+        match self.tape.first_failure() {
             Some(check) => {
                 let (span, name) = self.calls[check];
                 not_finite(name).at(span)

@@ -5,7 +5,7 @@ use crate::env::{Binding, Bound, Environment, Frame, Param};
 use crate::fused::Tape;
 use crate::known::Known;
 use crate::module::{Loader, Module, Modules, Name, RoutineAt};
-use crate::recipe::Slots;
+use crate::recipe::{Key as ExprKey, Slots};
 use crate::section::Place;
 use crate::variables::Called as _;
 use crate::variables::{self, Taken};
@@ -121,10 +121,11 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub(crate) current: usize,
     /// Tapes and memory that are not in use.
     pub tapes: Vec<Tape<T>>,
-    pub slots: Vec<Vec<T>>,
     pub spare: Spare<T>,
     /// What is known of expressions that are executed again.
     pub recipes: Slots<T>,
+    /// The expression that is assigned to a whole variable, and its target.
+    pub assigning: Option<(ExprKey, ExprId)>,
     pub plain_operators: bool,
     /// True once the note on the misprint of 1992 was given.
     pub misprint_told: bool,
@@ -171,9 +172,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             assigned: HashMap::new(),
             current: 0,
             tapes: Vec::new(),
-            slots: Vec::new(),
             spare: Spare::default(),
             recipes: Slots::default(),
+            assigning: None,
             plain_operators,
             misprint_told: false,
             abandoned: false,
@@ -255,6 +256,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return Err(silent());
         }
         Ok(())
+    }
+
+    /// True when the elements of another value will not stop the run.
+    pub fn has_room(&self, count: usize) -> bool {
+        self.steps + count as u64 <= MOST_STEPS
     }
 
     /// Counts a call of a function that takes longer than a statement.
@@ -373,7 +379,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
     }
 
-    fn root_mut(&mut self, place: &Place) -> Option<&mut Bound<T>> {
+    pub fn root_mut(&mut self, place: &Place) -> Option<&mut Bound<T>> {
         match place.frame {
             None => self.env.globals.get_mut(place.name.0 as usize)?.as_mut(),
             Some(frame) => {
@@ -807,8 +813,10 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     ) -> Result<(), Diagnostic> {
         let right = match op {
             AssignOp::Set => {
-                let right = self.expr(m, value)?;
-                self.read(right, m.program[value].span)?
+                self.assigning = Some((ExprKey::of(m, value), target));
+                let right = self.expr(m, value);
+                self.assigning = None;
+                self.read(right?, m.program[value].span)?
             }
             AssignOp::With(op) => self.updated(m, target, op, value)?,
         };

@@ -11,13 +11,14 @@
 
 use crate::arithmetic::{Lanes, Work, not_finite};
 use crate::env::Binding;
-use crate::fused::{Cell, Origin, Src, Tape};
+use crate::fused::{Cell, Origin, Tape};
 use crate::interpreter::{DEEPEST, Interpreter};
 use crate::intrinsics::{self, Elementary};
 use crate::module::Module;
 use crate::ops;
 use crate::variables;
 use moldloft_diag::Diagnostic;
+use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value};
 use moldloft_syntax::sdl::{BinaryOp, ExprId, ExprKind, Subscript, Symbol};
@@ -333,7 +334,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             Slot::Seen(misfits) => Course::Tree { read: Vec::new(), record: Some(misfits) },
             Slot::Kept(mut recipe) => {
-                let outcome = self.follow(m, &mut recipe);
+                let outcome = self.follow(m, key, &mut recipe);
                 recipe.values.clear();
                 match outcome {
                     Outcome::Done(value) => {
@@ -389,7 +390,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         self.recipes.insert(key, slot);
     }
 
-    fn follow(&mut self, m: &Module, recipe: &mut Recipe<T>) -> Outcome<T> {
+    fn follow(&mut self, m: &Module, key: Key, recipe: &mut Recipe<T>) -> Outcome<T> {
         let Recipe { entries, functions, exponents, depth, tape, calls, lanes, values, .. } =
             recipe;
         let base = self.depth;
@@ -466,7 +467,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 _ => return Outcome::Misfit(so_far(values)),
             };
         }
-        let mut rows: SmallVec<[&[T]; 16]> = SmallVec::new();
+        let mut rows: SmallVec<[&Vec<T>; 16]> = SmallVec::new();
         for Origin { cell, part } in &tape.plane_origins {
             rows.push(match &values[cell.0 as usize] {
                 Value::Numbers(a) => &a.items,
@@ -475,16 +476,50 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             });
         }
         let (roots, count) = (lanes.roots(), lanes.shape.count());
-        let roots: &[Src] = &roots;
+        // What can fail must leave the variable as it was.
+        if !tape.is_checked() && self.assigning.is_some_and(|(of, _)| of == key) {
+            let filled = |outs: &mut [Vec<T>]| tape.execute(&rows, &roots, count, outs).is_ok();
+            if let Some(value) = self.filled_in_place(m, lanes, filled) {
+                return Outcome::Done(Ok(value));
+            }
+        }
         let spare = &mut self.spare;
-        let done = tape.execute(&rows, roots, count, &mut self.slots, |n| spare.take(n));
-        Outcome::Done(match done {
-            Ok(rows) => Ok(lanes.value(rows)),
+        let mut outs: SmallVec<[Vec<T>; 3]> = roots.iter().map(|_| spare.take(count)).collect();
+        Outcome::Done(match tape.execute(&rows, &roots, count, &mut outs) {
+            Ok(()) => Ok(lanes.value(outs)),
             Err(check) => {
                 let (span, name) = calls[check];
                 Err(not_finite(name).at(span))
             }
         })
+    }
+
+    /// The variable that the expression is assigned to, its rows filled, when nothing else holds its
+    /// array: a long row is read from and written to the memory that the caches know already.
+    fn filled_in_place(
+        &mut self,
+        m: &Module,
+        lanes: &Lanes,
+        fill: impl FnOnce(&mut [Vec<T>]) -> bool,
+    ) -> Option<Value<T>> {
+        let symbol = m.program.as_name(self.assigning?.1)?;
+        let place = self.place_of(m.names[symbol.0 as usize])?;
+        let whole = place.section.is_none() && place.component.is_none();
+        let outside = place.frame.is_none() && self.run.extent() == Extent::Edit;
+        // Not what could still stop the run, either.
+        if !whole || outside || !self.has_room(lanes.shape.count()) {
+            return None;
+        }
+        let Binding::Variable { value, .. } = &mut self.root_mut(&place)?.what else { return None };
+        let mut rows = lanes.rows_of(value)?;
+        let mut outs: SmallVec<[Vec<T>; 3]> =
+            rows.iter_mut().map(|row| std::mem::take(*row)).collect();
+        let done = fill(&mut outs);
+        debug_assert!(done, "only what cannot fail is filled in place");
+        for (row, out) in rows.into_iter().zip(outs) {
+            *row = out;
+        }
+        Some(value.clone())
     }
 
     /// The value of a variable that an expression names, when it is a plain one.

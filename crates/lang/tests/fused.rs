@@ -198,6 +198,52 @@ fn targets_may_overlap_their_sources() {
     assert!((0..1999).all(|k| b.items[k] == (k + 2) as f64) && b.items[1999] == 2000.0);
 }
 
+/// Rows of every length around the widths of the machine's chunks.
+#[test]
+fn rows_of_all_lengths_are_done_to_the_last_element() {
+    for n in (1..150).chain([255, 256, 257, 1000]) {
+        let text = format!(
+            "farray u = cosine(0.1, 1, {n} + 1)[2:]; vector p = {{1, 2, 3}}, q = {{-1, 0.5, 2}};\n\
+             curve c, d; farray a;\nfor (k = 1:4) {{\n\
+             c = p*(1 - u)^3 + 3*q*u*(1 - u)^2 - p*u^2/(p*u - (q - u*p)*3);\n\
+             a = |c| - (c . p)/(1 + u)*u^-2 - (u*2 - (3 - u)*(u + 1)*(u - 4));\n\
+             d = (c .* q)*sin(a) + {{a, -a, abs(a)}};\n}}"
+        );
+        let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
+        assert!(!fused.has_errors(), "{n}: {:?}", told(&fused));
+        let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", &text);
+        plain.with_plain_operators();
+        for name in ["a", "c", "d"] {
+            let (a, b) = (fused.eval(name).unwrap(), plain.eval(name).unwrap());
+            assert_eq!(bits(&a), bits(&b), "{n}: {name}");
+        }
+    }
+}
+
+/// A variable whose array nothing else holds is filled where it is; copies of it keep their values, and
+/// so does the variable when the statement fails.
+#[test]
+fn arrays_filled_in_place_are_no_others() {
+    let text = "farray u = uniform(0, 1, 70), e = u; curve c[70], d, b; float x = 1;\n\
+                subroutine f(returned curve k, float y) { k = {y, 2, 3}*u; }\n\
+                for (k = 1:9) {\n\
+                c = {1, 2, 3}*u*k; if (k == 4) d = c; if (k == 5) b = c*1;\n\
+                f(c, k); u = e*1;\n\
+                }\n\
+                for (k = 1:5) { e = sqrt(u*(4 - k)); }";
+    let mut fused = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
+    let mut plain = Document::from_text(registry(), Box::new(NoFiles), "a.sdl", text);
+    plain.with_plain_operators();
+    assert_eq!(told(&fused), told(&plain));
+    for name in ["b", "c", "d", "e", "u"] {
+        let (a, b) = (fused.eval(name).unwrap(), plain.eval(name).unwrap());
+        assert_eq!(bits(&a), bits(&b), "{name}");
+    }
+    assert_eq!(common::number(&mut fused, "d[70].x"), 4.0);
+    assert_eq!(common::number(&mut fused, "b[70].y"), 10.0);
+    assert_eq!(common::number(&mut fused, "c[70].x"), 9.0);
+}
+
 #[test]
 fn long_chains_go_in_parts() {
     let sum = vec!["a"; 990].join(" + ");

@@ -15,6 +15,9 @@ use std::time::{Duration, Instant};
 /// steps, which is the longest of all.
 const LONGEST: Duration = Duration::from_secs(30);
 
+/// What took longer than this is told, so that it can be looked at.
+const LONG: Duration = Duration::from_secs(2);
+
 /// The processor time of this program so far, where the system tells it, else the time of the clock:
 /// other work on the machine does not count.
 fn now(start: Instant) -> Duration {
@@ -271,6 +274,9 @@ fn programs_of_the_grammar() {
         let mut fused = open(&text);
         let took = now(start) - begun;
         assert!(took < LONGEST, "round {round}: {took:?}\n{text}");
+        if took > LONG {
+            println!("round {round} took {took:?}:\n{text}\n");
+        }
         slowest = slowest.max(took);
         assert!(!ids(&fused).iter().any(|id| id == "internal-error"), "round {round}\n{text}");
         sound += usize::from(!fused.has_errors());
@@ -388,6 +394,9 @@ fn damaged_programs() {
         }
         let took = now(start) - begun;
         assert!(took < LONGEST, "round {round}: {took:?}\n{text}");
+        if took > LONG {
+            println!("round {round} took {took:?}:\n{text}\n");
+        }
         slowest = slowest.max(took);
         assert!(!ids(&document).iter().any(|id| id == "internal-error"), "round {round}\n{text}");
         round += 1;
