@@ -216,9 +216,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         match crate::later::declared_later(m, symbol, span) {
             Some(later) => later.explain(m, diagnostic),
-            None => match self.nearest_name(text) {
-                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-                None => diagnostic,
+            None => match crate::library::defining(text) {
+                Some(hint) => diagnostic.help(hint),
+                None => match self.nearest_name(text) {
+                    Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+                    None => diagnostic,
+                },
             },
         }
     }
@@ -688,6 +691,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let text = m.program.name(symbol);
         let diagnostic =
             Diagnostic::error("unknown-name", format!("there is no function `{text}`"));
+        if let Some(hint) = crate::library::defining(text) {
+            return diagnostic.help(hint);
+        }
         match self.nearest_name(text) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None => diagnostic,

@@ -24,3 +24,20 @@ pub(crate) fn near(path: &str) -> Option<String> {
     let near = nearest(path, LIBRARIES.iter().map(|(name, _)| *name))?;
     Some(format!("a built-in library has a similar name: `{near}`"))
 }
+
+/// A hint when a library that was not loaded defines a routine or variable of that name.
+pub(crate) fn defining(word: &str) -> Option<String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let defines = |line: &str| {
+        let line = line.split('#').next().unwrap_or("");
+        let mut words = line.split(|c: char| !is_word(c)).filter(|w| !w.is_empty());
+        match words.next() {
+            Some("subroutine") => words.next() == Some(word),
+            Some("function") => words.nth(1) == Some(word),
+            Some("global") => words.any(|w| w == word),
+            _ => false,
+        }
+    };
+    let (file, _) = LIBRARIES.iter().find(|(_, text)| text.lines().any(defines))?;
+    Some(format!("`{word}` comes with a library: load \"{file}\""))
+}

@@ -172,6 +172,24 @@ fn figure_3_reflection_planes() {
     }
 }
 
+/// The second listing goes on where the first ends; by itself it lacks what the first loads.
+#[test]
+fn what_a_library_has_is_told_where_it_was_not_loaded() {
+    for (text, file) in [
+        ("curve c[5]; arc(c, 0, 1, 2);", "stdsubs.sdl"),
+        ("print cos(PI_d2);", "stdsubs.sdl"),
+        ("curve c[5]; naca4(c, 0, 0, 12);", "naca.sdl"),
+        ("set_sting(.4, 10, 15);", "mslbody.sdl"),
+    ] {
+        let m = common::open(text);
+        let all = m.diagnostics();
+        assert_eq!((all.len(), &*all[0].id), (1, "unknown-name"), "{text}: {all:?}");
+        assert!(all[0].help.iter().any(|h| h.contains(&format!("load \"{file}\""))), "{all:?}");
+    }
+    let other = common::open("print radii;").diagnostics();
+    assert!(other[0].help.is_empty(), "{other:?}");
+}
+
 #[test]
 fn figure_5_quarter_missile_with_fins_and_sting() {
     let mut m = run(FIGURE_5);

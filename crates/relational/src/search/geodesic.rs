@@ -243,9 +243,9 @@ fn equations<T: Real>(
     for k in 1..m - 1 {
         // Of the differences of places: the largest entries belong to the nearest nodes.
         let own = jets[k].p;
-        let bend = (0..m).filter(|&j| j != k).fold(Vec3::zero(), |sum, j| {
-            sum + (jets[j].p - own) * T::from(dd[k * m + j])
-        });
+        let bend = (0..m)
+            .filter(|&j| j != k)
+            .fold(Vec3::zero(), |sum, j| sum + (jets[j].p - own) * T::from(dd[k * m + j]));
         let own = [jets[k].u, jets[k].v];
         rest.extend(own.map(|d| d.dot(bend)));
         if !with_matrix {
