@@ -184,13 +184,15 @@ def _zoom(ax: Any, fairing: Fairing, before: Samples, after: Samples) -> None:
             said = "tolerance" if k == 0 else None
             ax.plot(edge[:, 0], edge[:, 1], color=BEFORE, lw=0.6, ls=":", label=said)
     ax.plot(fairing.data[:, i], fairing.data[:, j], "o", ms=4, mfc="none", color=QUIET)
-    ax.set_xlim(centre[0] - size, centre[0] + size)
     height = np.abs(before.points[:, j] - centre[1])[
         np.abs(before.points[:, [i, j]] - centre).max(axis=1) < size
     ]
     tall = max(1.15 * float(height.max(initial=0.0)), 2.5 * float(far.max()), 0.02 * size)
-    ax.set_ylim(centre[1] - tall, centre[1] + tall)
-    if tall > 0.6 * size:
+    equal = tall > 0.6 * size
+    # Limits that may give way (`auto`) to equal scales.
+    ax.set_xlim(centre[0] - size, centre[0] + size, auto=equal)
+    ax.set_ylim(centre[1] - tall, centre[1] + tall, auto=equal)
+    if equal:
         ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("xyz"[i])
     ax.set_ylabel("xyz"[j])
