@@ -2,8 +2,10 @@
 //! computed beforehand.
 
 use crate::cells::{Cells, Flat, LEAF, Piece};
-use crate::nearest::{Sought, apart, nearest_in_curve, surface_foot};
-use crate::report::Status;
+use crate::nearest::{
+    Sought, apart, nearest_in_curve, nearest_in_surface, on_crease, surface_foot,
+};
+use crate::report::{Solution, Status};
 use crate::tree::CurveTree;
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
@@ -211,10 +213,12 @@ impl NearestSurface {
         }
         let limit = search.limit;
         let mut feet: SmallVec<[(Foot, Vec3); 4]> = SmallVec::new();
+        let mut settled = !search.feet.is_empty();
         for foot in search.feet.iter().filter(|f| f.distance - f.slack <= limit) {
             let mut foot = *foot;
             if !exact {
                 let exact = surface_foot(surface, from, foot.uv, [[0.0, 1.0]; 2], tree.size);
+                settled &= exact.converged;
                 foot.uv = exact.at;
                 foot.edge = exact.held.iter().any(|h| *h);
                 foot.border = false;
@@ -227,6 +231,15 @@ impl NearestSurface {
         let apart = |x: Vec3, y: Vec3| x.distance(y) > 1e-6 * tree.size;
         let best = feet.iter().map(|(f, _)| f.distance).fold(f64::INFINITY, f64::min);
         feet.retain(|(f, _)| f.distance <= best + search.slop);
+        if !(tree.exact || settled && feet.len() == 1)
+            && let Some((near, _)) =
+                feet.iter().min_by(|a, b| a.0.distance.total_cmp(&b.0.distance))
+            && let Some(foot) = on_crease(surface, p, near.uv, tree.size)
+            && foot.xyz.distance(p) <= best + 1e-12 * tree.size
+        {
+            let distance = foot.xyz.distance(p);
+            return Nearest { at: foot.at, xyz: foot.xyz, distance, status: Status::Ok };
+        }
         // The least on the border of a box is a foot only where no neighbour has a nearer one.
         let nearer = |a: &(Foot, Vec3)| {
             feet.iter().any(|b| {
@@ -242,7 +255,13 @@ impl NearestSurface {
         });
         let equal = best + 1e-14 * tree.size;
         let Some(&(foot, xyz)) = feet.iter().find(|(f, _)| f.distance <= equal) else {
-            return Nearest::lost();
+            if tree.exact || exhausted {
+                return Nearest::lost();
+            }
+            // No descent in a cell settled, as at a crease of which nothing is known.
+            let Solution { at, report } = nearest_in_surface(surface, tree, p, None);
+            let xyz = surface.jet(at[0], at[1], Order::Zero).p;
+            return Nearest { at, xyz, distance: xyz.distance(p), status: report.status };
         };
         let mut places: SmallVec<[Vec3; 4]> = SmallVec::new();
         places.push(xyz);

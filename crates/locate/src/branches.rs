@@ -3,10 +3,13 @@
 //! `cells of both shapes -> pairs whose bounds meet -> seeds that no branch passes -> branches`
 //!
 //! Each shape is cut into nearly flat cells with bounds of how they bend (see `cells`), in trees of
-//! boxes. A pair of cells is left out only when their bounds are apart. In a pair whose normals
-//! cannot become parallel the shapes meet in one line at most; other pairs are halved until they
-//! are so, or smaller than [`SMALLEST`] of the size. Each pair that no branch found so far passes
-//! through gives a start to Newton's method, and what it finds starts a branch.
+//! boxes. Of two surfaces a search goes down the halvings from pieces to cells on both sides (see
+//! `plates`). A pair of cells, or of all below two larger parts, is left out only when bounds show
+//! that they are apart, or that they meet in one line at most, which is a branch that was found
+//! before. In a pair whose normals cannot become parallel the shapes meet in one line at most; other
+//! pairs are halved until they are so, or smaller than [`SMALLEST`] of the size. Each pair that no
+//! branch found so far passes through gives a start to Newton's method, and what it finds starts a
+//! branch.
 //!
 //! So, while [`Branches::complete`] is true, every branch is found that somewhere crosses at an
 //! angle larger than the shapes turn within [`SMALLEST`] of the size and that is longer than that,
@@ -15,11 +18,13 @@
 //! the bounds are measured and not proved (see [`crate::pieces`]). Where the shapes touch without
 //! crossing there is no branch, but a [`Touch`].
 
-use crate::cells::{Cells, Flat, LEAF, Polynomials};
+use crate::cells::{Cells, Flat, Fork, LEAF, Polynomials, forks};
 use crate::implicit::solve;
 use crate::march::{Branch, Crossing, Other, Station, TANGENT, Unknowns};
 use crate::newton::OUTSIDE;
-use crate::pieces::meet;
+use crate::pieces::{Patch, meet};
+use crate::plates::{Plate, Plates, Trails, Visitor, descend};
+use crate::tree::Boxes;
 use moldloft_num::{Box3, Field, Order, Plane, Surface, Vec3, slope_scale};
 use smallvec::SmallVec;
 
@@ -190,22 +195,6 @@ impl Part {
     }
 }
 
-/// True when two cells certainly have no common point.
-#[inline]
-fn apart(p: &Part, q: &Part) -> bool {
-    let (a, b) = (&p.flat, &q.flat);
-    let d = b.c - a.c;
-    let bend = a.bend + b.bend;
-    let beyond =
-        |n: Vec3, other: &Flat| n.dot(d).abs() - n.dot(other.a).abs() - n.dot(other.b).abs() > bend;
-    if beyond(p.normal, b) || beyond(q.normal, a) {
-        return true;
-    }
-    let reach =
-        |k: fn(&Vec3) -> f64| k(&a.a).abs() + k(&a.b).abs() + k(&b.a).abs() + k(&b.b).abs() + bend;
-    d.x.abs() > reach(|v| v.x) || d.y.abs() > reach(|v| v.y) || d.z.abs() > reach(|v| v.z)
-}
-
 /// A node of a tree in a search.
 #[derive(Clone, Copy)]
 struct At<'a> {
@@ -220,6 +209,10 @@ pub struct CutSurface {
     cells: Cells,
     /// One for each cell.
     parts: Vec<Part>,
+    plates: Plates,
+    /// The tree over the pieces.
+    forks: Vec<Fork>,
+    quick: Option<Polynomials>,
 }
 
 impl CutSurface {
@@ -234,23 +227,37 @@ impl CutSurface {
         Self::of(Cells::coarse(surface))
     }
 
-    fn of(cells: Cells) -> Self {
+    fn of(mut cells: Cells) -> Self {
         let parts: Vec<Part> = (0..cells.flats.len()).map(|k| Part::of(&cells, k)).collect();
-        Self { cells, parts }
+        let plates = Plates::new(&mut cells);
+        let bounds: Vec<Box3> = cells.tree.patches.iter().map(Patch::bounds).collect();
+        let boxes = Boxes::new(&bounds, 1);
+        let forks = numbered(forks(&boxes), &boxes.order);
+        let quick = cells.polynomials();
+        Self { cells, parts, plates, forks, quick }
     }
 
     fn root(&self) -> At<'_> {
-        let (number, bounds) = root(&self.cells);
-        At { number, bounds }
+        At { number: if self.forks.is_empty() { LEAF } else { 0 }, bounds: &self.cells.tree.bounds }
     }
 
     /// The children of a fork, the second one first.
     #[inline]
     fn below(&self, fork: u32) -> [At<'_>; 2] {
-        let fork = &self.cells.forks[fork as usize];
+        let fork = &self.forks[fork as usize];
         let child = |k: usize| At { number: fork.below[k], bounds: &fork.bounds[k] };
         [child(1), child(0)]
     }
+}
+
+/// The forks with the numbers of items instead of those of their places in the order of leaves.
+fn numbered(mut forks: Vec<Fork>, order: &[u32]) -> Vec<Fork> {
+    for below in forks.iter_mut().flat_map(|fork| &mut fork.below) {
+        if *below & LEAF != 0 {
+            *below = order[(*below & !LEAF) as usize] | LEAF;
+        }
+    }
+    forks
 }
 
 /// A search under way.
@@ -261,6 +268,9 @@ struct Finder<'a> {
     /// Stretches of branches, and their numbers by the place of their first unknowns.
     chords: Vec<Chord>,
     bins: Vec<SmallVec<[u32; 6]>>,
+    trails: Trails,
+    /// Parts that are still to be looked at in pairs.
+    parts: Vec<(Part, Part)>,
     found: Branches,
     pairs: usize,
 }
@@ -279,12 +289,11 @@ impl Crossing<'_> {
     /// that is a plane.
     pub fn branches_in(&self, first: &CutSurface, second: Option<&CutSurface>) -> Branches {
         // Where the pieces are the surface itself they are the quicker to evaluate.
-        let quick = [first.cells.polynomials(), second.and_then(|s| s.cells.polynomials())];
         fn chosen<'b>(
-            quick: &'b Option<Polynomials<'b>>,
+            cut: Option<&'b CutSurface>,
             own: &'b dyn Surface<f64>,
         ) -> &'b dyn Surface<f64> {
-            match quick {
+            match cut.and_then(|cut| cut.quick.as_ref()) {
                 Some(quick) => quick,
                 None => own,
             }
@@ -292,15 +301,18 @@ impl Crossing<'_> {
         let other = match self.other {
             Other::Plane(plane) => Other::Plane(plane),
             Other::Level(field) => Other::Level(field),
-            Other::Surface(own) => Other::Surface(chosen(&quick[1], own)),
+            Other::Surface(own) => Other::Surface(chosen(second, own)),
         };
-        let crossing = Crossing { first: chosen(&quick[0], self.first), other, ..*self };
+        let quick = [first.quick.as_ref(), second.and_then(|cut| cut.quick.as_ref())];
+        let crossing = Crossing { first: chosen(Some(first), self.first), other, quick, ..*self };
         let mut finder = Finder {
             crossing,
             first,
             second,
             chords: Vec::new(),
             bins: vec![SmallVec::new(); BINS * BINS],
+            trails: Trails::new(first.plates.bins),
+            parts: Vec::new(),
             found: Branches {
                 complete: true,
                 smallest: SMALLEST * self.size,
@@ -418,50 +430,46 @@ impl Finder<'_> {
         let (first, Some(second)) = (self.first, self.second) else { return };
         let mut stack = vec![(first.root(), second.root())];
         stack.retain(|(a, b)| meet(a.bounds, b.bounds));
-        let mut parts: Vec<(Part, Part)> = Vec::new();
+        let mut pairs = Vec::new();
         while let Some((a, b)) = stack.pop() {
-            if a.number & b.number & LEAF == 0 {
-                let split = a.number & LEAF == 0
-                    && (b.number & LEAF != 0 || girth(a.bounds) >= girth(b.bounds));
-                let (below, other) =
-                    if split { (first.below(a.number), b) } else { (second.below(b.number), a) };
-                for child in below {
-                    if meet(child.bounds, other.bounds) {
-                        stack.push(if split { (child, b) } else { (a, child) });
+            if a.number & b.number & LEAF != 0 {
+                let pair = [a.number & !LEAF, b.number & !LEAF];
+                let [p, q] =
+                    [&first.plates.all[pair[0] as usize], &second.plates.all[pair[1] as usize]];
+                if !p.apart(q) {
+                    pairs.push(pair);
+                    if !descend([&first.plates, &second.plates], &mut pairs, self) {
+                        return;
                     }
                 }
                 continue;
             }
-            let p = &first.parts[(a.number & !LEAF) as usize];
-            let q = &second.parts[(b.number & !LEAF) as usize];
-            if !self.pair(p, q, &mut parts) {
-                return;
-            }
-            while let Some((p, q)) = parts.pop() {
-                if !self.pair(&p, &q, &mut parts) {
-                    return;
+            let split = a.number & LEAF == 0
+                && (b.number & LEAF != 0 || girth(a.bounds) >= girth(b.bounds));
+            let (below, other) =
+                if split { (first.below(a.number), b) } else { (second.below(b.number), a) };
+            for child in below {
+                if meet(child.bounds, other.bounds) {
+                    stack.push(if split { (child, b) } else { (a, child) });
                 }
             }
         }
     }
 
-    /// Looks at a pair of parts; pairs of their halves are left in `parts`. False when there were too
-    /// many.
-    fn pair(&mut self, p: &Part, q: &Part, parts: &mut Vec<(Part, Part)>) -> bool {
-        if apart(p, q) {
-            return true;
-        }
+    /// Looks at a pair of parts that may meet; pairs of their halves are left in `parts`. False when
+    /// there were too many.
+    fn pair(&mut self, p: &Part, q: &Part, simple: bool) -> bool {
         if self.exhausted() {
             return false;
         }
         let turn = p.turn + q.turn;
-        let simple = p.normal.cross(q.normal).norm_sq() > turn * turn;
+        let simple = simple || p.normal.cross(q.normal).norm_sq() > turn * turn;
         if simple || p.longest.max(q.longest) <= self.found.smallest {
             self.start(p, Some(q), simple);
         } else if p.longest >= q.longest {
-            parts.extend(p.halves(&self.first.cells).map(|half| (half, *q)));
+            self.parts.extend(p.halves(&self.first.cells).map(|half| (half, *q)));
         } else if let Some(second) = self.second {
-            parts.extend(q.halves(&second.cells).map(|half| (*p, half)));
+            self.parts.extend(q.halves(&second.cells).map(|half| (*p, half)));
         }
         true
     }
@@ -508,11 +516,12 @@ impl Finder<'_> {
         let number = self.found.branches.len() as u32;
         for (k, pair) in branch.stations.windows(2).enumerate() {
             let (p, q) = (&pair[0].q, &pair[1].q);
-            if (0..2).any(|i| (p[i] - q[i]).abs() > 0.5) {
+            if (0..4).any(|i| (p[i] - q[i]).abs() > 0.5) {
                 continue;
             }
             let chord = self.chords.len() as u32;
             self.chords.push(Chord::new(&pair[0], &pair[1], number, k));
+            self.trails.note(&pair[0], &pair[1]);
             // Half a bin more on each side.
             let more = 0.5 / BINS as f64;
             let [us, vs] =
@@ -639,6 +648,43 @@ impl Finder<'_> {
             self.found.complete &= self.found.touches.len() < MOST_TOUCHES;
         }
     }
+}
+
+impl Visitor for Finder<'_> {
+    fn done(&mut self, p: &Plate, q: &Plate) -> bool {
+        p.smooth && q.smooth && p.meet_in_one_line(q) && self.trails.pass(p, q)
+    }
+
+    fn cells(&mut self, p: &Plate, q: &Plate) -> bool {
+        let (first, Some(second)) = (self.first, self.second) else { return false };
+        let simple = p.meet_in_one_line(q);
+        let [p, q] = [&first.parts[p.cell as usize], &second.parts[q.cell as usize]];
+        if !self.pair(p, q, simple) {
+            return false;
+        }
+        while let Some((p, q)) = self.parts.pop() {
+            if !apart(&p, &q) && !self.pair(&p, &q, false) {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// True when two parts certainly have no common point.
+#[inline]
+fn apart(p: &Part, q: &Part) -> bool {
+    let (a, b) = (&p.flat, &q.flat);
+    let d = b.c - a.c;
+    let bend = a.bend + b.bend;
+    let beyond =
+        |n: Vec3, other: &Flat| n.dot(d).abs() - n.dot(other.a).abs() - n.dot(other.b).abs() > bend;
+    if beyond(p.normal, b) || beyond(q.normal, a) {
+        return true;
+    }
+    let reach =
+        |k: fn(&Vec3) -> f64| k(&a.a).abs() + k(&a.b).abs() + k(&b.a).abs() + k(&b.b).abs() + bend;
+    d.x.abs() > reach(|v| v.x) || d.y.abs() > reach(|v| v.y) || d.z.abs() > reach(|v| v.z)
 }
 
 /// The chord of two neighbouring stations.

@@ -161,6 +161,21 @@ pub(crate) struct Cells {
     pub forks: Vec<Fork>,
     /// The same for nearest points, with four children each.
     pub quads: Vec<Quad>,
+    /// How the pieces were halved, for intersections: the pieces first, in their order.
+    pub twigs: Vec<Twig>,
+}
+
+/// A piece or a part of one, on the way from pieces to cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Twig {
+    pub patch: Patch,
+    pub piece: u32,
+    /// The first of its halves, which follow each other; 0 for a cell.
+    pub below: u32,
+    /// The cell that it is, if it is one.
+    pub cell: u32,
+    /// From and to in the piece's own parameters.
+    place: [[f64; 2]; 2],
 }
 
 /// Bernstein coefficients on [0, 1] to powers of s = 2 x - 1.
@@ -173,7 +188,7 @@ fn powers([a, b, c, d]: [Vec3; 4]) -> [Vec3; 4] {
     ]
 }
 
-fn patch_powers(patch: &Patch) -> [Vec3; 16] {
+pub(crate) fn patch_powers(patch: &Patch) -> [Vec3; 16] {
     let mut out = [Vec3::zero(); 16];
     for i in 0..4 {
         out[i * 4..i * 4 + 4].copy_from_slice(&powers([0, 1, 2, 3].map(|j| patch.net[i * 4 + j])));
@@ -188,7 +203,7 @@ fn patch_powers(patch: &Patch) -> [Vec3; 16] {
 }
 
 /// The derivative of a bicubic in powers by s (axis 0) or t (axis 1).
-fn derivative(f: &[Vec3; 16], axis: usize) -> [Vec3; 16] {
+pub(crate) fn derivative(f: &[Vec3; 16], axis: usize) -> [Vec3; 16] {
     let mut out = [Vec3::zero(); 16];
     for i in 0..4 {
         for j in 0..4 {
@@ -229,7 +244,8 @@ impl Flat {
         Flat { c, a, b, products: [aa, ab, bb], inverses, bend }
     }
 
-    fn new(patch: &Patch, x: &[Vec3; 16]) -> Self {
+    /// The one in the middle of a patch with these powers.
+    pub fn new(patch: &Patch, x: &[Vec3; 16]) -> Self {
         let (a, b) = (x[4], x[1]);
         let high: f64 = (0..16).filter(|k| k / 4 + k % 4 > 1).map(|k| x[k].norm()).sum();
         Self::of(x[0], a, b, high + patch.slack)
@@ -237,7 +253,7 @@ impl Flat {
 }
 
 impl Bent {
-    fn new(cell: &Patch, x: &[Vec3; 16], piece: u32, place: [[f64; 2]; 2], full: bool) -> Self {
+    pub fn new(cell: &Patch, x: &[Vec3; 16], piece: u32, place: [[f64; 2]; 2], full: bool) -> Self {
         let (s, t) = (derivative(x, 0), derivative(x, 1));
         let (ss, st, tt) = (derivative(&s, 0), derivative(&s, 1), derivative(&t, 1));
         let third =
@@ -268,40 +284,31 @@ impl Bent {
     }
 }
 
+/// Position, first and second derivatives of a bicubic in powers: p, s, t, ss, st, tt.
+#[inline]
+fn second(powers: &[Vec3; 16], s: f64, t: f64) -> [Vec3; 6] {
+    let mut out = [Vec3::zero(); 6];
+    for i in (0..4).rev() {
+        let c = &powers[i * 4..i * 4 + 4];
+        let f = ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
+        let d = (c[3] * (3.0 * t) + c[2] * 2.0) * t + c[1];
+        let dd = c[3] * (6.0 * t) + c[2] * 2.0;
+        // Horner's rule with derivatives.
+        out[3] = out[3] * s + out[1] * 2.0;
+        out[1] = out[1] * s + out[0];
+        out[0] = out[0] * s + f;
+        out[4] = out[4] * s + out[2];
+        out[2] = out[2] * s + d;
+        out[5] = out[5] * s + dd;
+    }
+    out
+}
+
 impl Piece {
     /// Position, first and second derivatives at (s, t): p, s, t, ss, st, tt.
     #[inline]
     pub fn jet(&self, s: f64, t: f64) -> [Vec3; 6] {
-        let mut out = [Vec3::zero(); 6];
-        for i in (0..4).rev() {
-            let c = &self.powers[i * 4..i * 4 + 4];
-            let f = ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
-            let d = (c[3] * (3.0 * t) + c[2] * 2.0) * t + c[1];
-            let dd = c[3] * (6.0 * t) + c[2] * 2.0;
-            // Horner's rule with derivatives.
-            out[3] = out[3] * s + out[1] * 2.0;
-            out[1] = out[1] * s + out[0];
-            out[0] = out[0] * s + f;
-            out[4] = out[4] * s + out[2];
-            out[2] = out[2] * s + d;
-            out[5] = out[5] * s + dd;
-        }
-        out
-    }
-
-    /// Position and first derivatives at (s, t).
-    #[inline(always)]
-    pub fn first(&self, s: f64, t: f64) -> [Vec3; 3] {
-        let mut out = [Vec3::zero(); 3];
-        for i in (0..4).rev() {
-            let c = &self.powers[i * 4..i * 4 + 4];
-            let f = ((c[3] * t + c[2]) * t + c[1]) * t + c[0];
-            let d = (c[3] * (3.0 * t) + c[2] * 2.0) * t + c[1];
-            out[1] = out[1] * s + out[0];
-            out[0] = out[0] * s + f;
-            out[2] = out[2] * s + d;
-        }
-        out
+        second(&self.powers, s, t)
     }
 
     /// The surface's parameters at (s, t).
@@ -340,55 +347,94 @@ impl Cells {
     fn cut(surface: &dyn Surface<f64>, bend: f64, full: bool) -> Self {
         let tree = SurfaceTree::new(surface);
         let mut pieces = Vec::with_capacity(tree.patches.len());
-        let mut cells: Vec<(Patch, u32, [[f64; 2]; 2])> = Vec::new();
+        let mut twigs: Vec<Twig> = Vec::with_capacity(8 * tree.patches.len());
         for (k, patch) in tree.patches.iter().enumerate() {
-            let powers = patch_powers(patch);
-            pieces.push(Piece { uv: patch.uv, powers, slack: patch.slack });
-            let mut stack = vec![(*patch, [[-1.0, 1.0]; 2], 0)];
-            while let Some((part, place, halvings)) = stack.pop() {
-                let [lu, lv] = part.lengths();
+            pieces.push(Piece { uv: patch.uv, powers: patch_powers(patch), slack: patch.slack });
+            let place = [[-1.0, 1.0]; 2];
+            twigs.push(Twig { patch: *patch, piece: k as u32, below: 0, cell: 0, place });
+        }
+        let mut cells: Vec<usize> = Vec::new();
+        for k in 0..tree.patches.len() {
+            let mut stack = vec![(k, 0)];
+            while let Some((at, halvings)) = stack.pop() {
+                let twig = twigs[at];
+                let [lu, lv] = twig.patch.lengths();
                 let longest = lu.max(lv);
-                let enough = part.bend() <= bend * lu.min(lv).max(0.25 * longest);
+                let enough = twig.patch.bend() <= bend * lu.min(lv).max(0.25 * longest);
                 if enough || halvings >= MOST_HALVINGS || cells.len() + stack.len() >= MOST_CELLS {
-                    cells.push((part, k as u32, place));
+                    cells.push(at);
                     continue;
                 }
                 let axis = usize::from(lv > lu);
-                let [a, b] = place[axis];
+                let [a, b] = twig.place[axis];
                 let m = 0.5 * (a + b);
-                for (half, span) in part.halves(axis).into_iter().zip([[a, m], [m, b]]) {
-                    let mut place = place;
+                twigs[at].below = twigs.len() as u32;
+                for (half, span) in twig.patch.halves(axis).into_iter().zip([[a, m], [m, b]]) {
+                    let mut place = twig.place;
                     place[axis] = span;
-                    stack.push((half, place, halvings + 1));
+                    stack.push((twigs.len(), halvings + 1));
+                    twigs.push(Twig { patch: half, place, ..twig });
                 }
             }
         }
-        let bounds: Vec<Box3> = cells.iter().map(|c| c.0.bounds()).collect();
+        let bounds: Vec<Box3> = cells.iter().map(|&at| twigs[at].patch.bounds()).collect();
         let boxes = Boxes::new(&bounds, 1);
         let mut flats = Vec::with_capacity(cells.len());
         let mut bents = Vec::with_capacity(cells.len());
-        for &k in &boxes.order {
-            let (part, piece, place) = &cells[k as usize];
-            let x = patch_powers(part);
-            flats.push(Flat::new(part, &x));
-            bents.push(Bent::new(part, &x, *piece, *place, full));
+        for (number, &k) in boxes.order.iter().enumerate() {
+            let twig = &mut twigs[cells[k as usize]];
+            twig.cell = number as u32;
+            let x = patch_powers(&twig.patch);
+            flats.push(Flat::new(&twig.patch, &x));
+            bents.push(Bent::new(&twig.patch, &x, twig.piece, twig.place, full));
         }
         let forks = forks(&boxes);
         let quads = if full { quads(&forks) } else { Vec::new() };
-        Self { tree, pieces, flats, bents, forks, quads }
+        let twigs = if full { Vec::new() } else { twigs };
+        Self { tree, pieces, flats, bents, forks, quads, twigs }
     }
 }
 
 /// The pieces as one surface, where they are the surface itself, to rounding.
-pub(crate) struct Polynomials<'a> {
-    cells: &'a Cells,
-    /// Where pieces begin along u and v; the first is minus infinity.
-    starts: [Vec<f64>; 2],
+#[derive(Clone, Debug)]
+pub(crate) struct Polynomials {
+    /// Where pieces begin along u and v, and where the last one ends.
+    ends: [Vec<f64>; 2],
+    /// Two over their widths.
+    scales: [Vec<f64>; 2],
+    /// Coefficients of s^i t^j at [i * 4 + j], each with a fourth number that is 0.
+    powers: Vec<[[f64; 4]; 16]>,
+    lanes: Lanes,
+}
+
+/// Registers of four numbers, where the processor has them.
+#[derive(Clone, Copy, Debug)]
+struct Lanes {
+    #[cfg(target_arch = "x86_64")]
+    four: Option<pulp::x86::V3>,
+}
+
+impl Lanes {
+    fn new() -> Self {
+        Self {
+            #[cfg(target_arch = "x86_64")]
+            four: pulp::x86::V3::try_new(),
+        }
+    }
+
+    #[inline]
+    fn run<F: pulp::WithSimd>(self, work: F) -> F::Output {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(four) = self.four {
+            return pulp::Simd::vectorize(four, work);
+        }
+        pulp::Simd::vectorize(pulp::Scalar::new(), work)
+    }
 }
 
 impl Cells {
     /// The pieces as a surface, if they are a grid of exact ones.
-    pub fn polynomials(&self) -> Option<Polynomials<'_>> {
+    pub fn polynomials(&self) -> Option<Polynomials> {
         let pieces = &self.pieces;
         let columns = pieces.iter().take_while(|p| p.uv[0] == pieces[0].uv[0]).count();
         let rows = pieces.len() / columns;
@@ -399,33 +445,143 @@ impl Cells {
         if !(grid && self.tree.exact) {
             return None;
         }
-        let mut us: Vec<f64> = (0..rows).map(|k| pieces[k * columns].uv[0][0]).collect();
-        let mut vs: Vec<f64> = (0..columns).map(|k| pieces[k].uv[1][0]).collect();
-        (us[0], vs[0]) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        Some(Polynomials { cells: self, starts: [us, vs] })
+        let us = (0..rows).map(|k| pieces[k * columns].uv[0]);
+        let vs = (0..columns).map(|k| pieces[k].uv[1]);
+        let spans: [Vec<[f64; 2]>; 2] = [us.collect(), vs.collect()];
+        let ends = spans.each_ref().map(|all| all.iter().map(|s| s[0]).chain([1.0]).collect());
+        let scales = spans.each_ref().map(|all| all.iter().map(|[a, b]| 2.0 / (b - a)).collect());
+        let powers = pieces.iter().map(|p| p.powers.map(|c| [c.x, c.y, c.z, 0.0])).collect();
+        Some(Polynomials { ends, scales, powers, lanes: Lanes::new() })
     }
 }
 
-impl Surface<f64> for Polynomials<'_> {
+/// The number of the span that `x` is in; the first or last one outside.
+#[inline]
+fn span(ends: &[f64], x: f64) -> usize {
+    let last = ends.len() - 2;
+    // Right at once where spans are even.
+    let mut k = ((x * (last + 1) as f64) as usize).min(last);
+    while k > 0 && x < ends[k] {
+        k -= 1;
+    }
+    while k < last && x >= ends[k + 1] {
+        k += 1;
+    }
+    k
+}
+
+/// Position and first derivatives of a piece by Horner's rule, as many numbers at a time as the
+/// processor can. Each is computed as by itself, without fused operations: the bits are the same.
+struct First<'a> {
+    powers: &'a [[f64; 4]; 16],
+    s: f64,
+    t: f64,
+}
+
+impl pulp::WithSimd for First<'_> {
+    type Output = [[f64; 4]; 3];
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> [[f64; 4]; 3] {
+        // No closures where registers are wide: those that are not inlined lose them.
+        let (s, t, triple) =
+            (simd.splat_f64s(self.s), simd.splat_f64s(self.t), simd.splat_f64s(3.0 * self.t));
+        let (two, zero) = (simd.splat_f64s(2.0), simd.splat_f64s(0.0));
+        let mut out = [[0.0; 4]; 3];
+        for part in 0..4 / S::F64_LANES {
+            let (mut p, mut by_s, mut by_t) = (zero, zero, zero);
+            for i in [3, 2, 1, 0] {
+                let a = S::as_simd_f64s(&self.powers[i * 4]).0[part];
+                let b = S::as_simd_f64s(&self.powers[i * 4 + 1]).0[part];
+                let c = S::as_simd_f64s(&self.powers[i * 4 + 2]).0[part];
+                let d = S::as_simd_f64s(&self.powers[i * 4 + 3]).0[part];
+                let f = simd.add_f64s(simd.mul_f64s(d, t), c);
+                let f = simd.add_f64s(simd.mul_f64s(f, t), b);
+                let f = simd.add_f64s(simd.mul_f64s(f, t), a);
+                let g = simd.add_f64s(simd.mul_f64s(d, triple), simd.mul_f64s(c, two));
+                let g = simd.add_f64s(simd.mul_f64s(g, t), b);
+                by_s = simd.add_f64s(simd.mul_f64s(by_s, s), p);
+                p = simd.add_f64s(simd.mul_f64s(p, s), f);
+                by_t = simd.add_f64s(simd.mul_f64s(by_t, s), g);
+            }
+            S::as_mut_simd_f64s(&mut out[0]).0[part] = p;
+            S::as_mut_simd_f64s(&mut out[1]).0[part] = by_s;
+            S::as_mut_simd_f64s(&mut out[2]).0[part] = by_t;
+        }
+        out
+    }
+}
+
+/// The vectors by the surface's parameters.
+#[inline]
+fn scaled([x, s, t]: &[[f64; 4]; 3], [by_u, by_v]: [f64; 2]) -> [Vec3; 3] {
+    [
+        Vec3 { x: x[0], y: x[1], z: x[2] },
+        Vec3 { x: s[0] * by_u, y: s[1] * by_u, z: s[2] * by_u },
+        Vec3 { x: t[0] * by_v, y: t[1] * by_v, z: t[2] * by_v },
+    ]
+}
+
+impl Polynomials {
+    /// The number of the piece at (u, v), its scales, and the place in its own parameters.
+    #[inline]
+    fn locate(&self, u: f64, v: f64) -> (usize, [f64; 2], [f64; 2]) {
+        let [us, vs] = &self.ends;
+        let (i, j) = (span(us, u), span(vs, v));
+        let by = [self.scales[0][i], self.scales[1][j]];
+        let place = [(u - us[i]) * by[0] - 1.0, (v - vs[j]) * by[1] - 1.0];
+        (i * (vs.len() - 1) + j, by, place)
+    }
+}
+
+/// Two such places at once.
+struct Both<'a>([First<'a>; 2]);
+
+impl pulp::WithSimd for Both<'_> {
+    type Output = [[[f64; 4]; 3]; 2];
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
+        let [a, b] = self.0;
+        [a.with_simd(simd), b.with_simd(simd)]
+    }
+}
+
+impl Polynomials {
+    /// Position and first derivatives of two surfaces at (u, v) and (p, r).
+    #[inline]
+    pub fn both(a: &Self, b: &Self, [u, v, p, r]: [f64; 4]) -> [[Vec3; 3]; 2] {
+        let (m, by_a, [s, t]) = a.locate(u, v);
+        let first = First { powers: &a.powers[m], s, t };
+        let (n, by_b, [s, t]) = b.locate(p, r);
+        let second = First { powers: &b.powers[n], s, t };
+        let [x, y] = a.lanes.run(Both([first, second]));
+        [scaled(&x, by_a), scaled(&y, by_b)]
+    }
+}
+
+impl Surface<f64> for Polynomials {
     fn jet(&self, u: f64, v: f64, order: Order) -> SurfJet<f64> {
-        let [us, vs] = &self.starts;
-        let span = |starts: &[f64], x: f64| starts.partition_point(|s| *s <= x).max(1) - 1;
-        let piece = &self.cells.pieces[span(us, u) * vs.len() + span(vs, v)];
-        let [[a, b], [c, d]] = piece.uv;
-        let (by_u, by_v) = (2.0 / (b - a), 2.0 / (d - c));
-        let (s, t) = ((u - a) * by_u - 1.0, (v - c) * by_v - 1.0);
+        let (number, [by_u, by_v], [s, t]) = self.locate(u, v);
+        let powers = &self.powers[number];
         if order == Order::Second {
-            let [p, s, t, ss, st, tt] = piece.jet(s, t);
+            let powers = powers.map(|x| Vec3 { x: x[0], y: x[1], z: x[2] });
+            let [p, s, t, ss, st, tt] = second(&powers, s, t);
             let (uu, uv, vv) = (ss * (by_u * by_u), st * (by_u * by_v), tt * (by_v * by_v));
             return SurfJet { p, u: s * by_u, v: t * by_v, uu, uv, vv };
         }
-        let [p, s, t] = piece.first(s, t);
-        SurfJet { p, u: s * by_u, v: t * by_v, ..SurfJet::default() }
+        let first = self.lanes.run(First { powers, s, t });
+        let [p, u, v] = scaled(&first, [by_u, by_v]);
+        SurfJet { p, u, v, ..SurfJet::default() }
+    }
+
+    fn breaks(&self) -> [Vec<f64>; 2] {
+        self.ends.each_ref().map(|ends| ends[1..ends.len() - 1].to_vec())
     }
 }
 
 /// The tree with the boxes of both children side by side; its leaves have one item.
-fn forks(boxes: &Boxes) -> Vec<Fork> {
+pub(crate) fn forks(boxes: &Boxes) -> Vec<Fork> {
     let nodes = &boxes.nodes;
     let mut number = vec![0u32; nodes.len()];
     let mut inner = 0;

@@ -26,6 +26,7 @@ mod nearest;
 mod newton;
 pub mod pieces;
 mod plain;
+mod plates;
 mod report;
 pub mod roots;
 mod tree;

@@ -4,10 +4,12 @@
 //! surface, (p, r). A step goes along the tangent n1 x n2 and is corrected by Newton's method in
 //! the plane across it. Branches end at the edges of the surfaces, or come back to their start. An
 //! edge at which a surface is joined to its own opposite edge (the seam of a cylinder) is no end: the
-//! branch goes on from the opposite edge, with two stations at one place there.
+//! branch goes on from the opposite edge, with two stations at one place there. So it does where a
+//! surface is creased along one of its joints and the branch turns by more than a step may.
 //!
 //! How all branches are found is told in [`crate::branches`].
 
+use crate::cells::Polynomials;
 use crate::implicit::solve;
 use crate::newton::{OUTSIDE, Range, newton};
 use crate::pieces::size_of;
@@ -38,6 +40,8 @@ pub struct Crossing<'a> {
     pub size: f64,
     /// For each unknown, whether its 0 and 1 are one seam of a closed surface.
     pub closed: [bool; 4],
+    /// The pieces of both surfaces where they are at hand and the surfaces themselves, to rounding.
+    pub(crate) quick: [Option<&'a Polynomials>; 2],
 }
 
 /// A point of an intersection.
@@ -108,6 +112,17 @@ struct View {
     k: Option<Tangents>,
 }
 
+/// When a few Newton steps are enough.
+#[derive(Clone, Copy, PartialEq)]
+enum Until {
+    /// What is left is zero to rounding.
+    There,
+    /// The last step is [`CLOSE`].
+    Close,
+    /// That, or the error after it is below rounding.
+    Near,
+}
+
 /// Position and first derivatives of a surface.
 type Tangents = [Vec3; 3];
 
@@ -117,9 +132,19 @@ fn tangents(surface: &dyn Surface<f64>, u: f64, v: f64) -> Tangents {
     [j.p, j.u, j.v]
 }
 
-/// The turn between neighbours that steps aim at, and cosine of the largest, 0.3 rad.
-const TURN: f64 = 0.2;
-const LARGEST_TURN: f64 = 0.955;
+/// The turn between neighbours that steps aim at, and cosine of the largest, 0.43 rad.
+const TURN: f64 = 0.28;
+const LARGEST_TURN: f64 = 0.909;
+
+/// While a branch is followed, a step this short as a share of the size is the last one if Newton's
+/// method leaves an error below rounding, as the last two steps tell.
+const LAST_STEP: f64 = 1e-7;
+
+/// At a crease the surface, and with it the branch, turns by an angle of at least this cosine.
+const CREASE: f64 = 0.9999;
+
+/// As near to a joint as tells its sides apart.
+const BESIDE: f64 = 1e-9;
 
 /// A step may end this share of it away from where the last two stations lead: farther off is another
 /// branch, or a bend that asks for shorter steps.
@@ -133,27 +158,39 @@ impl<'a> Crossing<'a> {
     pub fn with_plane(first: &'a dyn Surface<f64>, plane: Plane<f64>) -> Self {
         let size = size_by_samples(first);
         let [u, v] = closed_sides(first, size);
-        Self { first, other: Other::Plane(plane), size, closed: [u, v, false, false] }
+        Self {
+            first,
+            other: Other::Plane(plane),
+            size,
+            closed: [u, v, false, false],
+            quick: [None; 2],
+        }
     }
 
     /// Two surfaces.
     pub fn with_surface(first: &'a dyn Surface<f64>, second: &'a dyn Surface<f64>) -> Self {
         let size = size_by_samples(first).min(size_by_samples(second));
         let ([u, v], [p, r]) = (closed_sides(first, size), closed_sides(second, size));
-        Self { first, other: Other::Surface(second), size, closed: [u, v, p, r] }
+        Self { first, other: Other::Surface(second), size, closed: [u, v, p, r], quick: [None; 2] }
     }
 
     /// A surface and the zero set of an implicit function.
     pub fn with_level(first: &'a dyn Surface<f64>, field: &'a dyn Field<f64>) -> Self {
         let size = size_by_samples(first);
         let [u, v] = closed_sides(first, size);
-        Self { first, other: Other::Level(field), size, closed: [u, v, false, false] }
+        Self {
+            first,
+            other: Other::Level(field),
+            size,
+            closed: [u, v, false, false],
+            quick: [None; 2],
+        }
     }
 
     /// For single points of an intersection of which the size is known: no branch can be followed
     /// across a seam.
     pub fn local(first: &'a dyn Surface<f64>, other: Other<'a>, size: f64) -> Self {
-        Self { first, other, size, closed: [false; 4] }
+        Self { first, other, size, closed: [false; 4], quick: [None; 2] }
     }
 
     /// The number of unknowns.
@@ -236,7 +273,7 @@ impl<'a> Crossing<'a> {
     /// The point of the intersection in the plane through `x` across `d` with its tangent, from a
     /// guess that is good, as a rule.
     pub fn station_across(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Station> {
-        let q = self.steps(guess, x, d, CLOSE * self.size).map(|s| s.q);
+        let q = self.steps(guess, x, d, Until::Close).map(|s| s.q);
         self.station(q.or_else(|| self.across(guess, x, d))?)
     }
 
@@ -312,6 +349,11 @@ impl<'a> Crossing<'a> {
     /// Both shapes at a place near the point in the plane through `x` across `d`.
     #[inline]
     fn view(&self, q: Unknowns, x: Vec3, d: Vec3) -> View {
+        if let [Some(a), Some(b)] = self.quick {
+            let [j, k] = Polynomials::both(a, b, q);
+            let (gap, off) = ((j[0] - k[0]).norm(), d.dot(j[0] - x));
+            return View { gap, off, normal: k[1].cross(k[2]), j, k: Some(k) };
+        }
         let j = tangents(self.first, q[0], q[1]);
         let off = d.dot(j[0] - x);
         match self.other {
@@ -356,23 +398,34 @@ impl<'a> Crossing<'a> {
     /// A few plain Newton steps from a good guess towards the point in the plane through `x` across
     /// `d`; `None` when they do not settle at once.
     pub(crate) fn settled(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Station> {
-        self.steps(guess, x, d, 0.0)
+        self.steps(guess, x, d, Until::There)
     }
 
-    /// The same; a step of less than `close` is the last one, after which nothing is evaluated again:
-    /// the tangent is that of the place before it.
-    fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, close: f64) -> Option<Station> {
+    /// The same, until a step is so short that nothing is evaluated again: the tangent is that of the
+    /// place before it then.
+    fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, until: Until) -> Option<Station> {
         let mut q = guess;
         let goal = 1e-13 * self.size;
+        let mut before = 0.0;
         for round in 0..6 {
             let goal = if round < 5 { goal } else { 10.0 * goal };
             let view = self.view(q, x, d);
             let station = |q: Unknowns| self.station_of(q, &view.j, view.k.as_ref(), view.normal);
-            if close == 0.0 && view.gap.abs().max(view.off.abs()) <= goal {
+            if until == Until::There && view.gap.abs().max(view.off.abs()) <= goal {
                 return station(q);
             }
             let (next, way) = self.next(q, &view, d)?;
-            if way <= close {
+            let last = match until {
+                Until::There => false,
+                Until::Close => way <= CLOSE * self.size,
+                // Each error is a multiple of the square of the one before.
+                Until::Near => {
+                    way <= CLOSE * self.size
+                        || way <= LAST_STEP * self.size && way * way * way <= goal * before * before
+                }
+            };
+            before = way;
+            if last {
                 let [u, v, ..] = std::array::from_fn::<f64, 4, _>(|k| next[k] - q[k]);
                 return Some(Station {
                     x: view.j[0] + view.j[1] * u + view.j[2] * v,
@@ -394,8 +447,9 @@ impl<'a> Crossing<'a> {
         let mut all = vec![start];
         let [first, longest, least] = STEPS.map(|share| share * self.size);
         let mut step = first;
-        // The stations since the last seam: the two before tell where the next one is.
+        // The stations since the last seam or crease: the two before tell where the next one is.
         let mut since = 0;
+        let mut lines = None;
         while all.len() < MOST_STATIONS {
             let last = *all.last().expect("it begins with one");
             // Not more than a tenth of a surface at once.
@@ -411,14 +465,28 @@ impl<'a> Crossing<'a> {
             let x = last.x + tangent * step;
             let near = if since > 0 { ASTRAY * step } else { 1.5 * step };
             let next = self
-                .steps(guess, x, last.tangent, CLOSE * self.size)
-                .or_else(|| self.station(self.across(guess, x, last.tangent)?))
+                .steps(guess, x, last.tangent, Until::Near)
+                .or_else(|| {
+                    // Shorter steps are cheaper than damped ones.
+                    let short = step < 0.1 * first;
+                    short
+                        .then(|| self.across(guess, x, last.tangent))
+                        .flatten()
+                        .and_then(|q| self.station(q))
+                })
                 .filter(|s| {
                     s.tangent.dot(last.tangent) > LARGEST_TURN
                         && s.x.distance(last.x) < 1.5 * step
                         && s.x.distance(ahead) < near
                 });
             let Some(next) = next else {
+                let lines = lines.get_or_insert_with(|| self.lines());
+                if let Some(both) = self.crease(lines, &last, guess) {
+                    let skipped = both[0].x.distance(last.x) <= 1e-12 * self.size;
+                    all.extend(&both[usize::from(skipped)..]);
+                    since = 0;
+                    continue;
+                }
                 step *= 0.5;
                 if step < least {
                     return (all, End::Tangent);
@@ -480,6 +548,71 @@ impl<'a> Crossing<'a> {
         (all, End::Lost)
     }
 
+    /// The joints of the surfaces: numbers of unknowns and their values there.
+    fn lines(&self) -> Vec<(usize, f64)> {
+        let mut lines = Vec::new();
+        let mut add = |at: usize, all: [Vec<f64>; 2]| {
+            for (k, values) in all.into_iter().enumerate() {
+                lines.extend(values.into_iter().map(|x| (at + k, x)));
+            }
+        };
+        add(0, self.first.joints());
+        if let Other::Surface(second) = self.other {
+            add(2, second.joints());
+        }
+        lines
+    }
+
+    /// True when the normals on both sides of a joint are different near a place.
+    fn creased(&self, q: Unknowns, k: usize, value: f64) -> bool {
+        let normal = |by: f64| {
+            let mut q = q;
+            q[k] = value + by;
+            let j = match self.other {
+                Other::Surface(second) if k > 1 => tangents(second, q[2], q[3]),
+                _ => tangents(self.first, q[0], q[1]),
+            };
+            j[1].cross(j[2]).normalized().unwrap_or_default()
+        };
+        normal(-BESIDE).dot(normal(BESIDE)) < CREASE
+    }
+
+    /// The place on the way to `ahead` at which a surface is creased, so that the branch turns there:
+    /// two stations with the tangents of both sides.
+    fn crease(
+        &self,
+        lines: &[(usize, f64)],
+        from: &Station,
+        ahead: Unknowns,
+    ) -> Option<[Station; 2]> {
+        let share = |&(k, x): &(usize, f64)| (x - from.q[k]) / (ahead[k] - from.q[k]);
+        let mut on_way: Vec<&(usize, f64)> =
+            lines.iter().filter(|(k, x)| (from.q[*k] - x) * (ahead[*k] - x) < 0.0).collect();
+        on_way.sort_by(|a, b| share(a).total_cmp(&share(b)));
+        on_way.into_iter().find_map(|line| {
+            let &(k, value) = line;
+            let guess: Unknowns =
+                std::array::from_fn(|i| from.q[i] + share(line) * (ahead[i] - from.q[i]));
+            if !self.creased(guess, k, value) {
+                return None;
+            }
+            let mut at = self.at_line(guess, k, value)?;
+            at[k] = value;
+            let inside = |q: &f64| (-OUTSIDE..=1.0 + OUTSIDE).contains(q);
+            let x = self.first.jet(at[0], at[1], Order::Zero).p;
+            let side = |by: f64| {
+                let mut q = at;
+                q[k] += by * BESIDE * (ahead[k] - from.q[k]).signum();
+                Some(Station { q: at, x, ..self.station(q)? })
+            };
+            let (before, after) = (side(-1.0)?, side(1.0)?);
+            let turned = before.tangent.dot(after.tangent) < CREASE;
+            let smooth = before.tangent.dot(from.tangent) > LARGEST_TURN;
+            (turned && smooth && at[..self.unknowns()].iter().all(inside))
+                .then_some([before, after])
+        })
+    }
+
     /// Where a branch that comes to an edge goes on, if the edge is a seam.
     fn beyond_seam(&self, at: &Station, end: End) -> Option<Station> {
         let End::Edge { unknown, value } = end else { return None };
@@ -492,7 +625,8 @@ impl<'a> Crossing<'a> {
         q[unknown] = 1.0 - value;
         let station = self.station(q)?;
         let near = station.x.distance(at.x) <= 1e-7 * self.size;
-        (near && station.tangent.dot(at.tangent) > 0.0).then_some(station)
+        // A seam may be a crease.
+        (near && station.tangent.dot(at.tangent) > -0.5).then_some(station)
     }
 
     fn same_place(&self, a: &Station, b: &Station) -> bool {
@@ -536,6 +670,15 @@ impl<'a> Crossing<'a> {
 
     /// The whole branch through a point of the intersection, in the direction n1 x n2.
     pub fn branch(&self, seed: Unknowns) -> Option<Branch> {
+        // A seed may be outside by a hair.
+        let mut seed = seed;
+        for k in 0..self.unknowns() {
+            let edge = seed[k].clamp(0.0, 1.0);
+            if seed[k] != edge {
+                seed = self.at_line(seed, k, edge)?;
+                seed[k] = edge;
+            }
+        }
         // Shapes that touch cross at such angles within the rounding of the place.
         let start = self.station(seed).filter(|_| self.direction(seed).norm() >= TANGENT)?;
         let (mut forward, end) = self.walk(start, 1.0);
@@ -544,6 +687,10 @@ impl<'a> Crossing<'a> {
         }
         let (mut stations, begin) = self.walk(start, -1.0);
         stations.reverse();
+        if begin == End::Closed {
+            // The other way round it did not come past a narrow place, such as near a saddle.
+            return Some(Branch { stations, ends: [End::Closed; 2] });
+        }
         stations.extend(forward.drain(1..));
         Some(Branch { stations, ends: [begin, end] })
     }

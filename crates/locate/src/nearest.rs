@@ -68,7 +68,7 @@ pub(crate) fn apart(a: Vec3, b: Vec3) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Foot<const N: usize> {
     pub at: [f64; N],
-    xyz: Vec3,
+    pub xyz: Vec3,
     /// What is left of the slope of the distance, as a length.
     residual: f64,
     iterations: u32,
@@ -76,7 +76,7 @@ pub(crate) struct Foot<const N: usize> {
     pub held: [bool; N],
     /// True when the distance has no definite second derivative there.
     pub flat: bool,
-    converged: bool,
+    pub converged: bool,
 }
 
 /// The slope of the distance along the free unknowns, as a length.
@@ -229,6 +229,114 @@ pub(crate) fn surface_foot(
         let j = surface.jet(u, v, Order::Second);
         (j.p, [j.u, j.v], [[j.uu, j.uv], [j.uv, j.vv]])
     })
+}
+
+/// A surface whose normals on both sides of a place this near it are at an angle of at least this
+/// cosine is creased between.
+const CREASE_WITHIN: f64 = 1e-4;
+const CREASE: f64 = 0.9999;
+
+/// The least distance from `p` along a crease near `near`, of which no joint tells: where a spline's
+/// knots move with the other parameter. Descent comes to no end there, for the distance has a kink
+/// across the crease. `None` where there is no crease, or none with such a place.
+///
+/// With one parameter given, the other one's place on the crease is found by halving; along the crease,
+/// whose tangent is n1 x n2 with the normals of its sides, the slope of the distance is brought to zero
+/// by the secant method.
+pub(crate) fn on_crease(
+    surface: &dyn Surface<f64>,
+    p: Vec3,
+    near: [f64; 2],
+    size: f64,
+) -> Option<Foot<2>> {
+    let normal = |q: [f64; 2]| surface.jet(q[0], q[1], Order::First).normal();
+    // The parameter that leads over the crease.
+    let sides = |q: [f64; 2], axis: usize, by: f64| {
+        [-by, by].map(|by| {
+            let mut q = q;
+            q[axis] = (q[axis] + by).clamp(0.0, 1.0);
+            (q[axis], normal(q))
+        })
+    };
+    let bent = |axis: usize| {
+        let [(_, m), (_, n)] = sides(near, axis, CREASE_WITHIN);
+        m.dot(n)
+    };
+    let axis = usize::from(bent(1) < bent(0));
+    // The place on the crease at a value of the other parameter, where it is, and the crease's tangent.
+    let place = |q: [f64; 2]| -> Option<([f64; 2], Vec3, Vec3)> {
+        let [(mut low, m), (mut high, n)] = sides(q, axis, CREASE_WITHIN);
+        if m.dot(n) > CREASE || m == Vec3::zero() || n == Vec3::zero() {
+            return None;
+        }
+        let mut q = q;
+        for _ in 0..60 {
+            q[axis] = 0.5 * (low + high);
+            if q[axis] <= low || q[axis] >= high {
+                break;
+            }
+            let k = normal(q);
+            if k.dot(m) > k.dot(n) { low = q[axis] } else { high = q[axis] }
+        }
+        let x = surface.jet(q[0], q[1], Order::Zero).p;
+        Some((q, x, m.cross(n).normalized()?))
+    };
+    let other = 1 - axis;
+    let slope = |(_, x, t): &([f64; 2], Vec3, Vec3)| t.dot(*x - p);
+    let mut before = place(near)?;
+    let mut step = if near[other] < 0.5 { 1e-5 } else { -1e-5 };
+    // How the crease's place moves with the other parameter.
+    let mut rate = 0.0;
+    for iterations in 1..80 {
+        let mut q = before.0;
+        q[other] += step;
+        q[axis] += rate * step;
+        if !(0.0..=1.0).contains(&q[other]) {
+            return None;
+        }
+        // Not so far that the crease is elsewhere.
+        let Some(next) = place(q) else {
+            step *= 0.25;
+            continue;
+        };
+        let (f, g) = (slope(&before), slope(&next));
+        if g.abs() <= 1e-13 * size.max(next.1.distance(p)) {
+            return Some(Foot {
+                at: next.0,
+                xyz: next.1,
+                residual: g.abs(),
+                iterations,
+                held: [false; 2],
+                flat: false,
+                converged: true,
+            });
+        }
+        let run = next.0[other] - before.0[other];
+        if run.abs() > 1e-9 {
+            rate = (next.0[axis] - before.0[axis]) / run;
+        }
+        step = (-g * run / (g - f)).clamp(-0.1, 0.1);
+        if !step.is_finite() || step == 0.0 {
+            return None;
+        }
+        before = next;
+    }
+    None
+}
+
+/// The foot on a crease near the feet that were found, if it is as near as they are: the others about
+/// it are where descents on both sides gave up.
+fn creased(surface: &dyn Surface<f64>, p: Vec3, feet: Vec<Foot<2>>, size: f64) -> Vec<Foot<2>> {
+    let best = feet.iter().min_by(|a, b| a.xyz.distance(p).total_cmp(&b.xyz.distance(p)));
+    let found = best.and_then(|best| {
+        let foot = on_crease(surface, p, best.at, size)?;
+        (foot.xyz.distance(p) <= best.xyz.distance(p) + 1e-12 * size).then_some(foot)
+    });
+    let Some(foot) = found else { return feet };
+    let away = |f: &Foot<2>| f.xyz.distance(foot.xyz) > 1e-2 * size;
+    let least = foot.xyz.distance(p) + TIE * size;
+    let others = feet.into_iter().filter(|f| away(f) && f.xyz.distance(p) <= least);
+    std::iter::once(foot).chain(others).collect()
 }
 
 /// The status of a foot: the nearest point of a shape exists always.
@@ -386,6 +494,10 @@ pub fn nearest_on_surface(
         if foot.converged {
             return solution(&uv, vec![foot]);
         }
+        let feet = creased(surface, p, vec![foot], size);
+        if feet[0].converged {
+            return solution(&uv, feet);
+        }
     }
     let tree = SurfaceTree::new(surface);
     let mut found = nearest_in_surface(surface, &tree, p, start);
@@ -454,6 +566,9 @@ pub fn nearest_in_surface(
     // From the border of a piece on into the neighbours, and to full accuracy.
     let whole = |foot: Foot<2>| surface_foot(surface, p, foot.at, [[0.0, 1.0]; 2], tree.size);
     let feet = nearest_of(feet, near, tree.size).into_iter().map(whole).collect();
-    let feet = nearest_of(feet, near, tree.size);
+    let mut feet = nearest_of(feet, near, tree.size);
+    if !tree.exact && (feet.len() > 1 || !feet[0].converged) {
+        feet = creased(surface, p, feet, tree.size);
+    }
     solution(&start.unwrap_or([0.5, 0.5]), feet)
 }

@@ -6,7 +6,7 @@ use common::{Random, Sphere, brute, bumpy};
 use moldloft_locate::{
     NearestCurve, NearestSurface, Status, by_place, nearest_on_curve, nearest_on_surface,
 };
-use moldloft_num::{Curve, Order, Surface, Vec3};
+use moldloft_num::{Curve, Jet, Order, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineCurve, BSplineSurface, KnotVector};
 
 /// The twin: a dense net of samples in blocks with boxes of their own, and from the nearest sample
@@ -330,4 +330,42 @@ fn the_order_by_place_has_every_point_once() {
     order.sort_unstable();
     assert!(order.into_iter().eq(0..500));
     assert!(by_place(&[]).is_empty());
+}
+
+/// A roof with its ridge from (0, 2, 1) to (4, 2, 1), which is at another v for each u, so that no joint
+/// tells of it.
+struct Roof;
+
+impl SurfaceFormula for Roof {
+    type Scalar = f64;
+    fn at<J: Jet<f64>>(&self, u: J, v: J) -> Vec3<J> {
+        let ridge = u * 0.2 + 0.4;
+        let x = u * 4.0;
+        if v.re() < ridge.re() {
+            let share = v / ridge;
+            Vec3::new(x, share * 2.0, share)
+        } else {
+            let share = (v - ridge) / (-ridge + 1.0);
+            Vec3::new(x, share * 2.0 + 2.0, -share + 1.0)
+        }
+    }
+}
+
+#[test]
+fn above_a_crease_there_is_one_foot() {
+    let prepared = NearestSurface::new(&Roof);
+    let mut random = Random(5);
+    for _ in 0..25 {
+        let p =
+            Vec3::of(random.between(0.5, 3.5), random.between(1.9, 2.1), random.between(1.3, 2.0));
+        let exact = Vec3::of(p.x, 2.0, 1.0);
+        let found = prepared.nearest(&Roof, p);
+        assert!(found.xyz.distance(exact) < 1e-11 && found.status == Status::Ok, "{p:?} {found:?}");
+        for start in [None, Some([exact.x / 4.0, 0.4 + 0.05 * exact.x])] {
+            let found = nearest_on_surface(&Roof, p, start);
+            let x = Roof.jet(found.at[0], found.at[1], Order::Zero).p;
+            assert!(x.distance(exact) < 1e-11, "{p:?} {found:?}");
+            assert_eq!(found.report.status, Status::Ok, "{p:?} {start:?} {found:?}");
+        }
+    }
 }

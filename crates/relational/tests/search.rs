@@ -359,6 +359,17 @@ fn derivatives_of_intersections_are_exact_at_sharp_bends_and_creases() {
         AbsPoint E(-1, 0.3, -2); AbsPoint F(5, 2.1, -2); AbsPoint G(-1, 0.2, 3); AbsPoint H(5, 2.4, 3); Line e(E, F);
         Line f(G, H); RuledSurf W(e, f); IntSnake x(T, W);";
     check_closely(ridge, &["t", "x"], 1e-4, 1e-8);
+    // A ridge over which they turn by more than 70 degrees.
+    let sharp =
+        ridge.replace("2, -0.9, 0.5", "2, -0.9, 2.5").replace("2.2, 2.9, 0.8", "2.2, 2.9, 2.7");
+    for name in ["t", "x"] {
+        let c = curve(&scene(&sharp), name);
+        let [x, d, _] = c.jet(0.0, Order::First);
+        let [y, e, _] = c.jet(1.0, Order::First);
+        assert!(x.distance(y) > 3.9 && c.breaks().len() == 1, "{name}");
+        assert!(d.dot(e) < 0.3 * d.norm() * e.norm(), "{name}");
+    }
+    check_closely(&sharp, &["t", "x"], 1e-4, 1e-8);
 }
 
 /// A whole tube of radius 2 about the x axis, closed at a seam below y = 2.

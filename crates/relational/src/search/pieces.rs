@@ -143,8 +143,9 @@ pub(super) fn fitted(crossing: &Crossing<'_>, stops: &[Stop]) -> Option<Vec<Fit>
     let mut all: Vec<Fit> = Vec::with_capacity(stops.len());
     let mut seam = false;
     for pair in stops.windows(2) {
-        // Nothing lies between the two stations at a seam.
-        if at_seam(&pair[0].station, &pair[1].station) {
+        // Nothing lies between the two stations at a seam or a crease.
+        let [a, b] = [&pair[0].station, &pair[1].station];
+        if at_seam(a, b) || a.x == b.x {
             seam = true;
             continue;
         }
