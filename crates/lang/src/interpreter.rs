@@ -263,9 +263,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         self.steps + count as u64 <= MOST_STEPS
     }
 
-    /// Counts a call of a function that takes longer than a statement.
+    /// Counts a call of a function that takes longer than a statement: about as long as so many.
     pub fn charge_call(&mut self) {
-        self.steps += 16;
+        self.steps += 40;
     }
 
     fn declare_routines(&mut self, module: &Module, at: usize) {
