@@ -365,6 +365,30 @@ fn wide_models_have_the_same_bits_on_any_number_of_threads() {
     assert!(one == run(2) && one == run(4));
 }
 
+/// Patches whose opposite sides are divided differently are evaluated in parts on all threads.
+#[test]
+fn large_uneven_patches_have_the_same_bits_on_any_number_of_threads() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/wingbody/wingbody.sdl");
+    let text = std::fs::read_to_string(path).unwrap().replace("{48, 10}", "{192, 60}");
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut document = sound(&text);
+            let mut bits = Vec::new();
+            for length in [20.0, 31.0] {
+                document.set(&[("length".into(), length)]).unwrap();
+                let mesh = document.panelled().unwrap();
+                let all = mesh.mesh.positions().iter().flat_map(|p| p.to_array());
+                bits.extend(all.map(f64::to_bits));
+            }
+            bits
+        })
+    };
+    let one = run(1);
+    assert!(one.len() > 60_000);
+    assert!(one == run(2) && one == run(3));
+}
+
 #[test]
 fn a_direct_edit_evaluates_exactly_what_it_reaches() {
     let mut text = String::new();
