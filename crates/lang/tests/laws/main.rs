@@ -254,7 +254,10 @@ fn check(seed: u64) -> Option<Tally> {
                 break;
             }
         }
-        if !open.is_empty() {
+        if !open.is_empty() && last.is_empty() {
+            // At the end of what the model can take: there are no differences.
+            tally.kinks += open.len();
+        } else if !open.is_empty() {
             // A kink: the one-sided differences disagree, too.
             let mut at = |h: f64| {
                 document.set(&[(name.clone(), start + h)]).ok()?;
@@ -279,8 +282,7 @@ fn check(seed: u64) -> Option<Tally> {
                     assert!(
                         folded,
                         "seed {seed}: d({what}[{i}])/d({name}) = {} but differences say {}, on its sides {left} and {right}\n{text}",
-                        derivative[i],
-                        last.get(i).copied().unwrap_or(f64::NAN),
+                        derivative[i], last[i],
                     );
                     tally.kinks += 1;
                 }
