@@ -12,6 +12,7 @@ struct Kept {
     set: Set,
     over: Box3,
     resolution: Resolution,
+    sharp: bool,
     facets: Arc<Facets>,
 }
 
@@ -33,7 +34,10 @@ pub fn facet(set: &Set, over: &Box3, options: &Options) -> Result<Arc<Facets>, F
     let mut before = None;
     {
         let lately = LATELY.lock().unwrap_or_else(PoisonError::into_inner);
-        let alike = |k: &&Kept| same_box(&k.over, over) && k.resolution == options.resolution;
+        let alike = |k: &&Kept| {
+            let same = k.resolution == options.resolution && k.sharp == options.sharp;
+            same && same_box(&k.over, over)
+        };
         // The latest first: it is the most alike.
         for kept in lately.iter().rev().filter(alike) {
             if kept.set.same(set) {
@@ -48,6 +52,7 @@ pub fn facet(set: &Set, over: &Box3, options: &Options) -> Result<Arc<Facets>, F
         set: set.clone(),
         over: *over,
         resolution: options.resolution,
+        sharp: options.sharp,
         facets: facets.clone(),
     });
     let cells = |lately: &VecDeque<Kept>| lately.iter().map(|k| k.facets.cells).sum::<usize>();

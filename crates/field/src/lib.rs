@@ -12,6 +12,7 @@ mod algebra;
 mod blend;
 mod bounds;
 mod cache;
+mod curved;
 mod error;
 mod faces;
 mod facet;
@@ -58,7 +59,7 @@ pub use primitive::{Binary, Primitive};
 pub use ray::{Caster, Hit, Ray, roots};
 pub use set::{Attributes, Leaf, Membership, Set};
 pub use shapes::{Beside, Inside, Near, NotClosed, Tube};
-pub use sheets::{Dot, Mixed, Sheet, Wire, facet_mixed};
+pub use sheets::{Dot, Mixed, Sheet, Wire, facet_mixed, solid_part};
 
 pub use kinds::body::{Pieces, facets_of};
 pub use kinds::read::{field_value, primitive_of, set_of, set_value};

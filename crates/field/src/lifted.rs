@@ -1,5 +1,6 @@
 //! How facets move when parameters change: their vertices and moments as numbers with derivatives.
 
+use crate::curved::Curved;
 use crate::{Facets, FieldError, Gradient, Leaf, Moments, Primitive, Set};
 use moldloft_mesh::Mesh;
 use moldloft_num::{Real, Vec3};
@@ -72,11 +73,26 @@ impl<T: Real> Lifter<T> {
     /// # Errors
     /// Surfaces that are not the set's.
     pub fn moved_on(&self, points: &[Vec3], on: &On) -> Result<Vec<Vec3<T>>, FieldError> {
-        let primitives = self.those_of(&on.leaves, on.surfaces.iter().flatten().copied())?;
+        let primitives = self.primitives_on(on)?;
         Ok(moved(points, &on.surfaces, &primitives))
     }
 
-    fn primitives(&self, facets: &Facets) -> Result<Vec<Option<Primitive<T>>>, FieldError> {
+    /// The primitives of the leaves that points lie on.
+    ///
+    /// # Errors
+    /// Surfaces that are not the set's.
+    pub(crate) fn primitives_on(&self, on: &On) -> Result<Vec<Option<Primitive<T>>>, FieldError> {
+        self.those_of(&on.leaves, on.surfaces.iter().flatten().copied())
+    }
+
+    /// The primitives of the leaves that show.
+    ///
+    /// # Errors
+    /// Facets of another set.
+    pub(crate) fn primitives(
+        &self,
+        facets: &Facets,
+    ) -> Result<Vec<Option<Primitive<T>>>, FieldError> {
         let shown = facets.patch_leaves.iter().map(|&leaf| leaf as u32);
         self.those_of(&facets.leaves, facets.surfaces.iter().flatten().copied().chain(shown))
     }
@@ -107,7 +123,8 @@ pub struct On {
     pub surfaces: Vec<SmallVec<[u32; 3]>>,
 }
 
-fn moved<T: Real>(
+/// Points on surfaces, as these take them along.
+pub(crate) fn moved<T: Real>(
     points: &[Vec3],
     surfaces: &[SmallVec<[u32; 3]>],
     primitives: &[Option<Primitive<T>>],
@@ -156,11 +173,7 @@ impl Facets {
     pub fn lifted_by<T: Real>(&self, lifter: &Lifter<T>) -> Result<Lifted<T>, FieldError> {
         let primitives = lifter.primitives(self)?;
         let positions = moved(self.mesh.positions(), &self.surfaces, &primitives);
-        // Leaves that do not show are of no concern.
-        let constant = Primitive::real(T::one());
-        let shown: Vec<&Primitive<T>> =
-            primitives.iter().map(|p| p.as_ref().unwrap_or(&constant)).collect();
-        let moments = self.moments_of(&positions, &shown);
+        let moments = Curved::new(&self.flat()).moments(&positions, &primitives);
         let foreign = FieldError::Degenerate { what: "set: it is not the one of these facets" };
         let mesh = Mesh::new(self.mesh.topology().clone(), positions).map_err(|_| foreign)?;
         Ok(Lifted { mesh, moments })

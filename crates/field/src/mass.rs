@@ -1,8 +1,10 @@
 //! Volume, centroid and inertia: certified brackets by ranges, and best values by facets.
 
+use crate::curved::{Curved, Flat};
 use crate::error::solid_box;
 use crate::facet::Facets;
 use crate::interval::{Interval, sides};
+use crate::sheets::solid_part;
 use crate::tape::{NO_LEAF, RangeRoom, Tape};
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Box3, Real, Vec3};
@@ -15,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Moments<N>(pub [N; 10]);
 
 /// The exponents of the monomials.
-const POWERS: [[u32; 3]; 10] = [
+pub(crate) const POWERS: [[u32; 3]; 10] = [
     [0, 0, 0],
     [1, 0, 0],
     [0, 1, 0],
@@ -147,7 +149,8 @@ pub fn bracket_until(
     if depth > 12 {
         return Err(FieldError::TooFine { boxes: 4f64.powi(depth as i32), limit: 4f64.powi(12) });
     }
-    let tape = set.compiled().tape;
+    // Sheets have no volume.
+    let tape = solid_part(set).compiled().tape;
     // The first two levels are spread over threads; sums are taken in order of the boxes.
     let spread = depth.min(2);
     let n = 1usize << spread;
@@ -294,7 +297,7 @@ fn below(w: [f64; 3], t: f64) -> f64 {
 pub struct Mass {
     /// Proved.
     pub bracket: Moments<Interval>,
-    /// From facets, corrected for their distance from the surface, of fourth order; within the bracket.
+    /// From facets, curved and corrected for their distance from the surface; within the bracket.
     pub best: Moments<f64>,
 }
 
@@ -305,8 +308,9 @@ pub struct Mass {
 /// As [`bracket`] and [`crate::facet`].
 pub fn mass(set: &Set, over: &Box3, depth: u32) -> Result<Mass, FieldError> {
     let bracket = bracket(set, over, depth)?;
-    let options = crate::Options::new(crate::Resolution::Depth(depth));
-    let facets = crate::facet(set, over, &options)?;
+    let options =
+        crate::Options { sharp: true, ..crate::Options::new(crate::Resolution::Depth(depth)) };
+    let facets = crate::facet(&solid_part(set), over, &options)?;
     let mut best = facets.moments();
     for (x, range) in best.0.iter_mut().zip(&bracket.0) {
         *x = x.clamp(range.low, range.high);
@@ -315,63 +319,32 @@ pub fn mass(set: &Set, over: &Box3, depth: u32) -> Result<Mass, FieldError> {
 }
 
 impl Facets {
-    /// The moments of the body, of fourth order in the size of the facets away from its edges.
+    /// The moments of the body, of sixth order in the size of the facets away from its edges and of fourth,
+    /// with small factors, along these.
     pub fn moments(&self) -> Moments<f64> {
-        let primitives: Vec<&Primitive> = self.leaves.iter().map(|l| &l.primitive).collect();
-        self.moments_of(self.mesh.positions(), &primitives)
+        let primitives: Vec<Option<Primitive>> =
+            self.leaves.iter().map(|l| Some(l.primitive.clone())).collect();
+        Curved::new(&self.flat()).moments(self.mesh.positions(), &primitives)
     }
 
-    /// The moments with the positions and primitives given as other numbers: the polyhedron's, exact,
-    /// and the layer between it and the surface, of thickness -f / |f'|, by the midpoints of edges.
-    pub(crate) fn moments_of<T: Real>(
-        &self,
-        positions: &[Vec3<T>],
-        primitives: &[&Primitive<T>],
-    ) -> Moments<T> {
-        let mut total = [T::zero(); 10];
-        let mut values = Vec::new();
-        for (patch, &leaf) in self.mesh.patches().iter().zip(&self.patch_leaves) {
-            let tape = primitives[leaf].tape();
-            for face in &self.mesh.faces()[patch.faces.clone()] {
-                let p = [0, 1, 2].map(|k| positions[face[k] as usize]);
-                let normal = (p[1] - p[0]).cross(p[2] - p[0]);
-                let six = p[0].dot(normal);
-                let sum = p[0] + p[1] + p[2];
-                for (total, powers) in total.iter_mut().zip(POWERS) {
-                    // The tetrahedron of the origin and the face.
-                    let axes: Vec<usize> =
-                        (0..3).flat_map(|k| std::iter::repeat_n(k, powers[k] as usize)).collect();
-                    *total += match axes[..] {
-                        [] => six / 6.0,
-                        [i] => six / 24.0 * sum[i],
-                        [i, j, ..] => {
-                            let pairs = p[0][i] * p[0][j] + p[1][i] * p[1][j] + p[2][i] * p[2][j];
-                            six / 120.0 * (pairs + sum[i] * sum[j])
-                        }
-                    };
-                }
-                if normal.norm_sq().re() == 0.0 {
-                    continue;
-                }
-                let area = normal.norm() * 0.5;
-                for k in 0..3 {
-                    let middle = (p[k] + p[(k + 1) % 3]) * T::from(0.5);
-                    let g = tape.eval::<crate::Gradient<T>>(&middle, &mut values);
-                    let slope = g.slope.norm_sq();
-                    if slope.re() == 0.0 {
-                        continue;
-                    }
-                    let layer = -(g.value / slope.sqrt()) * area / 3.0;
-                    for (total, powers) in total.iter_mut().zip(POWERS) {
-                        let monomial = (0..3).fold(T::one(), |m, k| {
-                            if powers[k] == 0 { m } else { m * middle[k].powi(powers[k] as i32) }
-                        });
-                        *total += layer * monomial;
-                    }
-                }
-            }
+    /// The area of the set's surface, of the order of [`Facets::moments`]; faces of the box do not count.
+    pub fn area(&self) -> f64 {
+        let primitives: Vec<Option<Primitive>> =
+            self.leaves.iter().map(|l| Some(l.primitive.clone())).collect();
+        let own = |leaf: u32| (leaf as usize) < self.own_leaves;
+        Curved::new(&self.flat()).area(self.mesh.positions(), &primitives, own)
+    }
+
+    /// The triangles with the leaves that they and their corners are on.
+    pub(crate) fn flat(&self) -> Flat<'_> {
+        let ranges = self.mesh.patches().iter().zip(&self.patch_leaves);
+        Flat {
+            positions: self.mesh.positions(),
+            faces: self.mesh.faces(),
+            patches: ranges.map(|(p, &leaf)| (leaf as u32, p.faces.clone())).collect(),
+            leaves: &self.leaves,
+            surfaces: &self.surfaces,
         }
-        Moments(total)
     }
 }
 

@@ -193,6 +193,41 @@ impl<T: Real> Set<T> {
         Ok(set)
     }
 
+    /// A wire: the straight line between two points, where two sheets along it meet.
+    ///
+    /// # Errors
+    /// Points that coincide.
+    pub fn segment(from: Vec3<T>, to: Vec3<T>) -> Result<Self, FieldError> {
+        let along = to - from;
+        if along.norm_sq().re() == 0.0 {
+            return Err(FieldError::Degenerate { what: "line: its ends coincide; it" });
+        }
+        // Slanting sheets, so that they lie along no planes of the grid.
+        let (p, q) = (along.perpendicular(), along.cross(along.perpendicular()));
+        let (p, q) = (p / p.norm(), q / q.norm());
+        let sheets = [p * T::from(0.8) + q * T::from(0.6), q * T::from(0.8) - p * T::from(0.6)];
+        let mut set = Self::new(&Primitive::plane(along, to)?);
+        set = Self::new(&Primitive::plane(-along, from)?) & set;
+        for normal in sheets {
+            set = Self::new(&Primitive::plane(normal, from)?.abs()) & set;
+        }
+        Ok(set)
+    }
+
+    /// A point: where three sheets meet.
+    ///
+    /// # Errors
+    /// A coordinate that is not finite.
+    pub fn dot(at: Vec3<T>) -> Result<Self, FieldError> {
+        // The columns of a turned frame, so that the sheets lie along no planes of the grid.
+        let frame = [[2.0, 1.0, 2.0], [-2.0, 2.0, 1.0], [1.0, 2.0, -2.0]];
+        let mut set = Self::everything();
+        for [x, y, z] in frame {
+            set = set & Self::new(&Primitive::plane(Vec3::of(x, y, z), at)?.abs());
+        }
+        Ok(set)
+    }
+
     /// The sheets on the faces of the cuboid between two corners, without its inside.
     ///
     /// # Errors

@@ -6,6 +6,7 @@
 //! {f <= 0} & (that set - the solid part): its boundary, edges and vertices are found as those of any
 //! solid. Likewise a wire is the edge between two sheets, and a point the corner of three.
 
+use crate::curved::Flat;
 use crate::facet::{Facets, Options, facet};
 use crate::lifted::On;
 use crate::{FieldError, Leaf, Primitive, Set};
@@ -22,6 +23,8 @@ pub struct Sheet {
     pub leaf: usize,
     /// What its vertices lie on.
     pub on: On,
+    /// The number of its primitive among the leaves of `on`.
+    pub own: usize,
 }
 
 /// A curve in which two sheets meet.
@@ -48,8 +51,21 @@ pub struct Dot {
     pub on: On,
 }
 
+impl Sheet {
+    /// Its triangles with what they and their corners are on.
+    pub(crate) fn flat(&self) -> Flat<'_> {
+        Flat {
+            positions: self.mesh.positions(),
+            faces: self.mesh.faces(),
+            patches: vec![(self.own as u32, 0..self.mesh.faces().len())],
+            leaves: &self.on.leaves,
+            surfaces: &self.on.surfaces,
+        }
+    }
+}
+
 impl Wire {
-    /// Its length.
+    /// The length of its chords.
     pub fn length(&self) -> f64 {
         let steps = self.points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
         match (self.closed, self.points.first(), self.points.last()) {
@@ -72,6 +88,14 @@ pub struct Mixed {
     pub points: Vec<Dot>,
     /// The leaves of the set, by which the others are numbered.
     pub leaves: Vec<Leaf>,
+}
+
+/// The set without its sheets, wires and points; the set itself when it has none.
+pub fn solid_part(set: &Set) -> Set {
+    match set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
+        true => with_sheets(set, &[]),
+        false => set.clone(),
+    }
 }
 
 /// The set with its sheets replaced: those of `kept` by everything, others by nothing.
@@ -131,8 +155,8 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
             attributes: leaves[k].attributes.clone(),
         };
         let info = crate::facet::info(&sheet);
-        if let Some((mesh, on)) = patch_of(&facets, leaf(k).of_sheet(), info)? {
-            sheets.push(Sheet { mesh, leaf: k, on });
+        if let Some((mesh, on, own)) = patch_of(&facets, leaf(k).of_sheet(), info)? {
+            sheets.push(Sheet { mesh, leaf: k, on, own });
         }
     }
     let mut wires = Vec::new();
@@ -191,7 +215,7 @@ fn patch_of(
     facets: &Facets,
     f: &Primitive,
     info: PatchInfo,
-) -> Result<Option<(Mesh, On)>, FieldError> {
+) -> Result<Option<(Mesh, On, usize)>, FieldError> {
     let Some(leaf) = number(facets, f) else { return Ok(None) };
     let patch = facets.patch_leaves.iter().position(|&l| l == leaf as usize);
     let Some(patch) = patch.map(|k| &facets.mesh.patches()[k]) else { return Ok(None) };
@@ -214,7 +238,7 @@ fn patch_of(
     builder.add_vertices(positions.len()).map_err(broken)?;
     builder.add_faces(info, faces).map_err(broken)?;
     let mesh = Mesh::new(builder.build().into(), positions).map_err(broken)?;
-    Ok(Some((mesh, lying_on(facets, &used))))
+    Ok(Some((mesh, lying_on(facets, &used), leaf as usize)))
 }
 
 /// The edges between the faces of two primitives, chained, in the order of their lowest vertex.

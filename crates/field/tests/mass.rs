@@ -107,6 +107,39 @@ fn the_cyclide_has_its_closed_forms() {
 }
 
 #[test]
+fn best_values_are_of_high_order() {
+    let z = axis(v(0.02, 0.01, 0.03), v(0.1, 0.2, 1.0));
+    let solid = |p: Result<Primitive, FieldError>| Set::new(&p.unwrap());
+    let other = axis(z.point, z.direction.perpendicular());
+    let crossed = solid(Primitive::cylinder(z, 0.9)) & solid(Primitive::cylinder(other, 0.9));
+    let cases = [
+        ("sphere", solid(Primitive::sphere(z.point, 1.0)), 4.0 * PI / 3.0, 4.0 * PI),
+        (
+            "torus",
+            solid(Primitive::torus(z, 0.9, 0.4)),
+            2.0 * PI * PI * 0.9 * 0.16,
+            4.0 * PI * PI * 0.9 * 0.4,
+        ),
+        ("steinmetz", crossed, 16.0 / 3.0 * 0.729, 16.0 * 0.81),
+    ];
+    for (name, set, volume, area) in cases {
+        let errors = |depth| {
+            let f = facets(&set, &cube(1.5), depth);
+            [f.moments().volume() / volume - 1.0, f.area() / area - 1.0]
+        };
+        let (coarse, fine) = (errors(4), errors(6));
+        println!("{name}: {coarse:?} {fine:?}");
+        for k in 0..2 {
+            let rate = (coarse[k] / fine[k]).abs().log2() / 2.0;
+            // The edges of the last cross where its cylinders touch, which costs orders.
+            let most = if name == "steinmetz" { 2.0 } else { 3.0 };
+            assert!(rate > most, "{name}: {coarse:?} {fine:?}, {rate}");
+            assert!(fine[k].abs() < 1e-7, "{name}: {fine:?}");
+        }
+    }
+}
+
+#[test]
 fn the_t_piece_weighs_what_it_should() {
     let m = mass(&t_piece(), &cube(4.0), 7).unwrap();
     assert!((m.best.volume() - 25.097).abs() < 1e-3, "{}", m.best.volume());

@@ -120,6 +120,42 @@ fn two_spheres_meet_in_a_circle_and_three_sheets_in_points() {
 }
 
 #[test]
+fn wires_and_points_beside_a_solid() {
+    let (from, to) = (v(-1.7, 0.1, 0.2), v(1.8, -0.2, 0.3));
+    let wire = Set::segment(from, to).unwrap();
+    let alone = mixed(&wire);
+    assert!(alone.solid.mesh.faces().is_empty() && alone.sheets.is_empty());
+    assert!(alone.points.is_empty() && alone.wires.len() == 1 && !alone.wires[0].closed);
+    let ends = [alone.wires[0].points[0], *alone.wires[0].points.last().unwrap()];
+    assert!((alone.wires[0].length() - from.distance(to)).abs() < 1e-9, "{ends:?}");
+    // Through a ball: two pieces that end on it.
+    let both = mixed(&(&wire | &Set::new(&ball())));
+    assert!(both.solid.mesh.report().closed && both.sheets.is_empty() && both.wires.len() == 2);
+    let d = (to - from) / from.distance(to);
+    let centre = v(0.02, 0.01, 0.03) - from;
+    let half = (1.0 - (centre.norm_sq() - centre.dot(d).powi(2))).sqrt();
+    let length = |m: &Mixed| m.wires.iter().map(|w| w.length()).sum::<f64>();
+    assert!((length(&both) - (from.distance(to) - 2.0 * half)).abs() < 1e-9);
+    let ended = |w: &moldloft_field::Wire| {
+        [w.points[0], w.points[w.points.len() - 1]].iter().any(|p| ball().value(*p).abs() < 1e-9)
+    };
+    assert!(both.wires.iter().all(ended));
+    // What is inside, and what is outside.
+    let (inside, outside) =
+        (mixed(&(&wire & &Set::new(&ball()))), mixed(&(&wire - &Set::new(&ball()))));
+    assert!((length(&inside) - 2.0 * half).abs() < 1e-9);
+    assert!((length(&outside) - length(&both)).abs() < 1e-9);
+    let at = v(0.3, 1.5, -0.4);
+    let dots = mixed(&(&Set::dot(at).unwrap() | &Set::new(&ball())));
+    assert!(dots.points.len() == 1 && dots.points[0].point.distance(at) < 1e-12);
+    assert!(dots.wires.is_empty() && dots.sheets.is_empty());
+    // A point in the solid is of it.
+    let inner = mixed(&(&Set::dot(v(0.3, 0.2, 0.1)).unwrap() | &Set::new(&ball())));
+    assert!(inner.points.is_empty());
+    assert!(Set::segment(at, at).is_err());
+}
+
+#[test]
 fn thin_solids_have_the_area_of_their_faces() {
     let m = mixed(&Set::thin_cuboid(v(-1.0, -0.7, -0.5), v(0.9, 0.8, 0.6)).unwrap());
     assert!(m.solid.mesh.faces().is_empty() && m.sheets.len() == 6);

@@ -60,8 +60,10 @@ from moldloft.implicit.sets import (
     Set,
     Sun,
     cuboid,
+    dot,
     everything,
     nothing,
+    segment,
     tetrahedron,
 )
 
@@ -90,6 +92,7 @@ __all__ = [
     "cuboid",
     "cyclide",
     "cylinder",
+    "dot",
     "everything",
     "exp",
     "fillet",
@@ -101,6 +104,7 @@ __all__ = [
     "plane",
     "rounded",
     "s_sqrt",
+    "segment",
     "setback",
     "sign",
     "sin",

@@ -190,11 +190,19 @@ class Facets:
 
     @cached_property
     def undecided(self) -> list[tuple[list[float], list[float]]]:
-        """Boxes in which something did not come out right: low and high corners.
+        """Boxes whose triangles cut others: low and high corners.
 
         Elsewhere no two triangles meet except where they join.
         """
         return self._core.undecided()
+
+    @cached_property
+    def blunt(self) -> list[tuple[list[float], list[float]]]:
+        """Boxes with an edge or corner that is cut off: low and high corners.
+
+        It is thinner than a cell there, or its vertices would have made triangles cut each other.
+        """
+        return self._core.blunt()
 
     def centre_distances(self) -> Floats:
         """Distances of the solids' triangle centres from their surfaces, |f| / |f'|, ``(m,)``."""

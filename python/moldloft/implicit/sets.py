@@ -563,6 +563,31 @@ def cuboid(low: Triple, high: Triple) -> Set:
     return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
 
 
+def segment(start: Triple, end: Triple) -> Set:
+    """The straight line between two points, as a wire.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> facets = im.segment((0, 0, 0), (3, 4, 0)).facets(depth=4)
+    >>> len(facets.wires), len(facets.triangles)
+    (1, 0)
+    """
+    return Set(_core.Set.segment(triple(start, "start"), triple(end, "end")))
+
+
+def dot(at: Triple) -> Set:
+    """One point.
+
+    Examples
+    --------
+    >>> from moldloft import implicit as im
+    >>> im.dot((1, 2, 3)).facets((0, 0, 0), (4, 4, 4), depth=4).points.round(12).tolist()
+    [[1.0, 2.0, 3.0]]
+    """
+    return Set(_core.Set.dot(triple(at, "point")))
+
+
 def tetrahedron(corners: Sequence[Triple]) -> Set:
     """The tetrahedron of four points, in any order."""
     points = [triple(p, "corner") for p in corners]

@@ -5,8 +5,11 @@
 //! therefore disjoint from those of every other edge, and triangles inside them cannot meet others
 //! (Ju and Udeshi, Intersection-free contouring on an octree grid, 2006). A diagonal is used only if
 //! its triangles lie inside; otherwise the polygon is a fan about the crossing.
+//!
+//! Where a cell has several vertices for a piece of surface, the polygons round two neighbouring crossings may use
+//! different ones: then they part on the face between the crossings, and the gap there is filled.
 
-use super::block::{Block, Crossing, SIDE};
+use super::block::{Block, Crossing, SIDE, Several};
 use super::cell::{face_edges, start_corner};
 use super::grid::Grid;
 use super::vertex::{Placed, Solver, Surfaces};
@@ -15,12 +18,12 @@ use crate::tape::Tape;
 use moldloft_num::Vec3;
 use rayon::prelude::*;
 use smallvec::SmallVec;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// A vertex before it has its number: that of a cell, or one on an edge or a face of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Name {
+pub(super) enum Name {
     Cell(u32),
     Edge(u64),
     Face(u64),
@@ -33,7 +36,23 @@ pub(super) struct Assembled {
     pub(super) triangles: Vec<(u32, [u32; 3])>,
     /// Vertices of whose triangles nothing is known by construction, ascending, each with its cell.
     pub(super) doubtful: Vec<(u32, [usize; 3])>,
+    /// Cells with a vertex that is not on all its surfaces.
+    pub(super) blunt: Vec<[usize; 3]>,
 }
+
+/// What is done otherwise than the blocks have it.
+#[derive(Default)]
+pub(super) struct Changes {
+    /// Vertices about which polygons are fans, …
+    pub(super) fanned: BTreeSet<u32>,
+    /// … those that are elsewhere, …
+    pub(super) moved: BTreeMap<u32, (Placed, Surfaces)>,
+    /// … and the first ones of pieces of surface that have no others after all.
+    pub(super) merged: BTreeSet<u32>,
+}
+
+/// A vertex of a cell.
+pub(super) type Corner<'s> = (Name, &'s Placed, &'s Surfaces);
 
 /// A vertex outside cells, with a cell beside it.
 type Extra = (Name, Vec3, Surfaces, [usize; 3]);
@@ -44,72 +63,137 @@ struct Part {
     extra: Vec<Extra>,
 }
 
-struct Assembly<'a> {
-    grid: &'a Grid,
-    leaves: &'a [Leaf],
-    blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
+pub(super) struct Assembly<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) leaves: &'a [Leaf],
+    pub(super) blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
     at: HashMap<[u32; 3], usize>,
     base: Vec<u32>,
+    /// How many vertices the blocks have.
+    pub(super) count: u32,
+    pub(super) changes: Changes,
 }
 
 /// The four cells round an edge, counter-clockwise seen against the axis: which lie below the edge
 /// along the next axis and the one after it.
 const ROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
 
-pub(super) fn assemble(
-    grid: &Grid,
-    leaves: &[Leaf],
-    blocks: &[(Arc<Tape<f64>>, Arc<Block>)],
-) -> Assembled {
-    let mut base = Vec::with_capacity(blocks.len());
-    let mut count = 0u32;
-    for (_, block) in blocks {
-        base.push(count);
-        count += block.vertices.len() as u32;
-    }
-    let at = blocks.iter().enumerate().map(|(k, (_, b))| (b.at, k)).collect();
-    let assembly = Assembly { grid, leaves, blocks, at, base };
-    let parts: Vec<Part> = (0..blocks.len())
-        .into_par_iter()
-        .map_init(Solver::default, |solver, k| {
-            let mut part = Part::default();
-            for crossing in &blocks[k].1.crossings {
-                assembly.polygon(k, crossing, solver, &mut part);
-            }
-            part
-        })
-        .collect();
-
-    let mut positions: Vec<Vec3> = Vec::with_capacity(count as usize);
-    let mut surfaces = Vec::with_capacity(count as usize);
-    for (_, block) in blocks {
-        positions.extend(block.vertices.iter().map(|v| v.placed.point));
-        surfaces.extend(block.vertices.iter().map(|v| v.surfaces.clone()));
-    }
-    let mut extra: Vec<&Extra> = parts.iter().flat_map(|p| &p.extra).collect();
-    extra.sort_by_key(|e| e.0);
-    extra.dedup_by_key(|e| e.0);
-    positions.extend(extra.iter().map(|e| e.1));
-    surfaces.extend(extra.iter().map(|e| e.2.clone()));
-    let number = |name: Name| match name {
-        Name::Cell(k) => k,
-        _ => count + extra.partition_point(|e| e.0 < name) as u32,
-    };
-    let triangles = parts.iter().flat_map(|p| &p.triangles).map(|(l, t)| (*l, t.map(number)));
-    let triangles = triangles.collect();
-    let mut doubtful = Vec::new();
-    for ((_, block), base) in blocks.iter().zip(&assembly.base) {
-        for (k, vertex) in block.vertices.iter().enumerate().filter(|v| v.1.doubtful) {
-            let cell = [0, 1, 2].map(|i| block.at[i] as usize * SIDE + vertex.cell[i] as usize);
-            doubtful.push((base + k as u32, cell));
+impl<'a> Assembly<'a> {
+    pub(super) fn new(
+        grid: &'a Grid,
+        leaves: &'a [Leaf],
+        blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
+    ) -> Self {
+        let mut base = Vec::with_capacity(blocks.len());
+        let mut count = 0u32;
+        for (_, block) in blocks {
+            base.push(count);
+            count += block.vertices.len() as u32;
         }
+        let at = blocks.iter().enumerate().map(|(k, (_, b))| (b.at, k)).collect();
+        Self { grid, leaves, blocks, at, base, count, changes: Changes::default() }
     }
-    let pinned = extra.iter().enumerate().filter(|(_, e)| matches!(e.0, Name::Face(_)));
-    doubtful.extend(pinned.map(|(k, e)| (count + k as u32, e.3)));
-    Assembled { positions, surfaces, triangles, doubtful }
-}
 
-impl Assembly<'_> {
+    /// The block of a vertex and the vertex's place in it.
+    pub(super) fn owner(&self, vertex: u32) -> (usize, usize) {
+        let owner = self.base.partition_point(|b| *b <= vertex) - 1;
+        (owner, (vertex - self.base[owner]) as usize)
+    }
+
+    /// The number of a block's vertex.
+    pub(super) fn number(&self, owner: usize, vertex: usize) -> u32 {
+        self.base[owner] + vertex as u32
+    }
+
+    /// A vertex as it is now: its point, what it lies on, and whether it is outside its cell.
+    pub(super) fn corner(&self, owner: usize, vertex: usize) -> Corner<'_> {
+        let number = self.number(owner, vertex);
+        if let Some((placed, surfaces)) = self.changes.moved.get(&number) {
+            return (Name::Cell(number), placed, surfaces);
+        }
+        let vertex = &self.blocks[owner].1.vertices[vertex];
+        (Name::Cell(number), &vertex.placed, &vertex.surfaces)
+    }
+
+    /// True when a piece of surface with several vertices has one only.
+    fn merged(&self, owner: usize, cell: [usize; 3], edge: usize) -> bool {
+        let plain = || self.number(owner, self.blocks[owner].1.plain(cell, edge));
+        !self.changes.merged.is_empty() && self.changes.merged.contains(&plain())
+    }
+
+    /// The vertices from that of one crossed edge of a cell to that of another of the same piece.
+    fn path(&self, owner: usize, cell: [usize; 3], from: usize, to: usize) -> SmallVec<[usize; 4]> {
+        let block = &self.blocks[owner].1;
+        if self.merged(owner, cell, from) {
+            return SmallVec::from_slice(&[block.plain(cell, from)]);
+        }
+        block.path(cell, from, to)
+    }
+
+    /// All triangles.
+    pub(super) fn triangles(&self) -> Assembled {
+        let Self { blocks, count, .. } = *self;
+        let parts: Vec<Part> = (0..blocks.len())
+            .into_par_iter()
+            .map_init(Solver::default, |solver, k| {
+                let mut part = Part::default();
+                for crossing in &blocks[k].1.crossings {
+                    self.polygon(k, crossing, solver, &mut part);
+                }
+                for several in &blocks[k].1.splits {
+                    self.gaps(k, several, solver, &mut part);
+                }
+                part
+            })
+            .collect();
+
+        let mut positions: Vec<Vec3> = Vec::with_capacity(count as usize);
+        let mut surfaces = Vec::with_capacity(count as usize);
+        let (mut doubtful, mut blunt) = (Vec::new(), Vec::new());
+        for (owner, (_, block)) in blocks.iter().enumerate() {
+            for (k, vertex) in block.vertices.iter().enumerate() {
+                let cell = || self.cell(owner, vertex.cell);
+                if vertex.doubtful {
+                    doubtful.push((self.number(owner, k), cell()));
+                }
+                if vertex.blunt {
+                    blunt.push(cell());
+                }
+                positions.push(vertex.placed.point);
+                surfaces.push(vertex.surfaces.clone());
+            }
+        }
+        for (&vertex, (placed, on)) in &self.changes.moved {
+            let (owner, k) = self.owner(vertex);
+            let before = &blocks[owner].1.vertices[k];
+            if on.len() < before.surfaces.len() || self.changes.merged.contains(&vertex) {
+                blunt.push(self.cell(owner, before.cell));
+            }
+            positions[vertex as usize] = placed.point;
+            surfaces[vertex as usize] = on.clone();
+        }
+        let mut extra: Vec<&Extra> = parts.iter().flat_map(|p| &p.extra).collect();
+        extra.sort_by_key(|e| e.0);
+        extra.dedup_by_key(|e| e.0);
+        positions.extend(extra.iter().map(|e| e.1));
+        surfaces.extend(extra.iter().map(|e| e.2.clone()));
+        let number = |name: Name| match name {
+            Name::Cell(k) => k,
+            _ => count + extra.partition_point(|e| e.0 < name) as u32,
+        };
+        let triangles = parts.iter().flat_map(|p| &p.triangles).map(|(l, t)| (*l, t.map(number)));
+        let triangles = triangles.collect();
+        let pinned = extra.iter().enumerate().filter(|(_, e)| matches!(e.0, Name::Face(_)));
+        doubtful.extend(pinned.map(|(k, e)| (count + k as u32, e.3)));
+        Assembled { positions, surfaces, triangles, doubtful, blunt }
+    }
+
+    /// The position in the grid of a block's cell.
+    pub(super) fn cell(&self, owner: usize, cell: [u8; 3]) -> [usize; 3] {
+        let at = self.blocks[owner].1.at;
+        [0, 1, 2].map(|i| at[i] as usize * SIDE + cell[i] as usize)
+    }
+
     /// The block of a cell, most often `near`, and the cell's place in it.
     fn block_of(&self, near: usize, cell: [usize; 3]) -> Option<(usize, [usize; 3])> {
         let at = cell.map(|x| (x / SIDE) as u32);
@@ -118,7 +202,7 @@ impl Assembly<'_> {
     }
 
     /// The crossing of the edge along `axis` from lattice position `at`.
-    fn crossing(&self, near: usize, at: [usize; 3], axis: usize) -> Option<&Crossing> {
+    pub(super) fn crossing(&self, near: usize, at: [usize; 3], axis: usize) -> Option<&Crossing> {
         let (block, local) = self.block_of(near, at)?;
         let key = (local.map(|x| x as u8), axis as u8);
         let list = &self.blocks[block].1.crossings;
@@ -135,7 +219,7 @@ impl Assembly<'_> {
         let mut cells = [[0; 3]; 4];
         let mut corners = [Name::Cell(0); 4];
         let mut points = [Vec3::zero(); 4];
-        let mut strayed = false;
+        let (mut strayed, mut fan) = (false, false);
         for (k, below) in ROUND.iter().enumerate() {
             let mut cell = at;
             cell[b] -= below[0];
@@ -143,15 +227,18 @@ impl Assembly<'_> {
             let edge = 4 * a + below[0] + 2 * below[1];
             // The signs at the edge's ends are the same in all four cells, so each has a vertex.
             let found = self.block_of(block, cell).and_then(|(owner, local)| {
-                let vertex = self.blocks[owner].1.vertex(local, edge)?;
-                let placed = &self.blocks[owner].1.vertices[vertex].placed;
-                strayed |= placed.strayed;
-                Some((self.base[owner] + vertex as u32, placed.point))
+                let vertex = match self.merged(owner, local, edge) {
+                    true => self.blocks[owner].1.plain(local, edge),
+                    false => self.blocks[owner].1.vertex(local, edge)?,
+                };
+                Some(self.corner(owner, vertex))
             });
-            let Some((vertex, point)) = found else {
+            let Some((name, placed, _)) = found else {
                 unreachable!("a cell beside a crossed edge is divided like the edge's own block")
             };
-            (cells[k], corners[k], points[k]) = (cell, Name::Cell(vertex), point);
+            strayed |= placed.strayed;
+            fan |= matches!(name, Name::Cell(v) if self.changes.fanned.contains(&v));
+            (cells[k], corners[k], points[k]) = (cell, name, placed.point);
         }
         let mut rim: SmallVec<[Name; 8]> = SmallVec::new();
         for k in 0..4 {
@@ -163,7 +250,7 @@ impl Assembly<'_> {
             let t = if turned { [t[0], t[2], t[1]] } else { t };
             part.triangles.push((crossing.leaf, t));
         };
-        if rim.len() == 4 {
+        if rim.len() == 4 && !fan {
             let tape = self.leaves[crossing.leaf as usize].primitive.tape();
             let edge = [self.grid.corner(at), {
                 let mut end = at;
@@ -185,6 +272,107 @@ impl Assembly<'_> {
             push([hub, rim[k], rim[(k + 1) % rim.len()]]);
         }
         part.extra.push((hub, crossing.point, Surfaces::from_slice(&[crossing.leaf]), at));
+    }
+
+    /// Fills the gaps on the faces of a cell where the vertices of a piece of surface change.
+    fn gaps(&self, block: usize, several: &Several, solver: &mut Solver, part: &mut Part) {
+        let local = several.cell.map(|x| x as usize);
+        let own = &self.blocks[block].1;
+        let cell = self.cell(block, several.cell);
+        let case = own.case(local);
+        for edge in (0..12).filter(|&e| case.loop_of[e] == several.number) {
+            let (next, side) = (case.next[edge] as usize, case.side[edge] as usize);
+            let here = self.path(block, local, edge, next);
+            if here.len() < 2 {
+                continue;
+            }
+            // The same edges as the cell beyond the face has them.
+            let (axis, high) = (side / 2, side % 2);
+            let mut beyond = cell;
+            beyond[axis] = if high == 1 { cell[axis] + 1 } else { cell[axis].wrapping_sub(1) };
+            let across = |e: usize| {
+                let k = face_edges(axis, high).iter().position(|&x| x == e)?;
+                Some(face_edges(axis, 1 - high)[k])
+            };
+            let found = self.block_of(block, beyond).zip(across(edge).zip(across(next)));
+            let Some(((other, there), (from, to))) = found else {
+                unreachable!("the face of two crossings has a cell on either side")
+            };
+            let there = self.path(other, there, from, to);
+            // Where both cells have several vertices, the lower cell fills the gap.
+            if there.len() > 1 && high == 0 {
+                continue;
+            }
+            self.gap(
+                block,
+                [(cell, block, &here), (beyond, other, &there)],
+                edge,
+                next,
+                solver,
+                part,
+            );
+        }
+    }
+
+    /// Fills the gap between the polygons round two crossings on the face of two cells, given with the
+    /// vertices from the first polygon's to the second's.
+    fn gap(
+        &self,
+        near: usize,
+        [(cell, block, here), (beyond, other, there)]: [([usize; 3], usize, &[usize]); 2],
+        edge: usize,
+        next: usize,
+        solver: &mut Solver,
+        part: &mut Part,
+    ) {
+        let place = |e: usize| {
+            let start = start_corner(e);
+            ([0, 1, 2].map(|k| cell[k] + (start >> k & 1)), e / 4)
+        };
+        let (at, axis) = place(edge);
+        let ends = [place(edge), place(next)].map(|(at, axis)| self.crossing(near, at, axis));
+        let [Some(p), Some(q)] = ends else { unreachable!("edges of a piece are crossed") };
+        // The polygon round the first crossing runs from here to there, or back.
+        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+        let turn = |cell: [usize; 3]| {
+            ROUND.iter().position(|below| [at[b] - cell[b], at[c] - cell[c]] == *below)
+        };
+        let (Some(from), Some(to)) = (turn(cell), turn(beyond)) else {
+            unreachable!("both cells are beside the edge")
+        };
+        let turned = ((from + 1) % 4 == to) != p.outward;
+        let here: SmallVec<[_; 4]> = here.iter().map(|&k| self.corner(block, k)).collect();
+        let there: SmallVec<[_; 4]> = there.iter().map(|&k| self.corner(other, k)).collect();
+        let pin = self.pin(near, [cell, beyond], at, axis, solver, part);
+        let mut push = |t: [Corner; 3]| {
+            let on_all = |leaf: &u32| t.iter().all(|v| v.2.contains(leaf));
+            let shared = [p.leaf, q.leaf].into_iter().chain(t[0].2.iter().copied());
+            let leaf = shared.into_iter().find(on_all).unwrap_or(p.leaf);
+            let t = if turned { [t[0].0, t[2].0, t[1].0] } else { t.map(|v| v.0) };
+            part.triangles.push((leaf, t));
+        };
+        if let Some(pin) = pin {
+            let both = Surfaces::from_slice(&[p.leaf, q.leaf]);
+            let placed = Placed { point: p.point, residual: 0.0, strayed: false };
+            let pin = (pin, &placed, &both);
+            here.windows(2).for_each(|w| push([pin, w[0], w[1]]));
+            there.windows(2).for_each(|w| push([pin, w[1], w[0]]));
+            return;
+        }
+        let (mut i, mut j) = (0, 0);
+        while i + 1 < here.len() || j + 1 < there.len() {
+            let (next_here, next_there) = (here.get(i + 1).copied(), there.get(j + 1).copied());
+            let far = |a: Option<Corner>, b: Corner| {
+                a.map_or(f64::INFINITY, |a| a.1.point.distance(b.1.point))
+            };
+            if far(next_here, there[j]) <= far(next_there, here[i]) {
+                push([there[j], here[i], here[i + 1]]);
+                i += 1;
+            } else {
+                push([there[j], here[i], there[j + 1]]);
+                j += 1;
+            }
+        }
     }
 
     /// Where two cells share a face that the same two pieces of surface cross twice, the pieces would

@@ -1,10 +1,12 @@
 //! Eight by eight by eight cells: signs at the corners, crossings of the edges, vertices.
 
-use super::cell::{Case, NONE, case, face_edges, faces_of, start_corner};
+use super::cell::{Case, NONE, case, face_edges, start_corner};
 use super::grid::Grid;
+use super::settle::{Ring, Settled, Settling};
+use super::split::Split;
 use super::vertex::{Placed, Solver, Surfaces};
 use crate::set::Leaf;
-use crate::tape::{NO_LEAF, Room, Tape};
+use crate::tape::{Room, Tape};
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 
@@ -34,9 +36,11 @@ pub(super) struct Vertex {
     pub(super) placed: Placed,
     /// The cell, in the block.
     pub(super) cell: [u8; 3],
-    /// True when the cell has several pieces of surface, or the vertex is not in it or not on all
-    /// its surfaces: nothing is known of its triangles then.
+    /// True when the cell has several vertices, or its vertex is not in it: nothing is known of its triangles
+    /// then.
     pub(super) doubtful: bool,
+    /// True when it is not on all the surfaces that the crossings show.
+    pub(super) blunt: bool,
     pub(super) surfaces: Surfaces,
 }
 
@@ -52,10 +56,24 @@ pub(super) struct Block {
     /// First vertex of every cell.
     first: Box<[u32; SIDE * SIDE * SIDE]>,
     pub(super) vertices: Vec<Vertex>,
+    /// The pieces of surface that have several vertices, in the order of cells.
+    pub(super) splits: Vec<Several>,
     /// Crossings of the edges that start in the block, its far faces excepted.
     pub(super) crossings: Vec<Crossing>,
     /// How many cells the surface passes through.
     pub(super) active: usize,
+}
+
+/// A piece of surface with several vertices.
+#[derive(Clone, Debug)]
+pub(super) struct Several {
+    /// The cell, in the block, …
+    pub(super) cell: [u8; 3],
+    /// … and which of its pieces.
+    pub(super) number: u8,
+    /// Where its vertices but the first are.
+    more: u32,
+    pub(super) split: Split,
 }
 
 fn cell_index(c: [usize; 3]) -> usize {
@@ -76,6 +94,13 @@ pub(super) struct Scratch {
     solver: Solver,
 }
 
+impl Several {
+    /// The number of the vertex of a group; `plain` is that of the first.
+    fn vertex(&self, plain: usize, group: u8) -> usize {
+        if group == 0 { plain } else { self.more as usize + group as usize - 1 }
+    }
+}
+
 impl Block {
     /// True when the surface cuts off the first corner of the ambiguous face on a cell's low side.
     pub(super) fn first_apart(&self, cell: [usize; 3], axis: usize) -> bool {
@@ -90,9 +115,59 @@ impl Block {
 
     /// The vertex in `cell` of the piece that crosses `edge`.
     pub(super) fn vertex(&self, cell: [usize; 3], edge: usize) -> Option<usize> {
-        let k = cell_index(cell);
         let number = self.case(cell).loop_of[edge];
-        (number != NONE).then(|| self.first[k] as usize + number as usize)
+        if number == NONE {
+            return None;
+        }
+        let plain = self.plain(cell, edge);
+        Some(match self.several(cell, number) {
+            None => plain,
+            Some(several) => several.vertex(plain, several.split.group[edge]),
+        })
+    }
+
+    /// The first vertex in `cell` of the piece that crosses `edge`.
+    pub(super) fn plain(&self, cell: [usize; 3], edge: usize) -> usize {
+        self.first[cell_index(cell)] as usize + self.case(cell).loop_of[edge] as usize
+    }
+
+    /// The piece of surface that a vertex stands for, by its number in the cell.
+    pub(super) fn piece(&self, vertex: usize) -> u8 {
+        let cell = self.vertices[vertex].cell;
+        let number = vertex - self.first[cell_index(cell.map(|x| x as usize))] as usize;
+        let later = || {
+            let mut own = self.splits.iter().rev().filter(|s| s.cell == cell);
+            own.find(|s| s.more as usize <= vertex).map_or(0, |s| s.number)
+        };
+        let loops = self.case(cell.map(|x| x as usize)).loops as usize;
+        if number < loops { number as u8 } else { later() }
+    }
+
+    /// True when a piece of surface in `cell` has several vertices.
+    pub(super) fn has_several(&self, cell: [usize; 3], number: u8) -> bool {
+        self.several(cell, number).is_some()
+    }
+
+    /// A piece of surface in `cell`, if it has several vertices.
+    fn several(&self, cell: [usize; 3], number: u8) -> Option<&Several> {
+        if self.splits.is_empty() {
+            return None;
+        }
+        let key = (cell.map(|x| x as u8), number);
+        let k = self.splits.binary_search_by_key(&key, |s| (s.cell, s.number)).ok()?;
+        Some(&self.splits[k])
+    }
+
+    /// The vertices from that of one crossed edge of `cell` to that of another of the same piece.
+    pub(super) fn path(&self, cell: [usize; 3], from: usize, to: usize) -> SmallVec<[usize; 4]> {
+        let (number, plain) = (self.case(cell).loop_of[from], self.plain(cell, from));
+        match self.several(cell, number) {
+            None => SmallVec::from_slice(&[plain]),
+            Some(several) => {
+                let path = several.split.path(from, to);
+                path.into_iter().map(|k| several.vertex(plain, k)).collect()
+            }
+        }
     }
 
     /// Computes the block; the point where the set has no value is the error.
@@ -155,6 +230,7 @@ impl Block {
             joins: Box::new([0; SIDE * SIDE * SIDE]),
             first: Box::new([0; SIDE * SIDE * SIDE]),
             vertices: Vec::new(),
+            splits: Vec::new(),
             crossings: Vec::new(),
             active: 0,
         };
@@ -199,13 +275,19 @@ impl Block {
                         block.joins[index] |= u8::from(solid && !touch()) << face;
                     }
                     let case = block.case(cell);
-                    let several = case.loops > 1;
+                    let pieces = case.loops > 1;
+                    let small = cell.map(|x| x as u8);
+                    let mut more: SmallVec<[Vertex; 4]> = SmallVec::new();
                     for number in 0..case.loops {
-                        let edges = (0..12).filter(|&e| case.loop_of[e] == number).map(|e| {
-                            let start = start_corner(e);
-                            let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
-                            (e, &crossings[crossing_at[3 * corner_index(c) + e / 4] as usize])
-                        });
+                        let edges: Ring = (0..12)
+                            .filter(|&e| case.loop_of[e] == number)
+                            .map(|e| {
+                                let start = start_corner(e);
+                                let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
+                                let at = crossing_at[3 * corner_index(c) + e / 4];
+                                (e, &crossings[at as usize])
+                            })
+                            .collect();
                         let mut settling = Settling {
                             tape,
                             leaves,
@@ -214,11 +296,32 @@ impl Block {
                             solver,
                             registers,
                         };
-                        let (placed, surfaces) = settling.settle(edges);
-                        let doubtful = several || placed.residual > grid.goal || placed.strayed;
-                        let cell = cell.map(|x| x as u8);
-                        block.vertices.push(Vertex { placed, cell, doubtful, surfaces });
+                        match settling.settle(&edges, &case.next) {
+                            Settled::One { placed, surfaces, blunt } => {
+                                let (cell, doubtful) = (small, pieces || placed.strayed);
+                                let vertex = Vertex { placed, cell, doubtful, blunt, surfaces };
+                                block.vertices.push(vertex);
+                            }
+                            Settled::Several(mut split) => {
+                                let vertex = |(placed, surfaces): (Placed, Surfaces)| Vertex {
+                                    placed,
+                                    cell: small,
+                                    doubtful: true,
+                                    blunt: false,
+                                    surfaces,
+                                };
+                                let mut own = std::mem::take(&mut split.vertices).into_iter();
+                                block.vertices.extend(own.next().map(vertex));
+                                // The first vertices of all pieces come before the others.
+                                let place = block.first[index] + u32::from(case.loops);
+                                let several = place + more.len() as u32;
+                                more.extend(own.map(vertex));
+                                let (cell, more) = (small, several);
+                                block.splits.push(Several { cell, number, more, split });
+                            }
+                        }
                     }
+                    block.vertices.extend(more);
                 }
             }
         }
@@ -308,129 +411,4 @@ fn cross(
     }
     let (x, _, leaf) = at(0.5 * (a + b));
     (x, leaf)
-}
-
-/// What the vertex of a cell is settled with.
-struct Settling<'a> {
-    tape: &'a Tape<f64>,
-    leaves: &'a [Leaf],
-    cell: &'a Box3,
-    goal: f64,
-    solver: &'a mut Solver,
-    registers: &'a mut Vec<f64>,
-}
-
-impl Settling<'_> {
-    /// The vertex of the piece of surface with these crossings.
-    fn settle<'c>(
-        &mut self,
-        edges: impl Iterator<Item = (usize, &'c Crossing)> + Clone,
-    ) -> (Placed, Surfaces) {
-        let mut surfaces = Surfaces::new();
-        let mut sum = Vec3::zero();
-        let mut count = 0.0;
-        for (_, crossing) in edges.clone() {
-            sum += crossing.point;
-            count += 1.0;
-            if let Err(place) = surfaces.binary_search(&crossing.leaf) {
-                surfaces.insert(place, crossing.leaf);
-            }
-        }
-        let middle = sum / count;
-        let mut placed = self.place(&surfaces, middle);
-        if placed.residual > self.goal {
-            placed = self.by_sides(&surfaces, edges, placed);
-        }
-        if placed.residual > self.goal {
-            // The edge or corner that the crossings announce lies in a neighbour.
-            let Self { leaves, cell, goal, .. } = *self;
-            let strayed = self.solver.stray(leaves, &surfaces, middle, cell, goal);
-            if strayed.residual <= goal {
-                placed = strayed;
-            }
-        }
-        // A primitive without a crossing of its own may still cut the vertex off: an edge or corner
-        // that only pokes into the cell.
-        while surfaces.len() < 3 && placed.residual <= self.goal {
-            let value = self.tape.eval::<f64>(&placed.point, self.registers);
-            let leaf = self.tape.leaf[self.tape.winner(self.registers, |v: f64| v)];
-            let (Err(place), true) = (surfaces.binary_search(&leaf), leaf != NO_LEAF) else {
-                break;
-            };
-            let gradient =
-                self.solver.gradient(self.leaves[leaf as usize].primitive.tape(), placed.point);
-            if value.abs() <= self.goal * gradient.slope.norm() {
-                break;
-            }
-            let mut more = surfaces.clone();
-            more.insert(place, leaf);
-            let other = self.place(&more, placed.point);
-            if other.residual > self.goal {
-                break;
-            }
-            (placed, surfaces) = (Placed { strayed: placed.strayed, ..other }, more);
-        }
-        (placed, surfaces)
-    }
-
-    /// A better place than `placed`, found by way of the cell's faces. Where two neighbouring
-    /// crossings show different primitives, the surface changes from one to the other on the face
-    /// between them: so there is a point on both, and more are nearby inside.
-    fn by_sides<'c>(
-        &mut self,
-        surfaces: &[u32],
-        edges: impl Iterator<Item = (usize, &'c Crossing)> + Clone,
-        mut placed: Placed,
-    ) -> Placed {
-        let (goal, cell) = (self.goal, *self.cell);
-        let mut sum = Vec3::zero();
-        let mut count = 0.0;
-        let mut changes: SmallVec<[Placed; 4]> = SmallVec::new();
-        for (e, p) in edges.clone() {
-            for (f, q) in edges.clone().filter(|(f, q)| *f > e && q.leaf != p.leaf) {
-                let shared = faces_of(e) & faces_of(f);
-                if shared == 0 {
-                    continue;
-                }
-                let face = shared.trailing_zeros() as usize;
-                let (mut low, mut high) = (cell.low.to_array(), cell.high.to_array());
-                let at = if face.is_multiple_of(2) { low[face / 2] } else { high[face / 2] };
-                (low[face / 2], high[face / 2]) = (at, at);
-                let side = Box3 { low: low.into(), high: high.into() };
-                let both = [p.leaf.min(q.leaf), p.leaf.max(q.leaf)];
-                let start = (p.point + q.point) * 0.5;
-                let change = self.solver.place(self.leaves, &both, start, &side, goal);
-                if change.residual <= goal {
-                    sum += change.point;
-                    count += 1.0;
-                    changes.push(change);
-                }
-            }
-        }
-        if count > 0.0 {
-            let inner = self.place(surfaces, sum / count);
-            if inner.residual < placed.residual {
-                placed = inner;
-            }
-        }
-        for change in changes {
-            if placed.residual > goal && surfaces.len() == 2 {
-                placed = change;
-            }
-        }
-        for (_, crossing) in edges {
-            if placed.residual <= goal {
-                break;
-            }
-            let other = self.place(surfaces, crossing.point);
-            if other.residual < placed.residual {
-                placed = other;
-            }
-        }
-        placed
-    }
-
-    fn place(&mut self, surfaces: &[u32], start: Vec3) -> Placed {
-        self.solver.place(self.leaves, surfaces, start, self.cell, self.goal)
-    }
 }

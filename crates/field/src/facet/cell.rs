@@ -17,6 +17,10 @@ pub(super) struct Case {
     pub(super) loop_of: [u8; 12],
     /// For each face 2 a + side: true when solid and air corners alternate round it.
     pub(super) ambiguous: [bool; 6],
+    /// The crossed edge that follows each crossed edge round its loop, or [`NONE`] …
+    pub(super) next: [u8; 12],
+    /// … and the face 2 a + side on which both lie.
+    pub(super) side: [u8; 12],
 }
 
 /// The corner from which `edge` starts.
@@ -47,15 +51,16 @@ pub(super) fn faces_of(edge: usize) -> u8 {
 fn make(signs: usize, joins: usize) -> Case {
     let inside = |corner: usize| signs >> corner & 1 == 1;
     let crossed = |e: usize| inside(start_corner(e)) != inside(start_corner(e) | 1 << (e / 4));
-    let mut joined: [Vec<usize>; 12] = Default::default();
+    // Each crossed edge has a partner on each of its two faces.
+    let mut joined: [Vec<(usize, usize)>; 12] = Default::default();
     let mut ambiguous = [false; 6];
     for axis in 0..3 {
         for side in 0..2 {
             let edges = face_edges(axis, side);
             let cut: Vec<usize> = (0..4).filter(|&k| crossed(edges[k])).collect();
             let mut join = |k: usize, l: usize| {
-                joined[edges[k]].push(edges[l]);
-                joined[edges[l]].push(edges[k]);
+                joined[edges[k]].push((edges[l], 2 * axis + side));
+                joined[edges[l]].push((edges[k], 2 * axis + side));
             };
             match cut[..] {
                 [k, l] => join(k, l),
@@ -77,17 +82,20 @@ fn make(signs: usize, joins: usize) -> Case {
             }
         }
     }
-    let mut out = Case { loops: 0, loop_of: [NONE; 12], ambiguous };
+    let mut out =
+        Case { loops: 0, loop_of: [NONE; 12], ambiguous, next: [NONE; 12], side: [NONE; 12] };
     for start in 0..12 {
         if !crossed(start) || out.loop_of[start] != NONE {
             continue;
         }
-        let mut pending = vec![start];
-        while let Some(e) = pending.pop() {
-            if out.loop_of[e] == NONE {
-                out.loop_of[e] = out.loops;
-                pending.extend(&joined[e]);
-            }
+        let (mut at, mut from) = (start, usize::MAX);
+        while out.loop_of[at] == NONE {
+            out.loop_of[at] = out.loops;
+            let Some(&(to, face)) = joined[at].iter().find(|j| j.1 != from) else {
+                unreachable!("a crossed edge has a partner on each of its faces")
+            };
+            (out.next[at], out.side[at]) = (to as u8, face as u8);
+            (at, from) = (to, face);
         }
         out.loops += 1;
     }
@@ -141,7 +149,20 @@ mod tests {
                 let a = start_corner(e);
                 (signs >> a ^ signs >> (a | 1 << (e / 4))) & 1 == 1
             });
-            assert!(crossed.into_iter().all(|e| case.loop_of[e] != NONE));
+            for e in crossed {
+                assert!(case.loop_of[e] != NONE);
+                // Round the loop and back, each time over a face of both edges.
+                let (mut at, mut steps) = (e, 0);
+                loop {
+                    let (next, side) = (case.next[at] as usize, case.side[at]);
+                    assert!(faces_of(at) & faces_of(next) & 1 << side != 0);
+                    (at, steps) = (next, steps + 1);
+                    if at == e {
+                        break;
+                    }
+                }
+                assert_eq!(steps, case.loop_of.iter().filter(|l| **l == case.loop_of[e]).count());
+            }
         }
         // Two solid corners at the ends of a diagonal stay apart.
         assert_eq!(case(0b1000_0001, 0).loops, 2);

@@ -4,7 +4,8 @@
 //!
 //! The box is divided where the range of the set contains zero; in every part, primitives that do not
 //! decide are left out. A cell's vertex lies on all the primitives that its piece of surface shows:
-//! one puts it on a face, two on an edge, three on a corner. Each crossed edge of the grid gives a
+//! one puts it on a face, two on an edge, three on a corner. Where these have no common point, several edges
+//! or corners pass through the cell, and it has several vertices. Each crossed edge of the grid gives a
 //! quadrilateral with the primitive that decides at the crossing, so faces of two primitives meet in
 //! vertices that lie on both.
 
@@ -14,7 +15,10 @@ mod cell;
 mod crossing;
 mod grid;
 mod refine;
+mod settle;
 mod simplify;
+mod split;
+mod untangle;
 pub(crate) mod vertex;
 
 use crate::error::solid_box;
@@ -50,6 +54,9 @@ pub struct Options {
     pub resolution: Resolution,
     /// The most cells that the surface may pass through.
     pub limit: f64,
+    /// Vertices stay on edges and corners even where triangles then cut others: integrals over the body do not
+    /// mind, and lose most by edges that are cut off.
+    pub sharp: bool,
     /// Set it to true from elsewhere to stop.
     pub cancel: Option<Arc<AtomicBool>>,
 }
@@ -57,7 +64,7 @@ pub struct Options {
 impl Options {
     /// Facets of that resolution, at most 20 million cells.
     pub fn new(resolution: Resolution) -> Self {
-        Self { resolution, limit: 2e7, cancel: None }
+        Self { resolution, limit: 2e7, sharp: false, cancel: None }
     }
 
     pub(crate) fn cancelled(&self) -> bool {
@@ -78,10 +85,12 @@ pub struct Facets {
     pub patch_leaves: Vec<usize>,
     /// The leaves that each vertex lies on.
     pub surfaces: Vec<SmallVec<[u32; 3]>>,
-    /// Cells that did not come out right: those whose vertex misses a surface that it should lie on,
-    /// and those whose triangles cut others. Elsewhere no two triangles meet except where they join:
-    /// by construction, or where a cell has several pieces of surface or a vertex outside it, by test.
+    /// Cells whose triangles cut others, or may when the facets were to be sharp. Elsewhere no two triangles meet except where they join: by
+    /// construction, or where a cell has several vertices or one outside it, by test.
     pub undecided: Vec<Box3>,
+    /// Cells with an edge or corner that no vertex lies on, so that it is cut off there: it is thinner than a
+    /// cell, or its vertices would have made triangles cut each other.
+    pub blunt: Vec<Box3>,
     /// How many cells the surface passes through.
     pub cells: usize,
     /// Side of a cell.
@@ -243,7 +252,7 @@ fn at_step(
     // A face of the set that lies in a face of the box is the set's.
     let own = compiled.places.len().saturating_sub(CAPS.len());
     let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
-    let mut made = assemble::assemble(&grid, &leaves, &divided.blocks);
+    let mut made = untangle::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let rule = Rule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
     refine(&mut made, &leaves, &compiled.tape, rule);
 
@@ -264,7 +273,11 @@ fn at_step(
     }
     let mesh = Mesh::new(builder.build().into(), made.positions).map_err(broken)?;
 
-    let undecided = undecided(&grid, &mesh, &made.doubtful, &divided.blocks);
+    let undecided = match options.sharp {
+        true => cells(&grid, made.doubtful.iter().map(|d| d.1).collect()),
+        false => undecided(&grid, &mesh, &made.doubtful),
+    };
+    let blunt = cells(&grid, made.blunt);
     Ok(Facets {
         mesh,
         own_leaves,
@@ -272,6 +285,7 @@ fn at_step(
         patch_leaves,
         surfaces: made.surfaces,
         undecided,
+        blunt,
         cells: divided.blocks.iter().map(|(_, b)| b.active).sum(),
         step,
         blocks: divided.blocks.len(),
@@ -280,35 +294,21 @@ fn at_step(
     })
 }
 
-/// The cells of doubtful vertices that miss a surface, or of which a triangle does cut another.
-fn undecided(
-    grid: &Grid,
-    mesh: &Mesh,
-    doubtful: &[(u32, [usize; 3])],
-    blocks: &[(Arc<Tape<f64>>, Arc<Block>)],
-) -> Vec<Box3> {
-    if doubtful.is_empty() {
-        return Vec::new();
+/// The cells of doubtful vertices of which a triangle does cut another.
+fn undecided(grid: &Grid, mesh: &Mesh, doubtful: &[(u32, [usize; 3])]) -> Vec<Box3> {
+    let positions = mesh.positions();
+    let faces = mesh.faces();
+    let corners = |f: usize| [faces[f][0], faces[f][1], faces[f][2]];
+    let mut bad = vec![false; positions.len()];
+    for face in untangle::crossing(positions, faces.len(), corners, doubtful).into_iter().flatten()
+    {
+        corners(face).into_iter().for_each(|v| bad[v as usize] = true);
     }
-    let mut of_vertex = vec![false; mesh.positions().len()];
-    for (vertex, _) in doubtful {
-        of_vertex[*vertex as usize] = true;
-    }
-    let flagged: Vec<bool> =
-        mesh.faces().iter().map(|f| f.iter().any(|&v| of_vertex[v as usize])).collect();
-    let mut bad = vec![false; mesh.positions().len()];
-    for face in crossing_faces(mesh, Some(&flagged)).into_iter().flatten() {
-        for &v in &mesh.faces()[face] {
-            bad[v as usize] = true;
-        }
-    }
-    let mut missing =
-        blocks.iter().flat_map(|(_, b)| &b.vertices).map(|v| v.placed.residual > grid.goal);
-    for vertex in &mut bad {
-        *vertex |= missing.next().unwrap_or(false);
-    }
-    let mut cells: Vec<[usize; 3]> =
-        doubtful.iter().filter(|(v, _)| bad[*v as usize]).map(|d| d.1).collect();
+    cells(grid, doubtful.iter().filter(|(v, _)| bad[*v as usize]).map(|d| d.1).collect())
+}
+
+/// The boxes of some cells, each once.
+fn cells(grid: &Grid, mut cells: Vec<[usize; 3]>) -> Vec<Box3> {
     cells.sort_unstable();
     cells.dedup();
     cells.into_iter().map(|c| grid.cell(c)).collect()

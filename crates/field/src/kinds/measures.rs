@@ -3,6 +3,7 @@
 use super::body::options;
 use super::read::{Solid, fault, primitive_of, set_of};
 use super::region::{Region, around, region};
+use crate::curved::Curved;
 use crate::facet::{Facets, Resolution};
 use crate::{
     FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, cache, facet_mixed, foot,
@@ -17,7 +18,15 @@ use std::sync::Arc;
 const DEPTHS: [u32; 2] = [5, 9];
 
 /// The least part of the box's volume to which volumes agree unless asked otherwise.
-const USUAL: f64 = 1e-6;
+const USUAL: f64 = 1e-8;
+
+/// The part of themselves to which areas and lengths agree unless asked otherwise.
+const ALIKE: f64 = 1e-6;
+
+/// Facets for integrals, which stop when the model does.
+fn sharp(depth: u32, context: &Context) -> crate::Options {
+    crate::Options { sharp: true, ..options(Resolution::Depth(depth), context) }
+}
 
 fn none<T: Real>() -> Moments<T> {
     Moments([T::zero(); 10])
@@ -30,7 +39,9 @@ fn moments<T: Real>(
     accuracy: Option<T>,
     context: &Context,
 ) -> Result<Moments<T>, FieldError> {
+    // Sheets, wires and points have no volume.
     let plain = set.re();
+    let solid = crate::solid_part(&plain);
     let size = (0..3).map(|k| region.over.high[k] - region.over.low[k]).product::<f64>();
     let accuracy = match accuracy {
         Some(a) => crate::error::positive("accuracy", a.re())?,
@@ -38,19 +49,16 @@ fn moments<T: Real>(
     };
     let mut before: Option<(Arc<Facets>, f64)> = None;
     for depth in DEPTHS[0]..=DEPTHS[1] {
-        let facets =
-            cache::facet(&plain, &region.over, &options(Resolution::Depth(depth), context))?;
+        let facets = cache::facet(&solid, &region.over, &sharp(depth, context))?;
         if facets.mesh.faces().is_empty() {
             return Ok(none());
         }
         let volume = facets.moments().volume();
-        if let Some((_, coarser)) = before
-            && (volume - coarser).abs() <= accuracy
-        {
-            before = Some((facets, volume));
+        let close = before.is_some_and(|(_, coarser)| (volume - coarser).abs() <= accuracy);
+        before = Some((facets, volume));
+        if close {
             break;
         }
-        before = Some((facets, volume));
     }
     match before {
         Some((facets, _)) => {
@@ -100,8 +108,8 @@ measure!(
     Volume,
     Number,
     "volume",
-    "The volume of a set within a box: a best value of fourth order, whose bracket is `volume_bracket`.",
-    "How well two values, of a box divided once more, agree; by default 1e-6 of the box's volume.",
+    "The volume of a set within a box: a best value of high order, whose bracket is `volume_bracket`.",
+    "How well two values, of a box divided once more, agree; by default 1e-8 of the box's volume.",
     "assert abs(volume(set(sphere({0, 0, 0}, 1))) - 4.18879) < 1e-4;",
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
@@ -114,7 +122,7 @@ measure!(
     Vector,
     "mass_centre",
     "The centre of mass of a set within a box.",
-    "How well two volumes, of a box divided once more, agree; by default 1e-6 of the box's volume.",
+    "How well two volumes, of a box divided once more, agree; by default 1e-8 of the box's volume.",
     "set half = set(sphere({0, 0, 0}, 1)) & set(plane({0, 0, -1}, {0, 0, 0})); assert abs(mass_centre(half).z - 0.375) < 1e-4;",
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
@@ -130,7 +138,7 @@ measure!(
     Vectors,
     "inertia",
     "The rows of the matrix of inertia of a set of density 1 about its centroid.",
-    "How well two volumes, of a box divided once more, agree; by default 1e-6 of the box's volume.",
+    "How well two volumes, of a box divided once more, agree; by default 1e-8 of the box's volume.",
     "curve rows = inertia(cuboid({0, 0, 0}, {1, 2, 3})); assert abs(rows[1].x - 6.5) < 1e-6;",
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
@@ -152,34 +160,51 @@ measure!(
     Number,
     "area",
     "The area of the surface of a set within a box, sheets counted once.",
-    "How well two values, of a box divided once more, agree; by default 1e-4 of the area.",
-    "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.566) < 5e-3;",
+    "How well two values, of a box divided once more, agree; by default 1e-6 of the area.",
+    "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.56637) < 1e-5;",
     |this, set, region, context| {
-        let asked = match this.accuracy {
-            Some(a) => Some(
-                crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(3))?,
-            ),
-            None => None,
-        };
-        let mut before: Option<T> = None;
-        for depth in DEPTHS[0]..=DEPTHS[1] {
-            let options = options(Resolution::Depth(depth), context);
-            let area = surface(set, &region, &options).map_err(|e| fault(&e))?;
-            let close =
-                before.is_some_and(|b| (area - b).re().abs() <= asked.unwrap_or(1e-4 * area.re()));
-            // Of second order: a third of the last step is still to go.
-            let better = before.map_or(area, |b| area + (area - b) / 3.0);
-            if close || depth == DEPTHS[1] {
-                return Ok(Value::Number(better));
-            }
-            before = Some(area);
-        }
-        Ok(Value::Number(T::zero()))
+        refined(this.accuracy, context, |options| area(set, &region, options))
     }
 );
 
-/// The area of the facets at one resolution.
-fn surface<T: Real>(
+measure!(
+    WireLength,
+    Number,
+    "wire_length",
+    "The length of the wires of a set within a box: curves in which two sheets meet.",
+    "How well two values, of a box divided once more, agree; by default 1e-6 of the length.",
+    "set ring = set(abs(sphere({0, 0, 0}, 1))) & set(abs(plane({0, 0, 1}, {0, 0, 0.6}))); assert abs(wire_length(ring) - 5.0265482) < 1e-5;",
+    |this, set, region, context| {
+        refined(this.accuracy, context, |options| length(set, &region, options))
+    }
+);
+
+/// A measure at resolutions that are made finer until two agree.
+fn refined<T: Real>(
+    accuracy: Option<T>,
+    context: &Context,
+    measure: impl Fn(&crate::Options) -> Result<T, FieldError>,
+) -> Result<Value<T>, Fault> {
+    let asked = match accuracy {
+        Some(a) => {
+            Some(crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(3))?)
+        }
+        None => None,
+    };
+    let mut found = T::zero();
+    for depth in DEPTHS[0]..=DEPTHS[1] {
+        let before = found;
+        found = measure(&sharp(depth, context)).map_err(|e| fault(&e))?;
+        let step = (found - before).re().abs();
+        if depth > DEPTHS[0] && step <= asked.unwrap_or(ALIKE * found.re()) {
+            break;
+        }
+    }
+    Ok(Value::Number(found))
+}
+
+/// The area of the curved facets at one resolution.
+fn area<T: Real>(
     set: &Set<T>,
     region: &Region<T>,
     options: &crate::Options,
@@ -187,15 +212,10 @@ fn surface<T: Real>(
     let plain = set.re();
     let lifter = Lifter::of(set, &plain, region.corners);
     let own = |facets: &Facets| -> Result<T, FieldError> {
-        let positions = lifter.positions(facets)?;
-        let mut area = T::zero();
-        for (patch, &leaf) in facets.mesh.patches().iter().zip(&facets.patch_leaves) {
-            // A face of the box is no surface of the set.
-            if leaf < facets.own_leaves {
-                area += sum(&positions, &facets.mesh.faces()[patch.faces.clone()]);
-            }
-        }
-        Ok(area)
+        let (positions, primitives) = (lifter.positions(facets)?, lifter.primitives(facets)?);
+        // A face of the box is no surface of the set.
+        let counts = |leaf: u32| (leaf as usize) < facets.own_leaves;
+        Ok(Curved::new(&facets.flat()).area(&positions, &primitives, counts))
     };
     if plain.leaves().iter().all(|l| !l.primitive.is_sheet()) {
         return own(&*cache::facet(&plain, &region.over, options)?);
@@ -204,21 +224,25 @@ fn surface<T: Real>(
     let mut area = own(&mixed.solid)?;
     for sheet in &mixed.sheets {
         let positions = lifter.moved_on(sheet.mesh.positions(), &sheet.on)?;
-        area += sum(&positions, sheet.mesh.faces());
+        let primitives = lifter.primitives_on(&sheet.on)?;
+        area += Curved::new(&sheet.flat()).area(&positions, &primitives, |_| true);
     }
     Ok(area)
 }
 
-fn sum<T: Real>(positions: &[Vec3<T>], faces: &[[u32; 4]]) -> T {
-    let mut area = T::zero();
-    for face in faces {
-        let [a, b, c] = [0, 1, 2].map(|k| positions[face[k] as usize]);
-        let n = (b - a).cross(c - a);
-        if n.re().norm_sq() > 0.0 {
-            area += n.norm() * 0.5;
-        }
+/// The length of the wires at one resolution.
+fn length<T: Real>(
+    set: &Set<T>,
+    region: &Region<T>,
+    options: &crate::Options,
+) -> Result<T, FieldError> {
+    let plain = set.re();
+    let lifter = Lifter::of(set, &plain, region.corners);
+    let mut sum = T::zero();
+    for wire in &facet_mixed(&plain, &region.over, options)?.wires {
+        sum += crate::curved::length(wire, &lifter.primitives_on(&wire.on)?);
     }
-    area
+    Ok(sum)
 }
 
 /// Proved bounds of the volume of a set within a box, {low, high}, from ranges over boxes.

@@ -55,6 +55,7 @@ pub fn rows() -> Vec<Row> {
         blends::Transition,
         measures::Volume,
         measures::Area,
+        measures::WireLength,
         measures::Centroid,
         measures::Inertia,
         measures::VolumeBracket,

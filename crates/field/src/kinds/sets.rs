@@ -2,13 +2,51 @@
 
 use super::read::{Shape, Solid, set, set_value};
 use crate::{Attributes, Set};
-use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Point, Value};
 use std::sync::Arc;
 
-/// The points where a field is not positive.
+/// What a set is made of: its solid side, a wire or a point.
+enum Source<T: Real> {
+    Field(Shape<T>),
+    Line([Vec3<T>; 2]),
+    Point(Vec3<T>),
+}
+
+/// How far a line may be from straight, as a share of its length.
+const STRAIGHT: f64 = 1e-9;
+
+impl<T: Real> FromValue<T> for Source<T> {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Curve(curve) => {
+                let [from, to] = [0.0, 1.0].map(|t| curve.end(t));
+                let (start, length) = (from.re(), from.re().distance(to.re()));
+                let bent = [0.25, 0.5, 0.75].into_iter().map(|t| {
+                    let p = curve.end(t).re() - start;
+                    let along = (to.re() - start) / length.max(f64::MIN_POSITIVE);
+                    (p - along * p.dot(along)).norm()
+                });
+                if bent.fold(0.0, f64::max) > STRAIGHT * length {
+                    return Err(Fault::new("not-straight", "a set is made of straight lines only")
+                        .expected("a line")
+                        .found("a curve that bends")
+                        .help("take the sheets of two fields that meet in the curve"));
+                }
+                Ok(Self::Line([from, to]))
+            }
+            Value::Point(_) | Value::Vector(_) => {
+                Point::from_value(value).map(|p| Self::Point(p.xyz))
+            }
+            _ => Shape::from_value(value).map(Self::Field),
+        }
+    }
+}
+
+/// The points where a field is not positive, or a line as a wire, or a point.
 ///
-/// Its faces are called as the field is. Sets are combined by `|` (union), `&` (intersection), `-`
+/// Its faces are called as the field is. A line reaches from its start to its end. Sets are combined by `|` (union), `&` (intersection), `-`
 /// (difference), `^` (points in just one) and the sign `-` (complement).
 #[derive(Kind)]
 #[kind(
@@ -18,17 +56,23 @@ use std::sync::Arc;
     example = "field c = sphere({0, 0, 0}, 1); set ball = set(c) & -set(plane({0, 0, 1}, {0, 0, 0}));"
 )]
 pub struct SetOf<T: Real> {
-    /// The field.
-    field: Shape<T>,
+    /// The field, line or point.
+    field: Source<T>,
 }
 
 impl<T: Real> Build<T> for SetOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let set = Set::new(&self.field.primitive);
-        Ok(set_value(match &self.field.name {
-            Some(name) => set.named(name),
-            None => set,
-        }))
+        match self.field {
+            Source::Field(field) => {
+                let set = Set::new(&field.primitive);
+                Ok(set_value(match &field.name {
+                    Some(name) => set.named(name),
+                    None => set,
+                }))
+            }
+            Source::Line([from, to]) => set(Set::segment(from, to)),
+            Source::Point(at) => set(Set::dot(at)),
+        }
     }
 }
 

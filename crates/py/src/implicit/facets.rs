@@ -153,10 +153,16 @@ impl PyFacets {
         (shells.iter().map(|s| s.volume).collect(), bodies, array(py, &touching))
     }
 
-    /// The boxes that did not come out right.
+    /// The boxes whose triangles cut others.
     fn undecided(&self) -> Vec<([f64; 3], [f64; 3])> {
         let solid = solid_of(&self.pieces);
         solid.undecided.iter().map(|b| (b.low.to_array(), b.high.to_array())).collect()
+    }
+
+    /// The boxes with an edge or corner that is cut off.
+    fn blunt(&self) -> Vec<([f64; 3], [f64; 3])> {
+        let solid = solid_of(&self.pieces);
+        solid.blunt.iter().map(|b| (b.low.to_array(), b.high.to_array())).collect()
     }
 
     /// Distances of triangle centres and vertices from their surfaces, the solids' only.

@@ -91,6 +91,16 @@ impl PySet {
         Set::tetrahedron(corners.map(Vec3::from)).map(Self::of).map_err(plain_error)
     }
 
+    #[staticmethod]
+    fn segment(start: [f64; 3], end: [f64; 3]) -> PyResult<Self> {
+        Set::segment(Vec3::from(start), Vec3::from(end)).map(Self::of).map_err(plain_error)
+    }
+
+    #[staticmethod]
+    fn dot(at: [f64; 3]) -> PyResult<Self> {
+        Set::dot(Vec3::from(at)).map(Self::of).map_err(plain_error)
+    }
+
     fn binary(&self, name: &str, o: &Self) -> PyResult<Self> {
         let (a, b) = (&self.inner, &o.inner);
         let inner = match name {
@@ -321,9 +331,13 @@ impl PySet {
         let (bracket, best) = self.long(py, move |set, cancel| {
             let over = region(set, given(corners))?;
             let bracket = moldloft_field::bracket_until(set, &over, depth, &cancel)?;
-            let options =
-                Options { cancel: Some(cancel), ..Options::new(Resolution::Depth(depth)) };
-            let mut best = moldloft_field::facet(set, &over, &options)?.moments();
+            let options = Options {
+                cancel: Some(cancel),
+                sharp: true,
+                ..Options::new(Resolution::Depth(depth))
+            };
+            let mut best =
+                moldloft_field::facet(&moldloft_field::solid_part(set), &over, &options)?.moments();
             for (x, range) in best.0.iter_mut().zip(&bracket.0) {
                 *x = x.clamp(range.low, range.high);
             }
