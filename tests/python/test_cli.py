@@ -225,7 +225,9 @@ def test_ctrl_c_during_a_long_run(model_file, tmp_path):
         "AbsPoint P(s, 0, 0);\n"
     )
     # It tells when it begins: a machine may need any time to start Python.
-    begun = "import sys; from moldloft.cli import main; print('begun', flush=True); sys.exit(main())"
+    begun = (
+        "import sys; from moldloft.cli import main; print('begun', flush=True); sys.exit(main())"
+    )
     command = [sys.executable, "-c", begun, "check", "model.sdl"]
     with (tmp_path / "log").open("w") as log:
         process = subprocess.Popen(command, cwd=tmp_path, stderr=log, stdout=subprocess.PIPE)
