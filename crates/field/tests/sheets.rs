@@ -3,7 +3,7 @@
 mod common;
 
 use common::{at_depth, axis, cube, v};
-use moldloft_field::{Mixed, Primitive, Set, facet_mixed};
+use moldloft_field::{Mixed, Primitive, Set, around, facet_mixed};
 use moldloft_mesh::measure;
 use moldloft_num::{Vec3, integrate};
 use std::f64::consts::PI;
@@ -153,6 +153,22 @@ fn wires_and_points_beside_a_solid() {
     let inner = mixed(&(&Set::dot(v(0.3, 0.2, 0.1)).unwrap() | &Set::new(&ball())));
     assert!(inner.points.is_empty());
     assert!(Set::segment(at, at).is_err());
+}
+
+/// The box around a wire is as thick as the cells that it passes through.
+#[test]
+fn wires_in_boxes_of_their_own() {
+    for to in [v(3.0, 4.0, 0.0), v(0.0, 0.0, 7.0), v(-1.0, 2.0, 5.0)] {
+        let wire = Set::segment(Vec3::zero(), to).unwrap();
+        let over = around(&wire).unwrap().unwrap();
+        for depth in 4..7 {
+            let m = facet_mixed(&wire, &over, &at_depth(depth)).unwrap();
+            assert_eq!(m.wires.len(), 1, "{to:?} at depth {depth}");
+            assert!((m.wires[0].length() - to.norm()).abs() < 1e-9);
+            let off = |p: &Vec3| (p.cross(to)).norm() / to.norm();
+            assert!(m.wires[0].points.iter().all(|p| off(p) < 1e-12));
+        }
+    }
 }
 
 #[test]

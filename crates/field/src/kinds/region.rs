@@ -56,6 +56,10 @@ pub fn region<T: Real>(
     }
 }
 
+/// No side of a box around sheets and wires is less than this of the longest: four cells where those
+/// are a sixteenth of it.
+const LEAST_SIDE: f64 = 0.25;
+
 /// A box around a set, a little wider; `None` for an empty set.
 ///
 /// # Errors
@@ -73,8 +77,14 @@ pub fn around(set: &Set<f64>) -> Result<Option<Box3>, crate::FieldError> {
         found = bounds(set, accuracy)?;
     }
     Ok(found.map(|mut over| {
-        let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
-        let more = Vec3::from(WIDENED) * size.max(1e-9);
+        let sides = [0, 1, 2].map(|k| over.high[k] - over.low[k]);
+        let size = sides.into_iter().fold(0.0, f64::max).max(1e-9);
+        // Sheets and wires have no thickness of their own, but the cells about them have.
+        let thin = set.leaves().iter().any(|leaf| leaf.primitive.is_sheet());
+        let more = Vec3::from([0, 1, 2].map(|k| {
+            let missing = if thin { 0.5 * (LEAST_SIDE * size - sides[k]) } else { 0.0 };
+            missing.max(WIDENED[k] * size)
+        }));
         over.low -= more;
         over.high += more;
         over
