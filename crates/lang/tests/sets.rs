@@ -154,8 +154,8 @@ fn derivatives_equal_differences() {
             let integral = ["volume", "mass", "inertia", "area", "b.volume"];
             let integral = integral.iter().any(|i| text.starts_with(i));
             let (h, tolerance) = match *text {
-                // Facets at one depth jump a little as the grid passes.
-                "b.volume" => (0.04, 1e-3),
+                // Facets at one depth jump a little as the grid passes: by shares of the cells' area.
+                "b.volume" => (0.04, 4e-3),
                 // Of an area of 12, of which the curvature takes a digit.
                 _ if text.starts_with("area") => (0.02, 1e-5),
                 _ if integral => (0.02, 1e-6),
