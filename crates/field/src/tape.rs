@@ -396,6 +396,23 @@ impl<T: Real> Tape<T> {
     }
 }
 
+/// The work of [`Tape::bulk`]; a struct, for closures need not be inlined, and what is not inlined does
+/// not get the wide registers.
+struct Bulk<'a> {
+    tape: &'a Tape<f64>,
+    points: &'a [Vec3],
+    out: &'a mut [f64],
+    room: &'a mut Room,
+}
+
+impl pulp::NullaryFnOnce for Bulk<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn call(self) {
+        self.tape.bulk_loops(self.points, self.out, self.room);
+    }
+}
+
 impl Tape<f64> {
     /// The range over a box by plain interval arithmetic; `ranges` holds that of every instruction.
     pub(crate) fn range(&self, at: &[Interval; 3], ranges: &mut Vec<Interval>) -> Interval {
@@ -439,9 +456,14 @@ impl Tape<f64> {
         decided.then(|| self.reduced(self.code.len() as u32 - 1, decide))
     }
 
-    /// The values at many points: bit for bit those of [`Tape::eval`].
+    /// The values at many points: bit for bit those of [`Tape::eval`], in the widest registers at hand.
     pub(crate) fn bulk(&self, points: &[Vec3], out: &mut [f64], room: &mut Room) {
         assert_eq!(points.len(), out.len(), "one value per point");
+        pulp::Arch::new().dispatch(Bulk { tape: self, points, out, room });
+    }
+
+    #[inline(always)]
+    fn bulk_loops(&self, points: &[Vec3], out: &mut [f64], room: &mut Room) {
         while room.registers.len() < self.registers {
             room.registers.push(Box::new([0.0; CHUNK]));
         }
@@ -461,6 +483,7 @@ impl Tape<f64> {
         room.spare = Some(spare);
     }
 
+    #[inline(always)]
     fn bulk_step(
         &self,
         code: &Code<f64>,
