@@ -129,6 +129,10 @@ pub(crate) trait Algebra<T: Real>: Copy {
     fn real(x: T) -> Self;
     fn plane(normal: Vec3<T>, offset: T, at: &Self::At) -> Self;
     fn user(oracle: &dyn Oracle<T>, map: &Affine<T>, at: &Self::At) -> Self;
+    /// As [`Algebra::user`] at many places: added to `out`.
+    fn users(oracle: &dyn Oracle<T>, map: &Affine<T>, at: &[Self::At], out: &mut Vec<Self>) {
+        out.extend(at.iter().map(|p| Self::user(oracle, map, p)));
+    }
     fn sum(self, o: Self) -> Self;
     fn difference(self, o: Self) -> Self;
     fn times(self, o: Self) -> Self;
@@ -159,6 +163,11 @@ impl<T: Real> Algebra<T> for T {
     }
     fn user(oracle: &dyn Oracle<T>, map: &Affine<T>, p: &Vec3<T>) -> Self {
         oracle.value(map.apply(*p))
+    }
+    fn users(oracle: &dyn Oracle<T>, map: &Affine<T>, at: &[Vec3<T>], out: &mut Vec<Self>) {
+        let points: Vec<Vec3<T>> = at.iter().map(|p| map.apply(*p)).collect();
+        out.resize(at.len(), T::zero());
+        oracle.values(&points, out);
     }
     #[inline(always)]
     fn sum(self, o: Self) -> Self {
@@ -234,6 +243,11 @@ impl<T: Real> Algebra<T> for Gradient<T> {
     fn user(oracle: &dyn Oracle<T>, map: &Affine<T>, p: &Vec3<T>) -> Self {
         let (value, g) = oracle.value_and_gradient(map.apply(*p));
         Self { value, slope: map.pull_back(g) }
+    }
+    fn users(oracle: &dyn Oracle<T>, map: &Affine<T>, at: &[Vec3<T>], out: &mut Vec<Self>) {
+        let points: Vec<Vec3<T>> = at.iter().map(|p| map.apply(*p)).collect();
+        let found = oracle.values_and_gradients(&points).into_iter();
+        out.extend(found.map(|(value, g)| Self { value, slope: map.pull_back(g) }));
     }
     #[inline(always)]
     fn sum(self, o: Self) -> Self {

@@ -13,6 +13,7 @@
 //! Simpson's rule. Everything is made of the six points by formulas, so that numbers with derivatives give the
 //! derivatives: those of moving edges are those of their middles.
 
+use crate::algebra::Algebra;
 use crate::lifted::moved;
 use crate::mass::{Moments, POWERS};
 use crate::set::Leaf;
@@ -162,29 +163,52 @@ impl<'a> Curved<'a> {
         middles
     }
 
-    /// Sums what `each` makes of the leaf, the point and the area vector at all points of the rule.
-    fn sum<T: Real, const N: usize>(
+    /// Sums what `each` makes of the leaf, its jet (where it has a primitive), the point and the area vector at all
+    /// points of the rule.
+    fn sum<T: Real, A: Algebra<T, At = Vec3<T>> + Send, const N: usize>(
         &self,
         positions: &[Vec3<T>],
         primitives: &[Option<Primitive<T>>],
-        each: impl Fn(&mut Room<T>, u32, Vec3<T>, Vec3<T>) -> [T; N] + Sync,
+        each: impl Fn(u32, Option<&A>, Vec3<T>, Vec3<T>) -> [T; N] + Sync,
     ) -> [T; N] {
         let middles = self.middles(positions, primitives);
         let numbers: Vec<u32> = (0..self.faces.len() as u32).collect();
         let parts: Vec<[T; N]> = numbers
             .par_chunks(CHUNK)
-            .map_init(Room::default, |room, chunk| {
+            .map_init(Vec::new, |room, chunk| {
                 let mut total = [T::zero(); N];
-                for &k in chunk {
-                    let (face, sides) = (self.faces[k as usize], self.sides[k as usize]);
-                    let p = [0, 1, 2].map(|i| positions[face[i] as usize]);
-                    let m = [0, 1, 2].map(|i| middles[sides[i] as usize]);
-                    for (x, area) in points(p, m) {
-                        let leaf = self.leaves[k as usize];
-                        let terms = each(room, leaf, x, area);
+                // Faces of one leaf follow each other: primitives from outside are asked once for all.
+                for run in
+                    chunk.chunk_by(|a, b| self.leaves[*a as usize] == self.leaves[*b as usize])
+                {
+                    let leaf = self.leaves[run[0] as usize];
+                    let tape = primitives[leaf as usize].as_ref().map(|f| f.tape());
+                    let all = run.iter().flat_map(|&k| {
+                        let (face, sides) = (self.faces[k as usize], self.sides[k as usize]);
+                        let p = [0, 1, 2].map(|i| positions[face[i] as usize]);
+                        let m = [0, 1, 2].map(|i| middles[sides[i] as usize]);
+                        points(p, m)
+                    });
+                    let mut add = |jet: Option<&A>, (x, area): (Vec3<T>, Vec3<T>)| {
+                        let terms = each(leaf, jet, x, area);
                         for (total, term) in total.iter_mut().zip(terms) {
                             *total += term;
                         }
+                    };
+                    match tape {
+                        None => all.for_each(|point| add(None, point)),
+                        Some(tape) if tape.has_users() => {
+                            let all: Vec<_> = all.collect();
+                            let places: Vec<Vec3<T>> = all.iter().map(|(x, _)| *x).collect();
+                            let jets = tape.eval_many::<A>(&places).pop().unwrap_or_default();
+                            all.into_iter()
+                                .zip(&jets)
+                                .for_each(|(point, jet)| add(Some(jet), point));
+                        }
+                        Some(tape) => all.for_each(|point| {
+                            let jet = tape.eval::<A>(&point.0, room);
+                            add(Some(&jet), point);
+                        }),
                     }
                 }
                 total
@@ -206,11 +230,10 @@ impl<'a> Curved<'a> {
         primitives: &[Option<Primitive<T>>],
     ) -> Moments<T> {
         let size = self.size();
-        let each = |room: &mut Room<T>, leaf: u32, x: Vec3<T>, area: Vec3<T>| {
+        let each = |_: u32, jet: Option<&Gradient<T>>, x: Vec3<T>, area: Vec3<T>| {
             let flux = x.dot(area);
             let mut layer = T::zero();
-            if let Some(f) = &primitives[leaf as usize] {
-                let g = f.tape().eval::<Gradient<T>>(&x, &mut room.gradients);
+            if let Some(g) = jet {
                 let slope = g.slope.norm_sq();
                 if slope.re() > 0.0 && (g.value.re() / slope.re().sqrt()).abs() <= size {
                     layer = -(g.value / slope) * g.slope.dot(area);
@@ -238,7 +261,7 @@ impl<'a> Curved<'a> {
         primitives: &[Option<Primitive<T>>],
         counts: impl Fn(u32) -> bool + Sync,
     ) -> T {
-        let each = |room: &mut Room<T>, leaf: u32, x: Vec3<T>, area: Vec3<T>| {
+        let each = |leaf: u32, jet: Option<&Hessian<T>>, _: Vec3<T>, area: Vec3<T>| {
             if !counts(leaf) {
                 return [T::zero()];
             }
@@ -246,8 +269,7 @@ impl<'a> Curved<'a> {
                 true => area.norm(),
                 false => T::zero(),
             };
-            let Some(f) = &primitives[leaf as usize] else { return [plain()] };
-            let h = f.tape().eval::<Hessian<T>>(&x, &mut room.hessians);
+            let Some(h) = jet else { return [plain()] };
             let slope = h.slope.norm_sq();
             if slope.re() == 0.0 || !slope.is_finite() {
                 return [plain()];
@@ -272,18 +294,6 @@ impl<'a> Curved<'a> {
             .iter()
             .map(|[a, b]| self.positions[*a as usize].distance(self.positions[*b as usize]));
         all.sum::<f64>() / self.ends.len().max(1) as f64
-    }
-}
-
-/// Reusable room.
-struct Room<T> {
-    gradients: Vec<Gradient<T>>,
-    hessians: Vec<Hessian<T>>,
-}
-
-impl<T> Default for Room<T> {
-    fn default() -> Self {
-        Self { gradients: Vec::new(), hessians: Vec::new() }
     }
 }
 

@@ -74,6 +74,17 @@ pub enum FieldError {
         /// How many are allowed.
         limit: f64,
     },
+    /// The box is thinner than its cells, so that what is in it would get lost.
+    ThinBox {
+        /// The axis along which it is, 0 to 2.
+        axis: usize,
+        /// Its side.
+        side: f64,
+        /// The side of a cell.
+        step: f64,
+        /// From which depth on its cells are small enough.
+        depth: u32,
+    },
     /// The body is not closed, so it has no inside.
     NotClosed {
         /// How many edges have not as many triangles on one side as on the other.
@@ -134,6 +145,11 @@ impl fmt::Display for FieldError {
                 let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);
                 write!(f, "the set has no end towards {end}{axis}: give the box to look at")
             }
+            Self::ThinBox { axis, side, step, .. } => write!(
+                f,
+                "the box is {side:.3e} thick along {}, less than its cells of {step:.3e}: what is in it would get lost",
+                ["x", "y", "z"][*axis]
+            ),
             Self::NotClosed { edges } => {
                 write!(f, "the body is not closed at {edges} edges, so it has no inside")
             }

@@ -352,28 +352,49 @@ impl Facets {
     /// Where bodies only touch: positions at which two of their shells have a vertex each, ascending by x, y,
     /// z. Each shell keeps its own vertex there, so that both stay manifold.
     pub fn touching(&self) -> Vec<Vec3> {
-        let mut shell = vec![0usize; self.mesh.positions().len()];
-        for (k, one) in self.shells().iter().enumerate() {
+        let shells = self.shells();
+        if shells.len() < 2 {
+            return Vec::new();
+        }
+        let positions = self.mesh.positions();
+        let mut shell = vec![0usize; positions.len()];
+        for (k, one) in shells.iter().enumerate() {
             for &t in &one.faces {
                 self.mesh.faces()[t as usize].iter().for_each(|&v| shell[v as usize] = k);
             }
         }
+        // Bins much wider than what counts as the same place, so that most points are far from their sides.
         let near = 1e-7 * self.step;
-        let mut all: Vec<usize> = (0..shell.len()).collect();
-        let at = |v: usize| self.mesh.positions()[v];
-        let order = |a: &Vec3, b: &Vec3| {
-            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
+        let bin = |p: Vec3, reach: f64| {
+            let side = 1e-2 * self.step;
+            let end = |x: f64| (x / side).floor() as i64;
+            [0, 1, 2].map(|k| [end(p[k] - reach), end(p[k] + reach)])
         };
-        all.sort_by(|a, b| order(&at(*a), &at(*b)));
-        let mut found: Vec<Vec3> = Vec::new();
-        for (i, &v) in all.iter().enumerate() {
-            for &w in all[i + 1..].iter().take_while(|w| at(**w).x - at(v).x <= near) {
-                if shell[v] != shell[w] && at(v).distance(at(w)) <= near {
-                    found.push(at(v));
-                }
-            }
+        let mut bins: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        for (v, p) in positions.iter().enumerate() {
+            bins.entry(bin(*p, 0.0).map(|ends| ends[0])).or_default().push(v as u32);
         }
-        found.dedup_by(|a, b| a.distance(*b) <= near);
+        let others = |v: usize| {
+            let [x, y, z] = bin(positions[v], near).map(|[low, high]| low..=high);
+            let bins = &bins;
+            x.flat_map(move |i| {
+                let z = z.clone();
+                y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
+            })
+            .filter_map(|key| bins.get(&key))
+            .flatten()
+            .map(|&w| w as usize)
+        };
+        // The first of the vertices at a place stands for it.
+        let meets = |v: usize| {
+            let here = || others(v).filter(|&w| positions[v].distance(positions[w]) <= near);
+            here().all(|w| v <= w) && here().any(|w| shell[v] != shell[w])
+        };
+        let mut found: Vec<Vec3> =
+            (0..positions.len()).filter(|&v| meets(v)).map(|v| positions[v]).collect();
+        found.sort_by(|a, b| {
+            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
+        });
         found
     }
 }

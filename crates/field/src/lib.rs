@@ -29,6 +29,7 @@ mod oracle;
 mod portrait;
 mod primitive;
 mod ray;
+mod roomy;
 mod set;
 mod shapes;
 mod sheets;

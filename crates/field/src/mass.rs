@@ -308,8 +308,8 @@ pub struct Mass {
 /// As [`bracket`] and [`crate::facet`].
 pub fn mass(set: &Set, over: &Box3, depth: u32) -> Result<Mass, FieldError> {
     let bracket = bracket(set, over, depth)?;
-    let options =
-        crate::Options { sharp: true, ..crate::Options::new(crate::Resolution::Depth(depth)) };
+    let resolution = crate::Resolution::Level(depth);
+    let options = crate::Options { sharp: true, ..crate::Options::new(resolution) };
     let facets = crate::facet(&solid_part(set), over, &options)?;
     let mut best = facets.moments();
     for (x, range) in best.0.iter_mut().zip(&bracket.0) {

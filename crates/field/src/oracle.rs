@@ -22,6 +22,11 @@ pub trait Oracle<T: Real>: Field<T> {
         }
     }
 
+    /// The values and gradients at many points.
+    fn values_and_gradients(&self, points: &[Vec3<T>]) -> Vec<(T, Vec3<T>)> {
+        points.iter().map(|p| self.value_and_gradient(*p)).collect()
+    }
+
     /// The same with real parts only.
     fn re(&self) -> Arc<dyn Oracle<f64>>;
 }

@@ -218,7 +218,7 @@ impl<T: Real> Set<T> {
     ///
     /// # Errors
     /// A coordinate that is not finite.
-    pub fn dot(at: Vec3<T>) -> Result<Self, FieldError> {
+    pub fn point(at: Vec3<T>) -> Result<Self, FieldError> {
         // The columns of a turned frame, so that the sheets lie along no planes of the grid.
         let frame = [[2.0, 1.0, 2.0], [-2.0, 2.0, 1.0], [1.0, 2.0, -2.0]];
         let mut set = Self::everything();

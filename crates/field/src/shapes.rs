@@ -389,6 +389,7 @@ impl<T: Real> Oracle<T> for Inside<T> {
             area: self.body.area.re(),
             centroid: self.body.centroid.re(),
             border: None,
+            flaws: Vec::new(),
         };
         Arc::new(Inside {
             body: Arc::new(body),

@@ -7,8 +7,9 @@
 //! solid. Likewise a wire is the edge between two sheets, and a point the corner of three.
 
 use crate::curved::Flat;
-use crate::facet::{Facets, Options, facet};
+use crate::facet::{Facets, Options, facet, facet_within};
 use crate::lifted::On;
+use crate::roomy::roomy;
 use crate::{FieldError, Leaf, Primitive, Set};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
@@ -149,7 +150,8 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
             continue;
         }
         covered.insert(k, here.clone());
-        let facets = facet(&(half(k) & here), over, options)?;
+        let wide = roomy(over, &here, &[leaf(k).of_sheet()]);
+        let facets = facet_within(&(half(k) & here), &wide, over, options, None)?;
         let sheet = Leaf {
             primitive: leaf(k).of_sheet().clone(),
             attributes: leaves[k].attributes.clone(),
@@ -170,8 +172,9 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
                 }
             }
             if !here.is_nothing() {
-                let facets = facet(&(half(a) & half(b) & here), over, options)?;
                 let pair = [leaf(a).of_sheet(), leaf(b).of_sheet()];
+                let wide = roomy(over, &here, &pair);
+                let facets = facet_within(&(half(a) & half(b) & here), &wide, over, options, None)?;
                 for (chain, closed) in chains(&facets, pair) {
                     let at = |v: &u32| facets.mesh.positions()[*v as usize];
                     let points = chain.iter().map(at).collect();
@@ -185,8 +188,10 @@ pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, F
                     here = &here - &with_sheets(set, &pair.map(leaf));
                 }
                 if !here.is_nothing() {
-                    let facets = facet(&(half(a) & half(b) & half(c) & here), over, options)?;
                     let three = [a, b, c].map(|k| leaf(k).of_sheet());
+                    let wide = roomy(over, &here, &three);
+                    let here = &(half(a) & half(b) & half(c) & here);
+                    let facets = facet_within(here, &wide, over, options, None)?;
                     for v in corners(&facets, three) {
                         let (point, on) =
                             (facets.mesh.positions()[v as usize], lying_on(&facets, &[v]));

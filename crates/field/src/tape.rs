@@ -346,8 +346,7 @@ impl<T: Real> Tape<T> {
     }
 
     #[inline(always)]
-    fn step<A: Algebra<T>>(&self, code: &Code<T>, at: &A::At, v: &[A]) -> A {
-        let of = |a: u32| v[a as usize];
+    fn step<A: Algebra<T>>(&self, code: &Code<T>, at: &A::At, of: impl Fn(u32) -> A) -> A {
         match *code {
             Code::Real(c) => A::real(c),
             Code::Plane(n, d) => A::plane(n, d, at),
@@ -374,18 +373,47 @@ impl<T: Real> Tape<T> {
     pub(crate) fn eval<A: Algebra<T>>(&self, at: &A::At, values: &mut Vec<A>) -> A {
         values.clear();
         for code in &self.code {
-            let value = self.step::<A>(code, at, values);
+            let value = self.step::<A>(code, at, |a| values[a as usize]);
             values.push(value);
         }
         values[self.code.len() - 1]
     }
 
+    /// True when it asks primitives from outside, which are better asked many at once.
+    pub(crate) fn has_users(&self) -> bool {
+        self.code.iter().any(|c| matches!(c, Code::User(_)))
+    }
+
+    /// As [`Tape::eval`] at many places, instruction by instruction: a column of values for each.
+    pub(crate) fn eval_many<A: Algebra<T>>(&self, at: &[A::At]) -> Vec<Vec<A>> {
+        let mut columns: Vec<Vec<A>> = Vec::with_capacity(self.code.len());
+        for code in &self.code {
+            let mut column = Vec::with_capacity(at.len());
+            match code {
+                Code::User(k) => {
+                    let (oracle, map) = &self.users[*k as usize];
+                    A::users(&**oracle, map, at, &mut column);
+                }
+                _ => {
+                    let each = at.iter().enumerate();
+                    let step = |(i, at)| self.step::<A>(code, at, |a| columns[a as usize][i]);
+                    column.extend(each.map(step));
+                }
+            }
+            columns.push(column);
+        }
+        columns
+    }
+
     /// The instruction of the leaf that decides, given the value of every instruction; the first
     /// operand on a tie. The leaves' own minima and maxima are not entered.
     pub(crate) fn winner<A: Copy>(&self, values: &[A], re: impl Fn(A) -> f64) -> usize {
+        self.winner_by(|a| re(values[a as usize]))
+    }
+
+    fn winner_by(&self, of: impl Fn(u32) -> f64) -> usize {
         let mut k = self.code.len() - 1;
         while self.leaf[k] == NO_LEAF {
-            let of = |a: u32| re(values[a as usize]);
             k = match self.code[k] {
                 Code::Union(a, b) => (if of(b) < of(a) { b } else { a }) as usize,
                 Code::Common(a, b) => (if of(b) > of(a) { b } else { a }) as usize,
@@ -414,6 +442,20 @@ impl pulp::NullaryFnOnce for Bulk<'_> {
 }
 
 impl Tape<f64> {
+    /// The leaves that decide at some points.
+    pub(crate) fn winners(&self, points: &[Vec3], values: &mut Vec<f64>) -> Vec<u32> {
+        if self.has_users() {
+            let columns = self.eval_many::<f64>(points);
+            let at = |i: usize| self.leaf[self.winner_by(|a| columns[a as usize][i])];
+            return (0..points.len()).map(at).collect();
+        }
+        let mut at = |p: &Vec3| {
+            self.eval::<f64>(p, values);
+            self.leaf[self.winner(values, |v| v)]
+        };
+        points.iter().map(&mut at).collect()
+    }
+
     /// The range over a box by plain interval arithmetic; `ranges` holds that of every instruction.
     pub(crate) fn range(&self, at: &[Interval; 3], ranges: &mut Vec<Interval>) -> Interval {
         self.eval::<Interval>(at, ranges)

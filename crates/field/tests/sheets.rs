@@ -146,11 +146,11 @@ fn wires_and_points_beside_a_solid() {
     assert!((length(&inside) - 2.0 * half).abs() < 1e-9);
     assert!((length(&outside) - length(&both)).abs() < 1e-9);
     let at = v(0.3, 1.5, -0.4);
-    let dots = mixed(&(&Set::dot(at).unwrap() | &Set::new(&ball())));
+    let dots = mixed(&(&Set::point(at).unwrap() | &Set::new(&ball())));
     assert!(dots.points.len() == 1 && dots.points[0].point.distance(at) < 1e-12);
     assert!(dots.wires.is_empty() && dots.sheets.is_empty());
     // A point in the solid is of it.
-    let inner = mixed(&(&Set::dot(v(0.3, 0.2, 0.1)).unwrap() | &Set::new(&ball())));
+    let inner = mixed(&(&Set::point(v(0.3, 0.2, 0.1)).unwrap() | &Set::new(&ball())));
     assert!(inner.points.is_empty());
     assert!(Set::segment(at, at).is_err());
 }
@@ -164,7 +164,11 @@ fn wires_in_boxes_of_their_own() {
         for depth in 4..7 {
             let m = facet_mixed(&wire, &over, &at_depth(depth)).unwrap();
             assert_eq!(m.wires.len(), 1, "{to:?} at depth {depth}");
-            assert!((m.wires[0].length() - to.norm()).abs() < 1e-9);
+            assert!(
+                (m.wires[0].length() - to.norm()).abs() < 1e-9,
+                "{to:?} {depth} {over:?} {:?}",
+                m.wires[0].points
+            );
             let off = |p: &Vec3| (p.cross(to)).norm() / to.norm();
             assert!(m.wires[0].points.iter().all(|p| off(p) < 1e-12));
         }

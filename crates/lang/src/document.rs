@@ -260,26 +260,24 @@ impl Document {
         diagnostics
     }
 
-    /// The warnings of objects that were found in a way the user should know of.
+    /// The warnings of objects that the user should know something of.
     fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.remarked() == 0 {
             return Vec::new();
         }
         let mut diagnostics = Vec::new();
         for object in evaluation.graph.objects() {
-            let found = object.value().and_then(Value::found);
-            let Some((found, (id, message))) = found.and_then(|f| Some((f, f.warning()?))) else {
-                continue;
-            };
-            let message = format!("`{}`: {message}", object.name);
-            let mut diagnostic = Diagnostic::warning(id, message).object(&*object.name);
-            if !found.advice.is_empty() {
-                diagnostic = diagnostic.help(found.advice);
+            for remark in object.value().map(Value::remarks).unwrap_or_default() {
+                let message = format!("`{}`: {}", object.name, remark.message);
+                let mut diagnostic = Diagnostic::warning(remark.id, message).object(&*object.name);
+                if !remark.advice.is_empty() {
+                    diagnostic = diagnostic.help(remark.advice);
+                }
+                if let Some(span) = self.declared_at(evaluation, object) {
+                    diagnostic = diagnostic.at(span);
+                }
+                diagnostics.push(diagnostic);
             }
-            if let Some(span) = self.declared_at(evaluation, object) {
-                diagnostic = diagnostic.at(span);
-            }
-            diagnostics.push(diagnostic);
         }
         diagnostics
     }

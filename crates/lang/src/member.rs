@@ -6,7 +6,7 @@ use moldloft_model::{
     Graph, MOST_CELLS, MOST_PANELS, Object, divisions, solid_grid, too_many_panels,
 };
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
-use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value};
+use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value, Vectors};
 use std::sync::Arc;
 
 /// The member called `name`, if the value has one.
@@ -36,7 +36,12 @@ pub(crate) fn of_value<T: Scalar>(
             "volume" => number(mesh.volume),
             "area" => number(mesh.area),
             "centroid" => Some(Ok(Value::Vector(mesh.centroid))),
-            _ => None,
+            _ => FLAWS.contains(&name).then(|| {
+                let flaw = mesh.flaws.iter().find(|f| f.name == name);
+                let places = flaw.map_or(&[][..], |f| &f.places);
+                let lifted = places.iter().map(|p| Vec3::lifted(*p)).collect();
+                Ok(Value::Vectors(Arc::new(Vectors::row(lifted))))
+            }),
         },
         (Value::Curve(curve), None) if name == "length" => {
             // To about twelve digits, as the function of this name.
@@ -81,6 +86,9 @@ fn of_found<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
     })
 }
 
+/// The places where the facets of a set are not quite what was asked for.
+const FLAWS: [&str; 3] = ["undecided", "blunt", "touching"];
+
 /// The members of what was found by a search.
 const FOUND: [&str; 5] = ["status", "residual", "iterations", "start", "alternatives"];
 
@@ -107,7 +115,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
         Value::Curve(_) => vec!["length"],
         Value::Surface(_) => vec!["area"],
-        Value::Mesh(_) => vec!["volume", "area", "centroid"],
+        Value::Mesh(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
         Value::Solid(_) => vec!["volume"],
         _ => Vec::new(),
     }

@@ -313,6 +313,29 @@ fn bad_input_is_told() {
 }
 
 #[test]
+fn facets_tell_where_they_are_not_the_set() {
+    let mut model = open(
+        "set pair = cuboid({0, 0, 0}, {1, 1, 1}) | cuboid({1, 1, 0}, {2, 2, 1}); SetBody touching(pair, depth = 4);
+         set wedge = set(plane({0, -0.02, 1}, {0, 0, 0})) & set(plane({0, -0.02, -1}, {0, 0, 0}));
+         SetBody blade(wedge, {-1, -1, -1}, {1, 1, 1}, depth = 3); SetBody ball(set(sphere({0, 0, 0}, 1)), depth = 4);",
+    );
+    let told = told(&model);
+    let about = |id: &str, object: &str| {
+        told.iter().any(|d| d.contains(&format!("[{id}]")) && d.contains(&format!("`{object}`")))
+    };
+    assert!(about("touching-bodies", "touching") && about("blunt-edges", "blade"), "{told:?}");
+    assert!(!told.iter().any(|d| d.contains("`ball`")), "{told:?}");
+    // Places are asked for by the members of these names: the shared edge is along z.
+    let places = model.eval("touching.touching").unwrap();
+    let Value::Vectors(places) = places else { panic!("{places:?}") };
+    assert!(places.planes[0].iter().all(|x| (x - 1.0).abs() < 1e-9) && places.len() > 4);
+    for (text, count) in [("ball.blunt", 0), ("ball.undecided", 0)] {
+        let Value::Vectors(none) = model.eval(text).unwrap() else { panic!("{text}") };
+        assert_eq!(none.len(), count, "{text}");
+    }
+}
+
+#[test]
 fn sheets_wires_and_points_reach_the_body() {
     let model = sound(
         "field a = sphere({0, 0, 0}, 1); field b = plane({0, 0, 1}, {0, 0, 0.5}); field c = plane({1, 0, 0}, {0, 0, 0});

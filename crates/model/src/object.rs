@@ -42,7 +42,7 @@ impl<T: Scalar> State<T> {
 
     /// True when its value was found in a way that deserves a warning.
     pub fn warns(&self) -> bool {
-        self.value().and_then(Value::found).is_some_and(|found| found.warns())
+        self.value().is_some_and(Value::warns)
     }
 
     /// True when what depends on it need not be evaluated again.

@@ -3,6 +3,17 @@ use moldloft_num::{Real, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Places where a body is not quite what was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flaw {
+    /// What is wrong, such as "blunt": the member of the body by which the places are asked for.
+    pub name: &'static str,
+    /// The warning about it.
+    pub remark: crate::Remark,
+    /// Where it is; not empty.
+    pub places: Vec<Vec3>,
+}
+
 /// Triangles of a body that belong together, such as those of one implicit surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
@@ -81,6 +92,8 @@ pub struct Facets<T: Real> {
     pub centroid: Vec3<T>,
     /// For a sheet that joins its neighbours.
     pub border: Option<Border<T>>,
+    /// Where it is not quite what was asked for.
+    pub flaws: Vec<Flaw>,
 }
 
 impl<T: Real> Facets<T> {
@@ -114,7 +127,8 @@ impl<T: Real> Facets<T> {
             middle
         };
         let (groups, wires, dots) = Default::default();
-        Self { points, triangles, groups, wires, dots, volume, area, centroid, border: None }
+        let (border, flaws) = (None, Vec::new());
+        Self { points, triangles, groups, wires, dots, volume, area, centroid, border, flaws }
     }
 
     /// True when vertices and measures are the same bits and the triangles the same.
@@ -124,6 +138,7 @@ impl<T: Real> Facets<T> {
         };
         self.triangles == o.triangles
             && self.groups == o.groups
+            && self.flaws == o.flaws
             && all(&self.dots, &o.dots)
             && self.wires.len() == o.wires.len()
             && self.wires.iter().zip(&o.wires).all(|(a, b)| all(a, b))

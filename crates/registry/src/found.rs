@@ -1,6 +1,17 @@
 use moldloft_num::Vec3;
 use std::fmt;
 
+/// A warning about a value: it is there, but the user should know something of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// Id of the diagnostic.
+    pub id: &'static str,
+    /// What there is to know.
+    pub message: String,
+    /// How to get rid of it; may be empty.
+    pub advice: &'static str,
+}
+
 /// How a construction that may go more or less well (a projection, an intersection, a fit) came to
 /// its result. Carried by the point or curve; every word of it depends on the model only.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,8 +88,13 @@ fn list(parameters: &[f64]) -> String {
 }
 
 impl Found {
-    /// Id and message of the warning about it; `None` when there is nothing to say.
-    pub fn warning(&self) -> Option<(&'static str, String)> {
+    /// The warning about it; `None` when there is nothing to say.
+    pub fn remark(&self) -> Option<Remark> {
+        let (id, message) = self.message()?;
+        Some(Remark { id, message, advice: self.advice })
+    }
+
+    fn message(&self) -> Option<(&'static str, String)> {
         let at = list(&self.last);
         Some(match self.status {
             FoundStatus::Ok => return None,

@@ -24,9 +24,9 @@ mod value;
 
 pub use args::{Given, arrange, check_evaluated};
 pub use class::Class;
-pub use facets::{Border, Facets, Group, Hem, Hemmed};
+pub use facets::{Border, Facets, Flaw, Group, Hem, Hemmed};
 pub use fault::{Fault, Place};
-pub use found::{Found, FoundStatus};
+pub use found::{Found, FoundStatus, Remark};
 pub use head::{HEAD, Head, Panels, Spacing};
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};

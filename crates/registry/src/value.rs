@@ -1,6 +1,6 @@
 use crate::{
-    Class, CurveRef, Facets, FieldRef, Found, LocusRef, Point, RelabelRef, SetRef, SolidRef,
-    SurfaceRef,
+    Class, CurveRef, Facets, FieldRef, Found, LocusRef, Point, RelabelRef, Remark, SetRef,
+    SolidRef, SurfaceRef,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
@@ -389,6 +389,22 @@ impl<T: Real> Value<T> {
             Value::Curve(c) => c.found.as_ref(),
             Value::Surface(s) => s.found.as_ref(),
             _ => None,
+        }
+    }
+
+    /// True when there is something to warn of.
+    pub fn warns(&self) -> bool {
+        match self {
+            Value::Mesh(m) => !m.flaws.is_empty(),
+            _ => self.found().is_some_and(|found| found.warns()),
+        }
+    }
+
+    /// What there is to warn of.
+    pub fn remarks(&self) -> Vec<Remark> {
+        match self {
+            Value::Mesh(m) => m.flaws.iter().map(|f| f.remark.clone()).collect(),
+            _ => self.found().and_then(|found| found.remark()).into_iter().collect(),
         }
     }
 

@@ -576,16 +576,16 @@ def segment(start: Triple, end: Triple) -> Set:
     return Set(_core.Set.segment(triple(start, "start"), triple(end, "end")))
 
 
-def dot(at: Triple) -> Set:
+def point(at: Triple) -> Set:
     """One point.
 
     Examples
     --------
     >>> from moldloft import implicit as im
-    >>> im.dot((1, 2, 3)).facets((0, 0, 0), (4, 4, 4), depth=4).points.round(12).tolist()
+    >>> im.point((1, 2, 3)).facets((0, 0, 0), (4, 4, 4), depth=4).points.round(12).tolist()
     [[1.0, 2.0, 3.0]]
     """
-    return Set(_core.Set.dot(triple(at, "point")))
+    return Set(_core.Set.point(triple(at, "point")))
 
 
 def tetrahedron(corners: Sequence[Triple]) -> Set:

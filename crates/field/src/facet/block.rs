@@ -193,8 +193,8 @@ impl Block {
             return Err(points[k]);
         }
 
-        let mut crossings = Vec::new();
         let mut crossing_at = vec![u32::MAX; 3 * CORNERS * CORNERS * CORNERS];
+        let (mut edges, mut places) = (Vec::new(), Vec::new());
         for i in 0..CORNERS {
             for j in 0..CORNERS {
                 for k in 0..CORNERS {
@@ -209,20 +209,20 @@ impl Block {
                         if (f0 <= 0.0) == (f1 <= 0.0) {
                             continue;
                         }
-                        let (point, leaf) =
-                            cross(tape, [points[here], points[there]], [f0, f1], registers);
-                        crossing_at[3 * here + axis] = crossings.len() as u32;
-                        crossings.push(Crossing {
-                            at: c.map(|x| x as u8),
-                            axis: axis as u8,
-                            outward: f0 <= 0.0,
-                            leaf,
-                            point,
-                        });
+                        crossing_at[3 * here + axis] = edges.len() as u32;
+                        edges.push(Edge::new([points[here], points[there]], [f0, f1]));
+                        places.push((c.map(|x| x as u8), axis as u8, f0 <= 0.0));
                     }
                 }
             }
         }
+        let found = cross(tape, &mut edges, room);
+        let deciding = tape.winners(&found, registers);
+        let mut crossings: Vec<Crossing> = places
+            .into_iter()
+            .zip(found.into_iter().zip(deciding))
+            .map(|((at, axis, outward), (point, leaf))| Crossing { at, axis, outward, leaf, point })
+            .collect();
 
         let mut block = Self {
             at,
@@ -368,47 +368,76 @@ fn touching(
 /// a point of both surfaces where two touch.
 const NEAR: f64 = 1e-13;
 
-/// Where the set changes sign between two points, and the leaf that decides there.
-///
-/// The Illinois rule, with every third step a bisection.
-fn cross(
-    tape: &Tape<f64>,
-    [p, q]: [Vec3; 2],
-    [mut fa, mut fb]: [f64; 2],
-    registers: &mut Vec<f64>,
-) -> (Vec3, u32) {
-    let (mut a, mut b) = (0.0f64, 1.0f64);
-    let mut side = 0;
-    let small = NEAR * fa.abs().max(fb.abs());
-    let mut at = |t: f64| {
-        let x = p + (q - p) * t;
-        let value = tape.eval::<f64>(&x, registers);
-        let leaf = tape.leaf[tape.winner(registers, |v: f64| v)];
-        (x, value, leaf)
-    };
-    for step in 0..80 {
-        let mut t = (a * fb - b * fa) / (fb - fa);
-        if step % 3 == 2 || !(t > a && t < b) {
-            t = 0.5 * (a + b);
-        }
-        let (x, value, leaf) = at(t);
-        if value.abs() <= small || b - a < 1e-14 {
-            return (x, leaf);
-        }
-        if (value <= 0.0) == (fa <= 0.0) {
-            if side == 1 {
-                fb *= 0.5;
-            }
-            side = 1;
-            (a, fa) = (t, value);
-        } else {
-            if side == -1 {
-                fa *= 0.5;
-            }
-            side = -1;
-            (b, fb) = (t, value);
-        }
+/// An edge on which the set changes sign, and the part of it where that is.
+struct Edge {
+    ends: [Vec3; 2],
+    /// The part, as shares of the edge, and the values at its ends; that of an end that stays is halved.
+    part: [f64; 2],
+    values: [f64; 2],
+    /// The end that stayed: -1 for none.
+    stayed: i8,
+    /// A value as small as this is zero.
+    small: f64,
+    /// The share that is looked at.
+    at: f64,
+}
+
+impl Edge {
+    fn new(ends: [Vec3; 2], values: [f64; 2]) -> Self {
+        let small = NEAR * values[0].abs().max(values[1].abs());
+        Self { ends, part: [0.0, 1.0], values, stayed: -1, small, at: 0.0 }
     }
-    let (x, _, leaf) = at(0.5 * (a + b));
-    (x, leaf)
+
+    /// The point to look at in a step: of the Illinois rule, with every third step a bisection.
+    fn next(&mut self, step: usize) -> Vec3 {
+        let ([a, b], [fa, fb]) = (self.part, self.values);
+        self.at = (a * fb - b * fa) / (fb - fa);
+        if step % 3 == 2 || !(self.at > a && self.at < b) {
+            self.at = 0.5 * (a + b);
+        }
+        self.point()
+    }
+
+    fn point(&self) -> Vec3 {
+        self.ends[0] + (self.ends[1] - self.ends[0]) * self.at
+    }
+
+    /// Takes the value there; true when the search is over.
+    fn take(&mut self, value: f64) -> bool {
+        if value.abs() <= self.small || self.part[1] - self.part[0] < 1e-14 {
+            return true;
+        }
+        let end = usize::from((value <= 0.0) != (self.values[0] <= 0.0));
+        let other = 1 - end;
+        if self.stayed == other as i8 {
+            self.values[other] *= 0.5;
+        }
+        self.stayed = other as i8;
+        self.part[end] = self.at;
+        self.values[end] = value;
+        false
+    }
+}
+
+/// Where the set changes sign on each edge; all edges are searched at once, because values at many points are
+/// cheaper than at one.
+fn cross(tape: &Tape<f64>, edges: &mut [Edge], room: &mut Room) -> Vec<Vec3> {
+    let mut open: Vec<u32> = (0..edges.len() as u32).collect();
+    let (mut points, mut values) = (Vec::new(), Vec::new());
+    for step in 0..80 {
+        if open.is_empty() {
+            break;
+        }
+        points.clear();
+        points.extend(open.iter().map(|&k| edges[k as usize].next(step)));
+        values.resize(points.len(), 0.0);
+        tape.bulk(&points, &mut values, room);
+        let mut value = values.iter();
+        open.retain(|&k| value.next().is_some_and(|v| !edges[k as usize].take(*v)));
+    }
+    for k in open {
+        let edge = &mut edges[k as usize];
+        edge.at = 0.5 * (edge.part[0] + edge.part[1]);
+    }
+    edges.iter().map(Edge::point).collect()
 }

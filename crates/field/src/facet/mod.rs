@@ -42,6 +42,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub enum Resolution {
     /// Cells of side (longest side of the box) / 2^depth.
     Depth(u32),
+    /// As that depth, but no coarser than the thinnest side of the box at level 5, a half of it at 6 and so on.
+    Level(u32),
     /// Triangle centres at most about this far from the surface: estimated by |f| / |f'| and kept by
     /// refining, not proved.
     Accuracy(f64),
@@ -132,6 +134,9 @@ impl Reuse<'_> {
 /// that dividing it five times does not help.
 const TURN: f64 = 0.939_692_620_785_908_4;
 
+/// At this [`Resolution::Level`] the thinnest side of a box has one cell.
+const LEVEL_OF_SIDE: i32 = 5;
+
 /// The names of the box's faces.
 const CAPS: [&str; 6] = ["cap -x", "cap +x", "cap -y", "cap +y", "cap -z", "cap +z"];
 
@@ -152,7 +157,7 @@ fn capped(set: &Set, over: &Box3) -> Result<Set, FieldError> {
 /// mesh, too.
 ///
 /// # Errors
-/// A box without volume, a resolution beyond the limit, a primitive without value, a cancelled call.
+/// A box without volume or thinner than its cells, a resolution beyond the limit, a primitive without value, a cancelled call.
 ///
 /// # Example
 /// ```
@@ -182,8 +187,19 @@ pub fn refacet(
     options: &Options,
     before: Option<&Facets>,
 ) -> Result<Facets, FieldError> {
-    let over = solid_box(*over)?;
-    let size = (0..3).map(|k| over.high[k] - over.low[k]).fold(0.0, f64::max);
+    facet_within(set, over, over, options, before)
+}
+
+/// As [`refacet`], with cells of the size that they have in the box `sized`.
+pub(crate) fn facet_within(
+    set: &Set,
+    over: &Box3,
+    sized: &Box3,
+    options: &Options,
+    before: Option<&Facets>,
+) -> Result<Facets, FieldError> {
+    let (over, sized) = (solid_box(*over)?, solid_box(*sized)?);
+    let size = (0..3).map(|k| sized.high[k] - sized.low[k]).fold(0.0, f64::max);
     // A surface across the whole box passes through about this many cells.
     let crossed = |step: f64| (size / step).powi(2);
     let check = |step: f64| {
@@ -194,15 +210,30 @@ pub fn refacet(
             Ok(())
         }
     };
+    let thin = |step: f64| {
+        let (axis, side) = shortest(&over);
+        let missed = side < step && !set.is_nothing();
+        let depth = least_depth(size, &over);
+        if missed { Err(FieldError::ThinBox { axis, side, step, depth }) } else { Ok(()) }
+    };
+    let step_of = |depth: u32| size / 2f64.powi(depth.min(1000) as i32);
     match options.resolution {
-        Resolution::Depth(depth) => {
-            let step = size / 2f64.powi(depth.min(1000) as i32);
+        Resolution::Level(level) => {
+            let part = 2f64.powi(LEVEL_OF_SIDE - level.min(1000) as i32);
+            let step = step_of(level).min(shortest(&over).1 * part.min(1.0));
             check(step)?;
+            at_step(set, &over, step, f64::INFINITY, options, before)
+        }
+        Resolution::Depth(depth) => {
+            let step = step_of(depth);
+            check(step)?;
+            thin(step)?;
             at_step(set, &over, step, f64::INFINITY, options, before)
         }
         Resolution::Accuracy(accuracy) => {
             crate::error::positive("accuracy", accuracy)?;
-            let mut step = size / 16.0;
+            let mut step = step_of(least_depth(size, &over).max(4));
+            check(step)?;
             // The error is of second order, so one estimate nearly hits; a few correct it. The few triangles
             // that are worse than the others then are divided edge by edge.
             let mut facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
@@ -232,6 +263,18 @@ pub fn refacet(
             Ok(facets)
         }
     }
+}
+
+/// The axis along which a box is thinnest, and its side.
+fn shortest(over: &Box3) -> (usize, f64) {
+    let side = |k: usize| over.high[k] - over.low[k];
+    let axis = (1..3).fold(0, |a, k| if side(k) < side(a) { k } else { a });
+    (axis, side(axis))
+}
+
+/// From which depth on the cells of a box of that size are no thicker than one.
+fn least_depth(size: f64, over: &Box3) -> u32 {
+    (size / shortest(over).1).log2().ceil().clamp(0.0, 1000.0) as u32
 }
 
 fn at_step(

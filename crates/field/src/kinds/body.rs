@@ -56,7 +56,7 @@ impl<T: Real> Build<T> for SetBody<T> {
             }
             (Some(depth), None) => Resolution::Depth(depth),
             (None, Some(accuracy)) => Resolution::Accuracy(accuracy.re()),
-            (None, None) => Resolution::Depth(6),
+            (None, None) => Resolution::Level(6),
         };
         let set = &self.set.0;
         let plain = set.re();
@@ -189,6 +189,6 @@ impl Pieces {
         if m.volume().re() > 0.0 {
             body.centroid = m.centroid();
         }
-        Ok(Body { groups, wires, dots, ..body })
+        Ok(Body { groups, wires, dots, flaws: super::flaws::flaws(solid), ..body })
     }
 }

@@ -25,7 +25,7 @@ const ALIKE: f64 = 1e-6;
 
 /// Facets for integrals, which stop when the model does.
 fn sharp(depth: u32, context: &Context) -> crate::Options {
-    crate::Options { sharp: true, ..options(Resolution::Depth(depth), context) }
+    crate::Options { sharp: true, ..options(Resolution::Level(depth), context) }
 }
 
 fn none<T: Real>() -> Moments<T> {
@@ -599,7 +599,7 @@ impl<T: Real> Build<T> for Components<T> {
             return Ok(Value::Number(T::zero()));
         }
         let over = region(&set, &self.low, &self.high, 2)?.over;
-        let options = options(Resolution::Depth(self.depth), context);
+        let options = options(Resolution::Level(self.depth), context);
         let facets = cache::facet(&set, &over, &options).map_err(|e| fault(&e))?;
         Ok(Value::Number(T::from(facets.bodies() as f64)))
     }

@@ -3,6 +3,7 @@
 mod blends;
 pub mod body;
 mod faced;
+mod flaws;
 mod measures;
 mod primitives;
 pub mod read;

@@ -127,6 +127,7 @@ pub fn fault(error: &FieldError) -> Fault {
         FieldError::EmptyBox { .. } => "empty-box",
         FieldError::Unbounded { .. } => "unbounded-set",
         FieldError::TooFine { .. } => "too-fine",
+        FieldError::ThinBox { .. } => "thin-box",
         FieldError::NotClosed { .. } => "not-closed",
         FieldError::ManyFaces { .. } | FieldError::RoundSides => "faces-tangled",
         FieldError::Cancelled => "cancelled",
@@ -147,6 +148,9 @@ pub fn fault(error: &FieldError) -> Fault {
             fault.expected("a box: {low corner}, {high corner}").help("or cut it with planes")
         }
         FieldError::TooFine { .. } => fault.help("ask for a coarser accuracy, or a smaller box"),
+        FieldError::ThinBox { depth, .. } => {
+            fault.expected(format!("a depth of {depth} or more, or a thicker box"))
+        }
         FieldError::NotClosed { .. } => fault.expected("a closed, oriented body"),
         FieldError::ManyFaces { .. } | FieldError::RoundSides => {
             fault.help("take set(inside(body)), the set by distances from its triangles")

@@ -71,7 +71,7 @@ impl<T: Real> Build<T> for SetOf<T> {
                 }))
             }
             Source::Line([from, to]) => set(Set::segment(from, to)),
-            Source::Point(at) => set(Set::dot(at)),
+            Source::Point(at) => set(Set::point(at)),
         }
     }
 }

@@ -116,30 +116,46 @@ impl PythonOracle {
         }
     }
 
-    fn gradient_at(&self, p: Vec3) -> Vec3 {
+    fn all_gradients(&self, gradient: &Py<PyAny>, points: &[Vec3]) -> Vec<Vec3> {
         let nan = Vec3::of(f64::NAN, f64::NAN, f64::NAN);
+        let found = self.kept(None, |py| {
+            let result = gradient.bind(py).call1((Self::array(py, points)?,))?;
+            let array = numpy_of(py, &result)?;
+            let rows: PyReadonlyArray2<'_, f64> =
+                array.extract().map_err(|_| wrong_shape(&array, "(n, 3)".into()))?;
+            if rows.as_array().dim() != (points.len(), 3) {
+                return Err(wrong_shape(&array, format!("({}, 3)", points.len())));
+            }
+            let row = |r: numpy::ndarray::ArrayView1<'_, f64>| Vec3::of(r[0], r[1], r[2]);
+            Ok(Some(rows.as_array().rows().into_iter().map(row).collect()))
+        });
+        found.unwrap_or_else(|| vec![nan; points.len()])
+    }
+
+    /// Values and gradients, these by central differences unless they are given: one call for all.
+    fn jets(&self, points: &[Vec3]) -> Vec<(f64, Vec3)> {
         if let Some(gradient) = &self.gradient {
-            return self.kept(nan, |py| {
-                let result = gradient.bind(py).call1((Self::array(py, &[p])?,))?;
-                let array = numpy_of(py, &result)?;
-                let array: PyReadonlyArray2<'_, f64> =
-                    array.extract().map_err(|_| wrong_shape(&array, "(n, 3)".into()))?;
-                match array.as_array().iter().copied().collect::<Vec<_>>()[..] {
-                    [x, y, z] => Ok(Vec3::of(x, y, z)),
-                    _ => Err(wrong_shape(array.as_any(), "(1, 3)".into())),
-                }
-            });
+            let mut values = vec![0.0; points.len()];
+            self.all_values(points, &mut values);
+            return values.into_iter().zip(self.all_gradients(gradient, points)).collect();
         }
-        let h = STEP * (1.0 + p.norm());
-        let unit = |k: usize| {
-            let mut step = [0.0; 3];
-            step[k] = h;
-            Vec3::from(step)
-        };
-        let around: Vec<Vec3> = (0..3).flat_map(|k| [p + unit(k), p - unit(k)]).collect();
-        let mut f = [0.0; 6];
+        let step = |p: Vec3| STEP * (1.0 + p.norm());
+        let mut around = Vec::with_capacity(7 * points.len());
+        for &p in points {
+            let h = step(p);
+            around.push(p);
+            for k in 0..3 {
+                let mut aside = [0.0; 3];
+                aside[k] = h;
+                around.extend([p + Vec3::from(aside), p - Vec3::from(aside)]);
+            }
+        }
+        let mut f = vec![0.0; around.len()];
         self.all_values(&around, &mut f);
-        Vec3::of(f[0] - f[1], f[2] - f[3], f[4] - f[5]) / (2.0 * h)
+        let jet = |(&p, f): (&Vec3, &[f64])| {
+            (f[0], Vec3::of(f[1] - f[2], f[3] - f[4], f[5] - f[6]) / (2.0 * step(p)))
+        };
+        points.iter().zip(f.chunks_exact(7)).map(jet).collect()
     }
 }
 
@@ -156,7 +172,7 @@ fn wrong_shape(array: &Bound<'_, PyAny>, expected: String) -> PyErr {
 
 impl Field<f64> for PythonOracle {
     fn value_and_gradient(&self, p: Vec3) -> (f64, Vec3) {
-        (Field::value(self, p), self.gradient_at(p))
+        self.jets(&[p])[0]
     }
     fn value(&self, p: Vec3) -> f64 {
         let mut out = [0.0];
@@ -205,6 +221,10 @@ impl Oracle<f64> for PythonOracle {
 
     fn values(&self, points: &[Vec3], out: &mut [f64]) {
         self.all_values(points, out);
+    }
+
+    fn values_and_gradients(&self, points: &[Vec3]) -> Vec<(f64, Vec3)> {
+        self.jets(points)
     }
 
     fn re(&self) -> Arc<dyn Oracle<f64>> {

@@ -97,8 +97,8 @@ impl PySet {
     }
 
     #[staticmethod]
-    fn dot(at: [f64; 3]) -> PyResult<Self> {
-        Set::dot(Vec3::from(at)).map(Self::of).map_err(plain_error)
+    fn point(at: [f64; 3]) -> PyResult<Self> {
+        Set::point(Vec3::from(at)).map(Self::of).map_err(plain_error)
     }
 
     fn binary(&self, name: &str, o: &Self) -> PyResult<Self> {
@@ -303,7 +303,8 @@ impl PySet {
         let before = before.and_then(PyFacets::solid);
         let resolution = match (depth, accuracy) {
             (_, Some(accuracy)) => Resolution::Accuracy(accuracy),
-            (depth, None) => Resolution::Depth(depth.unwrap_or(6)),
+            (Some(depth), None) => Resolution::Depth(depth),
+            (None, None) => Resolution::Level(6),
         };
         let (pieces, over) = self.long(py, move |set, cancel| {
             let over = region(set, given(corners))?;
@@ -334,7 +335,7 @@ impl PySet {
             let options = Options {
                 cancel: Some(cancel),
                 sharp: true,
-                ..Options::new(Resolution::Depth(depth))
+                ..Options::new(Resolution::Level(depth))
             };
             let mut best =
                 moldloft_field::facet(&moldloft_field::solid_part(set), &over, &options)?.moments();

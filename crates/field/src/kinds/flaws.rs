@@ -1,0 +1,59 @@
+//! What there is to know of facets that are not quite their set.
+
+use crate::facet::Facets;
+use moldloft_num::Vec3;
+use moldloft_registry::{Flaw, Remark};
+
+/// "n cells of 0.1, the first about (x, y, z)".
+fn counted(places: &[Vec3], step: f64) -> String {
+    let (n, p) = (places.len(), places[0]);
+    let at = format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z);
+    match n {
+        1 => format!("in one cell of side {step:.3e}, about {at},"),
+        _ => format!("in {n} cells of side {step:.3e}, the first about {at},"),
+    }
+}
+
+/// The places where facets are not the set's surface, or may not be; none of the three is usual.
+pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
+    let centres = |boxes: &[moldloft_num::Box3]| boxes.iter().map(|b| b.centre()).collect();
+    let lists: [(&'static str, Vec<Vec3>); 3] = [
+        ("undecided", centres(&facets.undecided)),
+        ("blunt", centres(&facets.blunt)),
+        ("touching", facets.touching()),
+    ];
+    let found = lists.into_iter().filter(|(_, places)| !places.is_empty());
+    let flaw = |(name, places): (&'static str, Vec<Vec3>)| {
+        let of = facets.cells;
+        let (id, message, advice) = match name {
+            "undecided" => (
+                "undecided-cells",
+                format!("{} of {of}, triangles cut each other", counted(&places, facets.step)),
+                "give smaller cells: a greater depth, or a finer accuracy",
+            ),
+            "blunt" => (
+                "blunt-edges",
+                format!(
+                    "{} of {of}, an edge or corner that is thinner than the cell is cut off",
+                    counted(&places, facets.step)
+                ),
+                "give smaller cells (a greater depth, or a finer accuracy) if the edge matters",
+            ),
+            _ => (
+                "touching-bodies",
+                format!(
+                    "bodies touch in {} point{}, the first at ({:.6}, {:.6}, {:.6}): each has a vertex of \
+                     its own there, so that all stay manifold",
+                    places.len(),
+                    if places.len() == 1 { "" } else { "s" },
+                    places[0].x,
+                    places[0].y,
+                    places[0].z
+                ),
+                "let them overlap, or stay apart, if they are to be joined or are not",
+            ),
+        };
+        Flaw { name, remark: Remark { id, message, advice }, places }
+    };
+    found.map(flaw).collect()
+}
