@@ -140,6 +140,31 @@ def test_render(cli, tmp_path):
     cli("render", HULL, "--size", "0x200", status=2)
 
 
+def test_render_traced(cli, tmp_path):
+    tee = str(SAILBOAT.parent / "implicit/tee.sdl")
+    cli("render", tee, "--traced", "tee", "-o", "tee.png", "--size", "160x120", "--samples", "1")
+    whole = (tmp_path / "tee.png").read_bytes()
+    assert int.from_bytes(whole[16:20]) == 160 and int.from_bytes(whole[20:24]) == 120
+    corners = ("--low=-1,-1,-1", "--high=1,1,1")
+    cli("render", tee, "--traced", "tee - tee", "-o", "x.png", "--size", "16x16", *corners)
+    assert "is no set" in cli("render", tee, "--traced", "r1", status=1).stderr
+    assert "nothere" in cli("render", tee, "--traced", "nothere", status=1).stderr
+    assert "both" in cli("render", tee, "--traced", "tee", "--low=0,0,0", status=1).stderr
+    assert "is no point" in cli("render", tee, "--traced", "tee", "--low=0,0", status=2).stderr
+
+
+def test_sections_of_a_set(cli, tmp_path):
+    """Planes cut bodies as they cut surfaces: the rings of a torus, in the drawing and as numbers."""
+    (tmp_path / "ring.sdl").write_text(
+        "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);\n"
+        "set ring = set(torus(axis, 2, 0.5)); SetBody body(ring, depth = 5);\n"
+        "YContours cut(0, 0, 0, 1);\n"
+    )
+    cli("build", "ring.sdl", "--to", "svg", "-o", "out")
+    drawing = next((tmp_path / "out").glob("*.svg")).read_text()
+    assert drawing.count("<path") + drawing.count("<poly") >= 2
+
+
 def test_doc(cli):
     rows = strict(cli("doc", "--list", "--json").stdout)
     kinds = {row["name"]: row for row in rows}

@@ -1,7 +1,7 @@
 //! The sections that a model asks for: stations, waterlines, buttocks, cylinders, meridians.
 
 use crate::Document;
-use moldloft_model::{Polyline, Sectioned};
+use moldloft_model::{Polyline, Sectioned, body_section};
 use moldloft_num::trace::Key;
 use moldloft_registry::Value;
 use std::collections::HashMap;
@@ -15,13 +15,13 @@ pub struct Section {
     pub axis: usize,
     /// The plane's coordinate, the distance, the radius, or the angle in radians.
     pub value: f64,
-    /// The lines on each surface that it cuts, with the surface's name.
+    /// The lines on each surface or body that it cuts, with its name.
     pub lines: Vec<(String, Vec<Polyline>)>,
 }
 
 impl Document {
-    /// The sections by all shown contours of the surfaces that they name, or of all shown ones;
-    /// sections without lines left out.
+    /// The sections by all shown contours of the surfaces that they name, or of all shown ones and all shown
+    /// bodies; sections without lines left out.
     pub fn sections(&self) -> Vec<Section> {
         let graph = self.graph();
         let shown = || graph.objects().filter(|o| o.head.shown());
@@ -29,7 +29,12 @@ impl Document {
             Value::Surface(surface) => Some(surface),
             _ => None,
         };
-        let all: Vec<Key> = shown().map(|o| o.key).filter(|k| is_surface(*k).is_some()).collect();
+        let body = |key: Key| match graph.get(key)?.value()? {
+            Value::Mesh(body) => Some(body),
+            _ => None,
+        };
+        let drawn = |k: &Key| is_surface(*k).is_some() || body(*k).is_some();
+        let all: Vec<Key> = shown().map(|o| o.key).filter(drawn).collect();
         let mut tables: HashMap<Key, Sectioned<'_>> = HashMap::new();
         let mut sections = Vec::new();
         for object in shown() {
@@ -42,7 +47,10 @@ impl Document {
             }
             for &value in &contours.values {
                 let cut = |key: &Key| {
-                    let lines = tables.get(key)?.section(&contours.family, value);
+                    let lines = match tables.get(key) {
+                        Some(table) => table.section(&contours.family, value),
+                        None => body_section(body(*key)?, &contours.family, value),
+                    };
                     (!lines.is_empty()).then_some((graph.get(*key)?.name.to_string(), lines))
                 };
                 let lines: Vec<_> = keys.iter().filter_map(cut).collect();

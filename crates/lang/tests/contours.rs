@@ -129,3 +129,26 @@ fn lists_and_contours_that_are_none() {
         assert!(told(&document)[0].contains(says), "{text}: {:?}", told(&document));
     }
 }
+
+#[test]
+fn bodies_are_cut_like_surfaces() {
+    let found = sound(
+        "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);
+         set ring = set(torus(axis, 2, 0.5)); SetBody body(ring, depth = 6);
+         ZContours z(0, 0, 0.1, 1); CylinderContours c(axis, 1, 1, 0, 2);",
+    )
+    .sections();
+    // Two circles at a height, and the same again where a cylinder passes through the tube.
+    let radius = |p: &moldloft_num::Vec3| p.x.hypot(p.y);
+    assert_eq!(found.iter().map(|s| s.lines[0].0.as_str()).collect::<Vec<_>>(), ["body"; 2]);
+    let circles = &found[0].lines[0].1;
+    assert!(circles.len() == 2 && circles.iter().all(|l| l.closed));
+    let half = (0.25f64 - 0.01).sqrt();
+    for p in points(&found[0]) {
+        assert!(p.z == 0.1 || (p.z - 0.1).abs() < 1e-12);
+        assert!(((radius(&p) - 2.0).abs() - half).abs() < 5e-3, "{p:?}");
+    }
+    for p in points(&found[1]) {
+        assert!((radius(&p) - 2.0).abs() < 1e-11 && (p.z.abs() - 0.5).abs() < 5e-3, "{p:?}");
+    }
+}

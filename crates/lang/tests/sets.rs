@@ -316,7 +316,7 @@ fn bad_input_is_told() {
 fn facets_tell_where_they_are_not_the_set() {
     let mut model = open(
         "set pair = cuboid({0, 0, 0}, {1, 1, 1}) | cuboid({1, 1, 0}, {2, 2, 1}); SetBody touching(pair, depth = 4);
-         set wedge = set(plane({0, -0.02, 1}, {0, 0, 0})) & set(plane({0, -0.02, -1}, {0, 0, 0}));
+         set wedge = set(plane({0, -0.15, 1}, {0, 0, 0})) & set(plane({0, -0.15, -1}, {0, 0, 0}));
          SetBody blade(wedge, {-1, -1, -1}, {1, 1, 1}, depth = 3); SetBody ball(set(sphere({0, 0, 0}, 1)), depth = 4);",
     );
     let told = told(&model);

@@ -60,7 +60,7 @@ pub use panel::Panel;
 pub use planar::planar_triangles;
 pub use quality::{PatchQuality, Spread, WorstPanel, qualities, quality};
 pub use report::{OpenLoop, TopologyReport};
-pub use section::{Polyline, section};
+pub use section::{Polyline, section, section_where};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};
 pub use triangulate::triangulate;
 pub use volume::{

@@ -1,6 +1,6 @@
 use crate::half_edge::{edges, half_edges};
 use crate::{Mesh, is_triangle};
-use moldloft_num::{Plane, Vec3};
+use moldloft_num::{Plane, Vec3, find_root};
 
 /// A run of points.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,17 @@ pub struct Polyline {
 /// plane counts to its positive side; panels in the plane give nothing, but open edges in it do (so
 /// the section of half a hull with its centre plane is its profile).
 pub fn section(mesh: &Mesh, plane: &Plane<f64>) -> Vec<Polyline> {
-    let distance: Vec<f64> = mesh.positions().iter().map(|&p| plane.distance(p)).collect();
+    section_where(mesh, |p| plane.distance(p), |_| true)
+}
+
+/// As [`section`], with the surface on which `height` is zero, as far as it `holds`: a cylinder, a half-plane. Sides of
+/// panels are cut once, so a surface that bends through a side twice is not seen there.
+pub fn section_where(
+    mesh: &Mesh,
+    height: impl Fn(Vec3) -> f64,
+    holds: impl Fn(Vec3) -> bool,
+) -> Vec<Polyline> {
+    let distance: Vec<f64> = mesh.positions().iter().map(|&p| height(p)).collect();
     let d = |v: u32| distance[v as usize];
     let mut pieces: Vec<[Node; 2]> = Vec::new();
     for &face in mesh.faces() {
@@ -51,8 +61,14 @@ pub fn section(mesh: &Mesh, plane: &Plane<f64>) -> Vec<Polyline> {
             return p;
         }
         let (a, b) = (d(node.low), d(node.high));
-        p.lerp(q, a / (a - b))
+        let flat = p.lerp(q, a / (a - b));
+        // Where the height is not linear along the side, its root.
+        if height(flat).abs() <= 1e-12 * (a.abs() + b.abs()) {
+            return flat;
+        }
+        find_root(&|t| height(p.lerp(q, t)), 0.0, 1.0).map_or(flat, |t| p.lerp(q, t))
     };
+    pieces.retain(|piece| piece.iter().all(|&node| holds(place(node))));
     chained(&pieces)
         .into_iter()
         .map(|(nodes, closed)| Polyline { points: nodes.into_iter().map(place).collect(), closed })
@@ -155,6 +171,20 @@ mod tests {
         }
         let frame = section(&half, &plane([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]));
         assert_eq!((frame.len(), frame[0].points.len(), frame[0].closed), (1, 4, false));
+    }
+
+    #[test]
+    fn a_cylinder_and_a_half_plane_cut_too() {
+        let ball = sphere(48, 2.0, Vec3::zero());
+        let radius = |p: Vec3| (p.x * p.x + p.y * p.y).sqrt();
+        let rings = section_where(&ball, |p| radius(p) - 1.0, |_| true);
+        assert_eq!((rings.len(), rings[0].closed, rings[1].closed), (2, true, true));
+        for p in rings.iter().flat_map(|r| &r.points) {
+            assert!((radius(*p) - 1.0).abs() < 1e-12 && (p.z.abs() - 3f64.sqrt()).abs() < 0.01);
+        }
+        let half = section_where(&ball, |p| p.y - 0.1 * p.x, |p| p.x > 0.0);
+        assert_eq!((half.len(), half[0].closed), (1, false));
+        assert!(half[0].points.iter().all(|p| p.x > 0.0));
     }
 
     #[test]

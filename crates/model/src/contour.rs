@@ -1,7 +1,8 @@
-//! Sections of the exact surfaces: stations, waterlines, buttocks, and those by cylinders and angles.
+//! Sections of the exact surfaces, and of bodies of triangles: stations, waterlines, buttocks, and those by cylinders and angles.
 
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, section_where};
 use moldloft_num::{Vec3, find_root};
-use moldloft_registry::{Family, Head, SurfaceRef};
+use moldloft_registry::{Facets, Family, Head, SurfaceRef};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One line of a section: points on the surface and in the plane, to rounding.
@@ -9,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Polyline {
     /// Points in order along the line.
     pub points: Vec<Vec3>,
-    /// Their parameters (u, v) on the surface.
+    /// Their parameters (u, v) on the surface; none on the triangles of a body.
     pub uv: Vec<[f64; 2]>,
     /// True when the line closes; the first point is not repeated.
     pub closed: bool,
@@ -149,6 +150,24 @@ impl<'s> Sectioned<'s> {
         }
         lines
     }
+}
+
+/// The lines in which the member `value` of a family cuts the triangles of a body.
+pub fn body_section(body: &Facets<f64>, family: &Family<f64>, value: f64) -> Vec<Polyline> {
+    let mut builder = TopologyBuilder::new();
+    let faces = body.triangles.iter().map(|&[a, b, c]| [a, b, c, c]);
+    let built = builder
+        .add_vertices(body.points.len())
+        .and_then(|_| builder.add_faces(PatchInfo::new(""), faces));
+    let mesh = built.and_then(|_| Mesh::new(builder.build().into(), body.points.clone()));
+    let Ok(mesh) = mesh else { return Vec::new() };
+    let lines = section_where(&mesh, |p| family.height(value, p), |p| family.holds(value, p));
+    let line = |l: moldloft_mesh::Polyline| Polyline {
+        points: l.points,
+        uv: Vec::new(),
+        closed: l.closed,
+    };
+    lines.into_iter().map(line).collect()
 }
 
 /// The root between `low` and `high`; the end that is nearer to one when rounding hides it.

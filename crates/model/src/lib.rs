@@ -19,7 +19,7 @@ mod panel;
 mod sweep;
 
 pub use blocks::{BlockRemark, Blocking, MOST_CELLS, grid as solid_grid};
-pub use contour::{Polyline, Sectioned};
+pub use contour::{Polyline, Sectioned, body_section};
 pub use graph::{Applied, DEEPEST_NESTING, Declaration, Extent, Graph, Run};
 pub use object::{Failure, Object, State};
 pub use panel::{ChainStep, MOST_PANELS, Nominal, Panelling, Remark, divisions, too_many_panels};

@@ -212,6 +212,7 @@ impl Painter<'_> {
             let colour = look.map_or_else(|| patch_colour(patch, index), |look| look.colour);
             let base = self.gamma.linear(colour);
             let raised = look.is_some_and(|look| look.raised);
+            let outlines = self.outlines(faces, &seen);
             for &face in faces {
                 let Some(normal) = turned(face).normalized() else { continue };
                 let corners = face.map(|v| {
@@ -222,7 +223,7 @@ impl Painter<'_> {
                     let at = if raised { self.raised(positions[v]) } else { seen[v] };
                     Corner { at, light: self.light(base, n, normal, positions[v]) }
                 });
-                self.panel(raster, corners, is_triangle(face));
+                self.panel(raster, corners, is_triangle(face), outlines);
             }
         }
     }
@@ -233,20 +234,20 @@ impl Painter<'_> {
         Seen { near: nearer.near, ..self.aimed.see(p) }
     }
 
-    fn panel(&self, raster: &mut Raster, [a, b, c, d]: [Corner; 4], triangle: bool) {
-        let strength = if self.options.edges {
-            // Lines closer than about 3 points would only darken the surface.
-            let cross =
-                (c.at.x - a.at.x) * (d.at.y - b.at.y) - (c.at.y - a.at.y) * (d.at.x - b.at.x);
-            let reach = [(a, b), (b, c), (c, d), (d, a)]
-                .map(|(p, q)| length(q.at.x - p.at.x, q.at.y - p.at.y))
-                .into_iter()
-                .fold(1.0, f32::max);
-            let breadth = 0.5 * cross.abs() / reach;
-            0.62 * ((breadth - 4.0) / 10.0).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+    /// How strongly the outlines of a patch's panels are drawn, 0 to 1: of a patch that is finer than can be seen
+    /// none, lest those of its few larger panels show as stains.
+    fn outlines(&self, faces: &[[u32; 4]], seen: &[Seen]) -> f32 {
+        if !self.options.edges {
+            return 0.0;
+        }
+        let sum: f32 = faces.iter().map(|f| breadth(f.map(|v| seen[v as usize]))).sum();
+        ((sum / faces.len().max(1) as f32 - 4.5) / 3.0).clamp(0.0, 1.0)
+    }
+
+    fn panel(&self, raster: &mut Raster, [a, b, c, d]: [Corner; 4], triangle: bool, outlines: f32) {
+        // Lines closer than about 3 points would only darken the surface.
+        let apart = (breadth([a.at, b.at, c.at, d.at]) - 4.0) / 10.0;
+        let strength = 0.62 * outlines * apart.clamp(0.0, 1.0);
         let sides = |shown| (strength > 0.0).then_some(Sides { shown, half_width: 0.55, strength });
         if triangle {
             raster.triangle([a, b, c], sides([true; 3]));
@@ -271,6 +272,13 @@ impl Painter<'_> {
         let (dim, gloss) = if inside { (0.72, 0.0) } else { (1.0, gloss) };
         base.map(|c| c * (dim * diffuse) as f32 + gloss as f32)
     }
+}
+
+/// How broad a panel is in the picture, across its longest side.
+fn breadth([a, b, c, d]: [Seen; 4]) -> f32 {
+    let cross = (c.x - a.x) * (d.y - b.y) - (c.y - a.y) * (d.x - b.x);
+    let sides = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| length(q.x - p.x, q.y - p.y));
+    0.5 * cross.abs() / sides.into_iter().fold(1.0, f32::max)
 }
 
 /// The directions of x, y and z in the lower left corner.

@@ -70,7 +70,7 @@ macro_rules! contour_kind {
             start: T,
             /// Distance of neighbouring sections.
             step: T,
-            /// The surfaces to cut; all that are shown, when none are given.
+            /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
             surfaces: Option<Vec<SurfaceRef<T>>>,
         }
 
@@ -127,7 +127,7 @@ pub struct PlaneContours<T: Real> {
     start: T,
     /// Distance of neighbouring sections.
     step: T,
-    /// The surfaces to cut; all that are shown, when none are given.
+    /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
     surfaces: Option<Vec<SurfaceRef<T>>>,
 }
 
@@ -160,7 +160,7 @@ pub struct CylinderContours<T: Real> {
     start: T,
     /// Difference of neighbouring radii.
     step: T,
-    /// The surfaces to cut; all that are shown, when none are given.
+    /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
     surfaces: Option<Vec<SurfaceRef<T>>>,
 }
 
@@ -209,7 +209,7 @@ pub struct AngleContours<T: Real> {
     step: T,
     /// A point in the half-plane of angle 0.
     zero: Option<Point<T>>,
-    /// The surfaces to cut; all that are shown, when none are given.
+    /// The surfaces to cut; all that are shown, and all shown bodies, when none are given.
     surfaces: Option<Vec<SurfaceRef<T>>>,
 }
 

@@ -5,8 +5,12 @@ from __future__ import annotations
 import argparse
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from moldloft.cli.console import Progress, add_model, open_model, report
+
+if TYPE_CHECKING:
+    from moldloft.models import Model
 
 __all__ = ["add", "run"]
 
@@ -22,12 +26,58 @@ def _size(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
+def _corner(text: str) -> tuple[float, float, float]:
+    parts = text.strip("{}() ").split(",")
+    try:
+        x, y, z = (float(part) for part in parts)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"`{text}` is no point: three numbers like -1,0,2.5"
+        ) from None
+    return x, y, z
+
+
+def _traced(options: argparse.Namespace, model: Model) -> bytes:
+    """The picture of one set."""
+    from moldloft.errors import Error
+    from moldloft.implicit import Set
+
+    name = options.traced
+    thing = model[name].value if name in model else model.eval(name)
+    if not isinstance(thing, Set):
+        raise Error(
+            f"`{name}` is no set: --traced takes the name of a set, or an expression of sets"
+        )
+    if (options.low is None) != (options.high is None):
+        raise Error("a box has two corners: give both --low and --high, or neither")
+    return thing.picture(
+        low=options.low, high=options.high, size=options.size, samples=options.samples
+    )
+
+
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="by default MODEL.png here")
     parser.add_argument(
         "--size", metavar="WxH", type=_size, default=(1200, 800), help="pixels; default 1200x800"
+    )
+    parser.add_argument(
+        "--traced",
+        metavar="SET",
+        help="ray trace this set: its exact surface with lights, shadows and colours",
+    )
+    parser.add_argument(
+        "--low", metavar="X,Y,Z", type=_corner, help="low corner of the box that is traced"
+    )
+    parser.add_argument("--high", metavar="X,Y,Z", type=_corner, help="its high corner")
+    parser.add_argument(
+        "--samples",
+        metavar="N",
+        type=int,
+        choices=range(1, 9),
+        default=2,
+        help="rays along each side of a picture point, 1 to 8; default 2",
     )
 
 
@@ -41,7 +91,10 @@ def run(options: argparse.Namespace) -> int:
         report(model.diagnostics)
         progress.stage("drawing")
         path = Path(options.output or f"{Path(options.model).stem}.png")
-        picture = model._document.picture(*options.size)
+        if options.traced is None:
+            picture = model._document.picture(*options.size)
+        else:
+            picture = _traced(options, model)
         commit(path.parent, [Output(path.name, picture)])
     print(path)
     return 1 if model._document.has_errors() else 0
