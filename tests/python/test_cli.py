@@ -154,7 +154,7 @@ def test_render_traced(cli, tmp_path):
 
 
 def test_sections_of_a_set(cli, tmp_path):
-    """Planes cut bodies as they cut surfaces: the rings of a torus, in the drawing and as numbers."""
+    """Planes cut bodies as they cut surfaces: the two rings of a torus."""
     (tmp_path / "ring.sdl").write_text(
         "AbsPoint O(0, 0, 0); AbsPoint Z(0, 0, 1); Line axis(O, Z);\n"
         "set ring = set(torus(axis, 2, 0.5)); SetBody body(ring, depth = 5);\n"

@@ -34,8 +34,30 @@ pub trait Oracle<T: Real>: Field<T> {
 /// A plain primitive among numbers with derivatives: it depends on no parameter, but its place may.
 pub struct Constant(pub Arc<dyn Oracle<f64>>);
 
+/// True when a point carries no derivatives.
+fn fixed<T: Real>(p: &Vec3<T>) -> bool {
+    p.to_array().iter().all(|x| x.is_constant())
+}
+
+/// Plain numbers as ones with derivatives that are zero.
+fn lifted<T: Real>((value, gradient): (f64, Vec3)) -> (T, Vec3<T>) {
+    (T::from(value), Vec3::lifted(gradient))
+}
+
 impl<T: Real> Field<T> for Constant {
+    fn value(&self, p: Vec3<T>) -> T {
+        if fixed(&p) {
+            return T::from(self.0.value(p.re()));
+        }
+        let (value, gradient) = self.0.value_and_gradient(p.re());
+        let d = p - Vec3::lifted(p.re());
+        d.x * gradient.x + d.y * gradient.y + d.z * gradient.z + value
+    }
+
     fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>) {
+        if fixed(&p) {
+            return lifted(self.0.value_and_gradient(p.re()));
+        }
         let (value, gradient, second) = self.0.second_order(p.re());
         let d = p - Vec3::lifted(p.re());
         let along = |row: Vec3, x: f64| d.x * row.x + d.y * row.y + d.z * row.z + x;
@@ -54,6 +76,25 @@ impl<T: Real> Oracle<T> for Constant {
     }
     fn gradient_range(&self, over: &Box3) -> [Interval; 3] {
         self.0.gradient_range(over)
+    }
+    fn values(&self, points: &[Vec3<T>], out: &mut [T]) {
+        if points.iter().all(fixed) {
+            let plain: Vec<Vec3> = points.iter().map(|p| p.re()).collect();
+            let mut values = vec![0.0; plain.len()];
+            self.0.values(&plain, &mut values);
+            out.iter_mut().zip(values).for_each(|(out, value)| *out = T::from(value));
+            return;
+        }
+        for (out, p) in out.iter_mut().zip(points) {
+            *out = Field::<T>::value(self, *p);
+        }
+    }
+    fn values_and_gradients(&self, points: &[Vec3<T>]) -> Vec<(T, Vec3<T>)> {
+        if points.iter().all(fixed) {
+            let plain: Vec<Vec3> = points.iter().map(|p| p.re()).collect();
+            return self.0.values_and_gradients(&plain).into_iter().map(lifted).collect();
+        }
+        points.iter().map(|p| self.value_and_gradient(*p)).collect()
     }
     fn re(&self) -> Arc<dyn Oracle<f64>> {
         self.0.clone()
