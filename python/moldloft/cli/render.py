@@ -43,7 +43,7 @@ def _traced(options: argparse.Namespace, model: Model) -> bytes:
     from moldloft.implicit import Set
 
     name = options.traced
-    thing = model[name].value if name in model else model.eval(name)
+    thing = model.eval(name)
     if not isinstance(thing, Set):
         raise Error(
             f"`{name}` is no set: --traced takes the name of a set, or an expression of sets"

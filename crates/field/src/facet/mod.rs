@@ -90,7 +90,7 @@ pub struct Facets {
     /// Cells whose triangles cut others, or may when the facets were to be sharp. Elsewhere no two triangles meet except where they join: by
     /// construction, or where a cell has several vertices or one outside it, by test.
     pub undecided: Vec<Box3>,
-    /// Cells with an edge or corner that no vertex lies on, so that it is cut off there: it is thinner than a
+    /// Cells with an edge or corner that no vertex lies on or within a hundredth of a cell, so that it is cut off there: it is thinner than a
     /// cell, or its vertices would have made triangles cut each other.
     pub blunt: Vec<Box3>,
     /// How many cells the surface passes through.

@@ -13,6 +13,10 @@ use smallvec::SmallVec;
 /// The crossings of a piece of surface, with their edges.
 pub(super) type Ring<'c> = SmallVec<[(usize, &'c Crossing); 12]>;
 
+/// Of an edge or corner that passes by its vertex within this part of a cell nothing to speak of is cut off: such are
+/// those of surfaces that touch along it.
+const UNSAID: f64 = 0.01;
+
 /// What the vertices of a cell are settled with.
 pub(super) struct Settling<'a> {
     pub(super) tape: &'a Tape<f64>,
@@ -62,8 +66,10 @@ impl Settling<'_> {
                     }
                     let strayed = stray(&mut *self.solver);
                     if strayed.residual > goal {
+                        let wanted = std::mem::take(&mut surfaces);
                         let (placed, surfaces) = self.blunt(edges);
-                        return Settled::One { placed, surfaces, blunt: true };
+                        let blunt = self.away(placed.point, &wanted);
+                        return Settled::One { placed, surfaces, blunt };
                     }
                     placed = strayed;
                 }
@@ -83,6 +89,15 @@ impl Settling<'_> {
             (placed, surfaces) = (Placed { strayed: placed.strayed, ..other }, more);
         }
         Settled::One { placed, surfaces, blunt: false }
+    }
+
+    /// True when a point is further from one of the surfaces than may go unsaid.
+    fn away(&mut self, p: Vec3, surfaces: &[u32]) -> bool {
+        let slack = UNSAID * (self.cell.high.x - self.cell.low.x);
+        surfaces.iter().any(|&s| {
+            let g = self.solver.gradient(self.leaves[s as usize].primitive.tape(), p);
+            !(g.value.abs() <= slack * g.slope.norm())
+        })
     }
 
     /// A point of the cell on as many of a piece's surfaces as two or, failing that, one: that with the most

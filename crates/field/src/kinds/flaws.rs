@@ -4,14 +4,15 @@ use crate::facet::Facets;
 use moldloft_num::Vec3;
 use moldloft_registry::{Flaw, Remark};
 
-/// "n cells of 0.1, the first about (x, y, z)".
-fn counted(places: &[Vec3], step: f64) -> String {
+/// "in n of 900 cells of side 0.1, the first about (x, y, z)".
+fn counted(places: &[Vec3], facets: &Facets) -> String {
     let (n, p) = (places.len(), places[0]);
-    let at = format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z);
-    match n {
-        1 => format!("in one cell of side {step:.3e}, about {at},"),
-        _ => format!("in {n} cells of side {step:.3e}, the first about {at},"),
-    }
+    let Facets { cells, step, .. } = facets;
+    let first = if n == 1 { "about" } else { "the first about" };
+    format!(
+        "in {n} of {cells} cells of side {step:.3e}, {first} ({:.6}, {:.6}, {:.6})",
+        p.x, p.y, p.z
+    )
 }
 
 /// The places where facets are not the set's surface, or may not be; none of the three is usual.
@@ -24,18 +25,17 @@ pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
     ];
     let found = lists.into_iter().filter(|(_, places)| !places.is_empty());
     let flaw = |(name, places): (&'static str, Vec<Vec3>)| {
-        let of = facets.cells;
         let (id, message, advice) = match name {
             "undecided" => (
                 "undecided-cells",
-                format!("{} of {of}, triangles cut each other", counted(&places, facets.step)),
+                format!("{}, triangles cut each other", counted(&places, facets)),
                 "give smaller cells: a greater depth, or a finer accuracy",
             ),
             "blunt" => (
                 "blunt-edges",
                 format!(
-                    "{} of {of}, an edge or corner that is thinner than the cell is cut off",
-                    counted(&places, facets.step)
+                    "{}, an edge or corner that is thinner than the cell is cut off",
+                    counted(&places, facets)
                 ),
                 "give smaller cells (a greater depth, or a finer accuracy) if the edge matters",
             ),
