@@ -31,7 +31,7 @@ def main(folder: Path) -> None:
     opened.picture(path("tee"), (-3.6, -1.1, -1.1), (3.8, 1.1, 3.6), size=SIZE, eye=eye)
     bottle = model("neck")["bottle"].value
     box = (-3.2, -2.6, -1.6), (2.6, 1.6, 1.6)
-    bottle.picture(path("neck"), *box, size=SIZE, angle=0.45, samples=2)
+    bottle.picture(path("neck"), *box, size=SIZE, samples=2)
     for name in ("lambdas", "quadric", "wave", "wires", "manifold"):
         png = model(name)._document.picture(*SIZE)
         path(name).write_bytes(png)

@@ -17,8 +17,9 @@ use crate::set::Leaf;
 use crate::tape::Tape;
 use moldloft_num::Vec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// A vertex before it has its number: that of a cell, or one on an edge or a face of the grid.
@@ -67,7 +68,7 @@ pub(super) struct Assembly<'a> {
     pub(super) grid: &'a Grid,
     pub(super) leaves: &'a [Leaf],
     pub(super) blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
-    at: HashMap<[u32; 3], usize>,
+    at: FxHashMap<[u32; 3], usize>,
     base: Vec<u32>,
     /// How many vertices the blocks have.
     pub(super) count: u32,

@@ -3,7 +3,7 @@
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Vec3};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Pairs of faces of a triangle mesh that cut each other, in order, by the signs of volumes; pairs
 /// that touch to rounding only do not count. With `flagged`, only pairs of which one is flagged.
@@ -55,7 +55,7 @@ pub(super) fn crossings(
             y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
         })
     };
-    let mut map: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut map: FxHashMap<[i64; 3], Vec<usize>> = FxHashMap::default();
     // Which bins hold something, by a hash of few bits: most are told to be empty without a look.
     let mut filled = vec![false; 1 << 16];
     let place = |[i, j, k]: [i64; 3]| {

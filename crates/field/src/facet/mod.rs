@@ -32,8 +32,8 @@ use grid::Grid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
 use refine::{Rule, refine};
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
-use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -119,7 +119,7 @@ impl std::fmt::Debug for Memory {
 
 /// Blocks of an earlier division by position.
 struct Reuse<'a> {
-    blocks: HashMap<[u32; 3], &'a (Arc<Tape<f64>>, Arc<Block>)>,
+    blocks: FxHashMap<[u32; 3], &'a (Arc<Tape<f64>>, Arc<Block>)>,
 }
 
 impl Reuse<'_> {

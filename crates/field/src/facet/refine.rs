@@ -13,8 +13,8 @@ use crate::set::Leaf;
 use crate::tape::Tape;
 use moldloft_num::{Box3, Vec3};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
-use std::collections::HashMap;
 
 /// When an edge is divided.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +83,7 @@ struct Work<'a> {
     normals: Vec<Normals>,
     triangles: Vec<(u32, Corner)>,
     /// The triangles beside the edges near bends.
-    edges: HashMap<(u32, u32), SmallVec<[u32; 2]>>,
+    edges: FxHashMap<(u32, u32), SmallVec<[u32; 2]>>,
     /// Vertices beside which nothing is changed.
     locked: Vec<bool>,
     changed: Vec<u32>,
@@ -296,7 +296,7 @@ impl Work<'_> {
             }
         }
         found.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = rustc_hash::FxHashSet::default();
         found.into_iter().map(|f| f.1).filter(|e| seen.insert(*e)).collect()
     }
 
@@ -343,7 +343,7 @@ pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tape: &Tape<f64>, ru
         surfaces: std::mem::take(&mut made.surfaces),
         normals,
         triangles: std::mem::take(&mut made.triangles),
-        edges: HashMap::new(),
+        edges: FxHashMap::default(),
         locked: Vec::new(),
         changed: Vec::new(),
         solver: Solver::default(),
