@@ -143,7 +143,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let value = match operand {
             Ok(Operand::Value(value, _)) => Ok(value),
-            Ok(Operand::Lanes(lanes)) => self.computed(&lanes, &mut work),
+            Ok(Operand::Lanes(lanes)) => {
+                let tape = &mut work.tape;
+                let filled = match tape.is_checked() {
+                    // What can fail must leave the variable as it was.
+                    true => None,
+                    false => self.filled_in_place(m, key, &lanes, |outs| {
+                        tape.run(&lanes.roots(), lanes.shape, outs).is_ok()
+                    }),
+                };
+                filled.map_or_else(|| self.computed(&lanes, &mut work), Ok)
+            }
             Err(diagnostic) => Err(work.earlier(diagnostic)),
         };
         if let Some(misfits) = record {
@@ -156,9 +166,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     /// The elements of rows of a tape.
     fn computed(&mut self, lanes: &Lanes, work: &mut Work<T>) -> Result<Value<T>, Diagnostic> {
-        let spare = &mut self.spare;
-        match work.tape.run(&lanes.roots(), lanes.shape, |n| spare.take(n)) {
-            Ok(rows) => Ok(lanes.value(rows)),
+        let (roots, count) = (lanes.roots(), lanes.shape.count());
+        let mut rows: SmallVec<[Vec<T>; 3]> =
+            roots.iter().map(|_| self.spare.take(count)).collect();
+        match work.tape.run(&roots, lanes.shape, &mut rows) {
+            Ok(()) => Ok(lanes.value(rows)),
             Err(check) => {
                 let (span, name) = work.calls[check];
                 Err(not_finite(name).at(span))

@@ -265,7 +265,7 @@ impl<T: Real> Tape<T> {
                 shapes.push(*shape);
             }
         }
-        let mut failure = |shape| self.run(&[], shape, |_| Vec::new()).err();
+        let mut failure = |shape| self.run(&[], shape, &mut []).err();
         shapes.into_iter().filter_map(&mut failure).min()
     }
 
@@ -289,8 +289,7 @@ impl<T: Real> Tape<T> {
         power
     }
 
-    /// The values of the roots, elements of that shape each. `take` gives rows of a length to write
-    /// into.
+    /// Writes the values of the roots, elements of that shape each, into rows of so many.
     ///
     /// # Errors
     /// The number of the first check that failed, in the order of the instructions.
@@ -298,8 +297,8 @@ impl<T: Real> Tape<T> {
         &mut self,
         roots: &[Src],
         shape: ArrayShape,
-        take: impl FnMut(usize) -> Vec<T>,
-    ) -> Result<SmallVec<[Vec<T>; 3]>, usize> {
+        outs: &mut [Vec<T>],
+    ) -> Result<(), usize> {
         let Self { code, checked, planner, program, .. } = self;
         let check = |k: usize| {
             let at = checked.binary_search_by_key(&(k as u16), |c| c.0).ok()?;
@@ -307,10 +306,7 @@ impl<T: Real> Tape<T> {
         };
         planner.plan(code, roots, check, program);
         let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(Plane::numbers).collect();
-        let mut outs: SmallVec<[Vec<T>; 3]> = SmallVec::new();
-        outs.extend(std::iter::repeat_with(|| shape.count()).take(roots.len()).map(take));
-        self.execute(&rows, roots, shape.count(), &mut outs)?;
-        Ok(outs)
+        self.execute(&rows, roots, shape.count(), outs)
     }
 
     /// Runs a tape that was run before with the same roots and shape, on other rows; a row of `count`

@@ -1,100 +1,95 @@
-//! What runs a tape: a machine with two registers that are several packs of numbers wide.
+//! What runs a tape: a machine that carries out each order for a stretch of elements before the next one.
 //!
-//! A program goes over rows of elements in chunks: every order is carried out for all elements of a
-//! chunk before the next one, so that deciding what an order is costs little, and results on the way
-//! stay in registers, or in slots of the size of a chunk. Packs are as wide as the processor's registers
-//! ([`pulp`] finds out), and an order rounds each of its operations by itself: the same bits
-//! whatever the width.
+//! Stretches are so long that deciding what an order is costs next to nothing, and so short that all they
+//! touch stays in the first cache. Sources are copied to the machine's own memory first, where no pack of
+//! numbers lies across the border of two cache lines; results go to their rows directly. An order that
+//! adds products takes them in as they are made, so that few numbers pass through memory on the way. Packs
+//! are as wide as the processor's registers ([`pulp`] finds out), and each operation is rounded by itself:
+//! the same bits whatever the width.
 
 use moldloft_num::Real;
 use pulp::bytemuck::cast_slice_mut;
 use pulp::{Arch, Simd, WithSimd};
 use smallvec::SmallVec;
 use std::any::Any;
+use std::cell::Cell;
 use std::marker::PhantomData;
 use std::sync::LazyLock;
 
-/// One of the two registers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Reg {
-    A,
-    B,
-}
-
-/// Where the elements of a chunk are.
+/// Where the elements of a stretch are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Row {
-    /// In a row of the sources.
-    Plane(u16),
     /// In a row of the results.
     Out(u16),
     /// In memory of the machine.
     Slot(u16),
 }
 
-/// An operand of an order: elements, or the same number for all.
+/// An operand of a function: elements, or the same number for all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Operand {
     Row(Row),
     Const(u16),
 }
 
+/// What is added or multiplied: numbers in front of `c` are of rows, those behind of constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Op {
-    Add,
-    Sub,
-    Mul,
-    Div,
+pub(crate) enum Term {
+    /// x
+    Row(Row),
+    /// x c
+    Scaled(Row, u16),
+    /// x y
+    Product(Row, Row),
+    /// (x c) y
+    ScaledProduct(Row, u16, Row),
 }
 
-/// What the machine does with the elements of a chunk. Products and sums are rounded each by itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Order {
-    /// r = x
-    Load(Reg, Operand),
-    /// r = x op y
-    Rows(Reg, Op, Row, Row),
-    /// r = x op c
-    RowConst(Reg, Op, Row, u16),
-    /// r = c op x
-    ConstRow(Reg, Op, u16, Row),
-    /// r = r op x
-    By(Reg, Op, Operand),
-    /// r = x op r
-    From(Reg, Op, Operand),
-    /// a = a op b
-    Join(Op),
-    /// a = b op a
-    JoinFrom(Op),
-    /// a = a + x y, or a - x y
-    Product(Sign, Row, Row),
-    /// a = a + x c, or a - x c
-    ProductConst(Sign, Row, u16),
-    /// a = a + b x, or a - b x
-    Times(Sign, Operand),
-    Neg(Reg),
-    Abs(Reg),
-    Sqrt(Reg),
-    /// The row becomes a.
-    Store(Row),
-    /// Each element of a row becomes its function. The last number is that of a check: results must be
-    /// finite.
-    Unary(u16, Row, Option<u16>),
-    /// Each element of a row becomes the function of itself and the operand's.
-    Binary(u16, Row, Operand, Option<u16>),
-}
-
-/// Whether a product is added or taken away.
+/// Whether a term is added or taken away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sign {
     Plus,
     Minus,
 }
 
+/// What becomes of the elements of a stretch; each is what a row of them is set to. Products and sums are
+/// rounded each by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Order {
+    /// The elements of a source.
+    Source(u16),
+    /// c
+    Fill(u16),
+    /// A product.
+    Term(Term),
+    /// x + y, or x - y
+    Sum(Term, Sign, Term),
+    /// (x + y) + z, or with other signs
+    Sums(Row, [(Sign, Term); 2]),
+    /// x + c, or x - c
+    Shifted(Term, Sign, u16),
+    /// c - x
+    From(u16, Term),
+    /// x / y
+    Ratio(Row, Row),
+    /// x / c
+    Part(Row, u16),
+    /// c / x
+    Over(u16, Row),
+    Neg(Row),
+    Abs(Row),
+    Sqrt(Row),
+    /// A function of each element. The last number is that of a check: results must be finite.
+    Unary(u16, Operand, Option<u16>),
+    /// A function of two.
+    Binary(u16, [Operand; 2], Option<u16>),
+}
+
 /// Orders with what they refer to.
 #[derive(Debug)]
 pub(crate) struct Program<T> {
-    pub orders: Vec<Order>,
+    /// What to do, and the row that it is done for.
+    pub orders: Vec<(Order, Row)>,
     pub consts: Vec<T>,
     pub unary: Vec<fn(T) -> T>,
     pub binary: Vec<fn(T, T) -> T>,
@@ -120,6 +115,13 @@ impl<T: Real> Program<T> {
     pub fn run(&self, planes: &[&Vec<T>], outs: &mut [Vec<T>], count: usize) -> Option<u16> {
         // The processor does not change, and asking it takes longer than a short row.
         static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
+        thread_local! {
+            /// Memory for the slots of plain numbers: making it anew takes longer than a short row, too.
+            static MEMORY: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
+        }
+        if count == 0 {
+            return None;
+        }
         if let Some(program) = (self as &dyn Any).downcast_ref::<Program<f64>>() {
             // Numbers without derivatives, so all rows are of those.
             let planes = planes.iter().map(|row| {
@@ -132,38 +134,31 @@ impl<T: Real> Program<T> {
                 let row: Option<&mut Vec<f64>> = row.downcast_mut();
                 row.map(|row| &mut row[..count])
             });
-            let (planes, outs) = (planes.collect(), outs.collect());
-            return ARCH.dispatch(Wide { program, planes, outs, count });
+            let mut memory = MEMORY.take();
+            let rows = Rows { planes: planes.collect(), outs: outs.collect(), count };
+            let failed = ARCH.dispatch(Wide { program, rows, memory: &mut memory });
+            MEMORY.set(memory);
+            return failed;
         }
         let planes = planes.iter().map(|row| row.get(..count).unwrap_or(&[]));
-        let mut rows = Rows {
-            planes: planes.collect(),
-            outs: outs.iter_mut().map(|row| &mut row[..count]).collect(),
-        };
-        let mut failed = None;
-        let one = Single(PhantomData);
-        let whole = count - count % AT_ONCE;
-        go::<Single<T>, AT_ONCE>(one, self, &mut rows, [0, whole], &mut failed);
-        go::<Single<T>, 1>(one, self, &mut rows, [whole, count], &mut failed);
-        failed
+        let outs = outs.iter_mut().map(|row| &mut row[..count]);
+        let rows = Rows { planes: planes.collect(), outs: outs.collect(), count };
+        go(Single(PhantomData), self, rows, &mut Vec::new())
     }
 }
 
-/// Numbers with derivatives that go through a program together: each is a pack by itself.
-const AT_ONCE: usize = 4;
-
-/// The rows that a program reads and writes.
+/// The rows that a program reads and writes, and how many elements of each.
 struct Rows<'a, T> {
     planes: SmallVec<[&'a [T]; 16]>,
     outs: SmallVec<[&'a mut [T]; 3]>,
+    count: usize,
 }
 
 /// A run on packs of plain numbers, compiled for each width of them.
 struct Wide<'a> {
     program: &'a Program<f64>,
-    planes: SmallVec<[&'a [f64]; 16]>,
-    outs: SmallVec<[&'a mut [f64]; 3]>,
-    count: usize,
+    rows: Rows<'a, f64>,
+    memory: &'a mut Vec<f64>,
 }
 
 impl WithSimd for Wide<'_> {
@@ -171,44 +166,7 @@ impl WithSimd for Wide<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Option<u16> {
-        let Self { program, planes, outs, count } = self;
-        let (packs, lanes) = (Packed(simd), S::F64_LANES);
-        let mut rows = Rows { planes, outs };
-        let mut failed = None;
-        // Both registers and an operand, or two, in those of the processor.
-        let most = if S::REGISTER_COUNT >= 32 { 8 } else { 4 };
-        let whole = count - count % (most * lanes);
-        match most {
-            8 => go::<_, 8>(packs, program, &mut rows, [0, whole], &mut failed),
-            _ => go::<_, 4>(packs, program, &mut rows, [0, whole], &mut failed),
-        }
-        // The rest as one chunk that ends with the last element: what it has in common with the one
-        // before comes out the same again.
-        let rest = count - whole;
-        let mut width = rest.div_ceil(lanes).next_power_of_two();
-        if count < width * lanes {
-            // Two of half the size, one from the first element on.
-            width /= 2;
-        }
-        let ends = match rest {
-            0 => [None, None],
-            _ if whole > 0 || width * lanes >= rest => [None, Some(count)],
-            _ => [Some(width * lanes), Some(count)],
-        };
-        for end in ends.into_iter().flatten() {
-            let range = [end.wrapping_sub(width * lanes), end];
-            match width {
-                8 => go::<_, 8>(packs, program, &mut rows, range, &mut failed),
-                4 => go::<_, 4>(packs, program, &mut rows, range, &mut failed),
-                2 => go::<_, 2>(packs, program, &mut rows, range, &mut failed),
-                1 => go::<_, 1>(packs, program, &mut rows, range, &mut failed),
-                _ => {
-                    let one = Single(PhantomData);
-                    go::<Single<f64>, 1>(one, program, &mut rows, [0, count], &mut failed);
-                }
-            }
-        }
-        failed
+        go(Packed(simd), self.program, self.rows, self.memory)
     }
 }
 
@@ -343,202 +301,345 @@ impl<T: Real> Packs for Single<T> {
     }
 }
 
-/// A chunk on its own, at a place where no pack lies across the border of two cache lines: reading back
-/// what was just written is slow there.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Slot<P, const W: usize>([P; W]);
+/// Packs of a block: what an order reads before it writes the same, so that a row may become a function of
+/// itself, and what hides the time of one operation behind that of the others.
+const BLOCK: usize = 4;
 
-/// The memory of a run: chunks are `W` packs.
-struct Machine<'a, 'r, P: Packs, const W: usize> {
-    planes: &'a [&'r [P::Pack]],
-    outs: &'a mut [&'r mut [P::Pack]],
-    slots: &'a mut [Slot<P::Pack, W>],
+/// Packs that are read and written together. A cell, since orders write to memory that others read.
+type Block<P> = Cell<[<P as Packs>::Pack; BLOCK]>;
+
+/// The memory that all rows of a stretch take together at most, in bytes: well inside a first cache of 32 KiB.
+const STRETCH: usize = 30 << 10;
+
+/// The same where sources and results are in no cache: writing to such memory waits for it, less so when
+/// there is other work between.
+const STRETCH_FAR: usize = 16 << 10;
+
+/// From so many bytes of sources and results on they are taken to be in no cache.
+const FAR: usize = 16 << 20;
+
+/// Carries the orders out for all elements, stretch by stretch.
+#[inline(always)]
+fn go<P: Packs>(
+    p: P,
+    program: &Program<P::Number>,
+    rows: Rows<'_, P::Number>,
+    memory: &mut Vec<P::Number>,
+) -> Option<u16> {
+    let Rows { planes, outs, count } = rows;
+    let zero = <P::Number as From<f64>>::from(0.0);
+    let block = BLOCK * P::LANES;
+    let all = program.slots + outs.len();
+    let (read, written) = (planes.len(), outs.len());
+    let large = count * size_of::<P::Number>() * (read + written) > FAR;
+    let most =
+        if large { STRETCH_FAR } else { STRETCH } / (size_of::<P::Number>() * block * all.max(1));
+    let blocks = most.clamp(2, 32).min(count.div_ceil(block));
+    // Slots, and rows for what is left over of the results; at a border of two cache lines.
+    // One block apart, since rows a power of two apart would fall into the same few places of the cache.
+    let stride = blocks + 1;
+    let needed = all * stride * block;
+    let line = 64 / size_of::<P::Number>().min(64);
+    if memory.len() < needed + line {
+        memory.resize(needed + line, zero);
+    }
+    let start = memory.as_ptr().align_offset(64).min(line);
+    let packs = P::packs_mut(&mut memory[start..start + needed]);
+    let cells = Cell::from_mut(packs.as_chunks_mut::<BLOCK>().0).as_slice_of_cells();
+    let mut consts: SmallVec<[P::Pack; 16]> = SmallVec::new();
+    consts.extend(program.consts.iter().map(|x| p.of(*x)));
+    let mut failed = None;
+    let length = blocks * block;
+    let whole = count - count % length;
+    let mut left: SmallVec<[&mut [P::Number]; 3]> = SmallVec::new();
+    let mut direct: SmallVec<[&[Block<P>]; 3]> = SmallVec::new();
+    for out in outs {
+        let (rows, rest) = out.split_at_mut(whole);
+        left.push(rest);
+        let packs = P::packs_mut(rows).as_chunks_mut::<BLOCK>().0;
+        direct.push(Cell::from_mut(packs).as_slice_of_cells());
+    }
+    for at in (0..count).step_by(length) {
+        let end = (at + length).min(count);
+        if at == whole {
+            // What is left over of the results goes through the machine's memory.
+            let rows = cells[program.slots * stride..].chunks(stride);
+            direct.iter_mut().zip(rows).for_each(|(row, here)| *row = here);
+        }
+        let m = Machine::<P> {
+            planes: &planes,
+            range: [at, end],
+            outs: &direct,
+            from: if at == whole { 0 } else { at / block },
+            slots: cells,
+            blocks: (end - at).div_ceil(block),
+            stride,
+            consts: &consts,
+        };
+        carry_out(p, program, &m, &mut failed);
+    }
+    for (out, row) in left.into_iter().zip(&direct) {
+        for (to, from) in out.chunks_mut(block).zip(*row) {
+            let mut packs = from.get();
+            to.copy_from_slice(&P::numbers_mut(&mut packs)[..to.len()]);
+        }
+    }
+    failed
+}
+
+/// What the orders of a stretch work on.
+struct Machine<'a, P: Packs> {
+    planes: &'a [&'a [P::Number]],
+    /// The elements of the planes.
+    range: [usize; 2],
+    outs: &'a [&'a [Block<P>]],
+    /// The first block of the results.
+    from: usize,
+    slots: &'a [Block<P>],
+    /// The blocks of a stretch, and those from one slot to the next.
+    blocks: usize,
+    stride: usize,
     consts: &'a [P::Pack],
 }
 
-impl<P: Packs, const W: usize> Machine<'_, '_, P, W> {
-    /// A row's packs of the chunk that begins with pack `at`.
+impl<'a, P: Packs> Machine<'a, P> {
     #[inline(always)]
-    fn row(&self, row: Row, at: usize) -> &[P::Pack; W] {
-        let all: &[P::Pack] = match row {
-            Row::Plane(k) => self.planes[k as usize],
-            Row::Out(k) => &*self.outs[k as usize],
-            Row::Slot(k) => return &self.slots[k as usize].0,
+    fn row(&self, row: Row) -> &'a [Block<P>] {
+        let (all, from) = match row {
+            Row::Out(k) => (self.outs[k as usize], self.from),
+            Row::Slot(k) => (self.slots, k as usize * self.stride),
         };
-        all[at..].first_chunk().expect("chunks lie inside")
-    }
-
-    #[inline(always)]
-    fn row_mut(&mut self, row: Row, at: usize) -> &mut [P::Pack; W] {
-        let all: &mut [P::Pack] = match row {
-            Row::Out(k) => &mut *self.outs[k as usize],
-            Row::Slot(k) => return &mut self.slots[k as usize].0,
-            Row::Plane(_) => unreachable!("sources are not written to"),
-        };
-        all[at..].first_chunk_mut().expect("chunks lie inside")
+        &all[from..][..self.blocks]
     }
 }
 
-/// All chunks of the elements in `range`, which are whole ones.
-#[inline(always)]
-fn go<P: Packs, const W: usize>(
-    packs: P,
-    program: &Program<P::Number>,
-    rows: &mut Rows<'_, P::Number>,
-    [from, to]: [usize; 2],
-    failed: &mut Option<u16>,
-) {
-    if from == to {
-        return;
-    }
-    let zero = packs.of(<P::Number as From<f64>>::from(0.0));
-    let planes: SmallVec<[&[P::Pack]; 16]> =
-        rows.planes.iter().map(|row| P::packs(row.get(from..to).unwrap_or(&[]))).collect();
-    let mut outs: SmallVec<[&mut [P::Pack]; 3]> =
-        rows.outs.iter_mut().map(|row| P::packs_mut(&mut row[from..to])).collect();
-    let mut slots: SmallVec<[Slot<P::Pack, W>; 8]> =
-        SmallVec::from_elem(Slot([zero; W]), program.slots);
-    let mut consts: SmallVec<[P::Pack; 16]> = SmallVec::new();
-    for x in &program.consts {
-        consts.push(packs.of(*x));
-    }
-    // Slices, since asking a small vector each time where its elements are takes longer than an order.
-    let mut machine =
-        Machine::<P, W> { planes: &planes, outs: &mut outs, slots: &mut slots, consts: &consts };
-    for at in (0..(to - from) / P::LANES).step_by(W) {
-        chunk(packs, program, &mut machine, at, failed);
+/// The packs of an operand or term.
+trait At<P: Packs> {
+    fn at(&self, p: P, k: usize) -> [P::Pack; BLOCK];
+}
+
+struct Own<'a, P: Packs>(&'a [Block<P>]);
+struct Scaled<'a, P: Packs>(&'a [Block<P>], P::Pack);
+struct Product<'a, P: Packs>(&'a [Block<P>], &'a [Block<P>]);
+struct ScaledProduct<'a, P: Packs>(&'a [Block<P>], P::Pack, &'a [Block<P>]);
+
+/// r[j] = x for the packs of a block, where x is an expression of j. Written out instead of closures, which
+/// need not be inlined and would be compiled for narrow registers then.
+macro_rules! packs {
+    ($x:ident[$j:ident] = $value:expr) => {{
+        let mut r = $x;
+        for $j in 0..BLOCK {
+            r[$j] = $value;
+        }
+        r
+    }};
+}
+
+impl<P: Packs> At<P> for Own<'_, P> {
+    #[inline(always)]
+    fn at(&self, _: P, k: usize) -> [P::Pack; BLOCK] {
+        self.0[k].get()
     }
 }
 
-/// Carries the orders out for one chunk. Loops are written out instead of closures, which need not be
-/// inlined and would be compiled for narrow registers then.
+impl<P: Packs> At<P> for Scaled<'_, P> {
+    #[inline(always)]
+    fn at(&self, p: P, k: usize) -> [P::Pack; BLOCK] {
+        let x = self.0[k].get();
+        packs!(x[j] = p.mul(x[j], self.1))
+    }
+}
+
+impl<P: Packs> At<P> for Product<'_, P> {
+    #[inline(always)]
+    fn at(&self, p: P, k: usize) -> [P::Pack; BLOCK] {
+        let (x, y) = (self.0[k].get(), self.1[k].get());
+        packs!(x[j] = p.mul(x[j], y[j]))
+    }
+}
+
+impl<P: Packs> At<P> for ScaledProduct<'_, P> {
+    #[inline(always)]
+    fn at(&self, p: P, k: usize) -> [P::Pack; BLOCK] {
+        let (x, y) = (self.0[k].get(), self.2[k].get());
+        packs!(x[j] = p.mul(p.mul(x[j], self.1), y[j]))
+    }
+}
+
+/// Carries the orders out for one stretch.
 #[inline(always)]
-fn chunk<P: Packs, const W: usize>(
+fn carry_out<P: Packs>(
     p: P,
     program: &Program<P::Number>,
-    m: &mut Machine<'_, '_, P, W>,
-    at: usize,
+    m: &Machine<'_, P>,
     failed: &mut Option<u16>,
 ) {
-    let zero = [p.of(<P::Number as From<f64>>::from(0.0)); W];
-    let (mut a, mut b) = (zero, zero);
-    // r[k] = x op y for all k, where x and y are expressions of k.
-    macro_rules! each {
-        ($r:ident[$k:ident] = $value:expr) => {
-            for $k in 0..W {
-                $r[$k] = $value;
-            }
-        };
-    }
-    macro_rules! operate {
-        ($op:expr, $r:ident[$k:ident], $x:expr, $y:expr) => {
-            match $op {
-                Op::Add => each!($r[$k] = p.add($x, $y)),
-                Op::Sub => each!($r[$k] = p.sub($x, $y)),
-                Op::Mul => each!($r[$k] = p.mul($x, $y)),
-                Op::Div => each!($r[$k] = p.div($x, $y)),
-            }
-        };
-    }
-    // An order that names a register, for each of the two.
-    macro_rules! either {
-        ($reg:expr, |$r:ident| $work:expr) => {
-            match $reg {
-                Reg::A => {
-                    let $r = &mut a;
-                    $work
+    for &(order, to) in &program.orders {
+        let to = m.row(to);
+        // Each block becomes what an expression of its number is.
+        macro_rules! set {
+            (|$k:ident| $value:expr) => {
+                for $k in 0..to.len() {
+                    to[$k].set($value);
                 }
-                Reg::B => {
-                    let $r = &mut b;
+            };
+        }
+        // An expression of a term, for each kind.
+        macro_rules! term {
+            ($term:expr, |$x:ident| $work:expr) => {
+                match $term {
+                    Term::Row(x) => {
+                        let $x = Own::<P>(&m.row(x)[..to.len()]);
+                        $work
+                    }
+                    Term::Scaled(x, c) => {
+                        let $x = Scaled::<P>(&m.row(x)[..to.len()], m.consts[c as usize]);
+                        $work
+                    }
+                    Term::Product(x, y) => {
+                        let $x = Product::<P>(&m.row(x)[..to.len()], &m.row(y)[..to.len()]);
+                        $work
+                    }
+                    Term::ScaledProduct(x, c, y) => {
+                        let (x, y) = (&m.row(x)[..to.len()], &m.row(y)[..to.len()]);
+                        let $x = ScaledProduct::<P>(x, m.consts[c as usize], y);
+                        $work
+                    }
+                }
+            };
+        }
+        // An expression of a row's block.
+        macro_rules! row {
+            ($row:expr, |$x:ident| $work:expr) => {{
+                let row = &m.row($row)[..to.len()];
+                set!(|k| {
+                    let $x = row[k].get();
                     $work
+                });
+            }};
+        }
+        match order {
+            Order::Source(plane) => {
+                let [from, end] = m.range;
+                let plane = &m.planes[plane as usize][from..end];
+                let (packs, _) = P::packs(plane).as_chunks::<BLOCK>();
+                for (to, x) in to.iter().zip(packs) {
+                    to.set(*x);
+                }
+                // What is left over, and its last element again and again, which fails no other check.
+                let done = packs.len() * BLOCK * P::LANES;
+                if let (Some(to), Some(last)) = (to.get(packs.len()), plane.last()) {
+                    let mut packs = [p.of(*last); BLOCK];
+                    let numbers = P::numbers_mut(&mut packs);
+                    numbers[..plane.len() - done].copy_from_slice(&plane[done..]);
+                    to.set(packs);
                 }
             }
-        };
-    }
-    // An expression of an operand's packs, for rows and for constants.
-    macro_rules! with {
-        ($operand:expr, |$x:ident[$k:ident]| $work:expr) => {
-            match $operand {
-                Operand::Row(row) => {
-                    let $x = m.row(row, at);
-                    $work
+            Order::Fill(c) => {
+                let c = m.consts[c as usize];
+                set!(|_k| [c; BLOCK]);
+            }
+            Order::Term(x) => term!(x, |x| set!(|k| x.at(p, k))),
+            Order::Sum(x, sign, y) => term!(x, |x| term!(y, |y| match sign {
+                Sign::Plus => set!(|k| {
+                    let (x, y) = (x.at(p, k), y.at(p, k));
+                    packs!(x[j] = p.add(x[j], y[j]))
+                }),
+                Sign::Minus => set!(|k| {
+                    let (x, y) = (x.at(p, k), y.at(p, k));
+                    packs!(x[j] = p.sub(x[j], y[j]))
+                }),
+            })),
+            Order::Sums(x, [(first, y), (second, z)]) => {
+                let x = &m.row(x)[..to.len()];
+                macro_rules! sums {
+                    ($add:ident, $then:ident) => {
+                        term!(y, |y| term!(z, |z| set!(|k| {
+                            let (x, y, z) = (x[k].get(), y.at(p, k), z.at(p, k));
+                            packs!(x[j] = p.$then(p.$add(x[j], y[j]), z[j]))
+                        })))
+                    };
                 }
-                Operand::Const(c) => {
-                    let $x = [m.consts[c as usize]; W];
-                    $work
+                match (first, second) {
+                    (Sign::Plus, Sign::Plus) => sums!(add, add),
+                    (Sign::Plus, Sign::Minus) => sums!(add, sub),
+                    (Sign::Minus, Sign::Plus) => sums!(sub, add),
+                    (Sign::Minus, Sign::Minus) => sums!(sub, sub),
                 }
             }
-        };
-    }
-    macro_rules! signed {
-        ($sign:expr, $k:ident, $product:expr) => {
-            match $sign {
-                Sign::Plus => each!(a[$k] = p.add(a[$k], $product)),
-                Sign::Minus => each!(a[$k] = p.sub(a[$k], $product)),
+            Order::Shifted(x, sign, c) => {
+                let c = m.consts[c as usize];
+                term!(x, |x| match sign {
+                    Sign::Plus => set!(|k| {
+                        let x = x.at(p, k);
+                        packs!(x[j] = p.add(x[j], c))
+                    }),
+                    Sign::Minus => set!(|k| {
+                        let x = x.at(p, k);
+                        packs!(x[j] = p.sub(x[j], c))
+                    }),
+                });
             }
-        };
-    }
-    for order in &program.orders {
-        match *order {
-            Order::Load(reg, x) => {
-                either!(reg, |r| with!(x, |x[k]| each!(r[k] = x[k])));
+            Order::From(c, x) => {
+                let c = m.consts[c as usize];
+                term!(x, |x| set!(|k| {
+                    let x = x.at(p, k);
+                    packs!(x[j] = p.sub(c, x[j]))
+                }));
             }
-            Order::Rows(reg, op, x, y) => {
-                let (x, y) = (m.row(x, at), m.row(y, at));
-                either!(reg, |r| operate!(op, r[k], x[k], y[k]));
+            Order::Ratio(x, y) => {
+                let y = &m.row(y)[..to.len()];
+                let x = &m.row(x)[..to.len()];
+                set!(|k| {
+                    let (x, y) = (x[k].get(), y[k].get());
+                    packs!(x[j] = p.div(x[j], y[j]))
+                });
             }
-            Order::RowConst(reg, op, x, c) => {
-                let (x, c) = (m.row(x, at), m.consts[c as usize]);
-                either!(reg, |r| operate!(op, r[k], x[k], c));
+            Order::Part(x, c) => {
+                let c = m.consts[c as usize];
+                row!(x, |x| packs!(x[j] = p.div(x[j], c)));
             }
-            Order::ConstRow(reg, op, c, x) => {
-                let (x, c) = (m.row(x, at), m.consts[c as usize]);
-                either!(reg, |r| operate!(op, r[k], c, x[k]));
+            Order::Over(c, x) => {
+                let c = m.consts[c as usize];
+                row!(x, |x| packs!(x[j] = p.div(c, x[j])));
             }
-            Order::By(reg, op, x) => {
-                either!(reg, |r| with!(x, |x[k]| operate!(op, r[k], r[k], x[k])));
-            }
-            Order::From(reg, op, x) => {
-                either!(reg, |r| with!(x, |x[k]| operate!(op, r[k], x[k], r[k])));
-            }
-            Order::Join(op) => operate!(op, a[k], a[k], b[k]),
-            Order::JoinFrom(op) => operate!(op, a[k], b[k], a[k]),
-            Order::Product(sign, x, y) => {
-                let (x, y) = (m.row(x, at), m.row(y, at));
-                signed!(sign, k, p.mul(x[k], y[k]));
-            }
-            Order::ProductConst(sign, x, c) => {
-                let (x, c) = (m.row(x, at), m.consts[c as usize]);
-                signed!(sign, k, p.mul(x[k], c));
-            }
-            Order::Times(sign, x) => with!(x, |x[k]| signed!(sign, k, p.mul(b[k], x[k]))),
-            Order::Neg(reg) => either!(reg, |r| each!(r[k] = p.neg(r[k]))),
-            Order::Abs(reg) => either!(reg, |r| each!(r[k] = p.abs(r[k]))),
-            Order::Sqrt(reg) => either!(reg, |r| each!(r[k] = p.sqrt(r[k]))),
-            Order::Store(to) => *m.row_mut(to, at) = a,
-            Order::Unary(f, to, check) => {
+            Order::Neg(x) => row!(x, |x| packs!(x[j] = p.neg(x[j]))),
+            Order::Abs(x) => row!(x, |x| packs!(x[j] = p.abs(x[j]))),
+            Order::Sqrt(x) => row!(x, |x| packs!(x[j] = p.sqrt(x[j]))),
+            Order::Unary(f, x, check) => {
                 let f = program.unary[f as usize];
-                let numbers = P::numbers_mut(m.row_mut(to, at));
-                for x in &mut *numbers {
-                    *x = f(*x);
+                for k in 0..to.len() {
+                    let mut x = operand(m, x, k);
+                    let numbers = P::numbers_mut(&mut x);
+                    for x in &mut *numbers {
+                        *x = f(*x);
+                    }
+                    tested(numbers, check, failed);
+                    to[k].set(x);
                 }
-                tested(numbers, check, failed);
             }
-            Order::Binary(f, to, y, check) => {
+            Order::Binary(f, of, check) => {
                 let f = program.binary[f as usize];
-                let mut y = match y {
-                    Operand::Row(row) => *m.row(row, at),
-                    Operand::Const(c) => [m.consts[c as usize]; W],
-                };
-                let y = P::numbers_mut(&mut y);
-                let numbers = P::numbers_mut(m.row_mut(to, at));
-                for (x, y) in numbers.iter_mut().zip(y) {
-                    *x = f(*x, *y);
+                for k in 0..to.len() {
+                    let [mut x, mut y] = [operand(m, of[0], k), operand(m, of[1], k)];
+                    let (numbers, y) = (P::numbers_mut(&mut x), P::numbers_mut(&mut y));
+                    for (x, y) in numbers.iter_mut().zip(y) {
+                        *x = f(*x, *y);
+                    }
+                    tested(numbers, check, failed);
+                    to[k].set(x);
                 }
-                tested(numbers, check, failed);
             }
         }
+    }
+}
+
+/// An operand's packs of block `k`.
+#[inline(always)]
+fn operand<P: Packs>(m: &Machine<'_, P>, x: Operand, k: usize) -> [P::Pack; BLOCK] {
+    match x {
+        Operand::Row(row) => m.row(row)[k].get(),
+        Operand::Const(c) => [m.consts[c as usize]; BLOCK],
     }
 }
 

@@ -1,32 +1,46 @@
-//! Makes a program of a tape's instructions: which results stay in registers, and where the others are
-//! kept.
+//! Makes a program of a tape's instructions: which are taken together in one order, and where the results
+//! of the others are kept.
 //!
-//! A result that one other instruction alone uses is computed as a part of it, as far as the machine's
-//! two registers reach (Sethi and Ullman 1970); the rest is stored, in as few slots as possible.
+//! A product that one sum alone uses is made by the sum's order, and a sum that only another sum uses goes
+//! into that one's. Everything else is kept in a slot, as few as possible.
 
 use crate::fused::{Code, Instr, Src};
-use crate::machine::{Op, Operand, Order, Program, Reg, Row, Sign};
-
-/// The registers of the machine.
-const REGISTERS: u8 = 2;
-
-/// Instructions are parts of others at most so deep, since they are walked through by recursion.
-const DEEPEST: u8 = 60;
+use crate::machine::{Operand, Order, Program, Row, Sign, Term};
 
 /// What is known of an instruction.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     uses: u16,
-    /// The instruction that it is a part of, directly.
-    part_of: Option<u16>,
-    /// Registers that it takes.
-    registers: u8,
-    /// How deep its parts go.
-    depth: u8,
+    /// True for roots and checked instructions: their results are kept.
+    own: bool,
+    /// True when the order of another instruction computes it, too.
+    absorbed: bool,
     /// Where its result is kept.
     home: Option<Row>,
-    /// The kept instruction that reads the result last.
+    /// The instruction whose order reads the result last.
     last: u16,
+    step: Step,
+}
+
+/// What is multiplied or added, before it is known where that is.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    Own(Src),
+    Scaled(Src, u16),
+    Product(Src, Src),
+    ScaledProduct(Src, u16, Src),
+}
+
+/// How an instruction that is not absorbed is carried out.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    /// As it stands.
+    Plain,
+    Term(Part),
+    Sum(Part, Sign, Part),
+    Sums(Src, [(Sign, Part); 2]),
+    Shifted(Part, Sign, u16),
+    From(u16, Part),
 }
 
 /// Memory for planning.
@@ -35,8 +49,12 @@ pub(crate) struct Planner {
     nodes: Vec<Node>,
     /// Slots that are not in use.
     free: Vec<u16>,
-    /// Kept results that the instruction under way reads.
-    read: Vec<u16>,
+    /// The slots of the sources, and the last instruction that reads each.
+    sources: Vec<(Option<u16>, u16)>,
+    /// What the order under way reads.
+    read: Vec<Src>,
+    /// Slots of constants for the order under way.
+    filled: Vec<u16>,
 }
 
 impl Planner {
@@ -50,273 +68,353 @@ impl Planner {
         program: &mut Program<T>,
     ) {
         let n = code.len();
-        let none =
-            Node { uses: 0, part_of: None, registers: 1, depth: 0, home: None, last: u16::MAX };
+        let none = Node {
+            uses: 0,
+            own: false,
+            absorbed: false,
+            home: None,
+            last: u16::MAX,
+            step: Step::Plain,
+        };
         self.nodes.clear();
         self.nodes.resize(n, none);
         self.free.clear();
-        let root_of = |k: usize| roots.iter().position(|r| *r == Src::Reg(k as u16));
+        self.sources.clear();
+        for root in roots {
+            if let Src::Reg(k) = *root {
+                self.nodes[k as usize].own = true;
+            }
+        }
         for k in (0..n).rev() {
             // Uses by what is itself used; roots and checked instructions always are.
-            let node = &mut self.nodes[k];
-            node.uses = node.uses.saturating_add(u16::from(root_of(k).is_some()));
-            if node.uses == 0 && check(k).is_none() {
+            self.nodes[k].own |= check(k).is_some();
+            if !self.is_wanted(k) {
                 continue;
             }
             for operand in code[k].operands() {
                 if let Src::Reg(p) = operand {
-                    let used = &mut self.nodes[*p as usize].uses;
-                    *used = used.saturating_add(1);
+                    let uses = &mut self.nodes[*p as usize].uses;
+                    *uses = uses.saturating_add(1);
                 }
             }
         }
-        for k in 0..n {
-            if self.nodes[k].uses > 0 || check(k).is_some() {
-                self.take_parts(code, k, |p| root_of(p).is_none());
-            }
-        }
-        // What keeps its result reads the results that its parts do.
+        // From the last on, so that what takes others in comes before them.
         for k in (0..n).rev() {
-            if self.nodes[k].uses == 0 && check(k).is_none() {
-                continue;
-            }
-            let mut reader = k as u16;
-            while let Some(whole) = self.nodes[reader as usize].part_of {
-                reader = whole;
-            }
-            for operand in code[k].operands() {
-                if let Src::Reg(p) = operand
-                    && self.nodes[*p as usize].part_of.is_none()
-                {
-                    let last = &mut self.nodes[*p as usize].last;
-                    *last = if *last == u16::MAX { reader } else { reader.max(*last) };
-                }
+            if self.is_wanted(k) && !self.nodes[k].absorbed {
+                let step = self.step(code, k);
+                self.nodes[k].step = step;
+                self.for_each_read(code, k, |this, src| match src {
+                    Src::Reg(p) => {
+                        let last = &mut this.nodes[p as usize].last;
+                        *last = if *last == u16::MAX { k as u16 } else { *last };
+                    }
+                    Src::Plane(p) => {
+                        let p = p as usize;
+                        if this.sources.len() <= p {
+                            this.sources.resize(p + 1, (None, u16::MAX));
+                        }
+                        let last = &mut this.sources[p].1;
+                        *last = if *last == u16::MAX { k as u16 } else { *last };
+                    }
+                    Src::Const(_) => {}
+                });
             }
         }
         program.orders.clear();
         program.slots = 0;
         for k in 0..n {
-            let node = self.nodes[k];
-            if node.part_of.is_some() || node.uses == 0 && check(k).is_none() {
+            if !self.is_wanted(k) || self.nodes[k].absorbed {
                 continue;
             }
-            let out = root_of(k).map(|out| Row::Out(out as u16));
             self.read.clear();
-            match code[k].code {
-                Code::Unary(f) => {
-                    self.value(code, code[k].of[0], program);
-                    let to = self.keep(k, out, program);
-                    program.orders.push(Order::Unary(f, to, check(k)));
-                    self.let_go(k);
-                }
-                Code::Binary(f) => {
-                    self.value(code, code[k].of[0], program);
-                    // Its other operand is read after this is written.
-                    let to = self.keep(k, out, program);
-                    let y = self.operand(code[k].of[1]);
-                    program.orders.push(Order::Binary(f, to, y, check(k)));
-                    self.let_go(k);
-                }
-                _ => {
-                    self.compute(code, k, Reg::A, program);
-                    self.let_go(k);
-                    self.keep(k, out, program);
-                }
-            }
+            self.filled.clear();
+            let order = self.order(code[k], self.nodes[k].step, check(k), program);
+            // What is read for the last time is free: an order reads a block before it writes the same.
+            self.let_go(k);
+            let root = roots.iter().position(|r| *r == Src::Reg(k as u16));
+            let home = match root {
+                Some(out) => Row::Out(out as u16),
+                None => Row::Slot(self.slot(program)),
+            };
+            self.nodes[k].home = Some(home);
+            program.orders.push((order, home));
             if self.nodes[k].uses == 0
-                && let Some(Row::Slot(slot)) = self.nodes[k].home
+                && let Row::Slot(slot) = home
             {
                 self.free.push(slot);
             }
         }
     }
 
-    /// Makes parts of an instruction of those whose results it alone uses.
-    fn take_parts(&mut self, code: &[Instr], k: usize, free: impl Fn(usize) -> bool) {
-        let part = |nodes: &[Node], src: &Src| -> Option<u16> {
-            let Src::Reg(p) = *src else { return None };
-            let (node, at) = (nodes[p as usize], p as usize);
-            let function = matches!(code[at].code, Code::Unary(_) | Code::Binary(_));
-            (node.uses == 1 && node.depth < DEEPEST && !function && free(at)).then_some(p)
-        };
-        let (first, second) = match code[k].code {
-            // Functions take their second operand from memory.
-            Code::Binary(_) => (part(&self.nodes, &code[k].of[0]), None),
-            _ => {
-                let mut all = code[k].operands().iter().map(|src| part(&self.nodes, src));
-                (all.next().flatten(), all.next().flatten())
-            }
-        };
-        let registers = |p: Option<u16>| p.map_or(0, |p| self.nodes[p as usize].registers);
-        let both = [registers(first), registers(second)];
-        // Two that take as many registers each take one more together.
-        let together = if both[0] == both[1] { both[0] + 1 } else { both[0].max(both[1]) };
-        let second = second.filter(|_| together <= REGISTERS);
-        let parts = [first, second];
-        let depth = parts.iter().flatten().map(|p| self.nodes[*p as usize].depth + 1).max();
-        for p in parts.into_iter().flatten() {
-            self.nodes[p as usize].part_of = Some(k as u16);
-        }
-        let node = &mut self.nodes[k];
-        node.registers = match (first, second) {
-            (Some(_), Some(_)) => together,
-            _ => both[usize::from(first.is_none())].max(1),
-        };
-        node.depth = depth.unwrap_or(0);
+    fn is_wanted(&self, k: usize) -> bool {
+        self.nodes[k].uses > 0 || self.nodes[k].own
     }
 
-    /// The place for a result, which is in register A.
-    fn keep<T>(&mut self, k: usize, out: Option<Row>, program: &mut Program<T>) -> Row {
-        let to = out.unwrap_or_else(|| {
-            Row::Slot(self.free.pop().unwrap_or_else(|| {
-                program.slots += 1;
-                (program.slots - 1) as u16
-            }))
+    /// The instruction whose result an operand is, when nothing else uses it.
+    fn alone(&self, src: Src) -> Option<usize> {
+        let Src::Reg(p) = src else { return None };
+        let node = &self.nodes[p as usize];
+        (node.uses == 1 && !node.own).then_some(p as usize)
+    }
+
+    /// The factors of a product that can be made on the way; an instruction of its own when it takes one
+    /// in.
+    fn product(&self, code: &[Instr], k: usize) -> Option<(Part, Option<usize>)> {
+        let Instr { code: Code::Mul, of: [a, b] } = code[k] else { return None };
+        let scaled = |src: Src| {
+            let p = self.alone(src)?;
+            match code[p] {
+                Instr { code: Code::Mul, of: [Src::Const(_), Src::Const(_)] } => None,
+                Instr { code: Code::Mul, of: [Src::Const(c), x] }
+                | Instr { code: Code::Mul, of: [x, Src::Const(c)] } => Some((p, x, c)),
+                _ => None,
+            }
+        };
+        Some(match (a, b) {
+            (Src::Const(_), Src::Const(_)) => return None,
+            (Src::Const(c), x) | (x, Src::Const(c)) => (Part::Scaled(x, c), None),
+            _ => match (scaled(a), scaled(b)) {
+                (Some((p, x, c)), _) => (Part::ScaledProduct(x, c, b), Some(p)),
+                (None, Some((p, x, c))) => (Part::ScaledProduct(x, c, a), Some(p)),
+                (None, None) => (Part::Product(a, b), None),
+            },
+        })
+    }
+
+    /// What an operand of a sum is, products that it alone uses made on the way.
+    fn part(&mut self, code: &[Instr], src: Src) -> Part {
+        let product = self.alone(src).and_then(|p| Some((p, self.product(code, p)?)));
+        match product {
+            Some((p, (part, inner))) => {
+                self.nodes[p].absorbed = true;
+                if let Some(q) = inner {
+                    self.nodes[q].absorbed = true;
+                }
+                part
+            }
+            None => Part::Own(src),
+        }
+    }
+
+    /// How an instruction is carried out, and what it takes in.
+    fn step(&mut self, code: &[Instr], k: usize) -> Step {
+        let Instr { code: what, of: [a, b] } = code[k];
+        let sign = match what {
+            Code::Add => Sign::Plus,
+            Code::Sub => Sign::Minus,
+            Code::Mul => {
+                return match self.product(code, k) {
+                    Some((part, inner)) => {
+                        if let Some(q) = inner {
+                            self.nodes[q].absorbed = true;
+                        }
+                        Step::Term(part)
+                    }
+                    None => Step::Plain,
+                };
+            }
+            _ => return Step::Plain,
+        };
+        match (a, b, sign) {
+            (Src::Const(_), Src::Const(_), _) => return Step::Plain,
+            (x, Src::Const(c), _) | (Src::Const(c), x, Sign::Plus) => {
+                return Step::Shifted(self.part(code, x), sign, c);
+            }
+            (Src::Const(c), x, Sign::Minus) => return Step::From(c, self.part(code, x)),
+            _ => {}
+        }
+        // (x + y) + z, where x is a row.
+        let inner = |this: &Self, src: Src| {
+            let p = this.alone(src)?;
+            let sign = match code[p].code {
+                Code::Add => Sign::Plus,
+                Code::Sub => Sign::Minus,
+                _ => return None,
+            };
+            let [x, y] = code[p].of;
+            let is_row = |src: Src| match src {
+                Src::Const(_) => false,
+                _ => this.alone(src).is_none_or(|q| this.product(code, q).is_none()),
+            };
+            let constant = matches!(x, Src::Const(_)) || matches!(y, Src::Const(_));
+            match (is_row(x), is_row(y), sign) {
+                _ if constant => None,
+                (true, ..) => Some((p, x, sign, y)),
+                (false, true, Sign::Plus) => Some((p, y, sign, x)),
+                _ => None,
+            }
+        };
+        let chained = inner(self, a).map(|found| (found, b)).or_else(|| {
+            let found = inner(self, b).filter(|_| sign == Sign::Plus)?;
+            Some((found, a))
         });
-        self.nodes[k].home = Some(to);
-        program.orders.push(Order::Store(to));
-        to
+        match chained {
+            Some(((p, x, first, y), z)) => {
+                self.nodes[p].absorbed = true;
+                let (y, z) = (self.part(code, y), self.part(code, z));
+                Step::Sums(x, [(first, y), (sign, z)])
+            }
+            None => {
+                let (a, b) = (self.part(code, a), self.part(code, b));
+                Step::Sum(a, sign, b)
+            }
+        }
+    }
+
+    /// Calls for each source and result that an instruction's order reads.
+    fn for_each_read(&mut self, code: &[Instr], k: usize, mut f: impl FnMut(&mut Self, Src)) {
+        let mut part = |this: &mut Self, part: Part| match part {
+            Part::Own(x) | Part::Scaled(x, _) => f(this, x),
+            Part::Product(x, y) | Part::ScaledProduct(x, _, y) => {
+                f(this, x);
+                f(this, y);
+            }
+        };
+        match self.nodes[k].step {
+            Step::Plain => {
+                for src in code[k].operands() {
+                    part(self, Part::Own(*src));
+                }
+            }
+            Step::Term(x) | Step::Shifted(x, ..) | Step::From(_, x) => part(self, x),
+            Step::Sum(x, _, y) => {
+                part(self, x);
+                part(self, y);
+            }
+            Step::Sums(x, [(_, y), (_, z)]) => {
+                part(self, Part::Own(x));
+                part(self, y);
+                part(self, z);
+            }
+        }
+    }
+
+    fn slot<T>(&mut self, program: &mut Program<T>) -> u16 {
+        self.free.pop().unwrap_or_else(|| {
+            program.slots += 1;
+            (program.slots - 1) as u16
+        })
     }
 
     /// Frees the slots that were read for the last time.
     fn let_go(&mut self, k: usize) {
-        for &p in &self.read {
-            let node = &mut self.nodes[p as usize];
-            if node.last == k as u16
-                && let Some(Row::Slot(slot)) = node.home
-            {
-                self.free.push(slot);
-                // Read twice, freed once.
-                node.last = u16::MAX;
+        for src in &self.read {
+            match *src {
+                Src::Reg(p) => {
+                    let node = &mut self.nodes[p as usize];
+                    if node.last == k as u16
+                        && let Some(Row::Slot(slot)) = node.home
+                    {
+                        self.free.push(slot);
+                        // Read twice, freed once.
+                        node.last = u16::MAX;
+                    }
+                }
+                Src::Plane(p) => {
+                    let (slot, last) = &mut self.sources[p as usize];
+                    if *last == k as u16
+                        && let Some(slot) = slot
+                    {
+                        self.free.push(*slot);
+                        *last = u16::MAX;
+                    }
+                }
+                Src::Const(_) => {}
             }
         }
+        self.free.append(&mut self.filled);
     }
 
-    /// A source, constant or kept result.
-    fn operand(&mut self, src: Src) -> Operand {
+    /// The row of a source, constant or kept result; a source is brought there when it is read first.
+    fn row<T>(&mut self, src: Src, program: &mut Program<T>) -> Row {
+        self.read.push(src);
         match src {
-            Src::Plane(p) => Operand::Row(Row::Plane(p)),
-            Src::Const(c) => Operand::Const(c),
             Src::Reg(p) => {
-                self.read.push(p);
                 let home = self.nodes[p as usize].home;
-                Operand::Row(home.expect("what is no part is kept before it is read"))
+                home.expect("what is not absorbed is kept before it is read")
+            }
+            Src::Plane(p) => {
+                if let Some(slot) = self.sources[p as usize].0 {
+                    return Row::Slot(slot);
+                }
+                let slot = self.slot(program);
+                self.sources[p as usize].0 = Some(slot);
+                program.orders.push((Order::Source(p), Row::Slot(slot)));
+                Row::Slot(slot)
+            }
+            Src::Const(c) => {
+                let slot = self.slot(program);
+                self.filled.push(slot);
+                program.orders.push((Order::Fill(c), Row::Slot(slot)));
+                Row::Slot(slot)
             }
         }
     }
 
-    /// The part that an operand of an instruction is.
-    fn part(&self, src: Src) -> Option<usize> {
+    fn term<T>(&mut self, part: Part, program: &mut Program<T>) -> Term {
+        match part {
+            Part::Own(x) => Term::Row(self.row(x, program)),
+            Part::Scaled(x, c) => Term::Scaled(self.row(x, program), c),
+            Part::Product(x, y) => Term::Product(self.row(x, program), self.row(y, program)),
+            Part::ScaledProduct(x, c, y) => {
+                Term::ScaledProduct(self.row(x, program), c, self.row(y, program))
+            }
+        }
+    }
+
+    fn operand<T>(&mut self, src: Src, program: &mut Program<T>) -> Operand {
         match src {
-            Src::Reg(p) if self.nodes[p as usize].part_of.is_some() => Some(p as usize),
-            _ => None,
+            Src::Const(c) => Operand::Const(c),
+            _ => Operand::Row(self.row(src, program)),
         }
     }
 
-    /// Orders that bring a value into register A.
-    fn value<T>(&mut self, code: &[Instr], src: Src, program: &mut Program<T>) {
-        match self.part(src) {
-            Some(p) => self.compute(code, p, Reg::A, program),
-            None => {
-                let x = self.operand(src);
-                program.orders.push(Order::Load(Reg::A, x));
+    /// The order that carries a step out.
+    fn order<T>(
+        &mut self,
+        Instr { code, of: [a, b] }: Instr,
+        step: Step,
+        check: Option<u16>,
+        program: &mut Program<T>,
+    ) -> Order {
+        match step {
+            Step::Term(x) => Order::Term(self.term(x, program)),
+            Step::Sum(x, sign, y) => Order::Sum(self.term(x, program), sign, self.term(y, program)),
+            Step::Sums(x, [(first, y), (second, z)]) => {
+                let x = self.row(x, program);
+                let (y, z) = (self.term(y, program), self.term(z, program));
+                Order::Sums(x, [(first, y), (second, z)])
             }
-        }
-    }
-
-    /// Orders that compute an instruction's result in a register; in B only what needs no other.
-    fn compute<T>(&mut self, code: &[Instr], k: usize, reg: Reg, program: &mut Program<T>) {
-        let Instr { code: what, of: [a, b] } = code[k];
-        let op = match what {
-            Code::Add => Op::Add,
-            Code::Sub => Op::Sub,
-            Code::Mul => Op::Mul,
-            Code::Div => Op::Div,
-            Code::Neg | Code::Abs | Code::Sqrt => {
-                match self.part(a) {
-                    Some(p) => self.compute(code, p, reg, program),
-                    None => {
-                        let x = self.operand(a);
-                        program.orders.push(Order::Load(reg, x));
-                    }
+            Step::Shifted(x, sign, c) => Order::Shifted(self.term(x, program), sign, c),
+            Step::From(c, x) => Order::From(c, self.term(x, program)),
+            Step::Plain => match code {
+                Code::Unary(f) => Order::Unary(f, self.operand(a, program), check),
+                Code::Binary(f) => {
+                    let of = [a, b].map(|src| self.operand(src, program));
+                    Order::Binary(f, of, check)
                 }
-                program.orders.push(match what {
-                    Code::Neg => Order::Neg(reg),
-                    Code::Abs => Order::Abs(reg),
-                    _ => Order::Sqrt(reg),
-                });
-                return;
-            }
-            Code::Unary(_) | Code::Binary(_) => unreachable!("functions are no parts"),
-        };
-        let commutes = matches!(op, Op::Add | Op::Mul);
-        match (self.part(a), self.part(b)) {
-            (None, None) => {
-                let (x, y) = (self.operand(a), self.operand(b));
-                match (x, y) {
-                    (Operand::Row(x), Operand::Row(y)) => {
-                        program.orders.push(Order::Rows(reg, op, x, y));
-                    }
-                    (Operand::Row(x), Operand::Const(c)) => {
-                        program.orders.push(Order::RowConst(reg, op, x, c));
-                    }
-                    (Operand::Const(c), Operand::Row(x)) if commutes => {
-                        program.orders.push(Order::RowConst(reg, op, x, c));
-                    }
-                    (Operand::Const(c), Operand::Row(x)) => {
-                        program.orders.push(Order::ConstRow(reg, op, c, x));
-                    }
-                    (x, y) => {
-                        program.orders.push(Order::Load(reg, x));
-                        program.orders.push(Order::By(reg, op, y));
-                    }
+                Code::Neg => Order::Neg(self.row(a, program)),
+                Code::Abs => Order::Abs(self.row(a, program)),
+                Code::Sqrt => Order::Sqrt(self.row(a, program)),
+                // Of two constants.
+                Code::Add | Code::Sub => {
+                    let sign = if code == Code::Add { Sign::Plus } else { Sign::Minus };
+                    let [x, y] = [a, b].map(|src| Term::Row(self.row(src, program)));
+                    Order::Sum(x, sign, y)
                 }
-            }
-            (Some(p), None) => {
-                self.compute(code, p, reg, program);
-                let y = self.operand(b);
-                program.orders.push(Order::By(reg, op, y));
-            }
-            (None, Some(q)) => {
-                self.compute(code, q, reg, program);
-                let x = self.operand(a);
-                program.orders.push(match commutes {
-                    true => Order::By(reg, op, x),
-                    false => Order::From(reg, op, x),
-                });
-            }
-            (Some(p), Some(q)) => {
-                debug_assert_eq!(reg, Reg::A);
-                // What needs both registers first.
-                let turned = self.nodes[q].registers > self.nodes[p].registers;
-                let (first, second) = if turned { (q, p) } else { (p, q) };
-                self.compute(code, first, Reg::A, program);
-                self.compute(code, second, Reg::B, program);
-                join(&mut program.orders, op, turned && !commutes);
-            }
+                Code::Mul => {
+                    let [x, y] = [a, b].map(|src| self.row(src, program));
+                    Order::Term(Term::Product(x, y))
+                }
+                Code::Div => match (a, b) {
+                    (x, Src::Const(c)) => Order::Part(self.row(x, program), c),
+                    (Src::Const(c), x) => Order::Over(c, self.row(x, program)),
+                    _ => {
+                        let [x, y] = [a, b].map(|src| self.row(src, program));
+                        Order::Ratio(x, y)
+                    }
+                },
+            },
         }
     }
-}
-
-/// a = a op b, or a = b op a; a product in b that is added or taken away is not computed by itself.
-fn join(orders: &mut Vec<Order>, op: Op, turned: bool) {
-    let sign = match op {
-        Op::Add => Some(Sign::Plus),
-        Op::Sub if !turned => Some(Sign::Minus),
-        _ => None,
-    };
-    let last = orders.last().copied();
-    let merged = match (sign, last) {
-        (Some(sign), Some(Order::Rows(Reg::B, Op::Mul, x, y))) => Order::Product(sign, x, y),
-        (Some(sign), Some(Order::RowConst(Reg::B, Op::Mul, x, c))) => {
-            Order::ProductConst(sign, x, c)
-        }
-        (Some(sign), Some(Order::By(Reg::B, Op::Mul, x))) => Order::Times(sign, x),
-        _ => {
-            orders.push(if turned { Order::JoinFrom(op) } else { Order::Join(op) });
-            return;
-        }
-    };
-    orders.pop();
-    orders.push(merged);
 }

@@ -477,9 +477,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let (roots, count) = (lanes.roots(), lanes.shape.count());
         // What can fail must leave the variable as it was.
-        if !tape.is_checked() && self.assigning.is_some_and(|(of, _)| of == key) {
+        if !tape.is_checked() {
             let filled = |outs: &mut [Vec<T>]| tape.execute(&rows, &roots, count, outs).is_ok();
-            if let Some(value) = self.filled_in_place(m, lanes, filled) {
+            if let Some(value) = self.filled_in_place(m, key, lanes, filled) {
                 return Outcome::Done(Ok(value));
             }
         }
@@ -496,13 +496,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     /// The variable that the expression is assigned to, its rows filled, when nothing else holds its
     /// array: a long row is read from and written to the memory that the caches know already.
-    fn filled_in_place(
+    pub fn filled_in_place(
         &mut self,
         m: &Module,
+        key: Key,
         lanes: &Lanes,
         fill: impl FnOnce(&mut [Vec<T>]) -> bool,
     ) -> Option<Value<T>> {
-        let symbol = m.program.as_name(self.assigning?.1)?;
+        let (of, target) = self.assigning?;
+        let symbol = m.program.as_name(target).filter(|_| of == key)?;
         let place = self.place_of(m.names[symbol.0 as usize])?;
         let whole = place.section.is_none() && place.component.is_none();
         let outside = place.frame.is_none() && self.run.extent() == Extent::Edit;
