@@ -122,6 +122,8 @@ pub enum Place {
     Line(usize),
     /// A byte, from 0.
     Byte(usize),
+    /// A block of a grid, from 1.
+    Block(usize),
 }
 
 /// Why bytes are not a file of a format.
@@ -142,6 +144,7 @@ impl fmt::Display for ReadError {
         let (word, number) = match self.place {
             Place::Line(line) => ("line", line),
             Place::Byte(byte) => ("byte", byte),
+            Place::Block(block) => ("block", block),
         };
         let Self { format, expected, found, .. } = self;
         write!(f, "{format}, {word} {number}: expected {expected}, found {found}")

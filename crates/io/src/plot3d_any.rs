@@ -258,8 +258,8 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<Lattice>, Variant), ReadError> {
     }
     // Stable: of equally plausible readings the first one tried.
     readings.sort_by_key(|(blocks, _)| !plausible(blocks));
-    if let Some(reading) = readings.into_iter().next() {
-        return Ok(reading);
+    if let Some((blocks, variant)) = readings.into_iter().next() {
+        return finite(&blocks).map(|()| (blocks, variant));
     }
     complaints.sort_by_key(|c| c.rank);
     Err(complaints.into_iter().next().map_or_else(
@@ -267,7 +267,11 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<Lattice>, Variant), ReadError> {
             format: FORMAT,
             place: Place::Byte(0),
             expected: "the sizes of a grid, as text or as binary numbers".into(),
-            found: format!("{} bytes that no variant explains", bytes.len()),
+            found: match bytes.len() {
+                0 => "an empty file".into(),
+                1 => "one byte".into(),
+                n => format!("{n} bytes that no variant explains"),
+            },
         },
         |c| c.error,
     ))
@@ -286,9 +290,30 @@ fn complaint(rank: usize, byte: usize, expected: String, found: String) -> Compl
     }
 }
 
+/// Text begins with a number, and no byte of it is none of a text's: sizes in binary have zeros.
 fn looks_like_text(bytes: &[u8]) -> bool {
-    let word = |b: &u8| b.is_ascii_digit() || b"+-.eEdD*,; \t\r\n\x0c".contains(b);
-    !bytes.is_empty() && bytes.iter().all(word) && bytes.iter().any(u8::is_ascii_digit)
+    let of_text = |b: &u8| b.is_ascii_graphic() || b" \t\r\n\x0c".contains(b);
+    let first = bytes.trim_ascii_start().first();
+    first.is_some_and(|b| b.is_ascii_digit() || *b == b'+') && bytes.iter().all(of_text)
+}
+
+/// Refuses what is no number, and tells where the first is.
+fn finite(blocks: &[Lattice]) -> Result<(), ReadError> {
+    for (number, block) in blocks.iter().enumerate() {
+        for (axis, plane) in ["x", "y", "z"].iter().zip(&block.planes) {
+            let Some(at) = plane.iter().position(|x| !x.is_finite()) else { continue };
+            let [ni, nj, _] = block.size;
+            let [i, j, k] = [at % ni + 1, at / ni % nj + 1, at / ni / nj + 1];
+            let (number, x) = (number + 1, plane[at]);
+            return Err(ReadError {
+                format: FORMAT,
+                place: Place::Block(number),
+                expected: "finite coordinates".into(),
+                found: format!("{axis} = {x} at point [{i},{j},{k}]"),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// True for coordinates as grids have them: finite, neither huge nor next to nothing.
@@ -653,6 +678,9 @@ fn words(bytes: &[u8]) -> Result<Words, ReadError> {
             let whole = value.bytes().all(|b| b.is_ascii_digit() || b == b'-' || b == b'+');
             let value: f64 =
                 value.replace(['d', 'D'], "e").parse().map_err(|_| error("a number"))?;
+            if !value.is_finite() {
+                return Err(error("a finite number"));
+            }
             if times > MOST_REPEATED || all.values.len() + times > MOST_REPEATED.max(bytes.len()) {
                 return Err(error("fewer repeated numbers"));
             }
@@ -874,6 +902,29 @@ mod tests {
         }
         assert!(read(b"").is_err() && read(b"1 1000000000 1000000000 1").is_err());
         assert!(read(b"900000000*1").is_err());
+    }
+
+    #[test]
+    fn what_is_no_number_is_told_with_its_place() {
+        let mut given = blocks(true, true, false);
+        given[1].planes[1][3] = 12345.678;
+        for laid in [Laid::Stream, Laid::Unformatted] {
+            let mut bytes = write(&given, Variant { laid, ..Variant::default() }).unwrap();
+            let marked = 12345.678f64.to_le_bytes();
+            let at = bytes.windows(8).position(|eight| eight == marked).unwrap();
+            bytes[at..at + 8].copy_from_slice(&f64::NAN.to_le_bytes());
+            let error = read(&bytes).unwrap_err();
+            assert_eq!(error.place, Place::Block(2));
+            assert_eq!(error.found, "y = NaN at point [2,2,1]");
+        }
+        for (word, expected) in
+            [("nan", "a finite number"), ("1e999", "a finite number"), ("abc", "a number")]
+        {
+            let text = format!("1\n2 2 1\n1 2 3 4\n1 {word} 1 1\n0 0 0 0\n");
+            let error = read(text.as_bytes()).unwrap_err();
+            assert_eq!((error.place, error.expected.as_str()), (Place::Line(4), expected));
+            assert_eq!(error.found, format!("`{word}`"));
+        }
     }
 
     #[test]

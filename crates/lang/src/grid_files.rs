@@ -65,6 +65,22 @@ fn lattice<T: Real>(a: &Vectors<T>) -> Lattice {
     Lattice { size: [m, n, 1], planes: [plane(0), plane(1), plane(2)], iblank: None }
 }
 
+/// The block, if all of its points are finite: files with others are of no use to their readers.
+fn finite(block: Lattice, shape: ArrayShape, written: &str) -> Result<Lattice, Diagnostic> {
+    let bad = |k: &usize| block.planes.iter().any(|plane| !plane[*k].is_finite());
+    let Some(k) = (0..block.count()).find(bad) else { return Ok(block) };
+    let [ni, ..] = block.size;
+    let place = match shape {
+        ArrayShape::Row(_) => format!("[{}]", k + 1),
+        ArrayShape::Grid(..) => format!("[{},{}]", k % ni + 1, k / ni + 1),
+    };
+    let [x, y, z] = [0, 1, 2].map(|c| block.planes[c][k]);
+    Err(Diagnostic::error("not-finite", format!("point {place} of `{written}` is not finite"))
+        .expected("finite coordinates")
+        .found(format!("{{{x}, {y}, {z}}}"))
+        .help("look for a division by zero in what it was computed from"))
+}
+
 fn cannot(error: impl std::fmt::Display) -> Diagnostic {
     let text = error.to_string();
     Diagnostic::error("cannot-write", text.trim_start_matches("error: ").to_string())
@@ -105,8 +121,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             match &value {
                 Value::Text(text) if k == 0 => (words, words_at) = (text.clone(), span),
                 Value::Vectors(a) => {
-                    blocks.push(lattice(a));
-                    names.push(m.program.slice(span).trim().to_string());
+                    let written = m.program.slice(span).trim().to_string();
+                    blocks.push(finite(lattice(a), a.shape, &written).map_err(|d| d.at(span))?);
+                    names.push(written);
                 }
                 Value::Numbers(a) if name == "write_p3d" && !blocks.is_empty() => {
                     let block = blocks.last_mut().expect("there is one");

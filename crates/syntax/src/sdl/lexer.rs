@@ -309,6 +309,7 @@ impl Lexer<'_> {
             '−' | '–' | '—' => Some("the minus sign is the hyphen `-`"),
             '×' | '·' => Some("multiply with `*`"),
             '\'' => Some("texts stand between double quotes `\"`"),
+            '%' => Some("the rest of a division is `mod(a, b)`"),
             c if c.is_alphabetic() => Some("names are made of the letters A to Z, digits and `_`"),
             _ => None,
         };
