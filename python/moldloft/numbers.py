@@ -314,6 +314,12 @@ def _call(
     for x in array.reshape(-1):
         if isinstance(x, Dual):
             parts.append([x.value, *x.eps])
-        else:
+        elif isinstance(x, (int, float, np.number, np.bool_)):
             parts.append([float(x), *([0.0] * (width - 1))])
+        else:
+            found = "None" if x is None else f"{type(x).__name__} {x!r}"
+            raise TypeError(
+                f"the function returned {found}; expected a number, or an array of numbers of "
+                "shape (3,), (n,), (n, 3) or (m, n, 3)"
+            )
     return list(array.shape), parts

@@ -162,6 +162,47 @@ def test_repl_reads_a_stream() -> None:
     assert failed.returncode == 1 and "unknown-name" in failed.stderr
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
+def test_repl_goes_on_after_an_interrupt() -> None:
+    import os
+    import pty
+    import select
+    import time
+
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.execv(sys.executable, [sys.executable, "-m", "moldloft", "repl"])
+
+    def until(wanted: bytes) -> bytes:
+        seen, end = b"", time.monotonic() + 60
+        while wanted not in seen and time.monotonic() < end:
+            if select.select([terminal], [], [], 0.2)[0]:
+                seen += os.read(terminal, 4096)
+        return seen
+
+    try:
+        until(b"> ")
+        os.write(terminal, b"float x = 2;\r")
+        until(b"> ")
+        os.write(terminal, b"while (1) { x += 1; }\r")
+        until(b"}")
+        time.sleep(0.5)
+        os.write(terminal, b"\x03")
+        assert b"the line is left out" in until(b"left out")
+        os.write(terminal, b"20*x + 2\r")
+        assert b"42" in until(b"42")
+        os.write(terminal, b"exit\r")
+    finally:
+        os.close(terminal)
+        os.waitpid(pid, 0)
+
+
+@pytest.mark.parametrize(("result", "found"), [(None, "None"), ("text", "str 'text'")])
+def test_python_functions_tell_what_they_returned(result: object, found: str) -> None:
+    with pytest.raises(ModelError, match=f"the function returned {found}; expected a number"):
+        moldloft.loads("float x = f(2);", functions={"f": lambda _: result})
+
+
 def test_repl_ends() -> None:
     for word in ("exit", "quit", "exit();", ":q", ":quit"):
         done = command("repl", text=f"1 + 1\n{word}\n2 + 2\n")

@@ -72,7 +72,11 @@ class Session:
         # A statement is closed for whoever forgot it.
         closed = entry if entry.rstrip().endswith((";", "}")) else entry.rstrip() + ";"
         known = {(d.id, d.message) for d in document.diagnostics()}
-        document.set_text(start + closed + "\n")
+        try:
+            document.set_text(start + closed + "\n")
+        except KeyboardInterrupt:
+            document.set_text(text)
+            raise
         if document.has_errors():
             diagnostics = document.diagnostics()
             new = [d for d in diagnostics if (d.id, d.message) not in known]
@@ -168,6 +172,10 @@ def run(options: argparse.Namespace) -> int:
             except Error as error:
                 failed = True
                 print(str(error).rstrip(), file=sys.stderr)
+            except KeyboardInterrupt:
+                if not terminal:
+                    raise
+                print("\ninterrupted: the line is left out", file=sys.stderr)
     return 1 if failed and not terminal else 0
 
 
