@@ -3,7 +3,7 @@
 use crate::value::{Lattice, Points, surface};
 use moldloft_grid::{
     Blend, Edge, Elliptic, Faces, GridError, Hyperbolic, Method, Metric, Sheet, Side, Wall,
-    elliptic, folded_cells, framed, hyperbolic, hyperbolic_curve, quality, transfinite,
+    elliptic_until, folded_cells, framed, hyperbolic, hyperbolic_curve, quality, transfinite,
     transfinite_block,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
@@ -43,6 +43,7 @@ pub fn fault(error: GridError) -> Fault {
         GridError::Diverged { .. } => with("diverged")
             .expected("a grid that settles")
             .help("over-relax less (omega), or ask for less at the walls"),
+        GridError::Cancelled => return with("cancelled"),
         GridError::Heights { value, .. } => {
             with("not-monotone").expected("heights that ascend from 0").found(value.to_string())
         }
@@ -198,7 +199,7 @@ pub struct EllipticGrid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for EllipticGrid<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let method = match &*self.method {
             "laplace" => Method::Laplace,
             "middlecoff" => Method::Middlecoff,
@@ -258,7 +259,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             walls,
             on,
         };
-        let smoothed = elliptic(&sheet, &options).map_err(fault)?.sheet;
+        let smoothed = elliptic_until(&sheet, &options, &context.cancel).map_err(fault)?.sheet;
         let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
         if let Some(&[i, j]) = folded.first() {
             let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };

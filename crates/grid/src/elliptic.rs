@@ -4,6 +4,7 @@ use crate::zebra::Banks;
 use crate::{Edge, GridError, Sheet};
 use moldloft_num::{Order, Real, Surface, Vec3};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the grid is drawn to besides smoothness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,16 +73,29 @@ pub fn elliptic<T: Real>(
     sheet: &Sheet<T>,
     options: &Elliptic<T>,
 ) -> Result<Smoothed<T>, GridError> {
+    elliptic_until(sheet, options, &AtomicBool::new(false))
+}
+
+/// As [`elliptic`]; ends early when `cancel` is set.
+///
+/// # Errors
+/// Also [`GridError::Cancelled`].
+pub fn elliptic_until<T: Real>(
+    sheet: &Sheet<T>,
+    options: &Elliptic<T>,
+    cancel: &AtomicBool,
+) -> Result<Smoothed<T>, GridError> {
     // Rows side by side that fill the widest registers; numbers with derivatives fill several.
     match T::PARTS {
-        1 => smoothed::<T, 8>(sheet, options),
-        _ => smoothed::<T, 2>(sheet, options),
+        1 => smoothed::<T, 8>(sheet, options, cancel),
+        _ => smoothed::<T, 2>(sheet, options, cancel),
     }
 }
 
 fn smoothed<T: Real, const L: usize>(
     sheet: &Sheet<T>,
     options: &Elliptic<T>,
+    cancel: &AtomicBool,
 ) -> Result<Smoothed<T>, GridError> {
     sheet.check_count(3)?;
     sheet.check_finite()?;
@@ -131,6 +145,9 @@ fn smoothed<T: Real, const L: usize>(
     let mut change = f64::INFINITY;
     let mut done = 0;
     while done < options.sweeps {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(GridError::Cancelled);
+        }
         if let (Some(terms), Some(base)) = (&mut terms, &base) {
             let now = merged(&points, turned);
             terms.update(&now, &options.walls);

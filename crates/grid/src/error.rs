@@ -66,6 +66,8 @@ pub enum GridError {
         /// The sweep or layer, from 1.
         step: usize,
     },
+    /// The call was cancelled.
+    Cancelled,
     /// Heights do not ascend from 0.
     Heights {
         /// The index, from 1, of the one that does not.
@@ -105,6 +107,7 @@ impl fmt::Display for GridError {
                 layer.map_or(Ok(()), |layer| write!(f, " of layer {layer}"))
             }
             Self::Diverged { step } => write!(f, "the grid grew beyond bounds in step {step}"),
+            Self::Cancelled => write!(f, "the run was cancelled"),
             Self::Heights { at, value } => {
                 write!(f, "heights ascend from 0, but height {at} is {value}")
             }

@@ -24,7 +24,7 @@ mod zebra;
 
 pub use blend::{Blend, transfinite};
 pub use block::{Faces, transfinite_block};
-pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic};
+pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
 pub use hyperbolic::{Hyperbolic, Side, hyperbolic, hyperbolic_curve};
 pub use quality::{Metric, folded_cells, quality};

@@ -767,7 +767,7 @@ impl<T: Real> Work<T> {
 
     /// The fault of a check that comes before another fault in the order of the text.
     fn earlier(&mut self, diagnostic: Diagnostic) -> Diagnostic {
-        if self.calls.is_empty() || diagnostic.id == "not-finite" {
+        if self.calls.is_empty() {
             return diagnostic;
         }
         match self.tape.first_failure() {

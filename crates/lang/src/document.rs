@@ -87,6 +87,18 @@ impl Document {
         document
     }
 
+    /// As [`Self::from_text`]; setting `cancel` stops a run that is under way, also this first one.
+    pub fn watched(
+        registry: Registry,
+        world: Box<dyn World>,
+        (name, text): (&str, &str),
+        cancel: Arc<AtomicBool>,
+    ) -> Self {
+        let mut document = Self { cancelled: cancel, ..Self::empty(registry, world) };
+        document.take_text(name, text.to_string());
+        document
+    }
+
     fn empty(registry: Registry, world: Box<dyn World>) -> Self {
         Self {
             registry,

@@ -243,9 +243,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     /// # Errors
     /// When the run must stop; that was reported.
     pub fn charge(&mut self, value: &Value<T>, span: Span) -> Result<(), Diagnostic> {
-        // Large arrays count for the memory they take, small ones for the time; lists are read
-        // item by item.
-        let of_array = |n: usize| n / if n > 100_000 { 4 } else { 16 };
+        // Large arrays count for the memory they take, small ones for the time, that of a few
+        // statements on numbers; lists are read item by item.
+        let of_array = |n: usize| 3 + n / if n > 100_000 { 4 } else { 16 };
         self.steps += match value {
             Value::Numbers(a) => of_array(a.items.len()),
             Value::Vectors(a) => of_array(a.len()),
@@ -312,7 +312,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     .help("look for a loop whose condition always holds, or for arrays too large"),
             );
         }
-        if self.steps.is_multiple_of(1024) && self.inputs.cancelled.load(Ordering::Relaxed) {
+        if self.inputs.cancelled.load(Ordering::Relaxed) {
             return self.stop(Diagnostic::error("cancelled", "the run was cancelled").at(span));
         }
         false

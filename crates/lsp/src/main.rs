@@ -3,15 +3,18 @@
 //! `frames of JSON -> Server -> analysis of the text -> frames of JSON`
 //!
 //! Every open text is a [`moldloft_lang::Document`] that is run at each change, without writing any
-//! file; all answers come from there.
+//! file, on a thread of its own; all answers come from there. A change stops the run under way, and one
+//! that does not come to an end soon is stopped and told.
 
 mod frames;
 mod position;
 mod server;
 
-use server::{Next, Server};
+use server::{Event, Next, Server};
 use std::io::{BufReader, BufWriter, Write};
 use std::process::ExitCode;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Instant;
 
 fn main() -> ExitCode {
     if let Some(word) = std::env::args().nth(1) {
@@ -26,20 +29,38 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     }
-    let mut input = BufReader::new(std::io::stdin().lock());
+    let (sender, events) = mpsc::channel();
+    let messages = sender.clone();
+    std::thread::spawn(move || {
+        let mut input = BufReader::new(std::io::stdin().lock());
+        loop {
+            let message = frames::read(&mut input);
+            let last = !matches!(message, Ok(Some(_)));
+            if messages.send(Event::Message(message)).is_err() || last {
+                return;
+            }
+        }
+    });
     let mut output = BufWriter::new(std::io::stdout().lock());
-    let mut server = Server::default();
+    let mut server = Server::new(sender);
     loop {
-        let message = match frames::read(&mut input) {
-            Ok(Some(message)) => message,
+        let event = match server.deadline() {
+            None => events.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            Some(at) => events.recv_timeout(at.saturating_duration_since(Instant::now())),
+        };
+        let (answers, next) = match event {
+            Ok(Event::Message(Ok(Some(message)))) => server.handle(&message),
+            Ok(Event::Ran(ran)) => (server.ran(ran), Next::Message),
+            Err(RecvTimeoutError::Timeout) => (server.tick(), Next::Message),
             // The editor has gone without a word.
-            Ok(None) => return ExitCode::FAILURE,
-            Err(fault) => {
+            Ok(Event::Message(Ok(None))) | Err(RecvTimeoutError::Disconnected) => {
+                return ExitCode::FAILURE;
+            }
+            Ok(Event::Message(Err(fault))) => {
                 eprintln!("error: {fault}");
                 return ExitCode::FAILURE;
             }
         };
-        let (answers, next) = server.handle(&message);
         for answer in answers {
             if frames::write(&mut output, &answer).and_then(|()| output.flush()).is_err() {
                 return ExitCode::FAILURE;

@@ -6,12 +6,26 @@ use moldloft_host::FileWorld;
 use moldloft_lang::{CompletionKind, Document, LIBRARIES, NoFiles, World};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
 
 /// Code of the protocol for a method that the server does not know.
 const METHOD_NOT_FOUND: i64 = -32601;
 /// Code for what cannot be done to this text.
 const REQUEST_FAILED: i64 = -32803;
+
+/// Code for what the text was changed under.
+const CONTENT_MODIFIED: i64 = -32801;
+
+/// How long a program may run before it is stopped, so that an endless loop is told soon.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// How long a run may take to notice that it was stopped; then it is left to itself.
+const GRACE: Duration = Duration::from_secs(1);
 
 /// Whether more messages are awaited.
 pub enum Next {
@@ -19,22 +33,81 @@ pub enum Next {
     End { orderly: bool },
 }
 
+/// What the server waits for.
+pub enum Event {
+    /// A message of the editor; nothing when the editor has gone.
+    Message(io::Result<Option<Value>>),
+    Ran(Ran),
+}
+
+/// A run that came to its end.
+pub struct Ran {
+    uri: String,
+    serial: u64,
+    /// Nothing when the run panicked.
+    document: Option<Box<Document>>,
+}
+
 /// A text that an editor has open.
 struct Open {
-    document: Document,
+    text: String,
     version: Value,
     /// Other texts that diagnostics of this one were told for.
     told: Vec<String>,
+    state: State,
+    /// Requests that wait for the end of the run: id, method, parameters.
+    waiting: Vec<(Value, String, Value)>,
 }
 
-/// The open texts.
-#[derive(Default)]
+/// What is known of a text.
+enum State {
+    /// What came of its run; whether that was stopped.
+    Ready(Box<Document>, bool),
+    Running(Running),
+    /// Nothing: its run did not stop in time, or panicked.
+    Unknown,
+}
+
+/// A run under way, on a thread of its own.
+struct Running {
+    /// Which run it is.
+    serial: u64,
+    cancel: Arc<AtomicBool>,
+    since: Instant,
+    /// When it was told to stop.
+    stopped: Option<Instant>,
+    /// True when the text was changed since.
+    outdated: bool,
+}
+
+impl Running {
+    fn stop(&mut self) {
+        self.cancel.store(true, Ordering::Relaxed);
+        self.stopped.get_or_insert_with(Instant::now);
+    }
+
+    /// When something is to be done about it.
+    fn deadline(&self) -> Instant {
+        self.stopped.map_or(self.since + PATIENCE, |stopped| stopped + GRACE)
+    }
+}
+
+/// The open texts. Programs run on threads of their own: whatever a text says, the server answers.
 pub struct Server {
     open: BTreeMap<String, Open>,
     shut_down: bool,
+    events: Sender<Event>,
+    runs: u64,
+    /// Answers to requests about texts that are there no more.
+    refused: Vec<Value>,
 }
 
 impl Server {
+    /// A server that is told the ends of its runs by these events.
+    pub fn new(events: Sender<Event>) -> Self {
+        Self { open: BTreeMap::new(), shut_down: false, events, runs: 0, refused: Vec::new() }
+    }
+
     /// The messages that answer one.
     pub fn handle(&mut self, message: &Value) -> (Vec<Value>, Next) {
         let method = message["method"].as_str().unwrap_or("");
@@ -44,17 +117,149 @@ impl Server {
         }
         let answers = match message.get("id") {
             Some(id) if !method.is_empty() => {
-                let answer = match self.request(method, params) {
-                    Ok(result) => json!({"jsonrpc": "2.0", "id": id, "result": result}),
-                    Err((code, text)) => {
-                        json!({"jsonrpc": "2.0", "id": id, "error": {"code": code, "message": text}})
+                let uri = params["textDocument"]["uri"].as_str().unwrap_or("");
+                match self.open.get_mut(uri) {
+                    Some(open) if matches!(open.state, State::Running(_)) && needs_run(method) => {
+                        open.waiting.push((id.clone(), method.to_string(), params.clone()));
+                        Vec::new()
                     }
-                };
-                vec![answer]
+                    _ => vec![answered(id, self.request(method, params))],
+                }
             }
             _ => self.notice(method, params),
         };
         (answers, Next::Message)
+    }
+
+    /// When [`Self::tick`] is to be called.
+    pub fn deadline(&self) -> Option<Instant> {
+        let running = self.open.values().filter_map(|open| match &open.state {
+            State::Running(running) => Some(running.deadline()),
+            _ => None,
+        });
+        running.min()
+    }
+
+    /// Stops what has run too long, and goes on without what does not stop.
+    pub fn tick(&mut self) -> Vec<Value> {
+        let now = Instant::now();
+        let mut late = Vec::new();
+        for (uri, open) in &mut self.open {
+            if let State::Running(running) = &mut open.state
+                && running.deadline() <= now
+            {
+                match running.stopped {
+                    None => running.stop(),
+                    Some(_) => late.push((uri.clone(), running.outdated)),
+                }
+            }
+        }
+        let mut answers = Vec::new();
+        for (uri, outdated) in late {
+            if outdated {
+                self.start(&uri, None);
+                continue;
+            }
+            let Some(open) = self.open.get_mut(&uri) else { continue };
+            open.state = State::Unknown;
+            let place = json!({"line": 0, "character": 0});
+            let diagnostic = json!({
+                "range": {"start": place, "end": place},
+                "severity": 1,
+                "code": "cancelled",
+                "source": "moldloft",
+                "message": stopped_text(),
+            });
+            answers.push(published(&uri, &open.version, &[diagnostic]));
+            answers.extend(self.answer_waiting(&uri));
+        }
+        answers
+    }
+
+    /// Takes what came of a run.
+    pub fn ran(&mut self, ran: Ran) -> Vec<Value> {
+        let Ran { uri, serial, document } = ran;
+        let Some(open) = self.open.get_mut(&uri) else { return Vec::new() };
+        let State::Running(running) = &open.state else { return Vec::new() };
+        if running.serial != serial {
+            return Vec::new();
+        }
+        if running.outdated {
+            self.start(&uri, document);
+            return Vec::new();
+        }
+        let stopped = running.stopped.is_some();
+        open.state = match document {
+            Some(document) => State::Ready(document, stopped),
+            None => State::Unknown,
+        };
+        let mut answers = self.diagnostics(&uri);
+        answers.extend(self.answer_waiting(&uri));
+        answers
+    }
+
+    fn answer_waiting(&mut self, uri: &str) -> Vec<Value> {
+        let waiting = self.open.get_mut(uri).map(|open| std::mem::take(&mut open.waiting));
+        let waiting = waiting.unwrap_or_default().into_iter();
+        waiting.map(|(id, method, params)| answered(&id, self.request(&method, &params))).collect()
+    }
+
+    /// Runs the text that is there now, on what its last run left when there is that.
+    fn start(&mut self, uri: &str, document: Option<Box<Document>>) {
+        let Some(open) = self.open.get_mut(uri) else { return };
+        self.runs += 1;
+        let cancel = document.as_ref().map_or_else(Arc::default, |d| d.cancel_handle());
+        cancel.store(false, Ordering::Relaxed);
+        open.state = State::Running(Running {
+            serial: self.runs,
+            cancel: cancel.clone(),
+            since: Instant::now(),
+            stopped: None,
+            outdated: false,
+        });
+        let (uri, text, serial) = (uri.to_string(), open.text.clone(), self.runs);
+        let events = self.events.clone();
+        // As much as a program's first thread has, for texts that nest deeply.
+        let thread = std::thread::Builder::new().stack_size(8 << 20);
+        let begun = thread.spawn(move || {
+            let run = AssertUnwindSafe(|| match document {
+                Some(mut document) => {
+                    document.set_text(&text);
+                    document
+                }
+                None => Box::new(opened(&uri, &text, cancel)),
+            });
+            let document = catch_unwind(run).ok();
+            // After the end of the server nobody listens; that is no fault.
+            let _ = events.send(Event::Ran(Ran { uri, serial, document }));
+        });
+        if begun.is_err() {
+            open.state = State::Unknown;
+        }
+    }
+
+    /// Runs a text again: at once, or as soon as the run under way has stopped.
+    fn run_again(&mut self, uri: &str, afresh: bool) {
+        let Some(open) = self.open.get_mut(uri) else { return };
+        match std::mem::replace(&mut open.state, State::Unknown) {
+            State::Running(mut running) => {
+                running.stop();
+                running.outdated = true;
+                let late = running.deadline() <= Instant::now();
+                open.state = State::Running(running);
+                // What waits asked about another text.
+                let waiting = std::mem::take(&mut open.waiting);
+                let changed = |(id, ..): (Value, String, Value)| {
+                    answered(&id, Err((CONTENT_MODIFIED, "the text was changed".into())))
+                };
+                self.refused.extend(waiting.into_iter().map(changed));
+                if late || afresh {
+                    self.start(uri, None);
+                }
+            }
+            State::Ready(document, _) => self.start(uri, Some(document).filter(|_| !afresh)),
+            State::Unknown => self.start(uri, None),
+        }
     }
 
     fn notice(&mut self, method: &str, params: &Value) -> Vec<Value> {
@@ -62,61 +267,74 @@ impl Server {
         match method {
             "textDocument/didOpen" => {
                 let item = &params["textDocument"];
-                let text = item["text"].as_str().unwrap_or("");
-                let document = opened(&uri, text);
-                let version = item["version"].clone();
-                self.open.insert(uri.clone(), Open { document, version, told: Vec::new() });
-                self.diagnostics(&uri)
+                let open = Open {
+                    text: item["text"].as_str().unwrap_or("").to_string(),
+                    version: item["version"].clone(),
+                    told: Vec::new(),
+                    state: State::Unknown,
+                    waiting: Vec::new(),
+                };
+                self.stop(&uri);
+                self.open.insert(uri.clone(), open);
+                self.start(&uri, None);
             }
             "textDocument/didChange" => {
                 let Some(open) = self.open.get_mut(&uri) else { return Vec::new() };
-                let mut text = open.document.text();
+                let text = &mut open.text;
                 for change in params["contentChanges"].as_array().into_iter().flatten() {
                     let new = change["text"].as_str().unwrap_or("");
                     match change.get("range") {
                         Some(range) => {
-                            let start = offset(&text, &range["start"]) as usize;
-                            let end = (offset(&text, &range["end"]) as usize).max(start);
+                            let start = offset(text, &range["start"]) as usize;
+                            let end = (offset(text, &range["end"]) as usize).max(start);
                             text.replace_range(start..end, new);
                         }
-                        None => text = new.to_string(),
+                        None => *text = new.to_string(),
                     }
                 }
-                open.document.set_text(&text);
                 open.version = params["textDocument"]["version"].clone();
-                self.diagnostics(&uri)
+                self.run_again(&uri, false);
             }
             "textDocument/didSave" => {
                 // Other texts may load this one.
-                let all: Vec<String> = self.open.keys().cloned().collect();
-                let mut answers = Vec::new();
+                let all: Vec<String> = self.open.keys().filter(|o| **o != uri).cloned().collect();
                 for other in all {
-                    if other != uri
-                        && let Some(open) = self.open.get_mut(&other)
-                    {
-                        let text = open.document.text();
-                        open.document = opened(&other, &text);
-                        answers.extend(self.diagnostics(&other));
-                    }
+                    self.run_again(&other, true);
                 }
-                answers
             }
             "textDocument/didClose" => {
+                self.stop(&uri);
                 let told = self.open.remove(&uri).map_or(Vec::new(), |open| open.told);
                 let all = std::iter::once(uri).chain(told);
-                all.map(|uri| published(&uri, &Value::Null, &[])).collect()
+                let mut answers = std::mem::take(&mut self.refused);
+                answers.extend(all.map(|uri| published(&uri, &Value::Null, &[])));
+                return answers;
             }
-            _ => Vec::new(),
+            _ => {}
+        }
+        std::mem::take(&mut self.refused)
+    }
+
+    /// Stops the run of a text; nobody waits for its end.
+    fn stop(&mut self, uri: &str) {
+        if let Some(open) = self.open.get_mut(uri) {
+            if let State::Running(running) = &mut open.state {
+                running.stop();
+            }
+            for (id, ..) in open.waiting.drain(..) {
+                let changed = Err((CONTENT_MODIFIED, "the text was closed".into()));
+                self.refused.push(answered(&id, changed));
+            }
         }
     }
 
     /// The diagnostics of a text, by the files that they are about.
     fn diagnostics(&mut self, uri: &str) -> Vec<Value> {
         let Some(open) = self.open.get_mut(uri) else { return Vec::new() };
-        let document = &open.document;
+        let State::Ready(document, stopped) = &open.state else { return Vec::new() };
         let sources = document.sources();
         let main = sources.ids().next();
-        let main_text = document.text();
+        let main_text = &open.text;
         let mut by_file: BTreeMap<String, Vec<Value>> = BTreeMap::new();
         by_file.insert(uri.to_string(), Vec::new());
         for diagnostic in document.diagnostics() {
@@ -146,7 +364,10 @@ impl Server {
                 "severity": severity,
                 "code": data.id,
                 "source": "moldloft",
-                "message": message(&data),
+                "message": match *stopped && data.id == "cancelled" {
+                    true => stopped_text(),
+                    false => message(&data),
+                },
                 "relatedInformation": related,
             }));
         }
@@ -179,14 +400,30 @@ impl Server {
         let Some(open) = self.open.get_mut(&uri) else {
             return Err((REQUEST_FAILED, format!("`{uri}` is not open")));
         };
-        let document = &mut open.document;
-        let text = document.text();
-        let at = offset(&text, &params["position"]);
+        let text = &open.text;
+        if method == "textDocument/formatting" {
+            return match moldloft_syntax::sdl::format(text) {
+                Ok(new) if new == *text => Ok(json!([])),
+                Ok(new) => {
+                    let whole =
+                        json!({"start": position(text, 0), "end": position(text, u32::MAX)});
+                    Ok(json!([{"range": whole, "newText": new}]))
+                }
+                Err(_) => Err((REQUEST_FAILED, "the text has errors and is left as it is".into())),
+            };
+        }
+        let State::Ready(document, _) = &mut open.state else {
+            return match needs_run(method) {
+                true => Err((REQUEST_FAILED, stopped_text())),
+                false => Err((METHOD_NOT_FOUND, format!("there is no method `{method}`"))),
+            };
+        };
+        let at = offset(text, &params["position"]);
         match method {
             "textDocument/hover" => Ok(match document.hover(at) {
                 Some((said, span)) => json!({
                     "contents": {"kind": "markdown", "value": said},
-                    "range": range(&text, span),
+                    "range": range(text, span),
                 }),
                 None => Value::Null,
             }),
@@ -208,7 +445,7 @@ impl Server {
                 Some(span) => {
                     let sources = document.sources();
                     if sources.ids().next() == Some(span.file) {
-                        json!({"uri": uri, "range": range(&text, span)})
+                        json!({"uri": uri, "range": range(text, span)})
                     } else {
                         let there = sources.text(span.file).map_or("", |t| t);
                         let name = sources.name(span.file).unwrap_or("");
@@ -220,14 +457,14 @@ impl Server {
             "textDocument/references" | "textDocument/documentHighlight" => {
                 let spans = document.references(at);
                 let places =
-                    spans.into_iter().map(|s| json!({"uri": uri, "range": range(&text, s)}));
+                    spans.into_iter().map(|s| json!({"uri": uri, "range": range(text, s)}));
                 Ok(places.collect())
             }
             "textDocument/prepareRename" => match document.references(at).first() {
                 Some(_) => {
                     let found = document.references(at);
                     let here = found.into_iter().find(|s| s.touches(at));
-                    Ok(here.map_or(Value::Null, |span| range(&text, span)))
+                    Ok(here.map_or(Value::Null, |span| range(text, span)))
                 }
                 None => Err((REQUEST_FAILED, "there is no name here".into())),
             },
@@ -235,19 +472,10 @@ impl Server {
                 let new = params["newName"].as_str().unwrap_or("");
                 let spans = document.renamed(at, new).map_err(|why| (REQUEST_FAILED, why))?;
                 let edits =
-                    spans.into_iter().map(|s| json!({"range": range(&text, s), "newText": new}));
+                    spans.into_iter().map(|s| json!({"range": range(text, s), "newText": new}));
                 let edits: Vec<Value> = edits.collect();
                 Ok(json!({"changes": {uri: edits}}))
             }
-            "textDocument/formatting" => match moldloft_syntax::sdl::format(&text) {
-                Ok(new) if new == text => Ok(json!([])),
-                Ok(new) => {
-                    let whole =
-                        json!({"start": position(&text, 0), "end": position(&text, u32::MAX)});
-                    Ok(json!([{"range": whole, "newText": new}]))
-                }
-                Err(_) => Err((REQUEST_FAILED, "the text has errors and is left as it is".into())),
-            },
             "textDocument/documentSymbol" => {
                 let symbols = document.symbols().into_iter().map(|(name, kind, span)| {
                     let kind = match kind {
@@ -255,7 +483,7 @@ impl Server {
                         CompletionKind::Object => 19,
                         _ => 13,
                     };
-                    let place = range(&text, span);
+                    let place = range(text, span);
                     json!({"name": name, "kind": kind, "range": place, "selectionRange": place})
                 });
                 Ok(symbols.collect())
@@ -263,6 +491,39 @@ impl Server {
             _ => Err((METHOD_NOT_FOUND, format!("there is no method `{method}`"))),
         }
     }
+}
+
+/// True for methods that are answered from what came of a text's run.
+fn needs_run(method: &str) -> bool {
+    let methods = [
+        "hover",
+        "completion",
+        "definition",
+        "references",
+        "documentHighlight",
+        "prepareRename",
+        "rename",
+        "documentSymbol",
+    ];
+    method.strip_prefix("textDocument/").is_some_and(|name| methods.contains(&name))
+}
+
+fn answered(id: &Value, answer: Result<Value, (i64, String)>) -> Value {
+    match answer {
+        Ok(result) => json!({"jsonrpc": "2.0", "id": id, "result": result}),
+        Err((code, text)) => {
+            json!({"jsonrpc": "2.0", "id": id, "error": {"code": code, "message": text}})
+        }
+    }
+}
+
+/// What is told of a run that took too long.
+fn stopped_text() -> String {
+    format!(
+        "the program was stopped after {} s, so that the editor goes on\n\
+         look for a loop whose condition always holds; `moldloft run` gives it more time",
+        PATIENCE.as_secs()
+    )
 }
 
 /// What the server can do.
@@ -322,7 +583,7 @@ fn related(label: &LabelData, uri: &str) -> Value {
 }
 
 /// The model of a text: what it loads is sought beside its file.
-fn opened(uri: &str, text: &str) -> Document {
+fn opened(uri: &str, text: &str, cancel: Arc<AtomicBool>) -> Document {
     let (world, name): (Box<dyn World>, String) = match path_of(uri) {
         Some(path) => {
             let folder = path.parent().unwrap_or(Path::new(".")).to_path_buf();
@@ -330,7 +591,7 @@ fn opened(uri: &str, text: &str) -> Document {
         }
         None => (Box::new(NoFiles), uri.to_string()),
     };
-    Document::from_text(moldloft_lang::registry(), world, &name, text)
+    Document::watched(moldloft_lang::registry(), world, (&name, text), cancel)
 }
 
 /// The path of a file address.

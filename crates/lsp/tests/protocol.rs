@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
 
 struct Client {
     child: Child,
@@ -264,4 +265,45 @@ fn diagnostics_come_as_one_types() {
     client.input = None;
     let status = client.child.wait().unwrap();
     assert!(!status.success(), "an end without shutdown is told");
+}
+
+/// Programs that do not come to an end in a good while, each in its own way.
+const ENDLESS: [&str; 4] = [
+    "float x = 1;\nwhile (1) { x = x + 1; }\n",
+    "float x = 1;\nfarray a[1000000];\nwhile (1) { a = sin(a) + x; }\n",
+    "float x = 1;\nfunction float f(float y) { if (y > 40) return y; return f(y + 1) + f(y + 1); }\nx = f(1);\n",
+    "float x = 1;\nsurface s[300, 300];\nfor (i = 1:300) for (j = 1:300) s[i, j] = {i, j, 0};\n\
+     s[2:299, 2:299].x += 0.2;\ns = elliptic(s, 1000000, 0);\n",
+];
+
+#[test]
+fn endless_programs_do_not_occupy_the_server() {
+    let mut client = Client::start();
+    client.open("float x = 1;\n");
+    for text in ENDLESS {
+        // Told soon, with its place, and the rest of the text is still known.
+        let begun = Instant::now();
+        let found = client.change(2, json!([{"text": text}]));
+        let took = begun.elapsed();
+        assert!(took < Duration::from_secs(8), "{took:?} for {text}");
+        assert_eq!(found.len(), 1, "{found:?}");
+        let (code, message) = (&found[0]["code"], found[0]["message"].as_str().unwrap());
+        // A fast machine comes to the limit of statements before.
+        assert!(code == "cancelled" || code == "too-many-steps", "{found:?}");
+        assert!(message.contains("look for"), "{message}");
+        assert!(found[0]["range"]["start"]["line"].as_u64().unwrap() > 0, "{found:?}");
+        let said = client.at("textDocument/hover", 0, 6)["contents"]["value"].to_string();
+        assert!(said.contains('x'), "{said}");
+        // A change while it runs stops it.
+        let id = json!({"uri": URI, "version": 3});
+        let changes = json!([{"text": text.replace("= 1;", "= 2;")}]);
+        let notice = json!({"textDocument": id, "contentChanges": changes});
+        client.tell("textDocument/didChange", notice);
+        std::thread::sleep(Duration::from_millis(300));
+        let begun = Instant::now();
+        let found = client.change(4, json!([{"text": "print y;\n"}]));
+        assert_eq!(found[0]["code"], "unknown-name", "{found:?}");
+        let took = begun.elapsed();
+        assert!(took < Duration::from_secs(4), "{took:?} after {text}");
+    }
 }
