@@ -43,7 +43,7 @@ fn statement(text: &str, n: usize) -> f64 {
         let text = format!("{head}for (k = 1:{repeats}) {{ {inside} }}");
         let mut document = Document::from_text(registry(), Box::new(NoFiles), "t.sdl", &text);
         assert!(document.diagnostics().is_empty(), "{:?}", document.diagnostics().first());
-        least(|| drop(document.set_text(&text)), 0.7)
+        least(|| _ = document.set_text(&text), 0.7)
     };
     (whole(text) - whole(";")) / repeats as f64
 }
@@ -63,7 +63,7 @@ impl WithSimd for Compiled<'_> {
         let points = std::hint::black_box(POINTS);
         let (u, _) = S::as_simd_f64s(self.u);
         let [x, y, z] = self.out;
-        let mut outs = [x, y, z].map(|row| S::as_mut_simd_f64s(row).0);
+        let outs = [x, y, z].map(|row| S::as_mut_simd_f64s(row).0);
         let (one, three) = (simd.splat_f64s(1.0), simd.splat_f64s(3.0));
         let points = points.map(|p| p.map(|x| simd.splat_f64s(x)));
         for i in 0..u.len() {
