@@ -23,7 +23,7 @@ use crate::implicit::solve;
 use crate::march::{Branch, Crossing, Other, Station, TANGENT, Unknowns};
 use crate::newton::OUTSIDE;
 use crate::pieces::{Patch, meet};
-use crate::plates::{Plate, Plates, Trails, Visitor, descend};
+use crate::plates::{Pairs, Plates, Sight, Trails, Visitor};
 use crate::tree::Boxes;
 use moldloft_num::{Box3, Field, Order, Plane, Surface, Vec3, slope_scale};
 use smallvec::SmallVec;
@@ -430,17 +430,12 @@ impl Finder<'_> {
         let (first, Some(second)) = (self.first, self.second) else { return };
         let mut stack = vec![(first.root(), second.root())];
         stack.retain(|(a, b)| meet(a.bounds, b.bounds));
-        let mut pairs = Vec::new();
+        let plates = Pairs::new(&first.plates, &second.plates);
         while let Some((a, b)) = stack.pop() {
             if a.number & b.number & LEAF != 0 {
-                let pair = [a.number & !LEAF, b.number & !LEAF];
-                let [p, q] =
-                    [&first.plates.all[pair[0] as usize], &second.plates.all[pair[1] as usize]];
-                if !p.apart(q) {
-                    pairs.push(pair);
-                    if !descend([&first.plates, &second.plates], &mut pairs, self) {
-                        return;
-                    }
+                let pieces = [a.number & !LEAF, b.number & !LEAF];
+                if !plates.descend(pieces, self) {
+                    return;
                 }
                 continue;
             }
@@ -651,14 +646,15 @@ impl Finder<'_> {
 }
 
 impl Visitor for Finder<'_> {
-    fn done(&mut self, p: &Plate, q: &Plate) -> bool {
-        p.smooth && q.smooth && p.meet_in_one_line(q) && self.trails.pass(p, q)
+    #[inline(always)]
+    fn done(&mut self, p: &Sight, q: &Sight) -> bool {
+        p.smooth(q) && p.meet_in_one_line(q) && self.trails.pass(p, q)
     }
 
-    fn cells(&mut self, p: &Plate, q: &Plate) -> bool {
+    fn cells(&mut self, p: &Sight, q: &Sight) -> bool {
         let (first, Some(second)) = (self.first, self.second) else { return false };
         let simple = p.meet_in_one_line(q);
-        let [p, q] = [&first.parts[p.cell as usize], &second.parts[q.cell as usize]];
+        let [p, q] = [&first.parts[p.cell()], &second.parts[q.cell()]];
         if !self.pair(p, q, simple) {
             return false;
         }

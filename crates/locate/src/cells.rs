@@ -10,6 +10,7 @@
 use crate::pieces::Patch;
 use crate::tree::{Boxes, SurfaceTree};
 use moldloft_num::{Box3, Order, SurfJet, Surface, Vec3};
+use pulp::WithSimd;
 
 /// Pieces are halved until they bend by less than this share of their length, for nearest points,
 /// for many intersections, and for one …
@@ -18,7 +19,7 @@ const FINE_BEND: f64 = 0.05;
 const COARSE_BEND: f64 = 0.12;
 
 /// … but into no more cells than this, each and altogether.
-const MOST_HALVINGS: u32 = 6;
+pub(crate) const MOST_HALVINGS: u32 = 6;
 const MOST_CELLS: usize = 1 << 17;
 
 /// The polynomial of a piece.
@@ -409,13 +410,13 @@ pub(crate) struct Polynomials {
 
 /// Registers of four numbers, where the processor has them.
 #[derive(Clone, Copy, Debug)]
-struct Lanes {
+pub(crate) struct Lanes {
     #[cfg(target_arch = "x86_64")]
     four: Option<pulp::x86::V3>,
 }
 
 impl Lanes {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self {
             #[cfg(target_arch = "x86_64")]
             four: pulp::x86::V3::try_new(),
@@ -423,7 +424,7 @@ impl Lanes {
     }
 
     #[inline]
-    fn run<F: pulp::WithSimd>(self, work: F) -> F::Output {
+    pub fn run<F: pulp::WithSimd>(self, work: F) -> F::Output {
         #[cfg(target_arch = "x86_64")]
         if let Some(four) = self.four {
             return pulp::Simd::vectorize(four, work);
@@ -534,28 +535,19 @@ impl Polynomials {
     }
 }
 
-/// Two such places at once.
-struct Both<'a>([First<'a>; 2]);
-
-impl pulp::WithSimd for Both<'_> {
-    type Output = [[[f64; 4]; 3]; 2];
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
-        let [a, b] = self.0;
-        [a.with_simd(simd), b.with_simd(simd)]
-    }
-}
-
 impl Polynomials {
     /// Position and first derivatives of two surfaces at (u, v) and (p, r).
-    #[inline]
-    pub fn both(a: &Self, b: &Self, [u, v, p, r]: [f64; 4]) -> [[Vec3; 3]; 2] {
+    #[inline(always)]
+    pub fn both<S: pulp::Simd>(
+        simd: S,
+        a: &Self,
+        b: &Self,
+        [u, v, p, r]: [f64; 4],
+    ) -> [[Vec3; 3]; 2] {
         let (m, by_a, [s, t]) = a.locate(u, v);
-        let first = First { powers: &a.powers[m], s, t };
+        let x = First { powers: &a.powers[m], s, t }.with_simd(simd);
         let (n, by_b, [s, t]) = b.locate(p, r);
-        let second = First { powers: &b.powers[n], s, t };
-        let [x, y] = a.lanes.run(Both([first, second]));
+        let y = First { powers: &b.powers[n], s, t }.with_simd(simd);
         [scaled(&x, by_a), scaled(&y, by_b)]
     }
 }

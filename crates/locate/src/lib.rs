@@ -30,6 +30,7 @@ mod plates;
 mod report;
 pub mod roots;
 mod tree;
+mod trend;
 
 pub use batch::{Nearest, NearestCurve, NearestSurface, by_place};
 pub use nearest::{nearest_in_curve, nearest_in_surface, nearest_on_curve, nearest_on_surface};

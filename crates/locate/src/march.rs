@@ -9,10 +9,11 @@
 //!
 //! How all branches are found is told in [`crate::branches`].
 
-use crate::cells::Polynomials;
+use crate::cells::{Lanes, Polynomials};
 use crate::implicit::solve;
 use crate::newton::{OUTSIDE, Range, newton};
 use crate::pieces::size_of;
+use crate::trend::outlook;
 use moldloft_num::{Box3, Field, Order, Plane, SurfJet, Surface, Vec3, slope_scale};
 
 /// Unknowns of a point of an intersection: (u, v, p, r), the last two 0 for a plane.
@@ -319,6 +320,7 @@ impl<'a> Crossing<'a> {
         self.station_of(q, &j, k.as_ref(), b)
     }
 
+    #[inline(always)]
     fn station_of(
         &self,
         q: Unknowns,
@@ -347,10 +349,25 @@ impl<'a> Crossing<'a> {
     }
 
     /// Both shapes at a place near the point in the plane through `x` across `d`.
-    #[inline]
     fn view(&self, q: Unknowns, x: Vec3, d: Vec3) -> View {
+        struct Look<'a>(&'a Crossing<'a>, Unknowns, [Vec3; 2]);
+        impl pulp::WithSimd for Look<'_> {
+            type Output = View;
+
+            #[inline(always)]
+            fn with_simd<S: pulp::Simd>(self, simd: S) -> View {
+                let Self(crossing, q, [x, d]) = self;
+                crossing.view_by(simd, q, x, d)
+            }
+        }
+        Lanes::new().run(Look(self, q, [x, d]))
+    }
+
+    /// The same by the registers at hand.
+    #[inline(always)]
+    fn view_by<S: pulp::Simd>(&self, simd: S, q: Unknowns, x: Vec3, d: Vec3) -> View {
         if let [Some(a), Some(b)] = self.quick {
-            let [j, k] = Polynomials::both(a, b, q);
+            let [j, k] = Polynomials::both(simd, a, b, q);
             let (gap, off) = ((j[0] - k[0]).norm(), d.dot(j[0] - x));
             return View { gap, off, normal: k[1].cross(k[2]), j, k: Some(k) };
         }
@@ -375,7 +392,7 @@ impl<'a> Crossing<'a> {
     }
 
     /// The place that a Newton step leads to, and how long it is in space.
-    #[inline]
+    #[inline(always)]
     fn next(&self, q: Unknowns, view: &View, d: Vec3) -> Option<(Unknowns, f64)> {
         let ([p, u, v], n) = (view.j, view.normal);
         let m = [[n.dot(u), n.dot(v)], [d.dot(u), d.dot(v)]];
@@ -401,15 +418,36 @@ impl<'a> Crossing<'a> {
         self.steps(guess, x, d, Until::There)
     }
 
+    fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, until: Until) -> Option<Station> {
+        struct Steps<'a>(&'a Crossing<'a>, Unknowns, [Vec3; 2], Until);
+        impl pulp::WithSimd for Steps<'_> {
+            type Output = Option<Station>;
+
+            #[inline(always)]
+            fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Station> {
+                let Self(crossing, guess, [x, d], until) = self;
+                crossing.steps_by(simd, guess, [x, d], until)
+            }
+        }
+        Lanes::new().run(Steps(self, guess, [x, d], until))
+    }
+
     /// The same, until a step is so short that nothing is evaluated again: the tangent is that of the
     /// place before it then.
-    fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, until: Until) -> Option<Station> {
+    #[inline(always)]
+    fn steps_by<S: pulp::Simd>(
+        &self,
+        simd: S,
+        guess: Unknowns,
+        [x, d]: [Vec3; 2],
+        until: Until,
+    ) -> Option<Station> {
         let mut q = guess;
         let goal = 1e-13 * self.size;
         let mut before = 0.0;
         for round in 0..6 {
             let goal = if round < 5 { goal } else { 10.0 * goal };
-            let view = self.view(q, x, d);
+            let view = self.view_by(simd, q, x, d);
             let station = |q: Unknowns| self.station_of(q, &view.j, view.k.as_ref(), view.normal);
             if until == Until::There && view.gap.abs().max(view.off.abs()) <= goal {
                 return station(q);
@@ -443,6 +481,21 @@ impl<'a> Crossing<'a> {
 
     /// One way from a station until an edge, the start, or a place of contact.
     fn walk(&self, start: Station, sign: f64) -> (Vec<Station>, End) {
+        struct Walk<'a>(&'a Crossing<'a>, Station, f64);
+        impl pulp::WithSimd for Walk<'_> {
+            type Output = (Vec<Station>, End);
+
+            #[inline(always)]
+            fn with_simd<S: pulp::Simd>(self, simd: S) -> (Vec<Station>, End) {
+                let Self(crossing, start, sign) = self;
+                crossing.walk_by(simd, start, sign)
+            }
+        }
+        Lanes::new().run(Walk(self, start, sign))
+    }
+
+    #[inline(always)]
+    fn walk_by<S: pulp::Simd>(&self, simd: S, start: Station, sign: f64) -> (Vec<Station>, End) {
         let n = self.unknowns();
         let mut all = vec![start];
         let [first, longest, least] = STEPS.map(|share| share * self.size);
@@ -464,8 +517,13 @@ impl<'a> Crossing<'a> {
             };
             let x = last.x + tangent * step;
             let near = if since > 0 { ASTRAY * step } else { 1.5 * step };
+            // A better guess, but not what tells whether it goes astray: its steps would be others.
+            let guess = match &all[..] {
+                [.., a, b, c] if since > 1 => outlook([a, b, c], step, sign),
+                _ => guess,
+            };
             let next = self
-                .steps(guess, x, last.tangent, Until::Near)
+                .steps_by(simd, guess, [x, last.tangent], Until::Near)
                 .or_else(|| {
                     // Shorter steps are cheaper than damped ones.
                     let short = step < 0.1 * first;
@@ -726,6 +784,7 @@ impl<'a> Crossing<'a> {
 }
 
 /// The place a step on from two stations: their cubic by the length, carried on. Also in space.
+#[inline(always)]
 fn onward(a: &Station, b: &Station, step: f64, sign: f64) -> (Unknowns, Vec3) {
     // A chord of turn w is shorter than its arc by w^2 / 24, the way along a tangent by w^2 / 6.
     let (chord, turn) = (a.x.distance(b.x), a.tangent.distance(b.tangent));
@@ -745,6 +804,7 @@ fn onward(a: &Station, b: &Station, step: f64, sign: f64) -> (Unknowns, Vec3) {
 }
 
 /// True when the cubic of two stations inside goes over an edge and back between them.
+#[inline(always)]
 fn strays(a: &Station, b: &Station, sign: f64, unknowns: usize) -> bool {
     let run = sign * a.x.distance(b.x);
     (0..unknowns).any(|k| {

@@ -5,7 +5,7 @@
 //! A search goes down the trees of both surfaces at once. A pair of plates is done when they are
 //! apart, or when they meet in one line at most and a branch that was found before is that line.
 
-use crate::cells::{Cells, Flat, derivative, patch_powers};
+use crate::cells::{Cells, Flat, MOST_HALVINGS, derivative, patch_powers};
 use crate::march::{Station, Unknowns};
 use moldloft_num::{Box3, Vec3};
 
@@ -19,62 +19,158 @@ const WIDER: f64 = 1.2;
 /// Boxes that overlap by less than this share of the size only touch.
 const HAIR: f64 = 1e-12;
 
-/// A part of a surface, from a piece down to a cell.
+/// Rounding of single precision, several times over, as a share of the numbers that go in.
+const ROUNDING: f64 = 1.0 / (1u32 << 20) as f64;
+
+/// Room for pairs that wait: pieces are halved a few times each.
+const STACK: usize = 2 * MOST_HALVINGS as usize + 2;
+
+/// A part of a surface, from a piece down to a cell: the parallelogram c + a s + b t with |s| and |t|
+/// at most 1, and how far the surface may be from it.
+///
+/// A search looks at many plates for a moment each, so that the time goes to fetch them: this is one
+/// line of a processor's cache, in single precision with the bounds widened by its rounding. What else
+/// there is of a plate is a [`Place`] and a [`Turn`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plate {
-    /// The parallelogram c + a s + b t, |s| and |t| <= 1, its unit normal, and how far the surface may
-    /// be from it.
-    c: Vec3,
-    a: Vec3,
-    b: Vec3,
-    normal: Vec3,
-    bend: f64,
-    /// The box around it. Where the surface goes over a side of it into the next plate the side is
-    /// moved in by a hair: plates that do nothing but touch there need not be looked at, for a line in
-    /// which both surfaces meet goes on to plates that overlap, or has such on one of its sides.
-    low: Vec3,
-    high: Vec3,
+#[repr(align(64))]
+struct Plate {
+    /// By axis: c from the middle of the surface's box, a, b, and the unit normal.
+    rows: [[f32; 4]; 3],
+    /// The normal's share of c.
+    height: f32,
+    bend: f32,
     /// The longer side.
-    longest: f64,
-    /// How the normals change across the middle one, as shares of what is left of them along it: the
-    /// coefficients of s, t, s^2, s t, t^2, and a bound of what these leave out.
-    turns: [Vec3; 5],
-    rest: f64,
-    /// Its parameters, and where the surface goes on beyond them in the same direction.
-    uv: [[f64; 2]; 2],
-    pub smooth: bool,
-    /// The first of its halves, which follow each other; 0 for a cell.
-    below: u32,
-    /// The cell that it is, if it is one.
-    pub cell: u32,
+    longest: f32,
+    /// A bound of how the normals change beside what [`Turn`] tells.
+    rest: f32,
 }
 
 impl Plate {
-    /// The halves of a plate that is no cell.
-    #[inline]
-    fn halves(&self) -> Option<[u32; 2]> {
-        (self.below > 0).then_some([self.below, self.below + 1])
+    #[inline(always)]
+    fn normal(&self) -> [f32; 3] {
+        let [x, y, z] = &self.rows;
+        [x[3], y[3], z[3]]
     }
 
-    /// True when both certainly have no common point.
-    #[inline]
-    pub fn apart(&self, o: &Plate) -> bool {
-        let (p, q) = (self, o);
-        if p.low.x > q.high.x
-            || q.low.x > p.high.x
-            || p.low.y > q.high.y
-            || q.low.y > p.high.y
-            || p.low.z > q.high.z
-            || q.low.z > p.high.z
-        {
-            return true;
+    /// True when the plane of one certainly does not come near the other, which is measured from a
+    /// point that is farther by `shift`; `margin` is for the rounding of that.
+    #[inline(always)]
+    fn aside(&self, o: &Plate, shift: [f32; 3], margin: f32) -> bool {
+        let bend = self.bend + o.bend + margin;
+        self.beyond(o, shift, 1.0, bend) | o.beyond(self, shift, -1.0, bend)
+    }
+
+    /// True when the other is on one side of this one's plane.
+    #[inline(always)]
+    fn beyond(&self, o: &Plate, [a, b, c]: [f32; 3], by: f32, bend: f32) -> bool {
+        let [l, m, n] = self.normal();
+        let [x, y, z] = &o.rows;
+        // Loops and no closures: where registers are wide, those that are not inlined lose them.
+        let mut along = [0.0; 4];
+        for k in 0..4 {
+            along[k] = l * x[k] + m * y[k] + n * z[k];
         }
-        let d = q.c - p.c;
-        let bend = p.bend + q.bend;
-        let beyond = |n: Vec3, other: &Plate| {
-            n.dot(d).abs() > n.dot(other.a).abs() + n.dot(other.b).abs() + bend
-        };
-        beyond(p.normal, q) || beyond(q.normal, p)
+        let distance = along[0] - self.height + by * (l * a + m * b + n * c);
+        distance.abs() > along[1].abs() + along[2].abs() + bend
+    }
+}
+
+/// Where a plate is.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Place {
+    /// The lower ends of its box by axis, and the upper ones with the other sign. Where the surface
+    /// goes over a side of the box into the next plate the side is moved in by a hair: plates that do
+    /// nothing but touch there need not be looked at, for a line in which both surfaces meet goes on
+    /// to plates that overlap, or has such on one of its sides.
+    ends: [f64; 6],
+    /// The first of its halves, which follow each other; 0 for a cell.
+    below: u32,
+    /// The cell that it is, if it is one.
+    cell: u32,
+    /// True when the surface goes on beyond it in the same direction.
+    smooth: bool,
+}
+
+impl Place {
+    /// What no end is above of a box that meets this one.
+    #[inline(always)]
+    fn facing(&self) -> [f64; 6] {
+        let [a, b, c, d, e, f] = self.ends;
+        [-d, -e, -f, -a, -b, -c]
+    }
+
+    /// True when the box certainly has no point in the one that is facing.
+    #[inline(always)]
+    fn apart(&self, facing: &[f64; 6]) -> bool {
+        let mut beyond = false;
+        for k in 0..6 {
+            beyond |= self.ends[k] > facing[k];
+        }
+        beyond
+    }
+}
+
+/// How a plate's normals turn: how they change across the middle one, as shares of what is left of
+/// them along it.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Turn {
+    /// By axis the coefficients of s, t, s^2, s t.
+    rows: [[f32; 4]; 3],
+    /// That of t^2, and a number for rounding.
+    last: [f32; 4],
+}
+
+impl Turn {
+    /// How far they change along a unit vector.
+    #[inline(always)]
+    fn along(&self, [l, m, n]: [f32; 3]) -> f32 {
+        let ([x, y, z], [a, b, c, margin]) = (&self.rows, self.last);
+        let mut each = [0.0; 4];
+        for k in 0..4 {
+            each[k] = (l * x[k] + m * y[k] + n * z[k]).abs();
+        }
+        let last = (l * a + m * b + n * c).abs() + margin;
+        (each[0] + each[2]) + (each[1] + each[3]) + last
+    }
+}
+
+/// A plate of the surface that it is on.
+#[derive(Clone, Copy)]
+pub(crate) struct Sight<'a> {
+    all: &'a Plates,
+    number: usize,
+}
+
+impl<'a> Sight<'a> {
+    #[inline(always)]
+    fn plate(&self) -> &'a Plate {
+        &self.all.plates[self.number]
+    }
+
+    #[inline(always)]
+    fn place(&self) -> &'a Place {
+        &self.all.places[self.number]
+    }
+
+    /// The cell that it is, if it is one.
+    #[inline]
+    pub fn cell(&self) -> usize {
+        self.place().cell as usize
+    }
+
+    /// True when the surfaces go on beyond both in the same direction.
+    #[inline(always)]
+    pub fn smooth(&self, o: &Sight) -> bool {
+        self.place().smooth && o.place().smooth
+    }
+
+    /// True when both certainly have no common point, as their boxes tell or their planes.
+    #[inline(always)]
+    fn apart(&self, o: &Sight, shift: [f32; 3], margin: f32) -> bool {
+        let boxes = self.place().apart(&o.place().facing());
+        boxes || self.plate().aside(o.plate(), shift, margin)
     }
 
     /// True when both surfaces certainly meet in one line at most here and beside.
@@ -83,16 +179,19 @@ impl Plate {
     /// their change across n over what is left along n. While these angles together are less than the
     /// angle between n1 and n2, the distance of one surface from the other grows all the way across
     /// the line.
-    #[inline]
-    pub fn meet_in_one_line(&self, o: &Plate) -> bool {
-        let sine_sq = self.normal.cross(o.normal).norm_sq();
-        let across = |p: &Plate, n: Vec3| p.turns.iter().map(|m| m.dot(n).abs()).sum::<f64>();
-        let rest = self.rest + o.rest;
+    #[inline(always)]
+    pub fn meet_in_one_line(&self, o: &Sight) -> bool {
+        let (p, q) = (self.plate(), o.plate());
+        let ([a, b, c], [l, m, n]) = (p.normal(), q.normal());
+        let (x, y, z) = (b * n - c * m, c * l - a * n, a * m - b * l);
+        let sine_sq = x * x + y * y + z * z;
+        let rest = p.rest + q.rest;
         if rest * rest >= sine_sq {
             return false;
         }
         // Both normals' components across the line are over its sine: a + r sin < sin^2.
-        let left = sine_sq - across(self, o.normal) - across(o, self.normal);
+        let (t, u) = (&self.all.turns[self.number], &o.all.turns[o.number]);
+        let left = sine_sq - t.along([l, m, n]) - u.along([a, b, c]);
         left > 0.0 && left * left > rest * rest * sine_sq
     }
 }
@@ -101,7 +200,14 @@ impl Plate {
 #[derive(Clone, Debug)]
 pub(crate) struct Plates {
     /// The pieces' first, in their order.
-    pub all: Vec<Plate>,
+    plates: Vec<Plate>,
+    places: Vec<Place>,
+    turns: Vec<Turn>,
+    /// Their parameters.
+    ranges: Vec<[[f64; 2]; 2]>,
+    /// Where plates are measured from, and how far they are from there at most.
+    origin: Vec3,
+    radius: f64,
     /// How many bins a side of the parameter square is divided into.
     pub bins: usize,
 }
@@ -112,7 +218,18 @@ impl Plates {
         let twigs = std::mem::take(&mut cells.twigs);
         let pieces = cells.pieces.len();
         let hair = HAIR * cells.tree.size;
-        let all = twigs.iter().map(|twig| {
+        let bounds = cells.tree.bounds;
+        let (origin, radius) = (bounds.centre(), bounds.low.distance(bounds.high));
+        let mut made = Self {
+            plates: Vec::with_capacity(twigs.len()),
+            places: Vec::with_capacity(twigs.len()),
+            turns: Vec::with_capacity(twigs.len()),
+            ranges: twigs.iter().map(|twig| twig.patch.uv).collect(),
+            origin,
+            radius,
+            bins: ((pieces as f64).sqrt().ceil() as usize).clamp(4, 64),
+        };
+        for twig in &twigs {
             let patch = &twig.patch;
             let x = patch_powers(patch);
             let flat = Flat::new(patch, &x);
@@ -161,24 +278,39 @@ impl Plates {
                     (low, high) = (low + by.into(), high - by.into());
                 }
             }
-            Plate {
-                low,
-                high,
-                c: flat.c,
-                a: flat.a,
-                b: flat.b,
-                normal,
-                bend: flat.bend,
-                longest: 2.0 * flat.a.norm().max(flat.b.norm()),
-                turns: [0, 1, 2, 3, 4].map(|k| (turns[k] - normal * along[k]) * share),
-                rest: if sure { rest * share } else { f64::INFINITY },
-                uv: patch.uv,
-                smooth,
+            // Up to the next number in single precision, and above its rounding.
+            let up = |x: f64| (x * (1.0 + ROUNDING)) as f32;
+            // Squares go from 0 to 1 only: with half of what they add it is half as far to either side.
+            let squares = [x[8], x[2], x[10]];
+            let c = squares.iter().fold(flat.c, |c, x| c + *x * 0.5) - origin;
+            let bend = flat.bend - 0.5 * squares.iter().map(|x| x.norm()).sum::<f64>();
+            made.plates.push(Plate {
+                rows: [0, 1, 2].map(|k| [c[k], flat.a[k], flat.b[k], normal[k]].map(|x| x as f32)),
+                height: normal.dot(c) as f32,
+                bend: up(bend + ROUNDING * radius),
+                longest: (2.0 * flat.a.norm().max(flat.b.norm())) as f32,
+                rest: if sure { up(rest * share + ROUNDING) } else { f32::INFINITY },
+            });
+            made.places.push(Place {
+                ends: [low.x, low.y, low.z, -high.x, -high.y, -high.z],
                 below: twig.below,
                 cell: twig.cell,
-            }
-        });
-        Self { all: all.collect(), bins: ((pieces as f64).sqrt().ceil() as usize).clamp(4, 64) }
+                smooth,
+            });
+            let turns = [0, 1, 2, 3, 4].map(|k| (turns[k] - normal * along[k]) * share);
+            let [ms, mt, mss, mst, mtt] = turns;
+            let margin = up(ROUNDING * turns.iter().map(|m| m.norm()).sum::<f64>());
+            made.turns.push(Turn {
+                rows: [0, 1, 2].map(|axis| [ms, mt, mss, mst].map(|m| m[axis] as f32)),
+                last: [mtt.x as f32, mtt.y as f32, mtt.z as f32, margin],
+            });
+        }
+        made
+    }
+
+    #[inline(always)]
+    fn sight(&self, number: u32) -> Sight<'_> {
+        Sight { all: self, number: number as usize }
     }
 }
 
@@ -239,14 +371,15 @@ impl Trails {
     }
 
     /// True when a branch passes both plates at one place, or beside them.
-    pub fn pass(&self, p: &Plate, q: &Plate) -> bool {
+    pub fn pass(&self, p: &Sight, q: &Sight) -> bool {
+        let [p, q] = [p, q].map(|at| at.all.ranges[at.number]);
         let wider = |[a, b]: [f64; 2]| {
             let more = 0.5 * BESIDE * (b - a);
             [a - more, b + more]
         };
-        let ranges = [p.uv[0], p.uv[1], q.uv[0], q.uv[1]].map(wider);
+        let ranges = [p[0], p[1], q[0], q[1]].map(wider);
         // A bin beside another that the plate only touches need not be looked at.
-        let [us, vs] = p.uv.map(|[a, b]| {
+        let [us, vs] = p.map(|[a, b]| {
             let less = 1e-9 * (b - a);
             self.bin(a + less)..self.bin(b - less) + 1
         });
@@ -283,44 +416,94 @@ impl Leg {
 /// What a descent does with pairs of plates.
 pub(crate) trait Visitor {
     /// True when a pair needs no closer look although both may meet.
-    fn done(&mut self, p: &Plate, q: &Plate) -> bool;
+    fn done(&mut self, p: &Sight, q: &Sight) -> bool;
     /// Looks at a pair of cells; false when there were too many.
-    fn cells(&mut self, p: &Plate, q: &Plate) -> bool;
+    fn cells(&mut self, p: &Sight, q: &Sight) -> bool;
 }
 
-/// Goes down the plates below the pairs on the stack; false when the visitor ended it.
-pub(crate) fn descend(
-    [first, second]: [&Plates; 2],
-    stack: &mut Vec<[u32; 2]>,
-    visitor: &mut impl Visitor,
-) -> bool {
-    while let Some([i, j]) = stack.pop() {
-        let (p, q) = (&first.all[i as usize], &second.all[j as usize]);
-        if visitor.done(p, q) {
-            continue;
-        }
-        match (p.halves(), q.halves()) {
-            (None, None) => {
-                if !visitor.cells(p, q) {
+/// Two surfaces of which the pairs of plates are gone through.
+#[derive(Clone, Copy)]
+pub(crate) struct Pairs<'a> {
+    both: [&'a Plates; 2],
+    /// From the place that the first one is measured from to that of the second.
+    shift: [f32; 3],
+    margin: f32,
+}
+
+impl<'a> Pairs<'a> {
+    pub fn new(first: &'a Plates, second: &'a Plates) -> Self {
+        let shift = second.origin - first.origin;
+        let margin = ROUNDING * (shift.norm() + first.radius + second.radius);
+        let shift = shift.to_array().map(|x| x as f32);
+        Self { both: [first, second], shift, margin: margin as f32 }
+    }
+
+    /// Goes down the plates below two pieces; false when the visitor ended it.
+    pub fn descend(&self, pieces: [u32; 2], visitor: &mut impl Visitor) -> bool {
+        pulp::Arch::new().dispatch(Descent { pairs: *self, pieces, visitor })
+    }
+}
+
+struct Descent<'a, V> {
+    pairs: Pairs<'a>,
+    pieces: [u32; 2],
+    visitor: &'a mut V,
+}
+
+impl<V: Visitor> pulp::NullaryFnOnce for Descent<'_, V> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let Descent { pairs: Pairs { both, shift, margin }, pieces: [i, j], visitor } = self;
+        let [first, second] = both;
+        let back = [-shift[0], -shift[1], -shift[2]];
+        // Below a piece each halving leaves one pair more.
+        let mut stack = [[0u32; 2]; STACK];
+        stack[0] = [i, j];
+        let (p, q) = (first.sight(i), second.sight(j));
+        let mut count = usize::from(!p.apart(&q, shift, margin));
+        while count > 0 {
+            count -= 1;
+            let [i, j] = stack[count];
+            let (p, q) = (first.sight(i), second.sight(j));
+            if visitor.done(&p, &q) {
+                continue;
+            }
+            let (at, other) = (p.place(), q.place());
+            if at.below | other.below == 0 {
+                if !visitor.cells(&p, &q) {
                     return false;
                 }
+                continue;
             }
-            (Some([a, b]), other) if other.is_none() || p.longest >= q.longest => {
-                for k in [b, a] {
-                    if !first.all[k as usize].apart(q) {
-                        stack.push([k, j]);
+            // The longer one is halved. Whether a half stays is as good as a coin's fall, which no
+            // processor foresees: both are written down, and the count tells which stays.
+            let longer = p.plate().longest >= q.plate().longest;
+            if at.below > 0 && (other.below == 0) | longer {
+                let halves = [first.sight(at.below + 1), first.sight(at.below)];
+                let facing = other.facing();
+                let apart = [halves[0].place().apart(&facing), halves[1].place().apart(&facing)];
+                for k in [0, 1] {
+                    if !apart[k] {
+                        stack[count] = [halves[k].number as u32, j];
+                        let aside = halves[k].plate().aside(q.plate(), shift, margin);
+                        count += usize::from(!aside);
+                    }
+                }
+            } else {
+                let halves = [second.sight(other.below + 1), second.sight(other.below)];
+                let facing = at.facing();
+                let apart = [halves[0].place().apart(&facing), halves[1].place().apart(&facing)];
+                for k in [0, 1] {
+                    if !apart[k] {
+                        stack[count] = [i, halves[k].number as u32];
+                        let aside = halves[k].plate().aside(p.plate(), back, margin);
+                        count += usize::from(!aside);
                     }
                 }
             }
-            (_, Some([a, b])) => {
-                for k in [b, a] {
-                    if !p.apart(&second.all[k as usize]) {
-                        stack.push([i, k]);
-                    }
-                }
-            }
-            (Some(_), None) => {}
         }
+        true
     }
-    true
 }
