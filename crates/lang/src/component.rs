@@ -60,13 +60,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         for arg in given.iter() {
             let Some(ident) = arg.name else { continue };
             let word = m.program.name(ident.symbol);
-            if inner.program.symbol(word).is_none() {
-                let own = declared(&inner);
+            let own = declared(&inner);
+            if !own.iter().any(|name| name == word) && !is_used(&inner, word) {
                 return Err(Diagnostic::error(
                     "unknown-argument",
                     format!("`{path}` has nothing called `{word}`"),
                 )
                 .at(ident.span)
+                .expected(listed(&own))
                 .suggest(word, own.iter().map(String::as_str)));
             }
             let value = self.expr(m, arg.value)?;
@@ -149,6 +150,28 @@ fn declared(m: &Module) -> Vec<String> {
         }
     }
     names
+}
+
+/// True when an expression of the file has the name for a value: it may leave the declaration to its
+/// user. Words such as those of arguments and kinds are no names of that sort.
+fn is_used(m: &Module, word: &str) -> bool {
+    m.program.symbol(word).is_some_and(|wanted| {
+        (0..m.program.expr_count() as u32).any(
+            |k| matches!(m.program[ExprId(k)].kind, ExprKind::Name(symbol) if symbol == wanted),
+        )
+    })
+}
+
+/// What may be given to a file with these declarations, in words.
+fn listed(own: &[String]) -> String {
+    /// More names than this are not read.
+    const MOST: usize = 12;
+    if own.is_empty() {
+        return "no named argument: the file declares nothing".into();
+    }
+    let names: Vec<String> = own.iter().take(MOST).map(|name| format!("`{name}`")).collect();
+    let more = if own.len() > MOST { " and others" } else { "" };
+    format!("a name that the file declares: {}{more}", names.join(", "))
 }
 
 /// Adds the objects that nothing but replaced declarations is built on.
