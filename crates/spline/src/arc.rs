@@ -42,8 +42,8 @@ pub struct Arc<T> {
 enum Form<T> {
     /// From `from` to `to`; `bulge` is perpendicular to the chord, on the arc's side, as long as
     /// half the angle times the chord. With h half the angle, d the chord:
-    /// C = P + sin(h t)/sin h (d cos(h (1-t)) + (bulge/h) sin(h (1-t))).
-    Chord { from: Vec3<T>, to: Vec3<T>, bulge: Vec3<T>, half_sq: T },
+    /// C = P + sin(h t)/sin h (d cos(h (1-t)) + (bulge/h) sin(h (1-t))). `whole` is sin h / h.
+    Chord { from: Vec3<T>, to: Vec3<T>, bulge: Vec3<T>, half_sq: T, whole: T },
     /// About `centre` from the radius `spoke`; `turn` is perpendicular to it and as long as the
     /// angle times the radius: C = M + spoke cos(a t) + (turn/a) sin(a t).
     Sector { centre: Vec3<T>, spoke: Vec3<T>, turn: Vec3<T>, angle_sq: T },
@@ -164,12 +164,15 @@ impl<T: Real> Arc<T> {
         // Rounding of collinear points must not turn the line into a circle of huge radius.
         let epsilon = (8.0 * f64::EPSILON).powi(2) * side.norm_sq().re() * chord.norm_sq().re();
         if cosine.re() <= 0.0 && sine_sq.re() <= epsilon {
-            let (bulge, half_sq) = (Vec3::zero(), T::zero());
-            return Self { form: Form::Chord { from, to, bulge, half_sq } };
+            return Self::chord(from, to, Vec3::zero(), T::zero());
         }
         let rate = angle_over_sine(sine_sq, cosine);
-        let bulge = chord.cross(normal) * rate;
-        Self { form: Form::Chord { from, to, bulge, half_sq: rate * rate * sine_sq } }
+        Self::chord(from, to, chord.cross(normal) * rate, rate * rate * sine_sq)
+    }
+
+    fn chord(from: Vec3<T>, to: Vec3<T>, bulge: Vec3<T>, half_sq: T) -> Self {
+        let whole = sinc_of_sq(half_sq);
+        Self { form: Form::Chord { from, to, bulge, half_sq, whole } }
     }
 
     fn quarters(
@@ -193,10 +196,10 @@ impl<T: Real> Arc<T> {
     pub fn at<J: Jet<T>>(&self, t: J) -> Vec3<J> {
         let rest = -t + 1.0;
         match self.form {
-            Form::Chord { from, to, bulge, half_sq } => {
+            Form::Chord { from, to, bulge, half_sq, whole } => {
                 // A quotient, so that it is exactly 1 at the end.
                 let rise = t * sinc_of_sq((t * t).scaled(half_sq));
-                let rise = rise / J::fixed(sinc_of_sq(half_sq));
+                let rise = rise / J::fixed(whole);
                 let left = (rest * rest).scaled(half_sq);
                 let along = rise * cos_of_sq(left);
                 let (back, up) = (-along + 1.0, rise * rest * sinc_of_sq(left));

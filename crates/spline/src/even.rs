@@ -6,14 +6,29 @@ use moldloft_num::Real;
 /// Below this |q| the Taylor series is used: its terms then fall fast and without cancellation.
 const SERIES: f64 = 1.0;
 
+/// The factors 1 / ((k0 + 2k - 1) (k0 + 2k)) of the series for k = 1 … 12. Made beforehand: twelve
+/// quotients took longer than all the rest of a sum.
+const fn factors(k0: f64) -> [f64; 12] {
+    let mut all = [0.0; 12];
+    let mut k = 0;
+    while k < 12 {
+        let n = k0 + 2.0 * (k as f64 + 1.0);
+        all[k] = 1.0 / (n * (n - 1.0));
+        k += 1;
+    }
+    all
+}
+
+const SINE: [f64; 12] = factors(1.0);
+const COSINE: [f64; 12] = factors(0.0);
+
 /// Horner's rule for the series sum of (-q)^k / ((k0 + 1) (k0 + 2) … (k0 + 2k)).
 #[inline(always)]
-fn series<T: Real>(q: T, k0: f64) -> T {
+fn series<T: Real>(q: T, factors: &[f64; 12]) -> T {
     // Twelve terms: the first left out is below 1 / 24! < 1e-23.
     let mut sum = T::one();
-    for k in (1..=12).rev() {
-        let n = k0 + 2.0 * f64::from(k);
-        sum = -(q * sum) * (1.0 / (n * (n - 1.0))) + 1.0;
+    for &factor in factors.iter().rev() {
+        sum = -(q * sum) * factor + 1.0;
     }
     sum
 }
@@ -22,7 +37,7 @@ fn series<T: Real>(q: T, k0: f64) -> T {
 #[inline(always)]
 pub(crate) fn sinc_of_sq<T: Real>(q: T) -> T {
     if q.re().abs() < SERIES {
-        series(q, 1.0)
+        series(q, &SINE)
     } else if q.re() > 0.0 {
         let r = q.sqrt();
         r.sin() / r
@@ -36,7 +51,7 @@ pub(crate) fn sinc_of_sq<T: Real>(q: T) -> T {
 #[inline(always)]
 pub(crate) fn cos_of_sq<T: Real>(q: T) -> T {
     if q.re().abs() < SERIES {
-        series(q, 0.0)
+        series(q, &COSINE)
     } else if q.re() > 0.0 {
         q.sqrt().cos()
     } else {

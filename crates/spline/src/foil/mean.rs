@@ -88,6 +88,22 @@ impl<T: Real> Load<T> {
         line
     }
 
+    /// Height and slope at x, the slope as [`held`] says.
+    fn both<J: Jet<T>>(&self, x: J) -> (J, J) {
+        if x.re() < HOLD || self.a.re() == 1.0 {
+            return (self.at(x), self.slope(held(x)));
+        }
+        // As by themselves, to the bit, with each logarithm made once.
+        let (a, b) = (J::fixed(self.a), J::fixed(-self.a + 1.0));
+        let (w, z) = (a - x, -x + 1.0);
+        let (ln_w, ln_z) = (ln_abs(w), ln_abs(z));
+        let [square_w, square_z] = [(w, ln_w), (z, ln_z)].map(|(d, ln)| d * d * (ln * 0.5 - 0.25));
+        let y = (square_w - square_z) / b - x_ln(x) + J::fixed(self.g) - x.scaled(self.h);
+        let rate = (z * ln_z - w * ln_w) / b - x.ln() - 1.0 - J::fixed(self.h);
+        let y = (y - x.scaled(self.rest)).scaled(self.scale);
+        (y, (rate - J::fixed(self.rest)).scaled(self.scale))
+    }
+
     fn at<J: Jet<T>>(&self, x: J) -> J {
         let y = if self.a.re() == 1.0 {
             let z = -x + 1.0;
@@ -209,11 +225,11 @@ impl<T: Real> Mean<T> {
                 let (fall, _) = Self::fall(*r, *k);
                 (Self::cubics(*r, *k, x, *scale), (bent - fall) * *scale)
             }
-            Mean::Load(load) => (load.at(x), load.slope(held(x))),
+            Mean::Load(load) => load.both(x),
             Mean::Straightened { load, tilt, slope, scale } => {
                 if x.re() < STRAIGHT {
-                    let (y, rate) = (load.at(x) + x * *tilt, load.slope(held(x)) + *tilt);
-                    (y * *scale, rate * *scale)
+                    let (y, rate) = load.both(x);
+                    ((y + x * *tilt) * *scale, (rate + *tilt) * *scale)
                 } else {
                     ((x - 1.0) * (*slope * *scale), J::from(*slope * *scale))
                 }
@@ -229,6 +245,27 @@ impl<T: Real> Mean<T> {
             Mean::Cubic { r, .. } => vec![*r],
             Mean::Load(load) => vec![load.a.re()],
             Mean::Straightened { load, .. } => vec![load.a.re(), STRAIGHT],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldloft_num::Dual;
+
+    /// Height and slope together are what they are by themselves, derivatives included.
+    #[test]
+    fn height_and_slope_share_their_logarithms_to_the_bit() {
+        for a in [0.0, 0.3, 0.8, 1.0] {
+            let load = Load::new(a);
+            for x in [0.0, 1e-6, 0.9 * HOLD, HOLD, 0.1, 0.3, 0.5, 0.8, 0.93, 1.0] {
+                let bits = |(y, rate): (f64, f64)| [y, rate].map(f64::to_bits);
+                assert_eq!(bits(load.both(x)), bits((load.at(x), load.slope(held(x)))), "{a} {x}");
+            }
+            let load = Load::new(Dual::<1>::seeded(a, 0));
+            let x = Dual::<1>::from(0.4);
+            assert_eq!(load.both(x), (load.at(x), load.slope(x)), "{a}");
         }
     }
 }
