@@ -48,6 +48,7 @@ impl From<KnotError> for SplineError {
 
 impl fmt::Display for SplineError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // For people, who count from one.
         match *self {
             Self::Knots(error) => error.fmt(f),
             Self::Domain { start, end } => {
@@ -56,9 +57,9 @@ impl fmt::Display for SplineError {
             Self::Count { expected, actual } => {
                 write!(f, "expected {expected} control points and weights, found {actual}")
             }
-            Self::NotFinite { index } => write!(f, "control point {index} is not finite"),
+            Self::NotFinite { index } => write!(f, "control point {} is not finite", index + 1),
             Self::Weight { index, weight } => {
-                write!(f, "weight {index} is {weight}, expected a positive number")
+                write!(f, "weight {} is {weight}, expected a positive number", index + 1)
             }
             Self::Outside { t } => write!(f, "expected a parameter inside (0, 1), found {t}"),
         }

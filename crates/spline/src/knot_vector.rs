@@ -57,9 +57,9 @@ impl fmt::Display for KnotError {
             Self::TooFew { expected, actual } => {
                 write!(f, "expected at least {expected} knots, found {actual}")
             }
-            Self::NotFinite { index } => write!(f, "knot {index} is not a finite number"),
+            Self::NotFinite { index } => write!(f, "knot {} is not a finite number", index + 1),
             Self::Unsorted { index, before, knot } => {
-                write!(f, "knot {index} is {knot}, smaller than the knot {before} before it")
+                write!(f, "knot {} is {knot}, smaller than the knot {before} before it", index + 1)
             }
             Self::Multiplicity { knot, actual, allowed } => {
                 write!(f, "knot {knot} stands {actual} times, at most {allowed} are allowed")

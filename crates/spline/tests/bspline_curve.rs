@@ -115,6 +115,9 @@ fn refuses_bad_input_with_numbers() {
     assert_eq!(short, SplineError::Count { expected: 4, actual: 3 });
     let weights = Some(vec![1.0, 1.0, 0.0, 1.0]);
     assert_eq!(new(points(4), weights), SplineError::Weight { index: 2, weight: 0.0 });
+    // The third, as people count.
+    let message = SplineError::Weight { index: 2, weight: 0.0 }.to_string();
+    assert_eq!(message, "weight 3 is 0, expected a positive number");
     let mut bad = points(4);
     bad[1].y = f64::NAN;
     assert_eq!(new(bad, None), SplineError::NotFinite { index: 1 });
