@@ -66,7 +66,7 @@ pub fn section_where(
         if height(flat).abs() <= 1e-12 * (a.abs() + b.abs()) {
             return flat;
         }
-        find_root(&|t| height(p.lerp(q, t)), 0.0, 1.0).map_or(flat, |t| p.lerp(q, t))
+        find_root(|t| height(p.lerp(q, t)), 0.0, 1.0).map_or(flat, |t| p.lerp(q, t))
     };
     pieces.retain(|piece| piece.iter().all(|&node| holds(place(node))));
     chained(&pieces)

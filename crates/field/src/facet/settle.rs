@@ -96,7 +96,8 @@ impl Settling<'_> {
         let slack = UNSAID * (self.cell.high.x - self.cell.low.x);
         surfaces.iter().any(|&s| {
             let g = self.solver.gradient(self.leaves[s as usize].primitive.tape(), p);
-            !(g.value.abs() <= slack * g.slope.norm())
+            let near = g.value.abs() <= slack * g.slope.norm();
+            !near
         })
     }
 
