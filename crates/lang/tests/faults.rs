@@ -107,6 +107,8 @@ fn bad_input_is_told_clearly() {
         ),
         // An axis without length.
         ("Line n(A, A); RevSurf T(l, n);", "zero-length-axis"),
+        // A fillet from a snake to itself.
+        ("LineSnake s(p, q); FilletSurf T(s, s);", "coincident-points"),
         // A fillet of a ball larger than a hollow.
         (
             "AbsPoint E(0, 0, 3); AbsPoint F(1.5, 0, -3); AbsPoint G(3, 0, 3); AbsPoint H(0, 4, 3);

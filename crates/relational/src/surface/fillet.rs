@@ -174,9 +174,11 @@ impl<T: Real> Fillet<T> {
     }
 
     fn check(&self) -> Result<(), Fault> {
+        let mut widest = 0.0_f64;
         for u in Self::trials() {
             let (_, chord, directions) = self.plain(u);
             let length = chord.norm();
+            widest = widest.max(length);
             if length == 0.0 {
                 continue;
             }
@@ -207,6 +209,13 @@ impl<T: Real> Fillet<T> {
                         .in_field(2));
                 }
             }
+        }
+        if widest == 0.0 {
+            return Err(Fault::new("coincident-points", "both snakes of the fillet are one line")
+                .expected("two snakes with a way from the one to the other")
+                .found("no distance between them")
+                .help("choose another snake for one of the two")
+                .in_field(1));
         }
         if !self.closed {
             return Ok(());
