@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -503,12 +505,13 @@ class Set:
         """
         corners = _corners(low, high) or self._core.around()
         box = np.array(corners)
-        middle, size_of = box.mean(axis=0), float(np.linalg.norm(box[1] - box[0]))
-        target = np.array(triple(centre, "centre")) if centre is not None else middle
-        away = np.array([-0.62, -0.68, 0.42])
-        away /= np.linalg.norm(away)
-        reach = 0.56 * size_of / np.tan(angle / 2)
-        place = np.array(triple(eye, "eye")) if eye is not None else target + away * reach
+        target = np.array(triple(centre, "centre")) if centre is not None else box.mean(axis=0)
+        if eye is not None:
+            place = np.array(triple(eye, "eye"))
+        else:
+            away = np.array([-0.62, -0.68, 0.42])
+            away /= np.linalg.norm(away)
+            place = target + away * _reach(box, target, away, triple(up, "up"), angle, size)
         if lights is None:
             ahead = (target - place) / np.linalg.norm(target - place)
             right = np.cross(ahead, np.array(triple(up, "up")))
@@ -561,6 +564,27 @@ def nothing() -> Set:
 def cuboid(low: Triple, high: Triple) -> Set:
     """The box between two corners."""
     return Set(_core.Set.cuboid(triple(low, "low corner"), triple(high, "high corner")))
+
+
+def _reach(
+    box: Floats,
+    target: Floats,
+    away: Floats,
+    up: Sequence[float],
+    angle: float,
+    size: tuple[int, int],
+) -> float:
+    """How far away one sees all of a box, with a little room about it."""
+    right = np.cross(np.array(up), away)
+    if not np.linalg.norm(right) > 0:
+        right = np.array([1.0, 0.0, 0.0])
+    right /= np.linalg.norm(right)
+    corners = np.array(list(itertools.product(*box.T))) - target
+    across, along = np.abs(corners @ right), corners @ away
+    upward = np.abs(corners @ np.cross(away, right))
+    slope = 0.92 * math.tan(angle / 2)
+    wide = slope * size[0] / size[1]
+    return float(max((upward / slope + along).max(), (across / wide + along).max()))
 
 
 def segment(start: Triple, end: Triple) -> Set:
