@@ -240,6 +240,7 @@ impl<T: Real> March<'_, T> {
             reach.push([step / u.norm(), step / v.norm()]);
             systems.push(Some([times(&solve, &a), times(&solve, &b)]));
         }
+        self.lead_poles(step, &mut moved);
         // (I + C^-1 A d_i) (I + C^-1 B d_j) dr = C^-1 (0, 0, V) = the step along the normal. Smoothing is
         // a second difference on the left, in proportion to the step over the cell.
         for axis in [1, 0] {
@@ -255,6 +256,40 @@ impl<T: Real> March<'_, T> {
         }
         self.mend_edges(&mut new);
         Ok(new)
+    }
+
+    /// Gives poles the motion that the line beside them shares: what smooths the lines to a pole pulls at what
+    /// moves there, too.
+    fn lead_poles(&self, step: T, moved: &mut [Vec3<T>]) {
+        let n = self.sheet.n;
+        for axis in 0..2 {
+            let (last, count) = (self.extent(axis) - 1, self.extent(1 - axis));
+            let index = |k: usize, l: usize| if axis == 0 { k * n + l } else { l * n + k };
+            for (end, k, beside) in [(0, 0, 1), (1, last, last - 1)] {
+                if self.side(axis, end) != Side::Pole {
+                    continue;
+                }
+                let mut mean = Vec3::zero();
+                (0..count).for_each(|l| mean += moved[index(beside, l)]);
+                let motion =
+                    self.along_pole(axis, mean).map_or_else(Vec3::zero, |unit| unit * step);
+                (0..count).for_each(|l| moved[index(k, l)] = motion);
+            }
+        }
+    }
+
+    /// The direction of a pole's motion: a half body has motions to one side only, and what lies in its planes of
+    /// symmetry is kept.
+    fn along_pole(&self, axis: usize, mean: Vec3<T>) -> Option<Vec3<T>> {
+        let mut direction = mean;
+        for end in 0..2 {
+            if let Side::Symmetry(plane) = self.side(1 - axis, end) {
+                let mut p = direction.to_array();
+                p[plane] = T::zero();
+                direction = p.into();
+            }
+        }
+        direction.normalized()
     }
 
     /// One block-tridiagonal system along an axis, by elimination.
@@ -406,16 +441,7 @@ impl<T: Real> March<'_, T> {
             let [i, j] = if axis == 0 { [beside, l] } else { [l, beside] };
             length += (new.at(i, j) - self.sheet.at(i, j)).norm();
         }
-        // A half body has motions to one side only: what lies in its planes of symmetry is kept.
-        let mut direction = mean;
-        for end in 0..2 {
-            if let Side::Symmetry(plane) = self.side(1 - axis, end) {
-                let mut p = direction.to_array();
-                p[plane] = T::zero();
-                direction = p.into();
-            }
-        }
-        match direction.normalized() {
+        match self.along_pole(axis, mean) {
             Some(unit) => unit * (length * (1.0 / count as f64)),
             None => Vec3::zero(),
         }

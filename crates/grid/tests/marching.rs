@@ -2,7 +2,7 @@
 
 use moldloft_grid::*;
 use moldloft_num::{Dual4, Real, Vec3};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 fn heights(n: usize, last: f64) -> Vec<f64> {
     (0..n).map(|k| last * (k as f64 / (n - 1) as f64)).collect()
@@ -141,4 +141,34 @@ fn derivatives_and_refusals() {
     });
     let error = hyperbolic(&fan, &with(heights(3, 0.1))).unwrap_err();
     assert!(matches!(error, GridError::NoNormal { at: [1, 1] }));
+}
+
+/// Half a ball from its nose: the layers are halves of larger balls, at the pole as elsewhere.
+#[test]
+fn a_half_ball_with_a_pole_stays_one() {
+    for (m, n, tall) in [(21, 25, 0.5), (41, 61, 2.0), (11, 9, 0.1)] {
+        let ball = Sheet::from_fn(m, n, |i, j| {
+            let a = FRAC_PI_2 * i as f64 / (m - 1) as f64;
+            let b = FRAC_PI_2 - PI * j as f64 / (n - 1) as f64;
+            Vec3::of(-a.cos(), a.sin() * b.cos(), a.sin() * b.sin())
+        });
+        for smoothing in [0.1, 0.3, 1.0] {
+            let sides = [Side::Pole, Side::Free, Side::Symmetry(1), Side::Symmetry(1)];
+            let heights = vec![0.0, 0.1 * tall, 0.3 * tall, 0.6 * tall, tall];
+            let options = Hyperbolic { heights, sides, smoothing };
+            let layers = hyperbolic(&ball, &options).unwrap();
+            let last = &layers[layers.len() - 1];
+            // On what is convex layers are a little nearer than their heights, everywhere alike.
+            let radius = |i: usize, j: usize| last.at(i, j).norm();
+            let away = radius(m / 2, n / 2) - 1.0;
+            assert!(away > 0.8 * tall && away < 1.01 * tall, "{away} of {tall}");
+            for j in 0..n {
+                for i in 0..m {
+                    let off = (radius(i, j) - 1.0 - away).abs();
+                    assert!(off < 0.1 * tall, "{m} {n} {tall} {smoothing}: {off} at {i}, {j}");
+                }
+                assert!(last.at(0, j) == last.at(0, 0));
+            }
+        }
+    }
 }
