@@ -339,6 +339,9 @@ def test_python_functions_that_fail():
         (lambda: tee().facets(*BOX, depth=4).write("x.dwg"), "not written as `dwg`"),
         (lambda: im.axes()[0].mapped(np.zeros((3, 3))), "degenerate"),
         (lambda: tee().picture(size=(0, 9)), "1 to 8192"),
+        (lambda: tee().picture(size=(9, -1)), "1 to 8192"),
+        (lambda: tee().picture(angle=math.nan), "between 0 and pi"),
+        (lambda: tee().picture(samples=0), "at least one sample"),
     ],
 )
 def test_bad_input(call, match):

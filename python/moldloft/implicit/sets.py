@@ -503,6 +503,12 @@ class Set:
         samples
             Rays along each side of a picture point.
         """
+        if not 0 < angle < math.pi:
+            raise ValueError(f"the angle of view lies between 0 and pi radians, found {angle}")
+        if min(size) < 1:
+            raise ValueError(f"a picture is 1 to 8192 points wide and high, found {size}")
+        if samples < 1:
+            raise ValueError(f"a picture point takes at least one sample, found {samples}")
         corners = _corners(low, high) or self._core.around()
         box = np.array(corners)
         target = np.array(triple(centre, "centre")) if centre is not None else box.mean(axis=0)
