@@ -102,8 +102,6 @@ mod solver;
 mod space;
 mod spans;
 pub mod surface;
-#[cfg(test)]
-mod testing;
 
 pub use breaks::{Finding, findings, with_findings};
 pub use certificate::{Certificate, ball_gap};

@@ -36,9 +36,6 @@ mod sheets;
 mod tape;
 mod transform;
 
-#[cfg(test)]
-mod random;
-
 pub use algebra::{Gradient, GradientRange, Hessian, Unary};
 pub use blend::{
     Blend, CIRCULAR, check_rail, check_rails, fillet, liming, liming_on_rail, round, setback_rail,
