@@ -4,8 +4,8 @@ mod common;
 
 use common::{Random, ids, open, rounds, sound, told};
 use moldloft_lang::{Document, Panelled};
-use moldloft_model::Remark;
 use moldloft_num::Vec3;
+use moldloft_panel::Remark;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;
