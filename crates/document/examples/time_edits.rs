@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p moldloft-lang --example time_edits`
 
-use moldloft_lang::{Document, NoFiles, registry};
+use moldloft_document::{Document, NoFiles, registry};
 use std::fmt::Write;
 use std::time::Instant;
 

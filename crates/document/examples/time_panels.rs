@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p moldloft-lang --example time_panels -- FILE [TIMES] [PARAMETER] [CHANGES]`
 
-use moldloft_lang::{Document, NoFiles, registry};
+use moldloft_document::{Document, NoFiles, registry};
 use std::time::Instant;
 
 /// The text with `{n, m}` after `divisions =` multiplied, where both are numbers.

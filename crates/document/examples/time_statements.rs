@@ -5,7 +5,7 @@
 //! The least time of many short runs, by the clock, so that other work on the machine counts little; a
 //! statement's is the difference of a program that repeats it and one that repeats an empty statement.
 
-use moldloft_lang::{Document, NoFiles, registry};
+use moldloft_document::{Document, NoFiles, registry};
 use pulp::{Arch, Simd, WithSimd};
 use std::time::{Duration, Instant};
 

@@ -1,13 +1,13 @@
-use crate::env::{Binding, Evaluation, Param};
-use crate::interpreter::{Inputs, Seed, Settings};
-use crate::module::Modules;
-use crate::place::NumberPath;
-use crate::program::{self, Program};
-use crate::sketch_file::{self, SketchFile};
 use crate::solve::Solved;
-use crate::world::World;
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Sources};
+use moldloft_lang::World;
+use moldloft_lang::run::interpreter::{Inputs, Settings};
+use moldloft_lang::run::program::{self, Program};
+use moldloft_lang::source::env::{Binding, Evaluation, Param, Seed};
+use moldloft_lang::source::module::Modules;
+use moldloft_lang::source::sketch_file::{self, SketchFile};
+use moldloft_lang::value::number_path::NumberPath;
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
 use moldloft_num::Dual4;
@@ -30,8 +30,8 @@ pub struct Document {
     pub(crate) overrides: IndexMap<String, f64>,
     pub(crate) plain: Evaluation<f64>,
     pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
-    panelled: Option<(u64, Arc<Panelled>)>,
-    pub(crate) blocked: Option<(u64, Arc<crate::volume::Blocked>)>,
+    pub(crate) panelled: Option<(u64, Arc<Panelled>)>,
+    pub(crate) blocked: Option<(u64, Arc<crate::measures::blocks::Blocked>)>,
     /// The counts of divisions at the text's own values, and the version of the text.
     nominal: Option<(u64, Nominal)>,
     pub(crate) applied: Applied,
@@ -46,7 +46,7 @@ pub(crate) enum Source {
     /// A program; its text is module 0.
     Program,
     /// A model file.
-    ModelFile(Box<crate::model_file::ModelFileSource>),
+    ModelFile(Box<moldloft_lang::model_file::ModelFileSource>),
     /// A sketch file: module 0 is an empty program, and the sketch is brought in after it.
     Sketch(Arc<SketchFile>),
     /// Nothing: the file could not be read.
@@ -139,7 +139,8 @@ impl Document {
             let sketch = SketchFile::open(name, &text, file, &*self.world);
             self.source = Source::Sketch(Arc::new(sketch));
         } else if model_file {
-            let (source, diagnostics) = crate::model_file::ModelFileSource::parse(text, file);
+            let (source, diagnostics) =
+                moldloft_lang::model_file::ModelFileSource::parse(text, file);
             self.text_diagnostics = diagnostics;
             self.source = Source::ModelFile(Box::new(source));
         } else {
@@ -212,6 +213,7 @@ impl Document {
             registry: &self.registry,
             sources: &mut self.sources,
             sketch,
+            converted: moldloft_lang::model_file::converted,
         };
         let applied = match &self.source {
             Source::Program | Source::Sketch(_) => program.run(evaluation, inputs, &mut found),
@@ -227,7 +229,7 @@ impl Document {
     }
 
     /// The diagnostics of failed objects; what they block is told with them, once.
-    fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+    pub(crate) fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.failed() == 0 {
             return Vec::new();
         }
@@ -240,7 +242,7 @@ impl Document {
         let mut diagnostics = Vec::new();
         for object in evaluation.graph.objects() {
             let Some(fault) = object.fault() else { continue };
-            let mut diagnostic = crate::place::unplaced(fault);
+            let mut diagnostic = moldloft_lang::source::fault_location::unplaced(fault);
             diagnostic.message = format!("`{}`: {}", object.name, diagnostic.message);
             let span = match &self.source {
                 Source::Program | Source::Sketch(_) => {
@@ -273,7 +275,7 @@ impl Document {
     }
 
     /// The warnings of objects that the user should know something of.
-    fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+    pub(crate) fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.remarked() == 0 {
             return Vec::new();
         }
@@ -415,11 +417,11 @@ impl Document {
     /// runs it.
     ///
     /// # Errors
-    /// When that is more than [`crate::MOST_REFINED`] times.
+    /// When that is more than [`moldloft_lang::MOST_REFINED`] times.
     pub fn refine(&mut self, times: u32) -> Result<Applied, Diagnostic> {
-        if times > crate::MOST_REFINED {
+        if times > moldloft_lang::MOST_REFINED {
             return Err(Diagnostic::error("out-of-range", "this is too fine")
-                .expected(format!("a whole number from 0 to {}", crate::MOST_REFINED))
+                .expected(format!("a whole number from 0 to {}", moldloft_lang::MOST_REFINED))
                 .found(times.to_string()));
         }
         self.settings.refine = times;
@@ -447,7 +449,7 @@ impl Document {
 
     /// The variables that the program's own files declare: name, type with extents, and value.
     pub fn variables(&self) -> Vec<(String, String, Value<f64>)> {
-        let names = (0..self.modules.name_count() as u32).map(crate::module::Name);
+        let names = (0..self.modules.name_count() as u32).map(moldloft_lang::source::module::Name);
         let mut found = Vec::new();
         for name in names {
             let Some(Some(bound)) = self.plain.env.globals.get(name.0 as usize) else { continue };
@@ -456,7 +458,7 @@ impl Document {
             let of_library =
                 modules.clone().any(|m| m.library && m.program.file() == bound.span.file);
             if !of_library && bound.span.is_known() && !matches!(value, Value::Unset) {
-                let shape = crate::variables::shape_text(value);
+                let shape = moldloft_lang::value::variables::shape_text(value);
                 found.push((bound.span, self.modules.text(name).to_string(), shape, value.clone()));
             }
         }
@@ -490,238 +492,7 @@ impl Document {
     pub fn symmetry(&self) -> String {
         match &self.source {
             Source::ModelFile(source) => source.symmetry(),
-            _ => crate::header::symmetry(&self.plain.graph),
-        }
-    }
-
-    /// Sets parameters and literals of objects (`P21.y`), all or none, and evaluates what they
-    /// reach.
-    ///
-    /// # Errors
-    /// What is wrong with the assignments; the model is then as before.
-    pub fn set(&mut self, assignments: &[(String, f64)]) -> Result<Applied, Vec<Diagnostic>> {
-        let before = self.overrides.clone();
-        let mut edits = Vec::new();
-        let mut errors = Vec::new();
-        let mut rerun = false;
-        for (name, value) in assignments {
-            // Minus zero is written as zero, so it is zero.
-            let value = &(value + 0.0);
-            if self.params().iter().any(|p| p.name == *name) {
-                if let Err(diagnostic) = self.check_param(name, *value) {
-                    errors.push(diagnostic);
-                }
-                self.overrides.insert(name.clone(), *value);
-                rerun = true;
-            } else {
-                match self.literal(name, *value).and_then(|edit| self.in_range(name, edit)) {
-                    Ok(edit) => edits.push(edit),
-                    Err(diagnostic) => errors.push(diagnostic),
-                }
-            }
-        }
-        if !errors.is_empty() {
-            self.overrides = before;
-            return Err(errors);
-        }
-        // Conditions may have changed.
-        rerun |= !self.solved.is_empty();
-        for edit in &edits {
-            rerun |= self.must_rerun(edit);
-        }
-        for edit in &edits {
-            self.write_literal(edit).map_err(|d| vec![d])?;
-        }
-        if rerun {
-            return Ok(self.run());
-        }
-        self.edit(&edits);
-        Ok(self.applied)
-    }
-
-    fn check_param(&self, name: &str, value: f64) -> Result<(), Diagnostic> {
-        let Some(param) = self.params().iter().find(|p| p.name == name) else { return Ok(()) };
-        let wrong = |expected: String| {
-            Diagnostic::error("out-of-range", format!("`{name}` = {value} is out of its range"))
-                .at(param.span)
-                .expected(expected)
-                .found(value.to_string())
-        };
-        if !value.is_finite() {
-            return Err(wrong("a finite number".into()));
-        }
-        match param.range {
-            Some((low, high)) if !(low..=high).contains(&value) => {
-                Err(wrong(format!("a number from {low} to {high}")))
-            }
-            _ if param.is_int && value.fract() != 0.0 => Err(wrong("a whole number".into())),
-            _ => Ok(()),
-        }
-    }
-
-    /// The literal that `name` (`P21.y`) means.
-    pub(crate) fn literal(&self, name: &str, value: f64) -> Result<LiteralEdit, Diagnostic> {
-        if !value.is_finite() {
-            return Err(Diagnostic::error("not-finite", format!("`{name}` cannot be {value}"))
-                .expected("a finite number")
-                .found(value.to_string()));
-        }
-        let graph = &self.plain.graph;
-        // The object's own name may contain dots: the longest that is one wins.
-        let split = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
-        let found =
-            split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)));
-        let Some((key, path)) = found else {
-            let params = self.params().iter().map(|p| p.name.as_str());
-            let objects = graph.objects().map(|o| o.name.as_ref());
-            let stem = name.split('.').next().unwrap_or(name);
-            return Err(Diagnostic::error(
-                "unknown-name",
-                format!("there is nothing called `{name}` to set"),
-            )
-            .expected("a parameter, or a number of an object such as P21.y")
-            .suggest(stem, params.chain(objects)));
-        };
-        let object = graph.get(key).expect("found above");
-        let fields = || object.row.fields.iter().map(|f| f.name).collect::<Vec<_>>().join(", ");
-        let Some(path) = NumberPath::parse(&object.row, path) else {
-            return Err(Diagnostic::error(
-                "unknown-member",
-                format!("{} `{}` has no number `{}`", object.row.name, object.name, &path[1..]),
-            )
-            .expected(fields()));
-        };
-        let mut args = object.args.clone();
-        if path.change(&mut args, |_| value).is_none() {
-            return Err(Diagnostic::error("not-a-number", format!("`{name}` is not a number"))
-                .help(
-                    "only numbers can be set; edit the text to change what an object is built on",
-                ));
-        }
-        if let Some(sketch) = self.plain.env.sketches.iter().find(|s| {
-            object.name.strip_prefix(s.as_str()).is_some_and(|rest| rest.starts_with('.'))
-        }) {
-            let start = format!("{sketch}.");
-            let params = self.params().iter().filter(|p| p.name.starts_with(&start));
-            let params: Vec<&str> = params.map(|p| p.name.as_str()).collect();
-            return Err(Diagnostic::error(
-                "not-a-literal",
-                format!("`{name}` follows from the dimensions of the sketch"),
-            )
-            .help(format!("set a dimension: {}", params.join(", "))));
-        }
-        let place = match &self.source {
-            Source::Program | Source::Sketch(_) => {
-                program::literal(&self.modules, &self.plain.env, object, &path)
-                    .map(LiteralPlace::Program)
-            }
-            Source::ModelFile(source) => source.literal(object, &path).map(LiteralPlace::ModelFile),
-            Source::None => unreachable!("there are objects"),
-        };
-        let place = place.map_err(|why| self.not_literal(name, why))?;
-        Ok(LiteralEdit { key, path, place, value })
-    }
-
-    /// The edit, when a run of the edited text would take the number.
-    fn in_range(&self, name: &str, edit: LiteralEdit) -> Result<LiteralEdit, Diagnostic> {
-        let object = self.plain.graph.get(edit.key).expect("the object of an edit");
-        if let LiteralPlace::Program((module, _)) = edit.place
-            && module != 0
-        {
-            let file = &self.modules.get(module).path;
-            return Err(Diagnostic::error("not-here", format!("`{name}` cannot be set here"))
-                .found(format!("a number in the loaded file `{file}`"))
-                .help("edit that file, or make the number a parameter of this one"));
-        }
-        let (field, x) = (&object.row.fields[edit.path.field], edit.value);
-        let low = field.min.unwrap_or(f64::NEG_INFINITY);
-        let high = field.max.unwrap_or(f64::INFINITY);
-        let whole = field.class != Class::Integer || x.fract() == 0.0;
-        if whole && (low..=high).contains(&x) {
-            return Ok(edit);
-        }
-        let kind = if field.class == Class::Integer { "a whole number" } else { "a number" };
-        Err(Diagnostic::error("out-of-range", format!("`{name}` = {x} is out of range"))
-            .expected(format!("{kind} from {low} to {high}"))
-            .found(x.to_string()))
-    }
-
-    fn not_literal(&self, name: &str, why: program::NotLiteral) -> Diagnostic {
-        match why {
-            program::NotLiteral::Expression { span, names } => {
-                let params: Vec<&str> = self
-                    .params()
-                    .iter()
-                    .map(|p| p.name.as_str())
-                    .filter(|p| names.iter().any(|n| n == p))
-                    .collect();
-                let diagnostic = Diagnostic::error(
-                    "not-a-literal",
-                    format!("`{name}` is computed and cannot be set by itself"),
-                )
-                .at(span)
-                .expected("a number written as such");
-                if params.is_empty() {
-                    diagnostic.help("edit the expression")
-                } else {
-                    diagnostic.help(format!("set what it is computed from: {}", params.join(", ")))
-                }
-            }
-            program::NotLiteral::Shared { span } => Diagnostic::error(
-                "not-a-literal",
-                format!("`{name}` shares its number with other objects made by the same statement"),
-            )
-            .at(span)
-            .help("edit the text, or make the number a parameter"),
-            program::NotLiteral::Default => Diagnostic::error(
-                "not-a-literal",
-                format!("`{name}` is not written in the text: it is a default"),
-            )
-            .help("write it in the text first"),
-        }
-    }
-
-    fn must_rerun(&self, edit: &LiteralEdit) -> bool {
-        let graph = &self.plain.graph;
-        let read = |key| graph.get(key).is_some_and(|o| o.read_by_program);
-        read(edit.key) || (graph.any_read() && graph.dependents(edit.key).into_iter().any(read))
-    }
-
-    fn write_literal(&mut self, edit: &LiteralEdit) -> Result<(), Diagnostic> {
-        match (&edit.place, &mut self.source) {
-            (LiteralPlace::Program((module, literal)), _) => {
-                self.modules.get_mut(*module).program.set_literal(*literal, edit.value)
-            }
-            (LiteralPlace::ModelFile(number), Source::ModelFile(source)) => {
-                source.set(*number, edit.value)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The direct edit: the same change as a run with the new literals would make.
-    fn edit(&mut self, edits: &[LiteralEdit]) {
-        let failed = self.plain.graph.failed();
-        let remarked = self.plain.graph.remarked();
-        let ((), applied) = self.plain.graph.apply(Extent::Edit, |run| {
-            for edit in edits {
-                let Some(object) = run.graph().get(edit.key) else { continue };
-                let mut args = object.args.clone();
-                if edit.path.change(&mut args, |_| edit.value).is_some() {
-                    // The parents stay the same, so no cycle can arise.
-                    let _ = run.set_args(edit.key, args);
-                }
-            }
-        });
-        self.applied = applied;
-        if failed > 0 || applied.failed > 0 || remarked > 0 || self.plain.graph.remarked() > 0 {
-            let evaluation = std::mem::take(&mut self.plain);
-            self.run_diagnostics.retain(|d| d.object.is_none());
-            let failures = self.failures(&evaluation);
-            self.run_diagnostics.extend(failures);
-            let remarks = self.remarks(&evaluation);
-            self.run_diagnostics.extend(remarks);
-            self.plain = evaluation;
+            _ => moldloft_lang::model_file::header::symmetry(&self.plain.graph),
         }
     }
 
@@ -736,7 +507,8 @@ impl Document {
         {
             return Ok(panelled.clone());
         }
-        let unplaced = |f: moldloft_registry::Fault| crate::place::unplaced(&f);
+        let unplaced =
+            |f: moldloft_registry::Fault| moldloft_lang::source::fault_location::unplaced(&f);
         let before = self.panelled.as_ref().map(|(_, p)| p.clone());
         let before = before.as_ref().map(|p| &p.panelling);
         let mut panelling =
@@ -754,18 +526,4 @@ impl Document {
         self.panelled = Some((clock, panelled.clone()));
         Ok(panelled)
     }
-}
-
-/// A change of one number in the text.
-pub(crate) struct LiteralEdit {
-    pub key: moldloft_num::trace::Key,
-    pub path: NumberPath,
-    pub place: LiteralPlace,
-    pub value: f64,
-}
-
-/// Where a number stands.
-pub(crate) enum LiteralPlace {
-    Program((usize, moldloft_syntax::sdl::LiteralId)),
-    ModelFile(crate::model_file::ModelNumber),
 }

@@ -1,12 +1,12 @@
 //! What an editor asks of a text: what a name means, where it is declared and used, what could stand
 //! at a place.
 
-use crate::builtins::BUILTINS;
 use crate::document::Document;
-use crate::env::Binding;
-use crate::module::{Module, RoutineAt};
-use crate::variables::shape_text;
 use moldloft_diag::{FileId, Span};
+use moldloft_lang::functions::context::BUILTINS;
+use moldloft_lang::source::env::Binding;
+use moldloft_lang::source::module::{Module, RoutineAt};
+use moldloft_lang::value::variables::shape_text;
 use moldloft_registry::{Class, Row, Value};
 use moldloft_syntax::sdl::{
     self, Arg, ChainItem, ExprId, ExprKind, Ident, List, Routine, RoutineId, StmtId, StmtKind,
@@ -446,7 +446,7 @@ impl Document {
                 return Vec::new();
             }
             let names = match self.eval(&operand) {
-                Ok(value) => crate::member::names(&value),
+                Ok(value) => moldloft_lang::value::member::names(&value),
                 Err(_) => vec!["x", "y", "z", "d1", "d2"],
             };
             let kind = CompletionKind::Member;
@@ -492,7 +492,7 @@ impl Document {
             if let Some(bound) = bound
                 && let Binding::Variable { value, .. } = &bound.what
             {
-                let name = self.modules.text(crate::module::Name(k as u32));
+                let name = self.modules.text(moldloft_lang::source::module::Name(k as u32));
                 add(name, CompletionKind::Variable, shape_text(value));
             }
         }

@@ -1,8 +1,8 @@
 //! Deleting and renaming objects, in the text and in the model.
 
 use crate::document::{Document, Source};
-use crate::module::Module;
 use moldloft_diag::{Diagnostic, FileId, Span};
+use moldloft_lang::source::module::Module;
 use moldloft_model::Applied;
 use moldloft_syntax::sdl::{self, ExprId, ExprKind, StmtId, StmtKind, Symbol};
 

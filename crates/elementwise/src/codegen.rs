@@ -4,8 +4,8 @@
 //! A product that one sum alone uses is made by the sum's order, and a sum that only another sum uses goes
 //! into that one's. Everything else is kept in a slot, as few as possible.
 
-use crate::fused::{Code, Instr, Src};
-use crate::machine::{Operand, Order, Program, Row, Sign, Term};
+use crate::tape::{Code, Instr, Src};
+use crate::vm::{Operand, Order, Program, Row, Sign, Term};
 
 /// What is known of an instruction.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ enum Step {
 
 /// Memory for planning.
 #[derive(Debug, Default)]
-pub(crate) struct Planner {
+pub struct Planner {
     nodes: Vec<Node>,
     /// Slots that are not in use.
     free: Vec<u16>,

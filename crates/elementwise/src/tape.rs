@@ -4,14 +4,14 @@
 //!
 //! A tape is the element-wise part of an expression, one instruction for each operation on one
 //! component; what is alike is written once. When it is run, its instructions become a program of the
-//! [`machine`](crate::machine), through which the elements go in chunks, so that a statement reads its
+//! [`machine`](crate::vm), through which the elements go in chunks, so that a statement reads its
 //! sources once and writes its result once, whatever the number of its operators.
 //!
 //! Values are those of the operators one after the other, bit for bit: products and sums keep their
 //! order and are rounded each by itself.
 
-use crate::machine::Program;
-use crate::plan::Planner;
+use crate::codegen::Planner;
+use crate::vm::Program;
 use moldloft_num::Real;
 use moldloft_registry::{Array, ArrayShape, Vectors};
 use smallvec::SmallVec;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// Where an instruction finds an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Src {
+pub enum Src {
     /// A row or grid of numbers.
     Plane(u16),
     /// The same number for all elements.
@@ -29,7 +29,7 @@ pub(crate) enum Src {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Code {
+pub enum Code {
     Add,
     Sub,
     Mul,
@@ -44,7 +44,7 @@ pub(crate) enum Code {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Instr {
+pub struct Instr {
     pub code: Code,
     /// Its operands; of those with one, twice the same.
     pub of: [Src; 2],
@@ -77,9 +77,9 @@ impl<T: Real> Plane<T> {
 }
 
 /// A value that a recorded expression finds before its tape is run: the result of one of its entries
-/// (see [`crate::recipe`]).
+/// (see [`moldloft_lang::array::cache`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Cell(pub u16);
+pub struct Cell(pub u16);
 
 impl Cell {
     /// Of a value that a recording does not know to find again.
@@ -88,7 +88,7 @@ impl Cell {
 
 /// Where a source or constant of a tape comes from: a component of a cell, or the number itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Origin {
+pub struct Origin {
     pub cell: Cell,
     pub part: u8,
 }
@@ -105,7 +105,7 @@ impl Origin {
 
 /// See the head of this file.
 #[derive(Debug)]
-pub(crate) struct Tape<T: Real> {
+pub struct Tape<T: Real> {
     planes: Vec<Plane<T>>,
     /// Where the sources and the constants come from.
     pub plane_origins: Vec<Origin>,
@@ -120,7 +120,7 @@ pub(crate) struct Tape<T: Real> {
 }
 
 /// The most instructions, sources and constants of a tape; a longer expression goes in parts.
-pub(crate) const LONGEST: usize = 4_000;
+pub const LONGEST: usize = 4_000;
 
 impl<T: Real> Default for Tape<T> {
     fn default() -> Self {

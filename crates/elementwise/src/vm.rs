@@ -18,7 +18,7 @@ use std::sync::LazyLock;
 
 /// Where the elements of a stretch are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Row {
+pub enum Row {
     /// In a row of the results.
     Out(u16),
     /// In memory of the machine.
@@ -27,14 +27,14 @@ pub(crate) enum Row {
 
 /// An operand of a function: elements, or the same number for all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Operand {
+pub enum Operand {
     Row(Row),
     Const(u16),
 }
 
 /// What is added or multiplied: numbers in front of `c` are of rows, those behind of constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Term {
+pub enum Term {
     /// x
     Row(Row),
     /// x c
@@ -47,7 +47,7 @@ pub(crate) enum Term {
 
 /// Whether a term is added or taken away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sign {
+pub enum Sign {
     Plus,
     Minus,
 }
@@ -55,7 +55,7 @@ pub(crate) enum Sign {
 /// What becomes of the elements of a stretch; each is what a row of them is set to. Products and sums are
 /// rounded each by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Order {
+pub enum Order {
     /// The elements of a source.
     Source(u16),
     /// c
@@ -87,7 +87,7 @@ pub(crate) enum Order {
 
 /// Orders with what they refer to.
 #[derive(Debug)]
-pub(crate) struct Program<T> {
+pub struct Program<T> {
     /// What to do, and the row that it is done for.
     pub orders: Vec<(Order, Row)>,
     pub consts: Vec<T>,

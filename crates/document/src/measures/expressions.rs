@@ -1,12 +1,12 @@
 //! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
 
 use crate::document::{Document, Source};
-use crate::env::Evaluation;
-use crate::interpreter::Inputs;
-use crate::program::Program;
-use crate::variables::Called as _;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
+use moldloft_lang::run::interpreter::Inputs;
+use moldloft_lang::run::program::Program;
+use moldloft_lang::source::env::Evaluation;
+use moldloft_lang::value::variables::Called as _;
 use moldloft_mesh::{Mesh, measure, measure_patch};
 use moldloft_num::{Dual4, Vec3};
 use moldloft_registry::{Scalar, Value};
@@ -50,6 +50,7 @@ impl Document {
             registry: &self.registry,
             sources: &mut self.sources,
             sketch: None,
+            converted: moldloft_lang::model_file::converted,
         };
         program.eval(evaluation, inputs, text)
     }
@@ -83,7 +84,7 @@ impl Document {
             let measures = patch.map_or_else(|| measure(mesh), |k| measure_patch(mesh, k));
             vec![("area", Value::Number(measures.area)), ("volume", Value::Number(measures.volume))]
         } else {
-            crate::hydro::numbers(mesh, &self.hydrostatic_options())?
+            crate::measures::hydrostatics::numbers(mesh, &self.hydrostatic_options())?
         };
         if let Some((_, value)) = numbers.iter().find(|(name, _)| *name == number) {
             return Ok(value.clone());
@@ -191,8 +192,11 @@ impl Document {
     }
 
     /// The options of the model's hydrostatics: afloat at z = 0, mirrored as its header says.
-    pub fn hydrostatic_options(&self) -> crate::hydro::Options {
-        crate::hydro::Options { mirrored: self.symmetry().contains('y'), ..Default::default() }
+    pub fn hydrostatic_options(&self) -> crate::measures::hydrostatics::Options {
+        crate::measures::hydrostatics::Options {
+            mirrored: self.symmetry().contains('y'),
+            ..Default::default()
+        }
     }
 
     /// True when objects come from a program.

@@ -107,7 +107,8 @@ impl Document {
         self.passes(by, |document, evaluation, count| {
             let panelled = document.panelled().map_err(|d| vec![d])?;
             let mesh = panelled.panelling.mesh(&evaluation.graph);
-            let mesh: Mesh<Dual4> = mesh.ok_or_else(|| vec![crate::measures::no_mesh()])?;
+            let mesh: Mesh<Dual4> =
+                mesh.ok_or_else(|| vec![crate::measures::expressions::no_mesh()])?;
             let all = self::answers(&mesh, &symmetry, requests, options);
             for (answer, solved) in answers.iter_mut().zip(all) {
                 let figures = solved.map_err(cannot_float)?.0.afloat.figures();

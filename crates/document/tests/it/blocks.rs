@@ -1,9 +1,7 @@
 //! Volume meshes of models: joins by identity, divisions through all blocks, folded cells.
 
-mod common;
-
-use common::{number, sound};
-use moldloft_lang::Document;
+use crate::common::{number, sound};
+use moldloft_document::Document;
 
 /// Two storeys of four rooms: nine columns of corner points in the plane, three levels.
 fn rooms(extra: &str) -> String {
@@ -110,7 +108,7 @@ fn blends_say_how_faces_must_be_turned() {
          FaceSurf f2(2, low); FaceSurf f3(3, low); FaceSurf f4(4, low); FaceSurf f5(5, low);
          BlendSolid again({f3, f4, f5, top, f1, f2});",
     );
-    let document = common::open(&text);
+    let document = crate::common::open(&text);
     let all = document.diagnostics();
     let found = all.iter().find(|d| d.id == "open-edge").unwrap_or_else(|| panic!("{all:?}"));
     assert!(format!("{found:?}").contains("turns = {"), "{found:?}");

@@ -1,9 +1,7 @@
 //! Components: a file of objects inserted with parents of the caller's.
 
-mod common;
-
-use common::{ids, number, told, vector, with_files};
-use moldloft_lang::Document;
+use crate::common::{ids, number, told, vector, with_files};
+use moldloft_document::Document;
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
 

@@ -1,9 +1,7 @@
 //! Contours of all families, and lists of objects.
 
-mod common;
-
-use common::{ids, number, open, sound, told};
-use moldloft_lang::Section;
+use crate::common::{ids, number, open, sound, told};
+use moldloft_document::Section;
 use std::f64::consts::PI;
 
 /// A cone about an oblique axis (r = 1 - s/4 at the distance s from its base), and a box beside it.

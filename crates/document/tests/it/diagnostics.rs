@@ -8,10 +8,8 @@
 //! `MOLDLOFT_ACCEPT=1 cargo test -p moldloft-lang --test diagnostics` writes the present output
 //! into the files.
 
-mod common;
-
-use common::{ids, line, open, told, with_files};
-use moldloft_lang::Document;
+use crate::common::{ids, line, open, told, with_files};
+use moldloft_document::Document;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -118,6 +116,23 @@ fn every_diagnostic_has_its_place() {
     }
 }
 
+/// The Rust files of a folder and those in it; none when there is no such folder.
+fn rust_files(folder: PathBuf) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten() {
+            let path = entry.expect("a readable folder").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    found
+}
+
 /// The texts of all tests of the crates but this one: an id that stands in one of them is raised
 /// there.
 fn tests_of_crates() -> String {
@@ -125,11 +140,8 @@ fn tests_of_crates() -> String {
     let mut text = String::new();
     for package in std::fs::read_dir(crates).expect("a readable folder") {
         let tests = package.expect("a readable folder").path().join("tests");
-        let Ok(files) = std::fs::read_dir(tests) else { continue };
-        for file in files.map(|f| f.expect("a readable folder").path()) {
-            if file.is_file() && !file.ends_with("diagnostics.rs") {
-                text += &std::fs::read_to_string(file).expect("a readable file");
-            }
+        for file in rust_files(tests).iter().filter(|f| !f.ends_with("diagnostics.rs")) {
+            text += &std::fs::read_to_string(file).expect("a readable file");
         }
     }
     text
@@ -174,27 +186,19 @@ fn every_id_is_raised() {
         }
     }
     let mut missing = BTreeSet::new();
-    for crate_name in ["lang", "registry", "relational", "model"] {
+    for crate_name in ["lang", "document", "registry", "relational", "model"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(crate_name).join("src");
-        let mut folders = vec![folder];
-        while let Some(folder) = folders.pop() {
-            for entry in std::fs::read_dir(folder).expect("a readable folder") {
-                let path = entry.expect("a readable folder").path();
-                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                if path.is_dir() {
-                    folders.push(path);
-                } else if !["model_file.rs", "header.rs", "convert.rs"].contains(&name.as_str()) {
-                    let text = std::fs::read_to_string(&path).expect("a readable file");
-                    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
-                    for begin in ["Diagnostic::error(", "Diagnostic::remark(", "Fault::new("] {
-                        for rest in text.split(begin).skip(1) {
-                            let id = rest
-                                .trim_start()
-                                .strip_prefix('"')
-                                .and_then(|r| r.split('"').next());
-                            missing.extend(id.filter(|id| !id.is_empty()).map(str::to_owned));
-                        }
-                    }
+        for path in rust_files(folder) {
+            // Those of model files have tests of their own.
+            if path.components().any(|c| c.as_os_str() == "model_file") {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("a readable file");
+            let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+            for begin in ["Diagnostic::error(", "Diagnostic::remark(", "Fault::new("] {
+                for rest in text.split(begin).skip(1) {
+                    let id = rest.trim_start().strip_prefix('"').and_then(|r| r.split('"').next());
+                    missing.extend(id.filter(|id| !id.is_empty()).map(str::to_owned));
                 }
             }
         }
@@ -272,8 +276,8 @@ fn set_refuses_what_a_run_would() {
         assert!(format!("{faults:?}").contains(says), "{name}: {faults:?}");
         // All or nothing.
         assert_eq!(document.text(), before, "{name}");
-        assert_eq!(common::number(&mut document, "B.x"), 0.0);
-        assert_eq!(common::number(&mut document, "w"), 2.0);
+        assert_eq!(crate::common::number(&mut document, "B.x"), 0.0);
+        assert_eq!(crate::common::number(&mut document, "w"), 2.0);
     };
     refused("w", 4.0, "out-of-range", "from 1 to 3");
     refused("w", f64::NAN, "out-of-range", "finite");
@@ -297,7 +301,7 @@ fn an_expression_changes_nothing() {
     let mut document = open(text);
     assert!(!document.has_errors(), "{:?}", told(&document));
     assert!(document.eval("f(3)").is_err());
-    assert_eq!(common::number(&mut document, "P.x"), 2.0);
+    assert_eq!(crate::common::number(&mut document, "P.x"), 2.0);
     assert_eq!(document.graph().len(), 2);
     let faults = document.eval("Q.x + nothing + 1").unwrap_err();
     assert_eq!(faults[0].id, "unknown-name");
@@ -305,7 +309,7 @@ fn an_expression_changes_nothing() {
     for text in ["", "1 +", "Q.x = 3", "Q.x; Q.y", "AbsPoint R(1, 2, 3)", "((("] {
         assert!(document.eval(text).is_err(), "{text}");
     }
-    assert_eq!(common::number(&mut document, "Q.x"), 2.0);
+    assert_eq!(crate::common::number(&mut document, "Q.x"), 2.0);
 }
 
 #[test]
@@ -314,12 +318,12 @@ fn numbers_of_loaded_files_are_set_there() {
     let mut document = with_files("load \"lib.sdl\"; RelPoint Q(P, 1);", &[lib]);
     let faults = document.set(&[("P.x".into(), 5.0)]).unwrap_err();
     assert_eq!(faults[0].id, "not-here");
-    assert_eq!(common::number(&mut document, "Q.x"), 2.0);
+    assert_eq!(crate::common::number(&mut document, "Q.x"), 2.0);
     // Derivatives by them exist all the same.
     let d = document
         .derivatives(&["Q.x".into()], &["P.x".into(), "P.x".into(), "Q.dx".into()])
         .unwrap();
-    let d: Vec<String> = d[0].iter().map(moldloft_lang::show::plain).collect();
+    let d: Vec<String> = d[0].iter().map(moldloft_lang::display::plain).collect();
     assert_eq!(d, ["1", "1", "1"]);
 }
 
@@ -366,7 +370,7 @@ fn deleting_and_renaming_are_checked() {
         document.text().contains("AbsPoint bow(1, w, 0);\nLine l(A, bow)")
             && document.text().contains("bow.y")
     );
-    assert_eq!(common::number(&mut document, "bow.y"), 2.0);
+    assert_eq!(crate::common::number(&mut document, "bow.y"), 2.0);
     let applied = document.delete("C").unwrap();
     assert_eq!((applied.evaluated, document.diagnostics().len()), (0, 0));
     assert!(document.text().contains("AbsPoint p(i, 0, 0);\n # far\n"), "{}", document.text());
@@ -377,7 +381,7 @@ fn deleting_and_renaming_are_checked() {
 fn a_long_session_of_expressions_keeps_no_texts() {
     let mut document = open("AbsPoint A(1, 2, 3);");
     for k in 0..2000 {
-        assert_eq!(common::number(&mut document, &format!("A.x + {k}")), 1.0 + f64::from(k));
+        assert_eq!(crate::common::number(&mut document, &format!("A.x + {k}")), 1.0 + f64::from(k));
         assert!(document.eval("A.x + nothing").is_err());
     }
     assert_eq!(document.sources().len(), 2);

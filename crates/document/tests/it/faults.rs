@@ -1,16 +1,14 @@
 //! Refusals that need more than a program: files, floating, solids, models too large; and the bad
 //! input of which designers are most often guilty, each with what was expected and how to mend it.
 
-mod common;
-
-use common::{ids, open, sound, told};
-use moldloft_lang::{AfloatOptions, Document, FloatRequest, Immersion, registry};
+use crate::common::{ids, open, sound, told};
+use moldloft_document::{AfloatOptions, Document, FloatRequest, Immersion, registry};
 
 #[test]
 fn sketches_that_cannot_be_met_and_that_read_too_much() {
     let sketch = "SKETCH A 2D XY\nPOINT 1 0 0\nPOINT 2 9 3\nLINE 1 1 2 TYPE F\nDIM X 1 2 5\nDIM L LENGTH 1 6\n";
     let text = "Sketch a(\"a.skt\", L = 3);";
-    let files = common::Files(vec![("a.skt", sketch)]);
+    let files = crate::common::Files(vec![("a.skt", sketch)]);
     let document = Document::from_text(registry(), Box::new(files), "m.sdl", text);
     let found = document.diagnostics();
     let unsolved = found.iter().find(|d| d.id == "sketch-unsolved");
@@ -24,7 +22,7 @@ fn sketches_that_cannot_be_met_and_that_read_too_much() {
         many.push((format!("f{k}.skt"), format!("POINT {k} {k} 0\n")));
     }
     let files = many.into_iter().map(|(name, text)| (&*name.leak(), &*text.leak())).collect();
-    let files = Box::new(common::Files(files));
+    let files = Box::new(crate::common::Files(files));
     let document = Document::from_text(registry(), files, "m.sdl", "load \"f0.skt\";");
     assert!(ids(&document).contains(&"too-many-files".to_string()), "{:?}", told(&document));
 }

@@ -1,9 +1,7 @@
 //! The examples of all functions of the registry run by themselves.
 
-mod common;
-
-use common::{line, open};
-use moldloft_lang::registry;
+use crate::common::{line, open};
+use moldloft_document::registry;
 
 #[test]
 fn examples_of_functions_run() {

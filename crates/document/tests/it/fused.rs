@@ -1,10 +1,8 @@
 //! Element-wise statements in one pass against operators applied one after the other to whole arrays:
 //! the same bits and the same messages, for plain and dual numbers.
 
-mod common;
-
-use common::{Random, rounds, told};
-use moldloft_lang::{Document, NoFiles, registry};
+use crate::common::{Random, rounds, told};
+use moldloft_document::{Document, NoFiles, registry};
 use moldloft_registry::Value;
 
 /// A random expression of numbers, vectors and arrays, most of which fit.
@@ -239,9 +237,9 @@ fn arrays_filled_in_place_are_no_others() {
         let (a, b) = (fused.eval(name).unwrap(), plain.eval(name).unwrap());
         assert_eq!(bits(&a), bits(&b), "{name}");
     }
-    assert_eq!(common::number(&mut fused, "d[70].x"), 4.0);
-    assert_eq!(common::number(&mut fused, "b[70].y"), 10.0);
-    assert_eq!(common::number(&mut fused, "c[70].x"), 9.0);
+    assert_eq!(crate::common::number(&mut fused, "d[70].x"), 4.0);
+    assert_eq!(crate::common::number(&mut fused, "b[70].y"), 10.0);
+    assert_eq!(crate::common::number(&mut fused, "c[70].x"), 9.0);
 }
 
 #[test]
@@ -290,8 +288,8 @@ fn expressions_from_outside_change_nothing() {
         let faults = m.eval(outside).unwrap_err();
         assert_eq!(faults[0].id, "misplaced-assignment", "{outside}: {faults:?}");
     }
-    assert_eq!(common::number(&mut m, "f(2)"), 3.0);
-    assert_eq!(common::number(&mut m, "n"), 1.0);
+    assert_eq!(crate::common::number(&mut m, "f(2)"), 3.0);
+    assert_eq!(crate::common::number(&mut m, "n"), 1.0);
     assert_eq!(m.written().count(), 0);
 }
 

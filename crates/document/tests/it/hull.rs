@@ -1,6 +1,6 @@
 //! The hull of Letcher and Shook (1995), Figure 1 and Table 2, from text to numbers.
 
-use moldloft_lang::{Document, NoFiles, registry};
+use moldloft_document::{Document, NoFiles, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
 

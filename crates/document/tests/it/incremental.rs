@@ -1,10 +1,8 @@
 //! A model that was edited equals one opened from its text, bit for bit, and no more is evaluated
 //! than must be.
 
-mod common;
-
-use common::{Random, number, open, rounds, sound, told};
-use moldloft_lang::Document;
+use crate::common::{Random, number, open, rounds, sound, told};
+use moldloft_document::Document;
 use moldloft_num::Order;
 use moldloft_registry::Value;
 use std::fmt::Write;
@@ -334,7 +332,7 @@ fn edited_models_equal_those_from_scratch_at_any_thread_count() {
         "{count} edits: {errors} states with errors, {failed} with failed and {blocked} with blocked objects, {meshed} with panels"
     );
     assert!(errors > count / 10 && errors < count && meshed > count / 10);
-    assert!(!common::soak() || failed + blocked > count / 50);
+    assert!(!crate::common::soak() || failed + blocked > count / 50);
 }
 
 /// Many objects of one rank, so that several threads share them.

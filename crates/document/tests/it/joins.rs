@@ -1,9 +1,7 @@
 //! Divisions along chains of patches, vertices shared by identity, and what is told of joins.
 
-mod common;
-
-use common::{Random, ids, open, rounds, sound, told};
-use moldloft_lang::{Document, Panelled};
+use crate::common::{Random, ids, open, rounds, sound, told};
+use moldloft_document::{Document, Panelled};
 use moldloft_model::Remark;
 use moldloft_num::Vec3;
 use std::collections::BTreeSet;
@@ -101,7 +99,7 @@ fn a_bead_in_the_middle_of_an_edge_is_a_vertex_of_it() {
     assert!(p.panelling.remarks().is_empty());
     let report = p.mesh.report();
     assert_eq!((report.components, report.open_loops.len(), report.euler), (1, 1, 1));
-    let bead = common::vector(&mut d, "b");
+    let bead = crate::common::vector(&mut d, "b");
     let hits = p.mesh.positions().iter().filter(|q| **q == bead).count();
     assert_eq!(hits, 1, "one vertex, exactly at the bead");
     // The end points of the curve and the beads at its ends are one vertex each.
@@ -136,7 +134,7 @@ fn counts_stay_when_a_parameter_moves_the_bead() {
         let p = panelled(&mut d);
         assert_eq!(*p.panelling.topology(), at_home, "at t = {t}");
         assert!(p.panelling.remarks().is_empty());
-        let bead = common::vector(&mut d, "b");
+        let bead = crate::common::vector(&mut d, "b");
         assert!(p.mesh.positions().contains(&bead));
         // The same as from the text, opened and set at once.
         let mut fresh = sound(&text);
@@ -504,7 +502,7 @@ fn a_rolled_fillet_joins_what_is_left_of_both_surfaces() {
     // The snakes lie on the parents, where the ball touches.
     d.set(&[("r".into(), 0.5)]).unwrap();
     let near = |d: &mut Document, text: &str, want: Vec3| {
-        let found = common::vector(d, text);
+        let found = crate::common::vector(d, text);
         assert!(found.distance(want) < 1e-12, "{text}: {found:?}");
     };
     near(&mut d, "low(0.25)", Vec3::of(1.0, 1.5, 0.0));

@@ -1,7 +1,7 @@
 //! Model files: read, built, edited, converted to programs and back; and what is wrong with bad ones.
 
 use moldloft_diag::Severity;
-use moldloft_lang::{Document, Format, NoFiles, ReadError, ReadText, World, registry};
+use moldloft_document::{Document, Format, NoFiles, ReadError, ReadText, World, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::{Head, Value};
 use std::f64::consts::PI;

@@ -1,9 +1,7 @@
 //! Damaged programs: none panics, none hangs, and the model that went through them all equals one
 //! opened from the last text.
 
-mod common;
-
-use common::{Random, ids, open, rounds, told};
+use crate::common::{Random, ids, open, rounds, told};
 use moldloft_registry::Value;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -96,7 +94,7 @@ fn damaged_programs_neither_panic_nor_hang() {
         let mut again = open(&text);
         assert_eq!(told(&document), told(&again), "round {round}\n{text}");
         assert_eq!(document.printed(), again.printed(), "round {round}\n{text}");
-        let names = |d: &moldloft_lang::Document| {
+        let names = |d: &moldloft_document::Document| {
             d.graph().objects().map(|o| o.name.clone()).collect::<Vec<_>>()
         };
         assert_eq!(names(&document), names(&again), "round {round}\n{text}");

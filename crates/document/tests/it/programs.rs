@@ -4,10 +4,8 @@
 //!
 //! `MOLDLOFT_FUZZ_SECONDS` runs each test so long instead of the usual number of rounds.
 
-mod common;
-
-use common::{Random, ids, open, rounds, told};
-use moldloft_lang::{Document, NoFiles, registry};
+use crate::common::{Random, ids, open, rounds, told};
+use moldloft_document::{Document, NoFiles, registry};
 use moldloft_registry::Value;
 use std::time::{Duration, Instant};
 
@@ -301,10 +299,10 @@ fn programs_of_the_grammar() {
 const REAL: [&str; 6] = [
     include_str!("fixtures/figure1and3.sdl"),
     include_str!("fixtures/figure5.sdl"),
-    include_str!("../../../examples/missile/half.sdl"),
-    include_str!("../sdl/stdsubs.sdl"),
-    include_str!("../sdl/mslbody.sdl"),
-    include_str!("../sdl/naca.sdl"),
+    include_str!("../../../../examples/missile/half.sdl"),
+    include_str!("../../../lang/sdl/stdsubs.sdl"),
+    include_str!("../../../lang/sdl/mslbody.sdl"),
+    include_str!("../../../lang/sdl/naca.sdl"),
 ];
 
 fn words(text: &str) -> Vec<String> {

@@ -1,9 +1,7 @@
 //! Relabels: the published curve is C(t) = c(R(t)), and everything that asks it follows.
 
-mod common;
-
-use common::{ids, number, open, sound, vector};
-use moldloft_lang::{Document, Format, NoFiles, registry};
+use crate::common::{ids, number, open, sound, vector};
+use moldloft_document::{Document, Format, NoFiles, registry};
 use moldloft_num::Vec3;
 use std::f64::consts::PI;
 
@@ -175,8 +173,12 @@ fn laws_that_are_none_are_refused() {
         ("BSurf x({A, B, C, D}, nu = 2, nv = 2, relabel = cosine);", "unknown-argument", "relabel"),
     ] {
         let document = open(&format!("{WING} {statement}"));
-        assert_eq!(ids(&document), [id], "{statement}: {:?}", common::told(&document));
-        assert!(common::told(&document)[0].contains(says), "{:?}", common::told(&document));
+        assert_eq!(ids(&document), [id], "{statement}: {:?}", crate::common::told(&document));
+        assert!(
+            crate::common::told(&document)[0].contains(says),
+            "{:?}",
+            crate::common::told(&document)
+        );
     }
     // What a failed law blocks says so; repaired, it comes back.
     let mut document =
@@ -219,7 +221,7 @@ fn model_files_have_the_column() {
     assert!((number(&mut document, "bend(0.5)") - half).abs() < 1e-16);
     let program = document.convert(Format::Sdl).unwrap();
     assert!(program.contains("relabel = cosine"), "{program}");
-    let mut converted = common::sound(&program);
+    let mut converted = crate::common::sound(&program);
     for text in ["c(0.3)", "S(0.3, 0.2)", "T(0.3, 0.2)", "U(0.3, 0.2)", "k(0.2)"] {
         assert_eq!(at(text, &mut document), at(text, &mut converted), "{text}");
     }

@@ -1,8 +1,6 @@
 //! Sizes: what is large must be fast, what is too large must be refused with a clear diagnostic.
 
-mod common;
-
-use common::{ids, number, open, sound, told, vector};
+use crate::common::{ids, number, open, sound, told, vector};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 

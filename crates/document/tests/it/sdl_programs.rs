@@ -2,10 +2,8 @@
 //! libraries that they load: the figures are of closed forms of the bodies.
 #![allow(clippy::excessive_precision)] // figures as computed to more digits than a double has
 
-mod common;
-
-use common::{number, told, vector};
-use moldloft_lang::{Document, NoFiles, registry};
+use crate::common::{number, told, vector};
+use moldloft_document::{Document, NoFiles, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::{Value, Vectors};
 use std::sync::Arc;
@@ -181,12 +179,12 @@ fn what_a_library_has_is_told_where_it_was_not_loaded() {
         ("curve c[5]; naca4(c, 0, 0, 12);", "naca.sdl"),
         ("set_sting(.4, 10, 15);", "mslbody.sdl"),
     ] {
-        let m = common::open(text);
+        let m = crate::common::open(text);
         let all = m.diagnostics();
         assert_eq!((all.len(), &*all[0].id), (1, "unknown-name"), "{text}: {all:?}");
         assert!(all[0].help.iter().any(|h| h.contains(&format!("load \"{file}\""))), "{all:?}");
     }
-    let other = common::open("print radii;").diagnostics();
+    let other = crate::common::open("print radii;").diagnostics();
     assert!(other[0].help.is_empty(), "{other:?}");
 }
 

@@ -1,8 +1,6 @@
 //! Straight edges between the same two point objects are one, whoever draws them.
 
-mod common;
-
-use common::{number, sound};
+use crate::common::{number, sound};
 
 fn closed_volume(text: &str) -> f64 {
     let mut document = sound(text);

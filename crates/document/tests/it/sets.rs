@@ -1,9 +1,7 @@
 //! Fields and sets in the language: operators, grouping, objects, measures, facets, derivatives.
 
-mod common;
-
-use common::{ids, number, open, sound, told, vector};
-use moldloft_lang::Document;
+use crate::common::{ids, number, open, sound, told, vector};
+use moldloft_document::Document;
 use moldloft_registry::Value;
 use std::f64::consts::PI;
 

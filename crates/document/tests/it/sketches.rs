@@ -1,14 +1,12 @@
 //! Sketches in a model: parameters, objects, the solid, derivatives, refusals.
 
-mod common;
-
-use common::number;
-use moldloft_lang::{Document, NoFiles, ReadError, ReadText, World, registry};
+use crate::common::number;
+use moldloft_document::{Document, NoFiles, ReadError, ReadText, World, registry};
 use moldloft_registry::Value;
 use std::collections::BTreeMap;
 
-const DAM: &str = include_str!("../../../examples/sketch/dam.skt");
-const BRACKET: &str = include_str!("../../../examples/sketch/bracket.skt");
+const DAM: &str = include_str!("../../../../examples/sketch/dam.skt");
+const BRACKET: &str = include_str!("../../../../examples/sketch/bracket.skt");
 
 /// A few files in memory.
 struct Shelf(BTreeMap<String, String>);

@@ -1,9 +1,7 @@
 //! Solve sets: closed forms, derivatives through the solution, and what has none.
 
-mod common;
-
-use common::{ids, number, open, sound, told};
-use moldloft_lang::{Document, SolveStatus};
+use crate::common::{ids, number, open, sound, told};
+use moldloft_document::{Document, SolveStatus};
 use moldloft_registry::Value;
 
 /// A point at the distance d from the origin in the direction (3, 4): x = 0.6 d, y = 0.8 d.

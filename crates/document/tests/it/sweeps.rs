@@ -1,8 +1,6 @@
 //! Curves that a point describes when a bead sweeps another curve.
 
-mod common;
-
-use common::{line, number, open, sound};
+use crate::common::{line, number, open, sound};
 
 /// The middle between a point of a circle and its foot on an axis describes an ellipse.
 const TRAMMEL: &str = "AbsPoint O(0, 0, 0); AbsPoint A(2, 0, 0); AbsPoint B(0, 2, 0); Arc c(A, O, B, 6); \
@@ -93,7 +91,7 @@ fn a_point_that_stays_or_has_no_place_is_refused() {
         ),
     ] {
         let document = open(&format!("{TRAMMEL} {text}"));
-        let found = common::ids(&document);
+        let found = crate::common::ids(&document);
         let lines: Vec<String> =
             document.diagnostics().iter().map(|d| line(&document, d)).collect();
         assert_eq!(found, [id], "{text}: {lines:?}");

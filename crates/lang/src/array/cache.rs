@@ -9,15 +9,15 @@
 //! (another shape, another exponent, a fault) sends the leaves that were read already through the tree, so
 //! that a recipe changes no value and no message, and nothing is read twice.
 
-use crate::arithmetic::{Lanes, Work, not_finite};
-use crate::env::Binding;
-use crate::fused::{Cell, Origin, Tape};
-use crate::interpreter::{DEEPEST, Interpreter};
-use crate::intrinsics::{self, Elementary};
-use crate::module::Module;
-use crate::ops;
-use crate::variables;
+use crate::array::lower::{Lanes, Work, not_finite};
+use crate::functions::elementary::{self, Elementary};
+use crate::run::interpreter::{DEEPEST, Interpreter};
+use crate::source::env::Binding;
+use crate::source::module::Module;
+use crate::value::ops;
+use crate::value::variables;
 use moldloft_diag::Diagnostic;
+use moldloft_elementwise::{Cell, Origin, Tape};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value};
@@ -283,7 +283,7 @@ pub(crate) struct Recipe<T: Real> {
     /// How much deeper than the start it goes.
     depth: u32,
     tape: Tape<T>,
-    calls: crate::arithmetic::Calls,
+    calls: crate::array::lower::Calls,
     lanes: Lanes,
     misfits: u8,
     /// Memory for the values of the entries.
@@ -552,9 +552,9 @@ fn compute<'v, T: Real>(entry: &Entry<T>, of: impl Fn(Cell) -> &'v Value<T>) -> 
         Entry::Braces(all) => ops::braces(all.map(|cell| of(cell).clone()).to_vec()).ok(),
         Entry::Function(name, f, args) => {
             let value = match f {
-                Elementary::Unary(_) => intrinsics::apply(name, f, &[of(args[0]).clone()]),
+                Elementary::Unary(_) => elementary::apply(name, f, &[of(args[0]).clone()]),
                 Elementary::Binary(_) => {
-                    intrinsics::apply(name, f, &args.map(|cell| of(cell).clone()))
+                    elementary::apply(name, f, &args.map(|cell| of(cell).clone()))
                 }
             };
             value.ok().filter(Value::is_finite)

@@ -4,16 +4,16 @@
 //! needed. Kinds and shapes are compared when an operator is met, so faults come in the order of the
 //! text and before any element is touched; what has no array in it is computed at once.
 
-use crate::env::Binding;
-use crate::fused::{Cell, Code, Origin, Src, Tape};
-use crate::interpreter::{Interpreter, silent};
-use crate::intrinsics;
-use crate::module::Module;
-use crate::ops;
-use crate::recipe::{Course, Key, Kind, Recorder};
-use crate::variables::Called as _;
-use crate::variables::{self, shape_text};
+use crate::array::cache::{Course, Key, Kind, Recorder};
+use crate::functions::elementary;
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::Binding;
+use crate::source::module::Module;
+use crate::value::ops;
+use crate::value::variables::Called as _;
+use crate::value::variables::{self, shape_text};
 use moldloft_diag::{Diagnostic, Span};
+use moldloft_elementwise::{Cell, Code, Origin, Src, Tape};
 use moldloft_num::Real;
 use moldloft_registry::{Array, ArrayShape, Body, Scalar, Value, Vectors};
 use moldloft_syntax::sdl::{
@@ -329,7 +329,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                                     "unknown-member",
                                     format!("{found} has no `{}`", m.program.name(name)),
                                 )
-                                .expected(crate::member::names(&value).join(", ")))
+                                .expected(crate::value::member::names(&value).join(", ")))
                             }
                         }
                     }
@@ -392,7 +392,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         (UnaryOp::Not, operand) => {
                             let value = self.value_of(operand, work)?;
                             let value =
-                                crate::expr::unary(op, &value).map_err(|d| d.or_at(span))?;
+                                crate::run::expr::unary(op, &value).map_err(|d| d.or_at(span))?;
                             Operand::Value(value, Cell::NONE)
                         }
                         (op, operand) => {
@@ -562,7 +562,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         m: &Module,
         callee: ExprId,
         args: List<Arg>,
-    ) -> Option<(&'static str, intrinsics::Elementary<T>)> {
+    ) -> Option<(&'static str, elementary::Elementary<T>)> {
         if args.len() > 2 {
             return None;
         }
@@ -571,10 +571,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !matches!(row.body, Body::Native { .. }) {
             return None;
         }
-        let (name, function) = intrinsics::elementary::<T>(&row.name)?;
+        let (name, function) = elementary::elementary::<T>(&row.name)?;
         let wanted = match function {
-            intrinsics::Elementary::Unary(_) => 1,
-            intrinsics::Elementary::Binary(_) => 2,
+            elementary::Elementary::Unary(_) => 1,
+            elementary::Elementary::Binary(_) => 2,
         };
         let plain = args.len() == wanted && m.program[args].iter().all(|a| a.name.is_none());
         (plain && !self.hides_function(m, symbol)).then_some((name, function))
@@ -590,7 +590,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &mut self,
         m: &Module,
         name: &'static str,
-        function: intrinsics::Elementary<T>,
+        function: elementary::Elementary<T>,
         args: &[ExprId],
         span: Span,
         work: &mut Work<T>,
@@ -615,8 +615,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             if shapes.iter().all(|s| *s == shapes[0]) {
                 let srcs: Vec<Src> = numbers.iter().map(|(_, s)| work.src(s)).collect();
                 let src = match function {
-                    intrinsics::Elementary::Unary(f) => work.tape.unary(f, srcs[0], shapes[0]),
-                    intrinsics::Elementary::Binary(f) => {
+                    elementary::Elementary::Unary(f) => work.tape.unary(f, srcs[0], shapes[0]),
+                    elementary::Elementary::Binary(f) => {
                         work.tape.binary(f, srcs[0], srcs[1], Some(shapes[0]))
                     }
                 };
@@ -633,9 +633,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let spans: Vec<Span> = args.iter().map(|&a| m.program[a].span).collect();
         // Scalars, and whatever is not taken, by the row itself.
-        let value = intrinsics::apply(name, function, &values).map_err(|fault| {
+        let value = elementary::apply(name, function, &values).map_err(|fault| {
             let at = fault.place.map_or(span, |p| spans[p.field.min(spans.len() - 1)]);
-            let d = crate::place::unplaced(&fault);
+            let d = crate::source::fault_location::unplaced(&fault);
             match &values[..] {
                 [a, b] => {
                     self.differing(m, d, [spans[0], spans[1]], [&shape_text(a), &shape_text(b)])

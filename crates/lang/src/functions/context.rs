@@ -1,13 +1,13 @@
 //! Functions that need more than the values of their arguments: the place that an argument is, the
 //! files of the run, how fine it is asked for.
 
-use crate::env::{Binding, Passed};
-use crate::files::{Mode, STANDARD_OUTPUT};
-use crate::format::{self, Item};
-use crate::interpreter::{Interpreter, silent};
-use crate::module::Module;
-use crate::section::{Place, Section};
-use crate::variables::Called as _;
+use crate::functions::files::{Mode, STANDARD_OUTPUT};
+use crate::functions::format::{self, Item};
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::{Binding, Passed};
+use crate::source::module::Module;
+use crate::value::subarray::{Place, Section};
+use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
@@ -385,7 +385,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     /// What a variable is and what is known of it.
-    fn known(&self, place: &Place) -> Result<(Type, &Value<T>, &crate::known::Known), Diagnostic> {
+    fn known(
+        &self,
+        place: &Place,
+    ) -> Result<(Type, &Value<T>, &crate::value::initialised::Known), Diagnostic> {
         match self.root(place).map(|b| &b.what) {
             Some(Binding::Variable { ty, value, known, .. }) => Ok((*ty, value, known)),
             Some(Binding::Poisoned) | None => Err(silent()),
@@ -492,7 +495,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    fn set_read(&mut self, name: crate::module::Name, read: usize) {
+    fn set_read(&mut self, name: crate::source::module::Name, read: usize) {
         let frame = self.frames.last_mut().expect("there is always a frame");
         let local = frame.locals.iter_mut().find(|(n, _)| *n == name);
         if let Some(Binding::Multiple(multiple)) = local.map(|(_, b)| &mut b.what) {
@@ -513,8 +516,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let whole = place.section.unwrap_or(Section::whole(shape));
         let Section::Grid(a, b) = whole else { return Err(silent()) };
-        let end = |s: crate::section::Selection, last: bool| {
-            crate::section::Selection::at(s.position(if last { s.count - 1 } else { 0 }))
+        let end = |s: crate::value::subarray::Selection, last: bool| {
+            crate::value::subarray::Selection::at(s.position(if last { s.count - 1 } else { 0 }))
         };
         let edges = [
             ("i = 1", Section::Grid(end(a, false), b)),
@@ -541,7 +544,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let wide = p.distance(*q);
             if wide > tolerance {
                 let [i, j] = gap.corner;
-                let point = |p: &Vec3| crate::show::plain(&Value::<f64>::Vector(*p));
+                let point = |p: &Vec3| crate::value::display::plain(&Value::<f64>::Vector(*p));
                 let message = format!(
                     "the edges {one} and {other} of `{name}` do not meet at corner [{i},{j}]: the \
                      gap is {}",

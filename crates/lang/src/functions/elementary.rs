@@ -1,6 +1,6 @@
 //! Elementary functions, as rows: element by element over numbers and rows of numbers.
 
-use crate::variables::Called as _;
+use crate::value::variables::Called as _;
 use moldloft_num::Real;
 use moldloft_registry::{
     Array, Body, Class, Context, DefaultValue, Fault, Field, Row, Unit, Value,
@@ -32,7 +32,7 @@ fn not_a_number<T: Real>(value: &Value<T>, field: usize) -> Fault {
 }
 
 fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault> {
-    if let Some(field) = crate::sets::function(name, value) {
+    if let Some(field) = crate::functions::sets::function(name, value) {
         return field;
     }
     match value {
@@ -73,7 +73,7 @@ fn reduced<T: Real>(
     args: &[Value<T>],
     f: impl Fn(T, T) -> T,
 ) -> Result<Value<T>, Fault> {
-    if let Some(field) = crate::sets::functions(name, args) {
+    if let Some(field) = crate::functions::sets::functions(name, args) {
         return field;
     }
     let mut numbers = Vec::new();
@@ -164,7 +164,7 @@ pub(crate) fn apply<T: Real>(
 ) -> Result<Value<T>, Fault> {
     match f {
         Elementary::Unary(f) => each(name, &args[0], f),
-        Elementary::Binary(f) => match crate::sets::functions(name, args) {
+        Elementary::Binary(f) => match crate::functions::sets::functions(name, args) {
             Some(field) => field,
             None => pairs(&args[0], &args[1], f),
         },

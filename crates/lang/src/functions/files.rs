@@ -3,7 +3,7 @@
 //! A file is a unit number, as in FORTRAN. Texts only: a point on each line, numbers with all their
 //! digits, the first index of a grid fastest. Whatever is written can be read again in the same run.
 
-use crate::world::World;
+use crate::source::world::World;
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// The units of the terminal.
 const STANDARD_ERROR: u32 = 0;
 const STANDARD_INPUT: u32 = 5;
-pub(crate) const STANDARD_OUTPUT: u32 = 6;
+pub const STANDARD_OUTPUT: u32 = 6;
 
 /// Units that `open` gives out begin here.
 const FIRST_FREE: u32 = 10;
@@ -22,7 +22,7 @@ const MOST_BYTES: usize = 256 << 20;
 const MOST_OPEN: usize = 1_000;
 
 /// The unit that a name stands for without being declared.
-pub(crate) fn predeclared(name: &str) -> Option<f64> {
+pub fn predeclared(name: &str) -> Option<f64> {
     match name {
         "stdin" => Some(f64::from(STANDARD_INPUT)),
         "stdout" => Some(f64::from(STANDARD_OUTPUT)),
@@ -33,7 +33,7 @@ pub(crate) fn predeclared(name: &str) -> Option<f64> {
 
 /// What a run has opened and written.
 #[derive(Debug, Default)]
-pub(crate) struct Files {
+pub struct Files {
     open: BTreeMap<u32, Open>,
     written: IndexMap<String, Vec<u8>>,
     /// Files that the host makes CGNS of, and the names of their blocks.
@@ -49,7 +49,7 @@ enum Open {
 
 /// How a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mode {
+pub enum Mode {
     Read,
     Write,
     Append,

@@ -3,9 +3,9 @@
 //! Files are whole: each call writes one, into the set that the host commits. CGNS is HDF5, which the
 //! host writes: the run keeps the blocks and their names for it.
 
-use crate::interpreter::{Interpreter, silent};
-use crate::module::Module;
-use crate::variables;
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::module::Module;
+use crate::value::variables;
 use moldloft_diag::Diagnostic;
 use moldloft_io::plot3d_any::{self, Laid, Variant};
 use moldloft_io::{Lattice, section, write_stl, write_vts};

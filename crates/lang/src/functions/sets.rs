@@ -1,9 +1,9 @@
 //! Operators and functions on fields and sets, and what their declarations make.
 
-use crate::env::{Binding, Origin};
-use crate::interpreter::{Interpreter, silent};
-use crate::module::Module;
-use crate::variables::Called as _;
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::{Binding, Origin};
+use crate::source::module::Module;
+use crate::value::variables::Called as _;
 use moldloft_diag::Diagnostic;
 use moldloft_field::{Primitive, field_value, primitive_of, set_of, set_value};
 use moldloft_model::{Declaration, Extent, Failure};
@@ -257,7 +257,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let key = self
             .run
             .declare(declaration)
-            .map_err(|fault| crate::place::unplaced(&fault).at(item.name.span))?;
+            .map_err(|fault| crate::source::fault_location::unplaced(&fault).at(item.name.span))?;
         let module = self.current as u32;
         self.env.origins.push(Origin { module, stmt: id, repeated: false });
         self.bind(name, item.name.span, Binding::Object(key));

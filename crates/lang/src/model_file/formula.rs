@@ -1,10 +1,10 @@
 //! Numbers of model files: variables, formulas, and formulas in columns.
 
-use crate::env::{Binding, Bound, Environment, Param};
+use crate::model_file::names::{bare, plain_name, words};
 use crate::model_file::{Outcome, Producer, Sorted, Trouble, wrong};
-use crate::model_file_names::{bare, plain_name, words};
-use crate::module::{Module, Modules};
-use crate::variables::Called as _;
+use crate::source::env::{Binding, Bound, Environment, Param};
+use crate::source::module::{Module, Modules};
+use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Graph;
 use moldloft_registry::{Scalar, Value};
@@ -116,13 +116,14 @@ impl<T: Scalar> Producer<'_, '_, T> {
             self.env.globals[name.0 as usize] = Some(Bound { span: Span::UNKNOWN, what });
         }
         let mut told = Vec::new();
-        let loader = crate::module::Loader {
+        let loader = crate::source::module::Loader {
             world: self.host.world,
             registry: self.registry,
             sources: &mut *self.host.sources,
             diagnostics: &mut told,
+            converted: self.host.converted,
         };
-        let mut interpreter = crate::interpreter::Interpreter::new(
+        let mut interpreter = crate::run::interpreter::Interpreter::new(
             modules,
             loader,
             &mut *self.run,
@@ -133,43 +134,17 @@ impl<T: Scalar> Producer<'_, '_, T> {
         // Only what nests deep needs a stack of its own.
         let nests = spelled.bytes().filter(|b| b"([{^-!".contains(b)).count() > 8;
         let mut evaluate = || interpreter.operand(&module, expr);
-        let value = if nests { crate::program::with_stack(evaluate) } else { evaluate() };
+        let value = if nests { crate::run::program::with_stack(evaluate) } else { evaluate() };
         drop(module);
         self.host.modules.remove_expression(at);
         self.env.globals.clear();
         match value {
             Ok(Value::Number(x)) if x.is_finite() => Ok(x),
             Ok(other) => Err(bad(format!("it is {}, not a finite number", other.called()))),
-            Err(diagnostic) if diagnostic.id == crate::interpreter::SILENT => {
+            Err(diagnostic) if diagnostic.id == crate::run::interpreter::SILENT => {
                 Err(bad("it depends on something that failed".into()))
             }
             Err(diagnostic) => Err(bad(diagnostic.message.clone())),
-        }
-    }
-}
-
-/// Lets an expression find the objects that a model file made, by their names or by the
-/// identifiers that stand for them.
-pub(crate) fn bind_objects<T: Scalar>(
-    modules: &Modules,
-    expression: &Module,
-    graph: &Graph<T>,
-    env: &mut Environment<T>,
-) {
-    env.globals.resize_with(modules.name_count(), || None);
-    for &name in &expression.names {
-        let text = modules.text(name);
-        let known = &mut env.globals[name.0 as usize];
-        if known.is_none()
-            && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
-        {
-            *known = Some(Bound { span: Span::UNKNOWN, what: Binding::Object(key) });
-        } else if known.is_none()
-            && let Some(&x) = env.numbers.get(&**text)
-        {
-            let ty = moldloft_syntax::sdl::Type::Float;
-            let what = Binding::variable(ty, Value::Number(x));
-            *known = Some(Bound { span: Span::UNKNOWN, what });
         }
     }
 }

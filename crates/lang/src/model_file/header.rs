@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// The name of the kind below.
-pub(crate) const KIND: &str = "Model";
+pub const KIND: &str = "Model";
 
 /// What the model says of itself: the planes it is mirrored in, its unit, and the header of the
 /// model file that it came from.
@@ -60,12 +60,12 @@ impl<T: Real> Build<T> for Model<T> {
 }
 
 /// The rows of this crate that are kinds.
-pub(crate) fn rows() -> Vec<Row> {
-    vec![<Model<f64> as StaticRow>::row(), crate::solve::row()]
+pub fn rows() -> Vec<Row> {
+    vec![<Model<f64> as StaticRow>::row(), crate::run::solve_set::row()]
 }
 
 /// The header's text of that field in the first object of kind `Model`; empty without one.
-pub(crate) fn text<T: Scalar>(graph: &Graph<T>, field: &str) -> String {
+pub fn text<T: Scalar>(graph: &Graph<T>, field: &str) -> String {
     let Some(object) = graph.objects().find(|o| o.row.name == KIND) else { return String::new() };
     match object.row.field(field).and_then(|at| object.args.get(at)) {
         Some(Value::Text(text)) => text.to_string(),
@@ -74,6 +74,6 @@ pub(crate) fn text<T: Scalar>(graph: &Graph<T>, field: &str) -> String {
 }
 
 /// The planes in which the model is mirrored, as "y" or "xy"; empty for none.
-pub(crate) fn symmetry(graph: &Graph<f64>) -> String {
+pub fn symmetry(graph: &Graph<f64>) -> String {
     text(graph, "symmetry")
 }

@@ -4,13 +4,25 @@
 //! field of the line is which argument. Parents may stand below their children in the file: the
 //! objects are declared in an order in which they do not.
 
-use crate::env::{Environment, Evaluation};
-use crate::interpreter::Inputs;
-use crate::model_file_names::{degrees, is_layer, is_real, our_word, system_name, words};
-use crate::panel_attributes;
-use crate::place::{self, NumberPath};
-use crate::program::{NotLiteral, Program};
-use moldloft_diag::{Diagnostic, FileId, Span};
+mod formula;
+pub mod header;
+pub(crate) mod names;
+mod panel_attributes;
+mod to_model_file;
+mod to_program;
+
+pub use to_model_file::to_model_file;
+pub use to_program::{prevents_conversion, quoted, to_program};
+
+use crate::run::interpreter::{Inputs, Settings};
+use crate::run::program::{NotLiteral, Program};
+use crate::source::NoFiles;
+use crate::source::env::{Environment, Evaluation};
+use crate::source::fault_location;
+use crate::source::module::Modules;
+use crate::value::number_path::{self, NumberPath};
+use indexmap::IndexMap;
+use moldloft_diag::{Diagnostic, FileId, Sources, Span};
 use moldloft_model::{Applied, Declaration, Extent, Object, Run};
 use moldloft_num::trace::Key;
 use moldloft_registry::{
@@ -19,9 +31,10 @@ use moldloft_registry::{
 use moldloft_syntax::model_file::{
     self, Field as Written, FieldKind, Fields, ModelFile, NumberId, Object as Line,
 };
-use std::collections::HashMap;
+use names::{degrees, is_layer, is_real, our_word, system_name, words};
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// More diagnostics of one run than this are counted, not listed.
 const MOST_DIAGNOSTICS: usize = 100;
@@ -30,7 +43,7 @@ const MOST_DIAGNOSTICS: usize = 100;
 const MOST_CYCLES: usize = 20;
 
 /// A parsed model file and the places of its objects.
-pub(crate) struct ModelFileSource {
+pub struct ModelFileSource {
     model: ModelFile,
     lines: Vec<Line>,
     /// The first object of each name, by its place in `lines`.
@@ -39,14 +52,14 @@ pub(crate) struct ModelFileSource {
 
 /// A number of the file that an argument is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ModelNumber {
+pub struct ModelNumber {
     id: NumberId,
     /// True when the file has degrees where the argument has radians.
     angle: bool,
 }
 
 /// The fields of an object, sorted by what they are for.
-pub(crate) struct Sorted {
+pub struct Sorted {
     /// The row of its entity; `None` when there is none that model files know.
     pub row: Option<Arc<Row>>,
     /// Colour, visibility and divisions.
@@ -63,7 +76,7 @@ pub(crate) struct Sorted {
 
 /// What became of an object in a run.
 #[derive(Clone, Copy)]
-pub(crate) enum Outcome {
+pub enum Outcome {
     Built(Key),
     /// A `Variable` or `Formula`: a number without an object.
     Real,
@@ -81,14 +94,14 @@ struct Root {
 }
 
 /// Why a field has no value.
-pub(crate) enum Trouble {
+pub enum Trouble {
     /// What is wrong with it.
     Wrong(Box<Diagnostic>),
     /// It refers to an object that is missing because of this root.
     Blocked { root: usize, span: Span },
 }
 
-pub(crate) fn wrong(diagnostic: Diagnostic) -> Trouble {
+pub fn wrong(diagnostic: Diagnostic) -> Trouble {
     Trouble::Wrong(Box::new(diagnostic))
 }
 
@@ -430,7 +443,7 @@ impl ModelFileSource {
                 ids => Value::list(ids.iter().map(number)),
             };
             if let Err(fault) = head.set(name, &value) {
-                errors.push(place::unplaced(&fault).at(span));
+                errors.push(fault_location::unplaced(&fault).at(span));
             }
         }
         let mut rest: Vec<&str> = Vec::new();
@@ -527,7 +540,7 @@ impl ModelFileSource {
 }
 
 /// Makes the objects of an [`Extent::Whole`] application.
-pub(crate) struct Producer<'a, 'g, T: Scalar> {
+pub struct Producer<'a, 'g, T: Scalar> {
     pub source: &'a ModelFileSource,
     pub registry: &'a Registry,
     pub host: Program<'a>,
@@ -653,7 +666,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
             return;
         };
         if !self.inputs.seeded_objects.is_empty() && self.inputs.seeded_objects.contains(name) {
-            place::seed(row, &mut args, name, self.inputs.seed);
+            number_path::seed(row, &mut args, name, self.inputs.seed);
         }
         let declaration = Declaration { name, row, args, head, origin: at as u32 };
         let outcome = match self.run.declare(declaration) {
@@ -663,7 +676,9 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 }
                 Outcome::Built(key)
             }
-            Err(fault) => self.root(vec![place::unplaced(&fault).at(line.name).object(name)]),
+            Err(fault) => {
+                self.root(vec![fault_location::unplaced(&fault).at(line.name).object(name)])
+            }
         };
         self.outcomes[at] = Some(outcome);
     }
@@ -855,7 +870,8 @@ impl<T: Scalar> Producer<'_, '_, T> {
     fn misfit(&self, line: &Line, sorted: &Sorted, fault: &Fault) -> Diagnostic {
         let source = self.source;
         let at = fault.place.and_then(|p| source.place(sorted, p.field, p.item));
-        let mut diagnostic = place::unplaced(fault).at(at.unwrap_or(line.entity.to(line.name)));
+        let mut diagnostic =
+            fault_location::unplaced(fault).at(at.unwrap_or(line.entity.to(line.name)));
         if fault.id == "wrong-class"
             && let (Some(place), Some(row)) = (fault.place, &sorted.row)
             && let Some(field) = row.fields.get(place.field)
@@ -956,4 +972,39 @@ fn divisions(class: Class, fields: &[Written]) -> Result<Vec<Part>, &'static str
 
 fn is_pair(field: &Written) -> bool {
     matches!(field.kind, FieldKind::Pair(..))
+}
+
+/// The program that a model file stands for where a program loads it.
+///
+/// # Errors
+/// That the file is not sound, with its first fault.
+pub fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, Diagnostic> {
+    let mut sources = Sources::new();
+    let file = sources.add(name, text);
+    let (source, mut found) = ModelFileSource::parse(text.to_string(), file);
+    let (mut modules, mut evaluation) = (Modules::default(), Evaluation::default());
+    let host = Program {
+        modules: &mut modules,
+        world: &NoFiles,
+        registry,
+        sources: &mut sources,
+        sketch: None,
+        converted,
+    };
+    let inputs = Inputs {
+        overrides: &IndexMap::new(),
+        seed: &|_, x| x,
+        seeded_objects: &HashSet::new(),
+        cancelled: &AtomicBool::new(false),
+        settings: Settings::default(),
+    };
+    source.run(host, &mut evaluation, inputs, &mut found);
+    match found.iter().find(|d| prevents_conversion(&evaluation, d)) {
+        None => Ok(to_program(&source, registry, &evaluation)),
+        Some(first) => Err(Diagnostic::error(
+            "cannot-read",
+            format!("`{name}` is not sound: {}", first.message),
+        )
+        .help("open the model file by itself to see all that is wrong with it")),
+    }
 }

@@ -8,11 +8,11 @@
 //! parents alone were built on is not made then. Its objects are `keel.tip`, its parameters
 //! `keel.span`.
 
-use crate::env::{Binding, Bound, Frame};
-use crate::interpreter::{Flow, Interpreter, silent};
-use crate::module::{Module, Name};
-use crate::variables;
-use crate::variables::Called as _;
+use crate::run::interpreter::{Flow, Interpreter, silent};
+use crate::source::env::{Binding, Bound, Frame};
+use crate::source::module::{Module, Name};
+use crate::value::variables;
+use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, Ident, List, StmtKind};
@@ -187,7 +187,7 @@ fn replace_parents(m: &Module, replaced: &mut HashSet<Name>) {
         if let StmtKind::Object { name, args, .. } = m.program[stmt].kind {
             let mut used = Vec::new();
             for arg in &m.program[args] {
-                crate::later::names_in(m, arg.value, &mut |symbol| {
+                crate::run::forward_reference::names_in(m, arg.value, &mut |symbol| {
                     used.push(m.names[symbol.0 as usize]);
                 });
             }

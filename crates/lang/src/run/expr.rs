@@ -1,14 +1,14 @@
 //! Runs a program: expressions.
 
-use crate::arithmetic::is_elementwise;
-use crate::env::{Binding, Bound, Passed};
-use crate::interpreter::{Interpreter, silent};
-use crate::module::Module;
-use crate::ops;
-use crate::place;
-use crate::section::{Place, Section, Selection};
-use crate::variables;
-use crate::variables::Called as _;
+use crate::array::lower::is_elementwise;
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::{Binding, Bound, Passed};
+use crate::source::fault_location;
+use crate::source::module::Module;
+use crate::value::ops;
+use crate::value::subarray::{Place, Section, Selection};
+use crate::value::variables;
+use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Real, Vec3};
@@ -131,7 +131,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn name(&mut self, m: &Module, symbol: Symbol, span: Span) -> Evaluated<T> {
         let name = m.names[symbol.0 as usize];
         let Some(bound) = self.lookup(name) else {
-            if let Some(unit) = crate::files::predeclared(m.program.name(symbol)) {
+            if let Some(unit) = crate::functions::files::predeclared(m.program.name(symbol)) {
                 return Ok(Value::Number(T::from(unit)));
             }
             return Err(self.unknown_name(m, symbol, span));
@@ -214,9 +214,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !self.hints() {
             return diagnostic;
         }
-        match crate::later::declared_later(m, symbol, span) {
+        match crate::run::forward_reference::declared_later(m, symbol, span) {
             Some(later) => later.explain(m, diagnostic),
-            None => match crate::library::defining(text) {
+            None => match crate::source::library::defining(text) {
                 Some(hint) => diagnostic.help(hint),
                 None => match self.nearest_name(text) {
                     Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
@@ -540,7 +540,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             _ => None,
         };
         let value = self.read(value, m.program[base].span)?;
-        if let Some(member) = crate::member::of_value(&value, &word) {
+        if let Some(member) = crate::value::member::of_value(&value, &word) {
             let vector = |b: &Bound<T>| {
                 matches!(
                     &b.what,
@@ -569,7 +569,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let right = self.read(right, span)?;
             return ops::binary(BinaryOp::Dot, &value, &right);
         }
-        let known = crate::member::names(&value);
+        let known = crate::value::member::names(&value);
         Err(Diagnostic::error("unknown-member", format!("{} has no `{word}`", value.called()))
             .at(m.program.member_span(id))
             .expected(known.join(", "))
@@ -582,10 +582,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         word: &str,
     ) -> Option<Evaluated<T>> {
         let object = self.run.graph().get(key)?;
-        if let Some(number) = crate::member::of_patch(self.run.graph(), object, word) {
+        if let Some(number) = crate::value::member::of_patch(self.run.graph(), object, word) {
             return Some(number.map(Value::Number));
         }
-        if object.row.name == crate::solve::KIND
+        if object.row.name == crate::run::solve_set::KIND
             && let Some(value) = self.member_of_solve(&object.name, word)
         {
             return Some(value);
@@ -666,16 +666,16 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let positional = given.positional.len();
         let (filled, _) = arrange(&row, given, |_| Class::Any)
-            .map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
+            .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
         // What is as quick to compute as to look up is not remembered.
-        let value = if crate::intrinsics::is_quick(&row) {
+        let value = if crate::functions::elementary::is_quick(&row) {
             T::call(&row, &filled, &self.run.graph().context())
         } else {
             self.charge_call();
             self.run.call(&row, filled)
         };
-        let value =
-            value.map_err(|fault| place::diagnostic(m, args, &row, positional, &fault, span))?;
+        let value = value
+            .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
         if !value.is_finite() {
             return Err(Diagnostic::error(
                 "not-finite",
@@ -691,7 +691,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let text = m.program.name(symbol);
         let diagnostic =
             Diagnostic::error("unknown-name", format!("there is no function `{text}`"));
-        if let Some(hint) = crate::library::defining(text) {
+        if let Some(hint) = crate::source::library::defining(text) {
             return diagnostic.help(hint);
         }
         match self.nearest_name(text) {
@@ -744,7 +744,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
         match arg {
             Value::Number(_) => Ok(None),
             Value::Vector(v) => Ok(Some(v.to_array().to_vec())),
-            other => many(other).map(Some).map_err(|f| place::unplaced(&f)),
+            other => many(other).map(Some).map_err(|f| fault_location::unplaced(&f)),
         }
     };
     let one = |arg: &Value<T>| match arg {
@@ -812,7 +812,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
             Ok(row((0..n).map(at).collect()))
         }
         (Value::Solid(_), _) => Err(count("three parameters u, v and w, as in s(0.5, 0.25, 0.75)")),
-        (Value::Field(_) | Value::Set(_), [p]) => crate::sets::at(value, p),
+        (Value::Field(_) | Value::Set(_), [p]) => crate::functions::sets::at(value, p),
         (Value::Field(_) | Value::Set(_), _) => Err(count("one point, as in f({1, 2, 3})")),
         (other, _) => {
             let class = other.called();

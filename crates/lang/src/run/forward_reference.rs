@@ -1,6 +1,6 @@
 //! Names that are used before they are declared, and cycles among them.
 
-use crate::module::Module;
+use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_syntax::sdl::{ExprId, ExprKind, Ident, StmtId, StmtKind, Subscript, Symbol};
 use std::collections::{HashMap, HashSet};

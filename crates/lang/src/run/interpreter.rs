@@ -1,16 +1,16 @@
 //! Runs a program: statements.
 
-use crate::arithmetic::Spare;
-use crate::env::{Binding, Bound, Environment, Frame, Param};
-use crate::fused::Tape;
-use crate::known::Known;
-use crate::module::{Loader, Module, Modules, Name, RoutineAt};
-use crate::recipe::{Key as ExprKey, Slots};
-use crate::section::Place;
-use crate::variables::Called as _;
-use crate::variables::{self, Taken};
+use crate::array::cache::{Key as ExprKey, Slots};
+use crate::array::lower::Spare;
+use crate::source::env::{Binding, Bound, Environment, Frame, Param, Seed};
+use crate::source::module::{Loader, Module, Modules, Name, RoutineAt};
+use crate::value::initialised::Known;
+use crate::value::subarray::Place;
+use crate::value::variables::Called as _;
+use crate::value::variables::{self, Taken};
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Span, nearest};
+use moldloft_elementwise::Tape;
 use moldloft_model::{Extent, Run};
 use moldloft_num::trace::Key;
 use moldloft_registry::{Scalar, Value};
@@ -45,7 +45,7 @@ pub(crate) const STACK_BYTES: usize = 192 << 20;
 pub(crate) const SILENT: &str = "silent";
 
 /// What a run is given besides the program.
-pub(crate) struct Inputs<'a, T: Scalar> {
+pub struct Inputs<'a, T: Scalar> {
     /// Values of parameters that differ from the text's.
     pub overrides: &'a IndexMap<String, f64>,
     /// Gives a parameter or a literal of an object its derivative; for plain runs the identity.
@@ -60,7 +60,7 @@ pub(crate) struct Inputs<'a, T: Scalar> {
 
 /// How a program is run, besides its parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Settings {
+pub struct Settings {
     /// How often the intervals of `refined` numbers are halved.
     pub refine: u32,
     /// True to apply operators one after the other, whole arrays at a time: the reference that
@@ -75,9 +75,6 @@ impl<'a, T: Scalar> Inputs<'a, T> {
         Inputs { overrides, seed, seeded_objects, cancelled, settings }
     }
 }
-
-/// Gives the number of that name its derivatives.
-pub(crate) type Seed<'a, T> = &'a (dyn Fn(&str, T) -> T + Sync);
 
 /// How a statement ended.
 pub(crate) enum Flow<T: Scalar> {
@@ -507,14 +504,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 for &expr in &m.program[list] {
                     let value = self.expr(m, expr)?;
                     let value = self.read(value, m.program[expr].span)?;
-                    words.push(crate::show::plain(&value));
+                    words.push(crate::value::display::plain(&value));
                 }
                 self.print(words.join(" "), span)?;
             }
             StmtKind::Assert { condition, message } => self.assert(m, condition, message)?,
             StmtKind::Load(path) => {
                 let path = m.program[path].to_string();
-                if crate::sketch_file::is_sketch(&path) {
+                if crate::source::sketch_file::is_sketch(&path) {
                     self.load_sketch(&path, id, span)?;
                     return Ok(Flow::Next);
                 }
@@ -581,7 +578,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let mut text = format!("this does not hold: {}", m.program.slice(span));
         if let Some(message) = message {
             let value = self.expr(m, message)?;
-            text = crate::show::plain(&self.read(value, m.program[message].span)?);
+            text = crate::value::display::plain(&self.read(value, m.program[message].span)?);
         }
         let mut diagnostic = Diagnostic::error("assertion-failed", text).at(span);
         // Both sides of a comparison, so that the numbers are at hand.
@@ -589,7 +586,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             let mut sides = Vec::new();
             for side in [left, right] {
                 let value = self.expr(m, side)?;
-                sides.push(crate::show::plain(&self.read(value, span)?));
+                sides.push(crate::value::display::plain(&self.read(value, span)?));
             }
             diagnostic = diagnostic.found(sides.join(" and "));
         }
@@ -625,7 +622,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     true => variables::converted(ty, value).map_err(|d| d.or_at(span))?,
                     false => value,
                 };
-                Some(crate::sets::called(ty, value, m.program.name(item.name.symbol)))
+                Some(crate::functions::sets::called(ty, value, m.program.name(item.name.symbol)))
             }
             None => None,
         };

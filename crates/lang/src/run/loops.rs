@@ -1,9 +1,9 @@
 //! Runs a program: loops.
 
-use crate::env::{Binding, Passed, Turn};
-use crate::interpreter::{Flow, Interpreter};
-use crate::module::Module;
-use crate::variables;
+use crate::run::interpreter::{Flow, Interpreter};
+use crate::source::env::{Binding, Passed, Turn};
+use crate::source::module::Module;
+use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::sdl::{ExprId, Ident, StmtId, StmtKind, Type};

@@ -1,8 +1,8 @@
 //! Runs a program: declarations of objects, and the names they get.
 
-use crate::env::{Binding, Bound, Origin};
-use crate::interpreter::Interpreter;
-use crate::module::{Module, RoutineAt};
+use crate::run::interpreter::Interpreter;
+use crate::source::env::{Binding, Bound, Origin};
+use crate::source::module::{Module, RoutineAt};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::trace::Key;
@@ -44,7 +44,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let word = m.program.name(kind.symbol);
         let row = match &m.rows[kind.symbol.0 as usize] {
             // A file says of itself what does not concern whoever inserts it.
-            Some(row) if row.name == crate::header::KIND && !self.components.is_empty() => {
+            Some(row)
+                if row.name == crate::model_file::header::KIND && !self.components.is_empty() =>
+            {
                 return Ok(());
             }
             Some(row) if row.kind => row,
@@ -57,7 +59,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 if let Some(&routine) = self.env.routines.get(&m.names[kind.symbol.0 as usize]) {
                     return self.instance(m, routine, name, args, span);
                 }
-                if word == crate::component::WORD {
+                if word == crate::run::component::WORD {
                     return self.component(m, name, args, span);
                 }
                 if other.is_some() {
@@ -93,7 +95,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let positional = given.positional.len();
         let (mut filled, head) = arrange(row, given, |key| self.run.class_of(key))
-            .map_err(|fault| crate::place::diagnostic(m, args, row, positional, &fault, span))
+            .map_err(|fault| {
+                crate::source::fault_location::diagnostic(m, args, row, positional, &fault, span)
+            })
             .map_err(|diagnostic| self.with_parent(m, diagnostic))?;
 
         if self.run.extent() == Extent::Edit {
@@ -108,17 +112,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let full = full.as_deref().unwrap_or_else(|| m.program.name(name.symbol));
         if !self.inputs.seeded_objects.is_empty() && self.inputs.seeded_objects.contains(full) {
             let seed = self.inputs.seed;
-            crate::place::seed(row, &mut filled, full, seed);
+            crate::value::number_path::seed(row, &mut filled, full, seed);
         }
-        if row.name == crate::solve::KIND {
+        if row.name == crate::run::solve_set::KIND {
             self.solve_set(m, args, row, positional, &mut filled, full, name.span)?;
         }
         let origin = self.env.origins.len() as u32;
         let declaration = Declaration { name: full, row, args: filled, head, origin };
         let key = self.run.declare(declaration).map_err(|fault| {
-            let diagnostic = crate::place::unplaced(&fault).at(name.span);
+            let diagnostic = crate::source::fault_location::unplaced(&fault).at(name.span);
             let first = self.run.find(full).and_then(|key| self.run.graph().get(key));
-            match first.and_then(|o| crate::program::declared_at(self.modules, self.env, o)) {
+            match first.and_then(|o| crate::run::program::declared_at(self.modules, self.env, o)) {
                 Some(first) => diagnostic.note_at(first, "first declared here"),
                 None => diagnostic,
             }

@@ -1,30 +1,34 @@
 //! A program as a producer of objects.
 
-use crate::env::{Environment, Evaluation};
-use crate::interpreter::{Inputs, Interpreter, STACK_BYTES};
-use crate::module::{Loader, Modules};
-use crate::place::{self, NumberPath};
-use crate::sketch_file::SketchFile;
-use crate::sketches::Site;
-use crate::world::World;
+use crate::model_file::names::plain_name;
+use crate::run::interpreter::{Inputs, Interpreter, STACK_BYTES};
+use crate::run::sketches::Site;
+use crate::source::env::{Binding, Bound, Environment, Evaluation};
+use crate::source::fault_location;
+use crate::source::module::{Convert, Loader, Module, Modules};
+use crate::source::sketch_file::SketchFile;
+use crate::source::world::World;
+use crate::value::number_path::NumberPath;
 use moldloft_diag::{Diagnostic, Sources, Span};
-use moldloft_model::{Applied, Extent, Object};
+use moldloft_model::{Applied, Extent, Graph, Object};
 use moldloft_registry::{Fault, Registry, Scalar, Value};
-use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind};
+use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
 use std::sync::Arc;
 
 /// What running a program needs.
-pub(crate) struct Program<'a> {
+pub struct Program<'a> {
     pub modules: &'a mut Modules,
     pub world: &'a dyn World,
     pub registry: &'a Registry,
     pub sources: &'a mut Sources,
     /// The sketch that is the model, when it is no program.
     pub sketch: Option<Arc<SketchFile>>,
+    /// The program of a model file that is loaded.
+    pub converted: Convert,
 }
 
 /// Why a number of an object is no literal of the text.
-pub(crate) enum NotLiteral {
+pub enum NotLiteral {
     /// It is computed from these names.
     Expression { span: Span, names: Vec<String> },
     /// Several objects are made by the statement it stands in.
@@ -34,7 +38,7 @@ pub(crate) enum NotLiteral {
 }
 
 /// Runs `f` where a deeply nested program finds enough stack.
-pub(crate) fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, f);
         match thread.expect("a thread can be started").join() {
@@ -59,6 +63,7 @@ impl Program<'_> {
             registry: self.registry,
             sources: self.sources,
             diagnostics: found,
+            converted: self.converted,
         };
         // What is left to evaluate after the program is evaluated in the caller's thread pool.
         let (modules, sketch) = (self.modules, self.sketch);
@@ -100,13 +105,14 @@ impl Program<'_> {
         let at = self.modules.add_expression(program, self.registry);
         let module = self.modules.get(at).clone();
         let Evaluation { graph, env } = evaluation;
-        crate::model_file_formula::bind_objects(self.modules, &module, graph, env);
+        bind_objects(self.modules, &module, graph, env);
         let stopped = std::mem::take(&mut env.stopped);
         let loader = Loader {
             world: self.world,
             registry: self.registry,
             sources: self.sources,
             diagnostics: &mut found,
+            converted: self.converted,
         };
         let modules = &mut *self.modules;
         let (value, _) = with_stack(|| {
@@ -123,7 +129,7 @@ impl Program<'_> {
             Ok(value) if found.is_empty() => Ok(value),
             Ok(_) => Err(found),
             Err(diagnostic) => {
-                if diagnostic.id != crate::interpreter::SILENT {
+                if diagnostic.id != crate::run::interpreter::SILENT {
                     found.push(diagnostic);
                 }
                 if found.is_empty() {
@@ -139,7 +145,7 @@ impl Program<'_> {
 }
 
 /// Where in the text the fault of an object lies.
-pub(crate) fn fault_span<T: Scalar>(
+pub fn fault_span<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
     object: &Object<T>,
@@ -150,11 +156,11 @@ pub(crate) fn fault_span<T: Scalar>(
     let stmt = m.program[origin.stmt];
     let StmtKind::Object { args, .. } = stmt.kind else { return Some(stmt.span) };
     let unnamed = m.program[args].iter().filter(|a| a.name.is_none()).count();
-    Some(place::diagnostic(m, args, &object.row, unnamed, fault, stmt.span).span())
+    Some(fault_location::diagnostic(m, args, &object.row, unnamed, fault, stmt.span).span())
 }
 
 /// Where in the text an object is declared.
-pub(crate) fn declared_at<T: Scalar>(
+pub fn declared_at<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
     object: &Object<T>,
@@ -173,7 +179,7 @@ pub(crate) fn declared_at<T: Scalar>(
 }
 
 /// The literal of the text that a number of an object is.
-pub(crate) fn literal(
+pub fn literal(
     modules: &Modules,
     env: &Environment<f64>,
     object: &Object<f64>,
@@ -187,10 +193,10 @@ pub(crate) fn literal(
     let StmtKind::Object { args, .. } = stmt.kind else { return Err(NotLiteral::Default) };
     let args = &m.program[args];
     let unnamed = args.iter().filter(|a| a.name.is_none()).count();
-    let mut expr =
-        place::argument(m, args, &object.row, unnamed, path.field).ok_or(NotLiteral::Default)?;
+    let mut expr = fault_location::argument(m, args, &object.row, unnamed, path.field)
+        .ok_or(NotLiteral::Default)?;
     for k in [path.item, path.component].into_iter().flatten() {
-        match place::item(m, expr, k) {
+        match fault_location::item(m, expr, k) {
             Some(item) => expr = item,
             None => return Err(computed(m, expr)),
         }
@@ -204,8 +210,36 @@ pub(crate) fn literal(
     Ok((origin.module as usize, literal))
 }
 
-fn computed(m: &crate::module::Module, expr: ExprId) -> NotLiteral {
+fn computed(m: &crate::source::module::Module, expr: ExprId) -> NotLiteral {
     let mut names = Vec::new();
-    crate::later::names_in(m, expr, &mut |symbol| names.push(m.program.name(symbol).to_string()));
+    crate::run::forward_reference::names_in(m, expr, &mut |symbol| {
+        names.push(m.program.name(symbol).to_string())
+    });
     NotLiteral::Expression { span: m.program[expr].span, names }
+}
+
+/// Lets an expression find the objects that a model file made, by their names or by the
+/// identifiers that stand for them.
+fn bind_objects<T: Scalar>(
+    modules: &Modules,
+    expression: &Module,
+    graph: &Graph<T>,
+    env: &mut Environment<T>,
+) {
+    env.globals.resize_with(modules.name_count(), || None);
+    for &name in &expression.names {
+        let text = modules.text(name);
+        let known = &mut env.globals[name.0 as usize];
+        if known.is_none()
+            && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
+        {
+            *known = Some(Bound { span: Span::UNKNOWN, what: Binding::Object(key) });
+        } else if known.is_none()
+            && let Some(&x) = env.numbers.get(&**text)
+        {
+            let ty = Type::Float;
+            let what = Binding::variable(ty, Value::Number(x));
+            *known = Some(Bound { span: Span::UNKNOWN, what });
+        }
+    }
 }

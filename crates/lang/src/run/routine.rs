@@ -1,10 +1,10 @@
 //! Runs a program: calls of subroutines and functions.
 
-use crate::env::{Binding, Bound, Frame, Multiple, Passed};
-use crate::interpreter::{Flow, Interpreter, silent};
-use crate::module::{Module, RoutineAt};
-use crate::section::Place;
-use crate::variables;
+use crate::run::interpreter::{Flow, Interpreter, silent};
+use crate::source::env::{Binding, Bound, Frame, Multiple, Passed};
+use crate::source::module::{Module, RoutineAt};
+use crate::value::subarray::Place;
+use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::sdl::{Arg, ExprId, Formal, List, Type};

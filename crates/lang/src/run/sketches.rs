@@ -1,9 +1,9 @@
 //! Runs a program: the objects of loaded sketches.
 
-use crate::env::{Binding, Bound, Origin, Param};
-use crate::interpreter::Interpreter;
-use crate::module::Module;
-use crate::sketch_file::{Drawn, SketchFile};
+use crate::run::interpreter::Interpreter;
+use crate::source::env::{Binding, Bound, Origin, Param};
+use crate::source::module::Module;
+use crate::source::sketch_file::{Drawn, SketchFile};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Declaration, Extent};
@@ -63,7 +63,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             self.drawn(drawn, &prefix, &values, site);
             // Found under its own name as well, and in small letters: sketches do not tell them apart.
-            let own = crate::model_file_names::identifier(&drawn.object.name);
+            let own = crate::model_file::names::identifier(&drawn.object.name);
             for alias in [&prefix, &prefix.to_ascii_lowercase(), &own] {
                 let name = self.modules.name(alias);
                 self.env.globals.resize_with(self.modules.name_count(), || None);
@@ -325,7 +325,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Some(key)
             }
             Err(fault) => {
-                self.report(crate::place::unplaced(&fault).at(names.site.span));
+                self.report(crate::source::fault_location::unplaced(&fault).at(names.site.span));
                 None
             }
         }

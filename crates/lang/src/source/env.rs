@@ -1,8 +1,7 @@
-use crate::files::Files;
-use crate::known::Known;
-use crate::module::{Name, RoutineAt};
-use crate::section::Place;
-use crate::solve::SolveStatus;
+use crate::functions::files::Files;
+use crate::source::module::{Name, RoutineAt};
+use crate::value::initialised::Known;
+use crate::value::subarray::Place;
 use indexmap::IndexMap;
 use moldloft_diag::Span;
 use moldloft_model::Graph;
@@ -14,7 +13,7 @@ use std::sync::Arc;
 
 /// What a name means.
 #[derive(Clone, Debug)]
-pub(crate) enum Binding<T: Scalar> {
+pub enum Binding<T: Scalar> {
     /// A variable of a type; `fixed` when its dimensions were declared.
     Variable { ty: Type, value: Value<T>, fixed: bool, known: Known },
     /// A part of a variable of a caller, passed by reference.
@@ -42,7 +41,7 @@ impl<T: Scalar> Binding<T> {
 
 /// A multiple argument, read one after the other.
 #[derive(Clone, Debug)]
-pub(crate) struct Multiple<T: Scalar> {
+pub struct Multiple<T: Scalar> {
     pub ty: Type,
     pub items: Vec<Passed<T>>,
     /// How many were read by `next`.
@@ -51,21 +50,21 @@ pub(crate) struct Multiple<T: Scalar> {
 
 /// An argument as it was passed.
 #[derive(Clone, Debug)]
-pub(crate) enum Passed<T: Scalar> {
+pub enum Passed<T: Scalar> {
     Value(Value<T>),
     Place(Place),
 }
 
 /// A binding and where it was made.
 #[derive(Clone, Debug)]
-pub(crate) struct Bound<T: Scalar> {
+pub struct Bound<T: Scalar> {
     pub span: Span,
     pub what: Binding<T>,
 }
 
 /// The variables of a routine's call, or of the file level of a load.
 #[derive(Debug)]
-pub(crate) struct Frame<T: Scalar> {
+pub struct Frame<T: Scalar> {
     pub locals: Vec<(Name, Bound<T>)>,
     /// True at file level, where names are global.
     pub global: bool,
@@ -78,7 +77,7 @@ pub(crate) struct Frame<T: Scalar> {
 
 /// A turn of a loop under way.
 #[derive(Clone, Debug)]
-pub(crate) struct Turn {
+pub struct Turn {
     /// The loop variable's value as it stands in names; `None` in a `while`.
     pub label: Option<f64>,
     /// Unique among the turns of a run.
@@ -90,6 +89,9 @@ impl<T: Scalar> Frame<T> {
         Self { locals: Vec::new(), global, prefix, loops: Vec::new(), called: None }
     }
 }
+
+/// Gives the number of that name its derivatives.
+pub type Seed<'a, T> = &'a (dyn Fn(&str, T) -> T + Sync);
 
 /// A design parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +112,7 @@ pub struct Param {
 
 /// Where an object was declared.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Origin {
+pub struct Origin {
     pub module: u32,
     pub stmt: StmtId,
     /// True when the statement may be executed more than once: in a loop or a subroutine.
@@ -118,7 +120,7 @@ pub(crate) struct Origin {
 }
 
 /// A graph and what the run that made it left behind.
-pub(crate) struct Evaluation<T: Scalar> {
+pub struct Evaluation<T: Scalar> {
     pub graph: Graph<T>,
     pub env: Environment<T>,
 }
@@ -129,9 +131,40 @@ impl<T: Scalar> Default for Evaluation<T> {
     }
 }
 
+/// How the search for a solution ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolveStatus {
+    /// All conditions hold.
+    Solved,
+    /// The conditions do not determine the unknowns.
+    Singular,
+    /// No step makes the conditions smaller.
+    Stuck,
+    /// A solution would lie outside a range.
+    OutOfRange,
+    /// The steps did not suffice.
+    TooManySteps,
+    /// The model could not be built on the way.
+    NoModel,
+}
+
+impl SolveStatus {
+    /// A word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            SolveStatus::Solved => "solved",
+            SolveStatus::Singular => "singular",
+            SolveStatus::Stuck => "stuck",
+            SolveStatus::OutOfRange => "out-of-range",
+            SolveStatus::TooManySteps => "too-many-steps",
+            SolveStatus::NoModel => "no-model",
+        }
+    }
+}
+
 /// A solve set as a run found it.
 #[derive(Clone, Debug)]
-pub(crate) struct Solve<T> {
+pub struct Solve<T> {
     pub name: Arc<str>,
     pub span: Span,
     /// Parameters, by their numbers.
@@ -144,7 +177,7 @@ pub(crate) struct Solve<T> {
 
 /// All that a run leaves behind: what expressions may refer to afterwards.
 #[derive(Debug)]
-pub(crate) struct Environment<T: Scalar> {
+pub struct Environment<T: Scalar> {
     pub globals: Vec<Option<Bound<T>>>,
     pub routines: HashMap<Name, RoutineAt>,
     pub params: Vec<Param>,

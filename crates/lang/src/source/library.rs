@@ -1,6 +1,6 @@
 //! The libraries that come with the program, written in the language.
 
-use crate::world::ReadText;
+use crate::source::world::ReadText;
 use moldloft_diag::nearest;
 
 /// Begins the names of built-in libraries in messages.
@@ -8,9 +8,9 @@ pub(crate) const FOLDER: &str = "moldloft:";
 
 /// Name and text of each library.
 pub const LIBRARIES: [(&str, &str); 3] = [
-    ("stdsubs.sdl", include_str!("../sdl/stdsubs.sdl")),
-    ("mslbody.sdl", include_str!("../sdl/mslbody.sdl")),
-    ("naca.sdl", include_str!("../sdl/naca.sdl")),
+    ("stdsubs.sdl", include_str!("../../sdl/stdsubs.sdl")),
+    ("mslbody.sdl", include_str!("../../sdl/mslbody.sdl")),
+    ("naca.sdl", include_str!("../../sdl/naca.sdl")),
 ];
 
 /// The library that `load "path"` means when no file of the user does.

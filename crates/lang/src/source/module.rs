@@ -1,5 +1,5 @@
 use crate::World;
-use crate::sketch_file::SketchFile;
+use crate::source::sketch_file::SketchFile;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_registry::{Registry, Row};
 use moldloft_syntax::sdl::{self, Program, RoutineId, Symbol};
@@ -8,18 +8,18 @@ use std::sync::Arc;
 
 /// A name, the same number in every file of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct Name(pub u32);
+pub struct Name(pub u32);
 
 /// A routine of a module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct RoutineAt {
+pub struct RoutineAt {
     pub module: usize,
     pub routine: RoutineId,
 }
 
 /// A parsed file of a model, its names resolved against the others'.
 #[derive(Debug)]
-pub(crate) struct Module {
+pub struct Module {
     /// The name that the world gave it.
     pub path: String,
     pub program: Program,
@@ -35,7 +35,7 @@ pub(crate) struct Module {
 
 /// All files of a model: parsed once, executed often.
 #[derive(Debug, Default)]
-pub(crate) struct Modules {
+pub struct Modules {
     modules: Vec<Arc<Module>>,
     texts: HashMap<Arc<str>, Name>,
     names: Vec<Arc<str>>,
@@ -94,7 +94,7 @@ impl Modules {
             names,
             rows,
             faults: Vec::new(),
-            library: path.starts_with(crate::library::FOLDER),
+            library: path.starts_with(crate::source::library::FOLDER),
         });
         match at {
             Some(at) => {
@@ -215,8 +215,8 @@ impl Modules {
         let from = if self.modules[from].library { 0 } else { from };
         let from_path = self.modules[from].path.clone();
         let read = loader.world.read(path, Some(&from_path)).or_else(|error| {
-            crate::library::text(path).ok_or_else(|| {
-                let near = crate::library::near(path);
+            crate::source::library::text(path).ok_or_else(|| {
+                let near = crate::source::library::near(path);
                 Diagnostic::error("cannot-read", error.message)
                     .at(span)
                     .maybe_help(error.help)
@@ -228,7 +228,7 @@ impl Modules {
         }
         let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
         let text = if read.name.to_ascii_lowercase().ends_with(".ms2") {
-            converted(&read.name, text, loader.registry).map_err(|d| d.at(span))?
+            (loader.converted)(&read.name, text, loader.registry).map_err(|d| d.at(span))?
         } else {
             text.to_string()
         };
@@ -242,20 +242,14 @@ impl Modules {
 }
 
 /// What loading a file needs.
-pub(crate) struct Loader<'a> {
+pub struct Loader<'a> {
     pub world: &'a dyn World,
     pub registry: &'a Registry,
     pub sources: &'a mut Sources,
     pub diagnostics: &'a mut Vec<Diagnostic>,
+    /// The program of a model file.
+    pub converted: Convert,
 }
 
-/// A model file as a program.
-fn converted(name: &str, text: &str, registry: &Registry) -> Result<String, Diagnostic> {
-    let world = Box::new(crate::NoFiles);
-    let document = crate::Document::from_text(registry.clone(), world, name, text);
-    document.convert(crate::Format::Sdl).map_err(|found| {
-        let first = found.first().map(|d| d.message.clone()).unwrap_or_default();
-        Diagnostic::error("cannot-read", format!("`{name}` is not sound: {first}"))
-            .help("open the model file by itself to see all that is wrong with it")
-    })
-}
+/// Makes a program of a model file: its name and text are given.
+pub type Convert = fn(&str, &str, &Registry) -> Result<String, Diagnostic>;

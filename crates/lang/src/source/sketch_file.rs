@@ -18,7 +18,7 @@ const MOST_FAULTS: usize = 100;
 
 /// A file of sketches after its commands were run.
 #[derive(Debug)]
-pub(crate) struct SketchFile {
+pub struct SketchFile {
     /// The name that the world gave it.
     pub path: String,
     /// Its text.
@@ -31,7 +31,7 @@ pub(crate) struct SketchFile {
 
 /// A sketched object with what its drawing alone decides.
 #[derive(Debug)]
-pub(crate) struct Drawn {
+pub struct Drawn {
     /// The object.
     pub object: Object,
     /// Its dimensioning planes.
@@ -61,7 +61,7 @@ impl Drawn {
 }
 
 /// True for the names of sketch files.
-pub(crate) fn is_sketch(name: &str) -> bool {
+pub fn is_sketch(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     name.ends_with(".skt") || name.ends_with(".skt.json")
 }
@@ -166,7 +166,7 @@ impl SketchFile {
         let name = &drawn.object.name;
         let chosen =
             if self.objects.len() == 1 && stem.eq_ignore_ascii_case(name) { stem } else { name };
-        crate::model_file_names::identifier(chosen)
+        crate::model_file::names::identifier(chosen)
     }
 }
 

@@ -4,13 +4,13 @@
 //! there (the ends before `line`, the edges before `transfinite`) ask here, so that zeros are not
 //! taken for data.
 
-use crate::section::{Section, Selection};
+use crate::value::subarray::{Section, Selection};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Value};
 
 /// What is known of the elements of a variable.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Known {
+pub struct Known {
     /// The elements without a value; `None` when all have one.
     missing: Option<Box<Missing>>,
     /// Where each edge of a grid was last put to begin and end: edges i = 1, i = d1, j = 1, j = d2.
@@ -24,7 +24,7 @@ struct Missing {
 }
 
 /// A corner of a grid where the two edges do not meet.
-pub(crate) struct Gap {
+pub struct Gap {
     /// Numbers from 1.
     pub corner: [usize; 2],
     /// The two edges, and where they end.

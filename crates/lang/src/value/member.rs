@@ -10,10 +10,7 @@ use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value, Vectors};
 use std::sync::Arc;
 
 /// The member called `name`, if the value has one.
-pub(crate) fn of_value<T: Scalar>(
-    value: &Value<T>,
-    name: &str,
-) -> Option<Result<Value<T>, Diagnostic>> {
+pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<T>, Diagnostic>> {
     if let Some(member) = of_found(value, name) {
         return Some(Ok(member));
     }
@@ -53,7 +50,7 @@ pub(crate) fn of_value<T: Scalar>(
             number(moldloft_spline::arclen(&**curve, T::zero(), T::one(), 1e-12 * rough))
         }
         (Value::Numbers(_) | Value::Vectors(_) | Value::List(_), None) => {
-            let extents = crate::variables::extents(value)?;
+            let extents = crate::value::variables::extents(value)?;
             let extent = match name {
                 "d1" => extents.first(),
                 "d2" => extents.get(1),
@@ -93,7 +90,7 @@ const FLAWS: [&str; 3] = ["undecided", "blunt", "touching"];
 const FOUND: [&str; 5] = ["status", "residual", "iterations", "start", "alternatives"];
 
 /// The names of the members that a value has.
-pub(crate) fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
+pub fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
     let mut names = own_names(value);
     names.extend(value.found().iter().flat_map(|_| FOUND));
     names
@@ -122,7 +119,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
 }
 
 /// The area of a surface object, measured on its panels, or the volume of a solid, on its cells.
-pub(crate) fn of_patch<T: Scalar>(
+pub fn of_patch<T: Scalar>(
     graph: &Graph<T>,
     object: &Object<T>,
     name: &str,
@@ -137,7 +134,7 @@ pub(crate) fn of_patch<T: Scalar>(
     let [nu, nv] = divisions(graph, object).map(|n| n as usize);
     let panels = nu as u64 * nv as u64;
     if panels > MOST_PANELS {
-        return Some(Err(crate::place::unplaced(&too_many_panels(panels))));
+        return Some(Err(crate::source::fault_location::unplaced(&too_many_panels(panels))));
     }
     let steps = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();
     let mut points = vec![Vec3::zero(); (nu + 1) * (nv + 1)];

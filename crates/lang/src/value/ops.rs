@@ -22,7 +22,7 @@ fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T
         Value::Numbers(a) => Elements::Numbers(a),
         Value::Vectors(a) => Elements::Vectors(a),
         other => {
-            let class = crate::variables::a(other);
+            let class = crate::value::variables::a(other);
             let help = match other {
                 Value::Curve(_) => Some(
                     "a pcurve is only assigned, passed and returned; compute with its points: \
@@ -165,14 +165,14 @@ pub(crate) fn binary<T: Real>(
     b: &Value<T>,
 ) -> Result<Value<T>, Diagnostic> {
     use Elements::*;
-    if let Some(outcome) = crate::sets::binary(op, a, b) {
+    if let Some(outcome) = crate::functions::sets::binary(op, a, b) {
         return outcome;
     }
     let word = op.spelling();
     let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
     let undefined = || {
         let name = |value: &Value<T>| {
-            let of = crate::variables::a(value);
+            let of = crate::value::variables::a(value);
             of.split_once(' ').map_or(of, |(_, name)| name)
         };
         let found = format!("{} {word} {}", name(a), name(b));
@@ -241,7 +241,8 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
             _ => return Err(unsupported(op, "texts")),
         },
         _ => {
-            let found = format!("{} and {}", crate::variables::a(a), crate::variables::a(b));
+            let found =
+                format!("{} and {}", crate::value::variables::a(a), crate::value::variables::a(b));
             return Err(Diagnostic::error(
                 "wrong-operand",
                 format!("`{}` compares numbers, not {found}", op.spelling()),
@@ -264,7 +265,7 @@ fn unsupported(op: BinaryOp, what: &str) -> Diagnostic {
 
 /// `-a`.
 pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
-    if let Some(value) = crate::sets::negated(a) {
+    if let Some(value) = crate::functions::sets::negated(a) {
         return Ok(value);
     }
     Ok(match elements(a, "-")? {
@@ -277,7 +278,7 @@ pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
 
 /// `|a|`: the length of vectors, the absolute value of numbers.
 pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
-    if let Some(value) = crate::sets::magnitude(a) {
+    if let Some(value) = crate::functions::sets::magnitude(a) {
         return Ok(value);
     }
     Ok(match elements(a, "|")? {

@@ -1,14 +1,14 @@
 //! Sections: which elements of an array a subscript names, and places: which part of which variable
 //! an assignment or a returned argument writes to.
 
-use crate::module::Name;
+use crate::source::module::Name;
 use moldloft_diag::Diagnostic;
 use moldloft_registry::ArrayShape;
 
 /// What a subscript selects from a dimension: `count` positions from `start`, `step` apart, counted
 /// from 0; and whether the dimension stays (a range) or goes (an index).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Selection {
+pub struct Selection {
     pub start: usize,
     pub step: isize,
     pub count: usize,
@@ -70,7 +70,7 @@ impl Selection {
 
 /// What all subscripts select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Section {
+pub enum Section {
     Row(Selection),
     Grid(Selection, Selection),
 }
@@ -153,7 +153,7 @@ impl Section {
 }
 
 /// The selected elements of `items`, in order.
-pub(crate) fn picked<E: Copy>(items: &[E], shape: ArrayShape, section: Section) -> Vec<E> {
+pub fn picked<E: Copy>(items: &[E], shape: ArrayShape, section: Section) -> Vec<E> {
     let mut out = Vec::with_capacity(section.shape().map_or(1, ArrayShape::count));
     section.runs(shape, |start, count, step| {
         if step == 1 {
@@ -167,7 +167,7 @@ pub(crate) fn picked<E: Copy>(items: &[E], shape: ArrayShape, section: Section) 
 }
 
 /// Writes `from`, in order, to the selected elements of `items`.
-pub(crate) fn put<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, from: &[E]) {
+pub fn put<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, from: &[E]) {
     let mut done = 0;
     section.runs(shape, |start, count, step| {
         let part = &from[done..done + count];
@@ -182,7 +182,7 @@ pub(crate) fn put<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section,
 }
 
 /// Writes one value to all selected elements of `items`.
-pub(crate) fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, x: E) {
+pub fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, x: E) {
     section.runs(shape, |start, count, step| {
         let at = |k: usize| (start as isize + step * k as isize) as usize;
         (0..count).for_each(|k| items[at(k)] = x);
@@ -191,7 +191,7 @@ pub(crate) fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: Sect
 
 /// A part of a variable that is assigned to, or passed by reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Place {
+pub struct Place {
     /// The frame of the variable; `None` for a global one.
     pub frame: Option<u32>,
     pub name: Name,

@@ -1,6 +1,6 @@
 //! Variables: types, sections, and assignment.
 
-use crate::section::{Place, Section, picked, put, put_all};
+use crate::value::subarray::{Place, Section, picked, put, put_all};
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
@@ -11,14 +11,14 @@ use std::sync::Arc;
 const MOST_ELEMENTS: f64 = 1e7;
 
 /// What is known of the variable that a value is stored into.
-pub(crate) struct Taken<'a> {
+pub struct Taken<'a> {
     pub ty: Type,
     pub fixed: bool,
     pub name: &'a str,
 }
 
 /// The type that holds a value as it is.
-pub(crate) fn type_of<T: Real>(value: &Value<T>) -> Type {
+pub fn type_of<T: Real>(value: &Value<T>) -> Type {
     match value {
         Value::Text(_) => Type::String,
         Value::Vector(_) | Value::Point(_) => Type::Vector,
@@ -33,10 +33,10 @@ pub(crate) fn type_of<T: Real>(value: &Value<T>) -> Type {
     }
 }
 
-pub(crate) use moldloft_arrays::called as a;
+pub use moldloft_arrays::called as a;
 
 /// [`a`] as a method.
-pub(crate) trait Called {
+pub trait Called {
     fn called(&self) -> &'static str;
 }
 
@@ -47,7 +47,7 @@ impl<T: Real> Called for Value<T> {
 }
 
 /// The word of a type and what it holds.
-pub(crate) fn described(ty: Type) -> &'static str {
+pub fn described(ty: Type) -> &'static str {
     match ty {
         Type::Int => "a whole number",
         Type::Float => "a number",
@@ -69,7 +69,7 @@ pub(crate) fn described(ty: Type) -> &'static str {
 ///
 /// # Errors
 /// When the type holds no such value.
-pub(crate) fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnostic> {
+pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnostic> {
     let wrong = |value: &Value<T>| {
         let found = a(value);
         let help = match (ty, value) {
@@ -158,7 +158,7 @@ pub(crate) fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, 
 ///
 /// # Errors
 /// When it is not a whole number in range.
-pub(crate) fn extent(n: f64) -> Result<usize, Diagnostic> {
+pub fn extent(n: f64) -> Result<usize, Diagnostic> {
     if n.fract() == 0.0 && (1.0..=MOST_ELEMENTS).contains(&n) {
         return Ok(n as usize);
     }
@@ -168,7 +168,7 @@ pub(crate) fn extent(n: f64) -> Result<usize, Diagnostic> {
 }
 
 /// More elements than there may be.
-pub(crate) fn too_many(found: f64, most: f64) -> Diagnostic {
+pub fn too_many(found: f64, most: f64) -> Diagnostic {
     Diagnostic::error("too-many-elements", "the array is too large")
         .expected(format!("at most {most} elements"))
         .found(format!("{found}"))
@@ -178,7 +178,7 @@ pub(crate) fn too_many(found: f64, most: f64) -> Diagnostic {
 ///
 /// # Errors
 /// When dimensions, type and value do not go together.
-pub(crate) fn initial<T: Real>(
+pub fn initial<T: Real>(
     ty: Type,
     dims: &[usize],
     value: Option<Value<T>>,
@@ -226,7 +226,7 @@ pub(crate) fn initial<T: Real>(
 ///
 /// # Errors
 /// When type or shape differ.
-pub(crate) fn store<T: Real>(
+pub fn store<T: Real>(
     taken: Taken<'_>,
     old: &mut Value<T>,
     place: &Place,
@@ -385,7 +385,7 @@ fn component_mut<T>(v: &mut Vec3<T>, component: usize) -> &mut T {
 ///
 /// # Errors
 /// When subscripts and dimensions do not go together.
-pub(crate) fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<T>, Diagnostic> {
+pub fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<T>, Diagnostic> {
     Ok(match value {
         Value::Numbers(array) => {
             let section = section_of(array.shape, Some(section))?;
@@ -422,7 +422,7 @@ pub(crate) fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<
 }
 
 /// The value of a component of vectors; `None` when there is none.
-pub(crate) fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
+pub fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
     Some(match value {
         Value::Vector(v) => Value::Number(v[c]),
         Value::Point(p) => Value::Number(p.xyz[c]),
@@ -437,7 +437,7 @@ pub(crate) fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>>
 ///
 /// # Errors
 /// When it has no such part.
-pub(crate) fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<T>, Diagnostic> {
+pub fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<T>, Diagnostic> {
     let value = match place.section {
         Some(section) => part(root, section)?,
         None => root.clone(),
@@ -451,7 +451,7 @@ pub(crate) fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<
 }
 
 /// The type of what stands in a place of a variable of type `ty` and value `root`.
-pub(crate) fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
+pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
     let of =
         |dimensions: usize, vectors: bool| match (vectors && place.component.is_none(), dimensions)
         {
@@ -472,7 +472,7 @@ pub(crate) fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type
 
 /// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `number`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Shape {
+pub enum Shape {
     Numbers(ArrayShape),
     Vectors(ArrayShape),
     List(usize),
@@ -492,7 +492,7 @@ impl std::fmt::Display for Shape {
 }
 
 /// The type and extents of a value.
-pub(crate) fn shape_of<T: Real>(value: &Value<T>) -> Shape {
+pub fn shape_of<T: Real>(value: &Value<T>) -> Shape {
     match value {
         Value::Numbers(a) => Shape::Numbers(a.shape),
         Value::Vectors(a) => Shape::Vectors(a.shape),
@@ -502,17 +502,17 @@ pub(crate) fn shape_of<T: Real>(value: &Value<T>) -> Shape {
 }
 
 /// The same in words.
-pub(crate) fn shape_text<T: Real>(value: &Value<T>) -> String {
+pub fn shape_text<T: Real>(value: &Value<T>) -> String {
     shape_of(value).to_string()
 }
 
 /// The type and extents of what stands in a place.
-pub(crate) fn shape_at<T: Real>(root: &Value<T>, place: &Place) -> String {
+pub fn shape_at<T: Real>(root: &Value<T>, place: &Place) -> String {
     at_place(root, place).map_or_else(|_| shape_text(root), |value| shape_text(&value))
 }
 
 /// The extents of what can be indexed.
-pub(crate) fn extents<T: Real>(value: &Value<T>) -> Option<Vec<usize>> {
+pub fn extents<T: Real>(value: &Value<T>) -> Option<Vec<usize>> {
     let of = |shape: ArrayShape| match shape {
         ArrayShape::Row(n) => vec![n],
         ArrayShape::Grid(m, n) => vec![m, n],

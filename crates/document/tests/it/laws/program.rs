@@ -1,8 +1,8 @@
 //! Random models.
 
 use crate::common::Random;
-use crate::recipes;
-use moldloft_lang::registry;
+use crate::laws::recipes;
+use moldloft_document::registry;
 use moldloft_registry::Class;
 use std::fmt::Write;
 

@@ -6,7 +6,7 @@ mod points;
 mod snakes;
 mod surfaces;
 
-use crate::program::Program;
+use crate::laws::program::Program;
 
 /// The arguments of a random object of this kind, with all that it needs declared before; `None`
 /// when no family knows the kind.

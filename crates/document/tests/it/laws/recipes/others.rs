@@ -1,6 +1,6 @@
 //! Planes, frames, contours, relabels and everything else.
 
-use crate::program::Program;
+use crate::laws::program::Program;
 
 /// The arguments of a random object of this kind; `None` for a kind of another family.
 pub fn arguments(p: &mut Program, kind: &str) -> Option<String> {

@@ -1,6 +1,6 @@
 //! Surfaces and solids.
 
-use crate::program::Program;
+use crate::laws::program::Program;
 use std::fmt::Write;
 
 /// The arguments of a random object of this kind; `None` for a kind of another family.

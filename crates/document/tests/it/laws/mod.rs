@@ -1,15 +1,13 @@
 //! Exact derivatives against differences, on random models that have every kind of the registry.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod program;
 mod recipes;
 
-use common::{line, open, rounds};
-use moldloft_lang::Document;
+use self::program::{model, parts};
+use crate::common::{line, open, rounds};
+use moldloft_document::Document;
 use moldloft_num::{Order, Vec3, gauss_legendre};
 use moldloft_registry::{Class, Value};
-use program::{model, parts};
 
 /// Values, flat, and the object (or measured number) that each belongs to.
 #[derive(Clone)]
@@ -150,7 +148,7 @@ fn ridders(mut at: impl FnMut(f64) -> Option<Sample>, mut h: f64) -> Option<Vec<
 /// True when the length of a curve is not that of a much finer quadrature.
 fn missed_knot(document: &mut Document, text: &str) -> bool {
     let Some(name) = text.strip_suffix(".length") else { return false };
-    let length = common::number(document, text);
+    let length = crate::common::number(document, text);
     let graph = document.graph();
     let object = graph.find(name).and_then(|key| graph.get(key)).expect("a measured curve");
     let Some(Value::Curve(curve)) = object.value() else { return false };
@@ -340,7 +338,7 @@ fn lengths_across_moving_corners_have_exact_derivatives() {
                 AbsPoint E(1, 0.5, 2); AbsPoint F(1.5, 1, 2.25); CCurve a({A, B, C}, degree = 1); \
                 CCurve b({D, E, F}, degree = 1); RuledSurf S(a, b); AbsMagnet p(S, 0.1, 0.2); AbsMagnet q(S, 0.9, 0.7); \
                 LineSnake s(p, q); AbsBead c(a, 0.2); AbsBead d(a, 0.875); SubCurve k(c, d);";
-    let mut document = common::sound(text);
+    let mut document = crate::common::sound(text);
     for (number, inputs) in [
         ("s.length", ["p.u", "q.v", "B.x", "E.y"]),
         ("length(s)", ["p.v", "q.u", "C.z", "E.x"]),
@@ -350,10 +348,10 @@ fn lengths_across_moving_corners_have_exact_derivatives() {
         for input in inputs {
             let exact = document.derivatives(&[number.into()], &[input.into()]).unwrap();
             let Value::Number(exact) = exact[0][0] else { panic!() };
-            let start = common::number(&mut document, input);
+            let start = crate::common::number(&mut document, input);
             let at = |h: f64| {
                 document.set(&[(input.into(), start + h)]).unwrap();
-                let values = vec![common::number(&mut document, number)];
+                let values = vec![crate::common::number(&mut document, number)];
                 document.set(&[(input.into(), start)]).unwrap();
                 Some(Sample { values, owners: vec![0] })
             };

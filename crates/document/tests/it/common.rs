@@ -1,8 +1,7 @@
 //! What the tests of documents share: opening texts, values, random numbers with a fixed seed.
-#![allow(dead_code)] // each test program uses a part of it
 
 use moldloft_diag::Diagnostic;
-use moldloft_lang::{Document, NoFiles, ReadError, ReadText, World, registry};
+use moldloft_document::{Document, NoFiles, ReadError, ReadText, World, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
 
