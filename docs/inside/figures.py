@@ -1,7 +1,7 @@
 """Draws the figures of docs/inside: `python docs/inside/figures.py [NAME ...]`, with Matplotlib.
 
-Shapes, meshes, branches and optima come from Moldloft itself, the search cells of `branches` from the few lines of `search` here,
-which follow `locate::branches` with bounds that are exact for a torus.
+Shapes, meshes, branches and optima come from Moldloft itself. The search cells of `branches` come
+from `search` here, which follows `locate::branches` with bounds for a torus.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ def change() -> None:
         "O": (0, 0),
         "ground": (1.3, 0),
         "top": (2.6, 0),
-        "foot": (1.95, 1),
-        "base": (0.9, 2),
-        "mast": (2.9, 2),
+        "foot": (1.5, 1),
+        "base": (0.7, 2),
+        "mast": (3.5, 2),
     }
     links = [
         ("ground", "foot"),
@@ -88,7 +88,15 @@ def change() -> None:
         axes.add_patch(Circle((x, y), 0.17, color=colour.get(name, "#d8dbde"), zorder=3))
         ink = "white" if name in colour else "black"
         axes.text(
-            x, y, name, ha="center", va="center", zorder=4, color=ink, fontsize=8, weight="bold"
+            x,
+            y,
+            name,
+            ha="center",
+            va="center",
+            zorder=4,
+            color=ink,
+            fontsize=6.5 if len(name) > 5 else 8,
+            weight="bold",
         )
         axes.text(x + 0.23, y - 0.05, label[name], ha="left", va="center", fontsize=8)
     for rank in range(3):
@@ -103,7 +111,7 @@ def change() -> None:
         color=ORANGE,
         arrowprops={"arrowstyle": "-|>", "color": ORANGE},
     )
-    axes.set(xlim=(-0.9, 4.6), ylim=(2.45, -0.8), aspect="equal")
+    axes.set(xlim=(-0.9, 5.2), ylim=(2.45, -0.8), aspect="equal")
     bare(axes)
     save(figure, "change")
 
@@ -166,7 +174,7 @@ def joins() -> None:
     right.plot([], [], "o", ms=3, color="black", label="of one patch")
     right.plot([], [], "o", ms=6, color=BLUE, label="of two")
     right.plot([], [], "o", ms=8, color=RED, label="of three: the bead")
-    right.legend(loc="upper right", fontsize=8, framealpha=1)
+    right.legend(loc="center left", bbox_to_anchor=(1, 0.5), fontsize=8)
     right.set(xlim=(-0.3, 4.3), ylim=(-2.2, 2.2), aspect="equal")
     bare(right)
     save(figure, "joins")
@@ -177,6 +185,7 @@ def facets() -> None:
     figure = plt.figure(figsize=(10, 4.6), layout="constrained")
     plane = figure.add_subplot(1, 2, 1)
     primitives = [
+        (lambda p: 0.45 - p[0], lambda p: np.array([-1.0, 0]), GREY),
         (lambda p: -p[1] + 0.9, lambda p: np.array([0, -1.0]), BLUE),
         (lambda p: p[0] - 6.3 + 0.35 * (p[1] - 4), lambda p: np.array([1.0, 0.35]), ORANGE),
         (
@@ -250,7 +259,7 @@ def facets() -> None:
 
     solid = figure.add_subplot(1, 2, 2, projection="3d")
     line = implicit.cylinder((0, 0, 0), (0, 0, 1), 0.45)
-    body = implicit.Set.cuboid((-1, -1, -0.6), (1, 1, 0.6)) & implicit.Set(
+    body = implicit.cuboid((-1, -1, -0.6), (1, 1, 0.6)) & implicit.Set(
         implicit.sphere((0, 0, 0), 1.25)
     ) - implicit.Set(line)
     made = body.facets((-1.5, -1.5, -1.5), (1.5, 1.5, 1.5), depth=4)
@@ -282,7 +291,7 @@ def torus(u: float, v: float) -> np.ndarray:
 
 
 def search(d: float) -> tuple[list[tuple[float, float, float, float, str]], int]:
-    """The cells of the parameter square that remain for the plane x = d, and how many were looked at."""
+    """The cells that remain for the plane x = d, and the number of cells examined."""
     found, looked = [], 0
     stack = [(0.5, 0.5, 0.5, 0.5)]
     plane = np.array([1.0, 0, 0])
@@ -310,7 +319,8 @@ def search(d: float) -> tuple[list[tuple[float, float, float, float, str]], int]
 def branches() -> None:
     """Cells, seeds and branches of a torus and three planes."""
     model = moldloft.loads(example("branches"))
-    figure, all_axes = plt.subplots(1, 3, figsize=(11, 4.1), layout="constrained")
+    figure, all_axes = plt.subplots(1, 3, figsize=(11, 4.6))
+    figure.subplots_adjust(left=0.06, right=0.98, bottom=0.2, top=0.9)
     for axes, d in zip(all_axes, (0.5, 1.001, 2.5), strict=True):
         cells, looked = search(d)
         for u, v, h, k, kind in cells:
@@ -341,7 +351,7 @@ def branches() -> None:
         )
         word = "branch" if len(cut.branches) == 1 else "branches"
         axes.set_title(
-            f"x = {d}: {len(cut.branches)} closed {word};\n{looked} cells looked at, {len(cells)} remain"
+            f"x = {d}: {len(cut.branches)} closed {word};\n{looked} cells seen, {len(cells)} left"
         )
     all_axes[0].set_ylabel("v (round the axis)")
     handles = [
@@ -351,7 +361,7 @@ def branches() -> None:
         plt.Line2D([], [], color=RED, marker="o", ls=""),
     ]
     words = ["one line at most", "undecided at the smallest size", "branch", "its start"]
-    figure.legend(handles, words, loc="outside lower center", ncols=4, fontsize=8)
+    figure.legend(handles, words, loc="lower center", ncols=4, fontsize=8)
     save(figure, "branches")
 
 
@@ -360,17 +370,17 @@ def certificate() -> None:
     figure, (left, right) = plt.subplots(
         1, 2, figsize=(10, 3.8), width_ratios=[1.5, 1], layout="constrained"
     )
-    noise = [0, 0.1, -0.1, 0.2, -0.1, 0.1, 0]
+    noise = [0, 0.1, 0.02, 0.3, 0.1, 0.12, 0]
     d0 = np.array([(i, y, 0) for i, y in enumerate(noise)], dtype=float)
-    r = 0.05
-    points = moldloft.fair(d0, r, as_="control", measure="second", ends="position").points
+    r = 0.08
+    points = moldloft.fair(d0, r, as_="control", measure="second", ends="free").points
     error = points[:-2] - 2 * points[1:-1] + points[2:]
     slope = np.zeros_like(d0)
     for k, e in enumerate(error):
         slope[k : k + 3] += np.outer([2, -4, 2], e)
     left.plot(d0[:, 0], d0[:, 1], "--", color=GREY, lw=1, label="data")
     left.plot(points[:, 0], points[:, 1], "-o", color=BLUE, ms=4, label="optimum")
-    for p, q, g in list(zip(d0, points, slope, strict=True))[1:-1]:
+    for p, q, g in list(zip(d0, points, slope, strict=True)):
         left.errorbar(p[0], p[1], yerr=r, color=GREY, capsize=4, lw=1)
         if abs(g[1]) > 1e-9:
             left.annotate(
@@ -380,7 +390,7 @@ def certificate() -> None:
                 arrowprops={"arrowstyle": "-|>", "color": RED, "lw": 1.6},
             )
     left.plot([], [], color=RED, label="force, -g: against the limit")
-    left.errorbar([], [], yerr=[], color=GREY, capsize=4, label="tolerance 0.05")
+    left.errorbar([], [], yerr=[], color=GREY, capsize=4, label="tolerance 0.08")
     left.legend(fontsize=8, loc="upper right")
     left.set_title("the example: limits that are reached carry a force")
     left.set(xlabel="x", ylabel="y (enlarged)", ylim=(-0.32, 0.42))
@@ -404,7 +414,14 @@ def certificate() -> None:
     right.annotate(
         "", (-0.93, bound), (-0.93, f(-0.2)), arrowprops={"arrowstyle": "<->", "color": ORANGE}
     )
-    right.text(-0.88, (bound + f(-0.2)) / 2, "gap", color=ORANGE, va="center")
+    right.text(
+        -0.9,
+        (bound + f(-0.2)) / 2 + 0.05,
+        "gap",
+        color=ORANGE,
+        va="center",
+        bbox={"color": "white", "pad": 1},
+    )
     for limit in (-1, 1):
         right.axvline(limit, color=GREY, lw=1)
     right.text(-0.99, 3.0, " limit", color="#555", fontsize=8)
