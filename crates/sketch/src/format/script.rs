@@ -1,6 +1,6 @@
 //! An object as the commands that make it: the file format.
 
-use crate::curve::{Curve, CurveKind};
+use crate::solid::curve::{Curve, CurveKind};
 use crate::{Axis, Measure, Object, Role, Source};
 use moldloft_syntax::number::plain;
 use std::fmt::Write;

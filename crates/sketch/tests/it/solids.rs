@@ -1,12 +1,10 @@
 //! Bodies: mass of every case with its derivatives, curves and what they replace (T7, T12).
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_mesh::measure;
 use moldloft_num::{Dual, Vec3};
 use moldloft_sketch::curve::{Curve, CurveFault, CurveKind, Piece, semi_axes, trace};
-use moldloft_sketch::solid::Trouble;
+use moldloft_sketch::solid::UnbuiltReason;
 use moldloft_sketch::*;
 use std::f64::consts::PI;
 
@@ -89,7 +87,7 @@ fn a_box_with_a_fillet() {
     };
     object.variables.insert("r".into(), radius("2"));
     let body = built(&object);
-    assert!(body.trouble.is_empty(), "{:?}", body.trouble);
+    assert!(body.unbuilt.is_empty(), "{:?}", body.unbuilt);
     let [t1, t2] = body.curves[&0].tangents.unwrap();
     near(t1, [8.0, 0.0, 4.0]);
     near(t2, [10.0, 0.0, 2.0]);
@@ -119,8 +117,8 @@ fn a_box_with_a_fillet() {
     close(volume.eps[0], -6.0 * 2.0 * 2.0 * (1.0 - PI / 4.0), 1e-9);
     object.variables.insert("r".into(), radius("5"));
     let body = built(&object);
-    let Trouble::Fault(CurveFault::TooLarge { largest }) = body.trouble[0].why else {
-        panic!("{:?}", body.trouble)
+    let UnbuiltReason::Curve(CurveFault::TooLarge { largest }) = body.unbuilt[0].why else {
+        panic!("{:?}", body.unbuilt)
     };
     close(largest, 4.0, 1e-12);
     close(body.mass().volume, 240.0, 1e-9);
@@ -131,7 +129,7 @@ fn one_fillet_alone_runs_out_in_a_cone() {
     let mut object = with_faces(cuboid([10.0, 6.0, 4.0]));
     add_curve(&mut object, curve("C1", CurveKind::Arc, &[5, 6, 2], &["2"]));
     let body = built(&object);
-    assert!(body.trouble.is_empty());
+    assert!(body.unbuilt.is_empty());
     assert_eq!((body.vertices.len(), body.faces.len()), (9, 7));
     // A third of the prism is lost.
     close(body.mass().volume, 240.0 - 6.0 * (4.0 - PI) / 3.0, 1e-9);
@@ -150,7 +148,7 @@ fn four_fillets_and_their_limits() {
     }
     // Radius 3 uses up the short sides: a slab with round ends, its tangent points shared.
     let body = built(&object);
-    assert!(body.trouble.is_empty(), "{:?}", body.trouble);
+    assert!(body.unbuilt.is_empty(), "{:?}", body.unbuilt);
     assert_eq!((body.vertices.len(), body.faces.len()), (12, 8));
     close(body.mass().volume, 4.0 * (4.0 * 6.0 + 9.0 * PI), 1e-9);
     check_mesh(&body, 1e-3);
@@ -159,7 +157,7 @@ fn four_fillets_and_their_limits() {
         c.radius = Some(Expr::number(3.5));
     }
     let body = built(&object);
-    assert!(body.trouble.iter().any(|t| matches!(t.why, Trouble::Overlap(..))));
+    assert!(body.unbuilt.iter().any(|t| matches!(t.why, UnbuiltReason::Overlap(..))));
 }
 
 #[test]
@@ -170,7 +168,7 @@ fn circles_and_ellipses_make_cylinders() {
         add_curve(&mut object, curve("E1", kind, &[1, 2, 3], &[]));
         add_curve(&mut object, curve("E2", kind, &[5, 6, 7], &[]));
         let body = built(&object);
-        assert!(body.trouble.is_empty(), "{:?}", body.trouble);
+        assert!(body.unbuilt.is_empty(), "{:?}", body.unbuilt);
         assert_eq!((body.vertices.len(), body.edges.len(), body.faces.len()), (8, 12, 6));
         close(body.mass().volume, 4.0 * area, 1e-9);
         check_mesh(&body, 1e-3);
@@ -200,7 +198,7 @@ fn quadratics_bend_two_faces() {
     add_curve(&mut object, curve("Q1", CurveKind::Quadratic, &[3, 4, 5], &[]));
     add_curve(&mut object, curve("Q2", CurveKind::Quadratic, &[8, 9, 10], &[]));
     let body = built(&object);
-    assert!(body.trouble.is_empty(), "{:?}", body.trouble);
+    assert!(body.unbuilt.is_empty(), "{:?}", body.unbuilt);
     // Under the parabola of height 1 and width 4 there are 8/3.
     close(body.mass().volume, 5.0 * (12.0 + 8.0 / 3.0), 1e-9);
     assert_eq!(body.faces.iter().filter(|f| f.ruled).count(), 2);

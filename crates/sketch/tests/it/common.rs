@@ -76,7 +76,7 @@ pub fn align(object: &mut Object, text: &str) {
 }
 
 pub fn cases() -> Vec<Case> {
-    include_str!("../cases.jsonl").lines().map(case).collect()
+    include_str!("cases.jsonl").lines().map(case).collect()
 }
 
 pub fn case_named(prefix: &str) -> Case {

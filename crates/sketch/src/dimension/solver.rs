@@ -5,10 +5,11 @@
 //! solutions the one near the drawing is taken. Derivatives come from one more step in the scalar
 //! itself (implicit function theorem).
 
-use crate::estimate::Estimate;
-use crate::layout::{DimensionFault, Layout};
-use crate::object::{Dimension, Measure, Object};
-use crate::planes::Planes;
+use crate::dimension::layout::{DimensionFault, Layout};
+use crate::dimension::{Dimension, Measure};
+use crate::drawing::estimate::Estimate;
+use crate::drawing::planes::Planes;
+use crate::object::Object;
 use crate::{Axis, LineId, PointId};
 use moldloft_num::{Dual, Real, Vec3, solve_dense};
 

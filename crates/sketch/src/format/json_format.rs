@@ -1,7 +1,7 @@
 //! The JSON twin of a sketch file, and the data of finished objects.
 
-use crate::json::Json;
-use crate::script::measure_text;
+use crate::format::json::Json;
+use crate::format::script::measure_text;
 use crate::{Axis, Face, FaceId, Layout, LineId, Loose, Mass, Object, Planes, PointId, Solid};
 use moldloft_num::Vec3;
 
@@ -151,7 +151,7 @@ pub fn to_json(object: &Object) -> Json {
             ("confidence", l.confidence.into()),
         ])
     });
-    let script = crate::script::script(object);
+    let script = crate::format::script::script(object);
     Json::map([
         ("format", Json::from("sketch")),
         ("version", Json::from(1.0)),

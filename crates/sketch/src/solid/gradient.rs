@@ -1,6 +1,5 @@
 //! Derivatives of a finished object by its dimensions and variables.
 
-use crate::command::Session;
 use crate::solid::Vertex;
 use crate::{Estimate, Object, Planes, solid, solve};
 use moldloft_num::{Dual, Vec3};
@@ -79,51 +78,14 @@ pub struct Swept {
     pub mass: Option<crate::Mass<f64>>,
 }
 
-impl Session {
-    /// The body at each of the values of a dimension or variable; the session stays as it is.
-    ///
-    /// # Errors
-    /// When there is no such object or number.
-    pub fn sweep(
-        &mut self,
-        object: &str,
-        name: &str,
-        values: &[f64],
-    ) -> Result<Vec<Swept>, String> {
-        let object = self.object(object).ok_or(object)?.clone();
-        let key = name.to_ascii_lowercase();
-        if !object.dimensions.contains_key(&key) && !object.variables.contains_key(&key) {
-            return Err(name.to_owned());
-        }
-        let planes = Planes::of(&object.drawing);
-        let estimate = || Estimate::of(&object.drawing, &planes, object.reference()?.point);
-        let at = |&value: &f64| {
-            let given = BTreeMap::from([(key.clone(), value)]);
-            let layout = solve(&object, &planes, &given, &estimate);
-            let mass = solid(&object, &planes, &layout).map(|s| s.mass());
-            Swept { value, mass: mass.filter(|m| m.volume.is_finite() && m.area.is_finite()) }
-        };
-        Ok(values.iter().map(at).collect())
-    }
-
-    /// [`gradient`] of an object of the session.
-    ///
-    /// # Errors
-    /// As there, or the name of an object that there is none of.
-    pub fn gradient(&self, object: &str, by: &[String]) -> Result<Gradient, String> {
-        let object = self.object(object).ok_or(object)?;
-        gradient(object, &Planes::of(&object.drawing), by)
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::Session;
 
     #[test]
     fn a_dam_by_its_dimensions() {
         let mut s = Session::new();
-        s.run_text(include_str!("../../../examples/sketch/dam.skt"));
+        s.run_text(include_str!("../../../../examples/sketch/dam.skt"));
         let names: Vec<String> =
             ["Crest", "run", "LENGTH1", "HEIGHT", "PARAPET"].map(String::from).to_vec();
         let g = s.gradient("dam", &names).unwrap();

@@ -1,7 +1,7 @@
 //! Writers of finished objects: bytes out, no input or output.
 
 use crate::Solid;
-use crate::json::Json;
+use crate::format::json::Json;
 use moldloft_mesh::{Mesh, is_triangle};
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;

@@ -2,7 +2,7 @@
 //! from a side.
 
 use crate::command::Picture;
-use crate::twin::ObjectData;
+use crate::format::json_format::ObjectData;
 use crate::{Axis, Measure, Object, Projection, Solid};
 use moldloft_num::{Real, Vec3};
 use moldloft_syntax::number::plain;

@@ -1,8 +1,6 @@
 //! Types, planes and dimensions: cases T1-T6, T8-T11, T14-T17.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_num::{Dual, Real, Vec3};
 use moldloft_sketch::*;
 

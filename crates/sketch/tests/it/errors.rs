@@ -1,9 +1,7 @@
 //! Every error of the table (fact sheet, 1.13; manual, appendix E) that a user can cause: its code, that
 //! it says what, where and the next step, and that it changes nothing.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_sketch::*;
 use std::collections::BTreeMap;
 
@@ -236,7 +234,7 @@ fn journals_restore_sessions() {
 /// The reference in the documentation is the one of the table of verbs.
 #[test]
 fn the_command_reference_is_documented() {
-    let docs = include_str!("../../../docs/sketch.md");
+    let docs = include_str!("../../../../docs/sketch.md");
     let reference = command::verbs::reference();
     assert!(docs.contains(reference.trim()), "paste this into docs/sketch.md:\n{reference}");
 }
@@ -244,7 +242,7 @@ fn the_command_reference_is_documented() {
 /// The tutorial runs as it stands.
 #[test]
 fn the_tutorial_runs() {
-    let docs = include_str!("../../../docs/sketch.md");
+    let docs = include_str!("../../../../docs/sketch.md");
     let mut s = Session::new();
     let mut blocks = 0;
     for block in docs.split("```sketch\n").skip(1) {

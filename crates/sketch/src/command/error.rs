@@ -2,7 +2,7 @@
 
 /// A refused command. It has changed nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct CommandError {
     /// The number of the 1983 table (manual, appendix E), or one of ours from 310, 701-703; 0 for
     /// faults of the text.
     pub code: u16,
@@ -12,14 +12,14 @@ pub struct Fault {
     pub next: String,
 }
 
-impl Fault {
+impl CommandError {
     /// A fault with its next step.
-    pub fn new(code: u16, text: impl Into<String>, next: impl Into<String>) -> Fault {
-        Fault { code, text: text.into(), next: next.into() }
+    pub fn new(code: u16, text: impl Into<String>, next: impl Into<String>) -> CommandError {
+        CommandError { code, text: text.into(), next: next.into() }
     }
 
     /// A fault of the text of a command.
-    pub fn text(text: impl Into<String>, next: impl Into<String>) -> Fault {
-        Fault::new(0, text, next)
+    pub fn text(text: impl Into<String>, next: impl Into<String>) -> CommandError {
+        CommandError::new(0, text, next)
     }
 }

@@ -1,8 +1,6 @@
 //! The command language: the cases as scripts, edits, errors, merging, files (T2, T7, T13-T16, T18, T19).
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_sketch::json::Json;
 use moldloft_sketch::*;
 
@@ -109,9 +107,9 @@ fn settings_and_curves_survive_the_file() {
     let mut t = Session::new();
     run(&mut t, &script(&one));
     assert_eq!(t.active_object().unwrap(), &one);
-    let twin = moldloft_sketch::twin::to_json(&one).to_string();
+    let twin = moldloft_sketch::json_format::to_json(&one).to_string();
     let mut t = Session::new();
-    run(&mut t, &moldloft_sketch::twin::from_json(&twin).unwrap());
+    run(&mut t, &moldloft_sketch::json_format::from_json(&twin).unwrap());
     assert_eq!(t.active_object().unwrap(), &one);
 }
 
@@ -574,12 +572,12 @@ fn run_view(get: &mut impl FnMut(&str) -> Vec<u8>, view: &str) {
 #[test]
 fn examples() {
     for (text, name, volume_, faces) in [
-        (include_str!("../../../examples/sketch/dam.skt"), "DAM", 169_200.0, 7),
-        (include_str!("../../../examples/sketch/lock_wall.skt"), "WALL", 49_840.0, 14),
-        (include_str!("../../../examples/sketch/shed.skt"), "SHED", 240.0, 7),
+        (include_str!("../../../../examples/sketch/dam.skt"), "DAM", 169_200.0, 7),
+        (include_str!("../../../../examples/sketch/lock_wall.skt"), "WALL", 49_840.0, 14),
+        (include_str!("../../../../examples/sketch/shed.skt"), "SHED", 240.0, 7),
         // The bracket gains the fillet: (1 - π/4) r² over its width.
         (
-            include_str!("../../../examples/sketch/bracket.skt"),
+            include_str!("../../../../examples/sketch/bracket.skt"),
             "BRACKET",
             27.0 + 3.0 * 0.25 * (1.0 - std::f64::consts::PI / 4.0),
             8,
@@ -596,7 +594,7 @@ fn examples() {
         assert!(report.closed && report.manifold && report.outward == Some(true), "{name}");
     }
     let mut s = Session::new();
-    run(&mut s, include_str!("../../../examples/sketch/dam.skt"));
+    run(&mut s, include_str!("../../../../examples/sketch/dam.skt"));
     // The slope is kept by an expression.
     run(&mut s, "SET HEIGHT 60; SET CREST 20");
     close(volume(&mut s, "DAM"), 50.0 * (20.0 * 78.0 + 45.0 * 60.0 / 2.0));

@@ -5,8 +5,15 @@
 //! arc; the third line at the corner becomes two, with a ruled patch between them (a cylinder when
 //! its other end has the same arc, a cone when it has none).
 
-use crate::curve::{Curve, CurveFault, CurveKind, Piece, Traced, trace};
-use crate::mass::{Mass, Sums};
+pub mod curve;
+pub mod faces;
+pub(crate) mod gradient;
+pub(crate) mod mass;
+pub mod merge;
+pub(crate) mod ruled_faces;
+
+use crate::solid::curve::{Curve, CurveFault, CurveKind, Piece, Traced, trace};
+use crate::solid::mass::{Mass, Sums};
 use crate::{FaceId, Layout, Object, Planes, PointId};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
@@ -45,18 +52,18 @@ pub struct SolidFace {
 
 /// A curve that could not be built in.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CurveTrouble {
+pub struct UnbuiltCurve {
     /// Its name.
     pub curve: String,
     /// Why.
-    pub why: Trouble,
+    pub why: UnbuiltReason,
 }
 
 /// Why a curve was not built in.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Trouble {
+pub enum UnbuiltReason {
     /// It cannot be drawn at all.
-    Fault(CurveFault),
+    Curve(CurveFault),
     /// Its corner has more than three lines or faces.
     Crowded(PointId),
     /// Another curve takes the same corner or line.
@@ -83,7 +90,7 @@ pub struct Solid<T> {
     /// Curves traced, by index, whether built in or not.
     pub curves: BTreeMap<usize, Traced<T>>,
     /// Curves that could not be built in.
-    pub trouble: Vec<CurveTrouble>,
+    pub unbuilt: Vec<UnbuiltCurve>,
     steps: BTreeMap<usize, u32>,
 }
 
@@ -123,7 +130,7 @@ pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> O
         corners: BTreeMap::new(),
         bent: BTreeMap::new(),
         curves: BTreeMap::new(),
-        trouble: Vec::new(),
+        unbuilt: Vec::new(),
         next: object.drawing.next_point().0,
     };
     for (k, curve) in object.curves.values().enumerate() {
@@ -133,12 +140,12 @@ pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> O
                 let result = if curve.replaces { build.take(k, curve, &traced) } else { Ok(()) };
                 build.curves.insert(k, traced);
                 if let Err(why) = result {
-                    build.trouble.push(CurveTrouble { curve: curve.name.clone(), why });
+                    build.unbuilt.push(UnbuiltCurve { curve: curve.name.clone(), why });
                 }
             }
             Err(fault) => {
-                let (curve, why) = (curve.name.clone(), Trouble::Fault(fault));
-                build.trouble.push(CurveTrouble { curve, why });
+                let (curve, why) = (curve.name.clone(), UnbuiltReason::Curve(fault));
+                build.unbuilt.push(UnbuiltCurve { curve, why });
             }
         }
     }
@@ -201,13 +208,13 @@ struct Builder<'a, T> {
     /// Edges that become curves: from the lower label to the higher.
     bent: BTreeMap<(PointId, PointId), (usize, Piece<T>)>,
     curves: BTreeMap<usize, Traced<T>>,
-    trouble: Vec<CurveTrouble>,
+    unbuilt: Vec<UnbuiltCurve>,
     next: u32,
 }
 
 impl<T: Real> Builder<'_, T> {
     /// Records what a curve replaces.
-    fn take(&mut self, k: usize, curve: &Curve, traced: &Traced<T>) -> Result<(), Trouble> {
+    fn take(&mut self, k: usize, curve: &Curve, traced: &Traced<T>) -> Result<(), UnbuiltReason> {
         match (curve.kind, &curve.points[..]) {
             (CurveKind::Quadratic, p) if p.len() == 3 => {
                 self.bend(k, &[(p[0], p[1]), (p[1], p[2])], &traced.pieces)
@@ -217,11 +224,11 @@ impl<T: Real> Builder<'_, T> {
                 self.bend(k, &edges[1..edges.len() - 1], &traced.pieces)
             }
             (CurveKind::Arc | CurveKind::EllipticalArc, &[a, m, b]) => {
-                let tangents = traced.tangents.ok_or(Trouble::NoEdge)?;
+                let tangents = traced.tangents.ok_or(UnbuiltReason::NoEdge)?;
                 self.corner(k, m, [a, b], tangents, traced.pieces[0])
             }
             (CurveKind::Circle | CurveKind::Ellipse, &[a, m, b]) => self.ring(k, [a, m, b], traced),
-            _ => Err(Trouble::NoEdge),
+            _ => Err(UnbuiltReason::NoEdge),
         }
     }
 
@@ -230,14 +237,14 @@ impl<T: Real> Builder<'_, T> {
         k: usize,
         edges: &[(PointId, PointId)],
         pieces: &[Piece<T>],
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), UnbuiltReason> {
         let drawing = &self.object.drawing;
         for &(p, q) in edges {
             if drawing.line_between(p, q).is_none() {
-                return Err(Trouble::NoEdge);
+                return Err(UnbuiltReason::NoEdge);
             }
             if self.bent.contains_key(&pair(p, q)) {
-                return Err(Trouble::Taken(p));
+                return Err(UnbuiltReason::Taken(p));
             }
         }
         for (&(p, q), piece) in edges.iter().zip(pieces) {
@@ -254,16 +261,16 @@ impl<T: Real> Builder<'_, T> {
         ends: [PointId; 2],
         tangents: [Vec3<T>; 2],
         piece: Piece<T>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), UnbuiltReason> {
         if self.corners.contains_key(&at) {
-            return Err(Trouble::Taken(at));
+            return Err(UnbuiltReason::Taken(at));
         }
         let neighbours = self.neighbours(at);
         if !ends.iter().all(|e| neighbours.contains(e)) {
-            return Err(Trouble::NoEdge);
+            return Err(UnbuiltReason::NoEdge);
         }
         if neighbours.len() > 3 {
-            return Err(Trouble::Crowded(at));
+            return Err(UnbuiltReason::Crowded(at));
         }
         let ids = [PointId(self.next), PointId(self.next.saturating_add(1))];
         self.next = self.next.saturating_add(2);
@@ -282,7 +289,7 @@ impl<T: Real> Builder<'_, T> {
         k: usize,
         [a, m, b]: [PointId; 3],
         traced: &Traced<T>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), UnbuiltReason> {
         let [pa, pm, pb] = [a, m, b].map(|p| self.place.of(p));
         let fourth = pa + pb - pm;
         let size = (pa - pm).re().norm() + (pb - pm).re().norm();
@@ -294,17 +301,17 @@ impl<T: Real> Builder<'_, T> {
                 close(**p, fourth) && linked(a) && linked(b)
             })
             .map(|(id, _)| *id)
-            .ok_or(Trouble::NoEdge)?;
-        let [t1, t2] = traced.tangents.ok_or(Trouble::NoEdge)?;
+            .ok_or(UnbuiltReason::NoEdge)?;
+        let [t1, t2] = traced.tangents.ok_or(UnbuiltReason::NoEdge)?;
         let half = T::from(0.5);
         if !close(t1, (pa + pm) * half) || !close(t2, (pb + pm) * half) {
             // Not inscribed: the sides stay as they are.
-            return Err(Trouble::NoEdge);
+            return Err(UnbuiltReason::NoEdge);
         }
         let centre = (pa + pb) * half;
         let way = [(b, m, a), (m, a, c), (a, c, b), (c, b, m)];
         if way.iter().any(|(_, at, _)| self.corners.contains_key(at)) {
-            return Err(Trouble::Taken(m));
+            return Err(UnbuiltReason::Taken(m));
         }
         for (from, at, to) in way {
             let [pf, p, pt] = [from, at, to].map(|id| self.place.of(id));
@@ -333,7 +340,7 @@ impl<T: Real> Builder<'_, T> {
                 if reach > length * (1.0 + 1e-9) {
                     let curve = other.curve;
                     let curve = self.object.curves[curve].name.clone();
-                    self.trouble.push(CurveTrouble { curve, why: Trouble::Overlap(p, q) });
+                    self.unbuilt.push(UnbuiltCurve { curve, why: UnbuiltReason::Overlap(p, q) });
                     self.corners.remove(&q);
                 } else if reach >= length * (1.0 - 1e-9)
                     && let Some(other) = self.corners.get_mut(&q)
@@ -392,9 +399,9 @@ impl<T: Real> Builder<'_, T> {
                 if ruled.is_none() {
                     for k in loops.iter().flatten().filter_map(|h| out.edges[h.0].curve) {
                         let curve = self.object.curves[k].name.clone();
-                        let trouble = CurveTrouble { curve, why: Trouble::Face(id) };
-                        if !self.trouble.contains(&trouble) {
-                            self.trouble.push(trouble);
+                        let unbuilt = UnbuiltCurve { curve, why: UnbuiltReason::Face(id) };
+                        if !self.unbuilt.contains(&unbuilt) {
+                            self.unbuilt.push(unbuilt);
                         }
                     }
                 }
@@ -411,7 +418,7 @@ impl<T: Real> Builder<'_, T> {
             faces,
             flat: self.object.drawing.section.is_some(),
             curves: self.curves,
-            trouble: self.trouble,
+            unbuilt: self.unbuilt,
             steps,
         }
     }
@@ -426,7 +433,7 @@ impl<T: Real> Builder<'_, T> {
                 third.filter(|t| self.corners.get(t).is_some_and(|far| far.ends.contains(&p)));
             if blocked.is_some() {
                 let curve = self.object.curves[c.curve].name.clone();
-                self.trouble.push(CurveTrouble { curve, why: Trouble::Taken(p) });
+                self.unbuilt.push(UnbuiltCurve { curve, why: UnbuiltReason::Taken(p) });
                 self.corners.remove(&p);
             }
         }

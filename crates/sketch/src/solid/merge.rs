@@ -1,6 +1,6 @@
 //! Uniting objects, and changes of whole objects that keep them parametric.
 
-use crate::layout::chain_expression;
+use crate::dimension::layout::chain_expression;
 use crate::{
     Align, Axis, Dimension, DimensionFault, Drawing, Expr, Face, Layout, Line, Measure, Object,
     Planes, Point, PointId, Projection, Reference, Role, Variable,
@@ -111,7 +111,7 @@ pub fn merge(
             c.points.iter_mut().for_each(|p| *p = number[p]);
             c.radius = c.radius.map(|r| r.renamed(&own));
             c.semi = c.semi.map(|[a, b]| [a.renamed(&own), b.renamed(&own)]);
-            let twin = |o: &crate::curve::Curve| o.kind == c.kind && o.points == c.points;
+            let twin = |o: &crate::solid::curve::Curve| o.kind == c.kind && o.points == c.points;
             if !out.curves.values().any(twin) {
                 out.curves.insert(c.name.to_ascii_lowercase(), c);
             }

@@ -1,6 +1,6 @@
 //! Types of lines from their slopes, and from planes that their ends share.
 
-use crate::planes::Planes;
+use crate::drawing::planes::Planes;
 use crate::{Axis, Drawing, Free, Line, LineId, Source};
 
 /// How far a line may lean off an axis and still be named after it: 5 % of the slope (manual, p. 10).

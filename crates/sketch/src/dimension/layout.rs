@@ -5,10 +5,11 @@
 //! closes a loop is redundant or contradicts the loop. Coordinates are sums of ±d along the only path
 //! from the ground (routine CVTSTR), so nothing is solved, nothing flips, and derivatives are exact.
 
-use crate::derived::solve_derived;
-use crate::estimate::Estimate;
-use crate::object::{Dimension, Measure, Object, Role};
-use crate::planes::Planes;
+use crate::dimension::solver::solve_derived;
+use crate::dimension::{Dimension, Measure, Role};
+use crate::drawing::estimate::Estimate;
+use crate::drawing::planes::Planes;
+use crate::object::Object;
 use crate::{Axis, PointId};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, VecDeque};
@@ -130,7 +131,7 @@ impl<T: Real> Layout<T> {
                 Some(self.coordinate(planes, axis, q)? - self.coordinate(planes, axis, p)?)
             }
             Measure::Datum { axis, point } => self.coordinate(planes, axis, point),
-            _ => crate::derived::value(object, measure, &|p| self.point(planes, p)),
+            _ => crate::dimension::solver::value(object, measure, &|p| self.point(planes, p)),
         }
     }
 }

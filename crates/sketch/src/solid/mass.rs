@@ -1,6 +1,6 @@
 //! Area, volume, centroid and inertia, by exact formulas for triangles and Gauss's rule for curves.
 
-use crate::curve::{GAUSS, Piece};
+use crate::solid::curve::{GAUSS, Piece};
 use moldloft_num::{Real, Vec3};
 
 /// Properties of a solid of unit density, or of a flat figure.

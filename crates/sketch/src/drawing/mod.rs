@@ -1,6 +1,13 @@
 //! What was drawn: points, typed lines and alignments on a page.
 
-use crate::{Axis, Free, Letters, Projection};
+pub(crate) mod axis;
+pub(crate) mod estimate;
+pub(crate) mod line_types;
+pub(crate) mod planes;
+pub(crate) mod projection;
+
+use axis::{Axis, Free, Letters};
+use projection::Projection;
 use std::collections::BTreeMap;
 use std::fmt;
 

@@ -5,7 +5,7 @@
 //! drawn. The equations are linear, so the solution is immediate, and the rank that is missing is
 //! the exact number of depths that the picture leaves open.
 
-use crate::planes::Planes;
+use crate::drawing::planes::Planes;
 use crate::{Axis, Drawing, PointId};
 use moldloft_num::Vec3;
 

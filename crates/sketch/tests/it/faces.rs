@@ -1,8 +1,6 @@
 //! Faces and solids of wireframes: the faces of every case, T13 (boxes), T14, T20.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_num::{Real, Vec3};
 use moldloft_sketch::faces::{Fitted, Polygon, fit};
 use moldloft_testing::{Random, rounds};

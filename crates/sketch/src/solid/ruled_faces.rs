@@ -1,7 +1,7 @@
 //! The round faces of a solid, as an implicit set of it needs them.
 
 use crate::Solid;
-use crate::curve::Piece;
+use crate::solid::curve::Piece;
 use moldloft_num::{Real, Vec3};
 
 /// A face that goes straight from an arc to a copy of it, shifted and scaled: part of a cylinder, a cone

@@ -1,8 +1,6 @@
 //! UNION, CUT, COMMON: closed forms, parameters kept, refusals.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_sketch::*;
 
 fn run(s: &mut Session, text: &str) -> Vec<Reply> {
