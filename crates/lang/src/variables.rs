@@ -33,7 +33,7 @@ pub(crate) fn type_of<T: Real>(value: &Value<T>) -> Type {
     }
 }
 
-pub(crate) use moldloft_arrays::called as a;
+pub(crate) use moldloft_arrays::type_name as a;
 
 /// [`a`] as a method.
 pub(crate) trait Called {
