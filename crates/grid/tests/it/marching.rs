@@ -10,7 +10,7 @@ fn heights(n: usize, last: f64) -> Vec<f64> {
 
 #[test]
 fn planes_and_spheres_are_left_at_right_angles() {
-    let flat = Sheet::<f64>::from_fn(6, 5, |i, j| Vec3::of(i as f64, j as f64, 0.0));
+    let flat = SurfaceGrid::<f64>::from_fn(6, 5, |i, j| Vec3::of(i as f64, j as f64, 0.0));
     let options = Hyperbolic { heights: heights(5, 2.0), sides: [Side::Free; 4], smoothing: 0.3 };
     let layers = hyperbolic(&flat, &options).unwrap();
     for (k, layer) in layers.iter().enumerate() {
@@ -23,7 +23,7 @@ fn planes_and_spheres_are_left_at_right_angles() {
     }
     // A quarter ring of a sphere between two planes of symmetry: radii grow with the heights.
     let error = |n: usize| {
-        let ball = Sheet::<f64>::from_fn(n + 1, n + 1, |i, j| {
+        let ball = SurfaceGrid::<f64>::from_fn(n + 1, n + 1, |i, j| {
             let (a, b) = (0.8 + 1.2 * i as f64 / n as f64, 0.5 * PI * j as f64 / n as f64);
             let (y, z) = (a.sin() * b.cos(), a.sin() * b.sin());
             // Exactly in the planes.
@@ -45,14 +45,14 @@ fn planes_and_spheres_are_left_at_right_angles() {
 #[test]
 fn noses_stay_one_point_on_the_axis() {
     let (m, n) = (16, 13);
-    let body = Sheet::<f64>::from_fn(m, n, |i, j| {
+    let body = SurfaceGrid::<f64>::from_fn(m, n, |i, j| {
         let (x, a) = ((i as f64 / (m - 1) as f64).powi(2), PI * j as f64 / (n - 1) as f64);
         let r = 0.4 * x.sqrt();
         let z = if j == 0 || j == n - 1 { 0.0 } else { r * a.sin() };
         Vec3::of(2.0 * x, r * a.cos(), z)
     });
     // s_i x s_j points inward on such a half body: march off its swapped image.
-    let turned = Sheet::from_fn(n, m, |j, i| body.at(i, j));
+    let turned = SurfaceGrid::from_fn(n, m, |j, i| body.at(i, j));
     let sides = [Side::Symmetry(2), Side::Symmetry(2), Side::Pole, Side::Free];
     let options = Hyperbolic { heights: heights(9, 0.15), sides, smoothing: 0.3 };
     let layers = hyperbolic(&turned, &options).unwrap();
@@ -109,8 +109,8 @@ fn curves_march_in_their_plane_and_concave_ones_open() {
 
 #[test]
 fn derivatives_and_refusals() {
-    fn last<T: Real>(h: T) -> Sheet<T> {
-        let hill = Sheet::from_fn(7, 6, |i, j| {
+    fn last<T: Real>(h: T) -> SurfaceGrid<T> {
+        let hill = SurfaceGrid::from_fn(7, 6, |i, j| {
             let (u, v) = (i as f64 / 6.0, j as f64 / 5.0);
             Vec3::new(T::from(u), T::from(v), h * (3.0 * u).sin() * (1.0 + v))
         });
@@ -129,13 +129,13 @@ fn derivatives_and_refusals() {
             assert!((x.part(1) - difference).abs() < 1e-7, "{} {difference}", x.part(1));
         }
     }
-    let flat = Sheet::<f64>::from_fn(4, 4, |i, j| Vec3::of(i as f64, j as f64, 0.0));
+    let flat = SurfaceGrid::<f64>::from_fn(4, 4, |i, j| Vec3::of(i as f64, j as f64, 0.0));
     let with = |heights: Vec<f64>| Hyperbolic { heights, sides: [Side::Free; 4], smoothing: 0.2 };
     let error = hyperbolic(&flat, &with(vec![0.0, 1.0, 0.5])).unwrap_err();
     assert_eq!(error, GridError::Heights { at: 3, value: 0.5 });
     let error = hyperbolic(&flat, &with(vec![0.5, 1.0])).unwrap_err();
     assert_eq!(error, GridError::Heights { at: 1, value: 0.5 });
-    let fan = Sheet::<f64>::from_fn(4, 4, |i, j| {
+    let fan = SurfaceGrid::<f64>::from_fn(4, 4, |i, j| {
         let a = 0.3 * j as f64;
         Vec3::of(i as f64 * a.cos(), i as f64 * a.sin(), 0.0)
     });
@@ -147,7 +147,7 @@ fn derivatives_and_refusals() {
 #[test]
 fn a_half_ball_with_a_pole_stays_one() {
     for (m, n, tall) in [(21, 25, 0.5), (41, 61, 2.0), (11, 9, 0.1)] {
-        let ball = Sheet::from_fn(m, n, |i, j| {
+        let ball = SurfaceGrid::from_fn(m, n, |i, j| {
             let a = FRAC_PI_2 * i as f64 / (m - 1) as f64;
             let b = FRAC_PI_2 - PI * j as f64 / (n - 1) as f64;
             Vec3::of(-a.cos(), a.sin() * b.cos(), a.sin() * b.sin())

@@ -1,8 +1,6 @@
 //! Splines of the language against closed forms and the figures of the array language.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_num::Vec3;
 use moldloft_registry::{Scalar, Value};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -67,7 +65,7 @@ fn the_outer_profile_of_the_second_program() {
         (50, 7.4117200, None),
         (59, 9.8443174, None),
     ] {
-        // The sheet cuts digits off rather than rounding them.
+        // The grid cuts digits off rather than rounding them.
         close(plain[index - 1].x, x, 1.01e-7);
         if let Some(y) = y {
             close(plain[index - 1].y, y, 1.01e-7);

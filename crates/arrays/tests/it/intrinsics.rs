@@ -1,8 +1,6 @@
 //! Reductions, moves, shapes, curvatures, meetings and grids of the language.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use moldloft_num::Vec3;
 use moldloft_registry::{Array, Scalar, Value};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -253,7 +251,7 @@ fn derivatives_of_meetings() {
     }
 }
 
-/// A sheet with stretched edges; its inside is not set.
+/// A grid with stretched edges; its inside is not set.
 fn frame(m: usize, n: usize) -> Value<f64> {
     surface(m, n, |i, j| {
         let (u, v) = (i as f64 / (m - 1) as f64, j as f64 / (n - 1) as f64);

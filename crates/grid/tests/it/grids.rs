@@ -4,15 +4,15 @@ use moldloft_grid::*;
 use moldloft_num::{Dual4, Order, Real, SurfJet, Surface, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The sheet of `f` at all points, and the same with its inside cleared.
-fn emptied(sheet: &Sheet<f64>) -> Sheet<f64> {
-    Sheet::<f64>::from_fn(sheet.m, sheet.n, |i, j| {
-        let edge = i == 0 || j == 0 || i + 1 == sheet.m || j + 1 == sheet.n;
-        if edge { sheet.at(i, j) } else { Vec3::of(9.0, -7.0, 5.0) }
+/// The grid of `f` at all points, and the same with its inside cleared.
+fn emptied(grid: &SurfaceGrid<f64>) -> SurfaceGrid<f64> {
+    SurfaceGrid::<f64>::from_fn(grid.m, grid.n, |i, j| {
+        let edge = i == 0 || j == 0 || i + 1 == grid.m || j + 1 == grid.n;
+        if edge { grid.at(i, j) } else { Vec3::of(9.0, -7.0, 5.0) }
     })
 }
 
-fn largest(a: &Sheet<f64>, b: &Sheet<f64>) -> f64 {
+fn largest(a: &SurfaceGrid<f64>, b: &SurfaceGrid<f64>) -> f64 {
     a.points().zip(b.points()).map(|(p, q)| p.distance(q)).fold(0.0, f64::max)
 }
 
@@ -29,10 +29,10 @@ fn stretched_squares_and_ruled_surfaces_are_exact() {
     let (m, n) = (21, 15);
     let u = |i: usize| stretch(i as f64 / (m - 1) as f64);
     let v = |j: usize| 1.0 - stretch(1.0 - j as f64 / (n - 1) as f64);
-    let square = Sheet::<f64>::from_fn(m, n, |i, j| Vec3::of(u(i), v(j), 0.0));
+    let square = SurfaceGrid::<f64>::from_fn(m, n, |i, j| Vec3::of(u(i), v(j), 0.0));
     let grid = transfinite(&emptied(&square), Blend::Arc).unwrap();
     assert!(largest(&grid, &square) <= 2.3e-16, "{:e}", largest(&grid, &square));
-    let annulus = Sheet::<f64>::from_fn(m, n, |i, j| {
+    let annulus = SurfaceGrid::<f64>::from_fn(m, n, |i, j| {
         let (r, a) = (1.0 + 2.0 * u(i), FRAC_PI_2 * j as f64 / (n - 1) as f64);
         Vec3::of(r * a.cos(), r * a.sin(), 0.0)
     });
@@ -41,20 +41,21 @@ fn stretched_squares_and_ruled_surfaces_are_exact() {
         assert!(largest(&grid, &annulus) <= 7e-16 * 3.0);
     }
     // A cone from its tip: the pole takes the distribution of the base.
-    let cone = Sheet::<f64>::from_fn(m, n, |i, j| {
+    let cone = SurfaceGrid::<f64>::from_fn(m, n, |i, j| {
         let a = PI * v(j);
         Vec3::of(3.0 * u(i), u(i) * a.cos(), u(i) * a.sin())
     });
     let grid = transfinite(&emptied(&cone), Blend::Arc).unwrap();
     assert!(largest(&grid, &cone) <= 2e-15, "{:e}", largest(&grid, &cone));
-    let linear = Sheet::<f64>::from_fn(5, 9, |i, j| Vec3::of(i as f64, j as f64, (i * j) as f64));
+    let linear =
+        SurfaceGrid::<f64>::from_fn(5, 9, |i, j| Vec3::of(i as f64, j as f64, (i * j) as f64));
     let grid = transfinite(&emptied(&linear), Blend::Linear).unwrap();
     assert!(largest(&grid, &linear) < 1e-14);
 }
 
 #[test]
 fn edges_stay_to_the_bit_and_cubic_blending_joins_smoothly() {
-    let wavy = Sheet::<f64>::from_fn(17, 23, |i, j| {
+    let wavy = SurfaceGrid::<f64>::from_fn(17, 23, |i, j| {
         let (u, v) = (i as f64 / 16.0, j as f64 / 22.0);
         Vec3::of(u + 0.1 * (3.0 * v).sin(), v * v + 0.2 * u * (1.0 - u), 0.3 * (4.0 * u * v).cos())
     });
@@ -74,7 +75,7 @@ fn edges_stay_to_the_bit_and_cubic_blending_joins_smoothly() {
     let kink = |n: usize, blend: Blend| {
         let half = |k: usize| {
             let at = |i: usize, j: usize| whole(k, i as f64 / n as f64, j as f64 / n as f64);
-            transfinite(&emptied(&Sheet::<f64>::from_fn(n + 1, n + 1, at)), blend).unwrap()
+            transfinite(&emptied(&SurfaceGrid::<f64>::from_fn(n + 1, n + 1, at)), blend).unwrap()
         };
         let (a, b) = (half(0), half(1));
         let slope = |j: usize| (b.at(1, j) - b.at(0, j) - (a.at(n, j) - a.at(n - 1, j))) * n as f64;
@@ -86,7 +87,7 @@ fn edges_stay_to_the_bit_and_cubic_blending_joins_smoothly() {
 
 #[test]
 fn leaps_are_found_with_corner_and_gap() {
-    let square = Sheet::<f64>::from_fn(9, 9, |i, j| Vec3::of(i as f64, j as f64, 0.0));
+    let square = SurfaceGrid::<f64>::from_fn(9, 9, |i, j| Vec3::of(i as f64, j as f64, 0.0));
     let mut gap = square.clone();
     // The corner was set with s[1,]; s[,1] was meant to begin elsewhere.
     for i in 1..8 {
@@ -105,7 +106,7 @@ fn leaps_are_found_with_corner_and_gap() {
     let mut bad = square.clone();
     bad.set(0, 3, Vec3::of(f64::NAN, 0.0, 0.0));
     assert_eq!(transfinite(&bad, Blend::Arc), Err(GridError::NotFinite { at: [1, 4] }));
-    let thin = Sheet::<f64>::from_fn(1, 5, |_, j| Vec3::of(0.0, j as f64, 0.0));
+    let thin = SurfaceGrid::<f64>::from_fn(1, 5, |_, j| Vec3::of(0.0, j as f64, 0.0));
     assert!(matches!(transfinite(&thin, Blend::Arc), Err(GridError::TooFew { .. })));
     // Four curves.
     let line = |a: [f64; 2], b: [f64; 2], n: usize| -> Vec<Vec3> {
@@ -139,16 +140,16 @@ fn blocks_from_six_faces() {
         Vec3::of(u + 0.2 * v, v * (1.0 + 0.5 * w), w * 2.0 + 0.1 * u)
     };
     let faces: Faces<f64> = [
-        Sheet::<f64>::from_fn(nj, nk, |j, k| at(0, j, k)),
-        Sheet::<f64>::from_fn(nj, nk, |j, k| at(ni - 1, j, k)),
-        Sheet::<f64>::from_fn(ni, nk, |i, k| at(i, 0, k)),
-        Sheet::<f64>::from_fn(ni, nk, |i, k| at(i, nj - 1, k)),
-        Sheet::<f64>::from_fn(ni, nj, |i, j| at(i, j, 0)),
-        Sheet::<f64>::from_fn(ni, nj, |i, j| at(i, j, nk - 1)),
+        SurfaceGrid::<f64>::from_fn(nj, nk, |j, k| at(0, j, k)),
+        SurfaceGrid::<f64>::from_fn(nj, nk, |j, k| at(ni - 1, j, k)),
+        SurfaceGrid::<f64>::from_fn(ni, nk, |i, k| at(i, 0, k)),
+        SurfaceGrid::<f64>::from_fn(ni, nk, |i, k| at(i, nj - 1, k)),
+        SurfaceGrid::<f64>::from_fn(ni, nj, |i, j| at(i, j, 0)),
+        SurfaceGrid::<f64>::from_fn(ni, nj, |i, j| at(i, j, nk - 1)),
     ];
     let layers = transfinite_block(&faces).unwrap();
     for (k, layer) in layers.iter().enumerate() {
-        let exact = Sheet::<f64>::from_fn(ni, nj, |i, j| at(i, j, k));
+        let exact = SurfaceGrid::<f64>::from_fn(ni, nj, |i, j| at(i, j, k));
         assert!(largest(layer, &exact) < 1e-15 * 8.0, "{k} {:e}", largest(layer, &exact));
     }
     let mut torn = faces.clone();
@@ -156,7 +157,7 @@ fn blocks_from_six_faces() {
     let error = transfinite_block(&torn).unwrap_err();
     assert!(matches!(error, GridError::FacesApart { faces: [4, 5], at: [3, 1], .. }), "{error}");
     let mut wrong = faces;
-    wrong[1] = Sheet::<f64>::from_fn(nj, nk + 1, |j, k| at(0, j, k));
+    wrong[1] = SurfaceGrid::<f64>::from_fn(nj, nk + 1, |j, k| at(0, j, k));
     assert!(matches!(
         transfinite_block(&wrong),
         Err(GridError::FaceSizes { face: 2, expected: [6, 5], actual: [6, 6] })
@@ -165,7 +166,7 @@ fn blocks_from_six_faces() {
 
 #[test]
 fn laplace_makes_squares_even_and_annuli_geometric() {
-    let square = Sheet::<f64>::from_fn(12, 9, |i, j| Vec3::of(i as f64, j as f64, 0.0));
+    let square = SurfaceGrid::<f64>::from_fn(12, 9, |i, j| Vec3::of(i as f64, j as f64, 0.0));
     let mut start = square.clone();
     for i in 1..11 {
         for j in 1..8 {
@@ -174,23 +175,23 @@ fn laplace_makes_squares_even_and_annuli_geometric() {
         }
     }
     let smoothed = elliptic(&start, &laplace(2000, 1.3)).unwrap();
-    assert!(largest(&smoothed.sheet, &square) < 1e-11 * 12.0);
+    assert!(largest(&smoothed.grid, &square) < 1e-11 * 12.0);
     assert!(smoothed.sweeps < 2000 && smoothed.change <= 1e-14);
     let error = |n: usize| {
-        let ring = Sheet::<f64>::from_fn(n + 1, n + 1, |i, j| {
+        let ring = SurfaceGrid::<f64>::from_fn(n + 1, n + 1, |i, j| {
             let (r, a) = (1.0 + 3.0 * i as f64 / n as f64, FRAC_PI_2 * j as f64 / n as f64);
             Vec3::of(0.3, r * a.cos(), r * a.sin())
         });
         // The radial edges run geometrically, as the solution does.
-        let exact = Sheet::<f64>::from_fn(n + 1, n + 1, |i, j| {
+        let exact = SurfaceGrid::<f64>::from_fn(n + 1, n + 1, |i, j| {
             let (r, a) = (4f64.powf(i as f64 / n as f64), FRAC_PI_2 * j as f64 / n as f64);
             Vec3::of(0.3, r * a.cos(), r * a.sin())
         });
-        let start = Sheet::<f64>::from_fn(n + 1, n + 1, |i, j| {
+        let start = SurfaceGrid::<f64>::from_fn(n + 1, n + 1, |i, j| {
             let edge = j == 0 || j == n;
             if edge { exact.at(i, j) } else { ring.at(i, j) }
         });
-        largest(&elliptic(&start, &laplace(4000, 1.5)).unwrap().sheet, &exact)
+        largest(&elliptic(&start, &laplace(4000, 1.5)).unwrap().grid, &exact)
     };
     let (coarse, fine) = (error(10), error(20));
     assert!(fine < 5e-3 && (3.5..4.5).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
@@ -199,7 +200,7 @@ fn laplace_makes_squares_even_and_annuli_geometric() {
 #[test]
 fn middlecoff_keeps_the_clustering_of_the_edges() {
     let n = 16;
-    let stretched = Sheet::<f64>::from_fn(n + 1, n + 1, |i, j| {
+    let stretched = SurfaceGrid::<f64>::from_fn(n + 1, n + 1, |i, j| {
         Vec3::of(i as f64 / n as f64, stretch(j as f64 / n as f64), 0.0)
     });
     let options = Elliptic { method: Method::Middlecoff, ..laplace(3000, 1.2) };
@@ -210,14 +211,14 @@ fn middlecoff_keeps_the_clustering_of_the_edges() {
         }
     }
     let kept = elliptic(&start, &options).unwrap();
-    assert!(largest(&kept.sheet, &stretched) < 1e-11, "{:e}", largest(&kept.sheet, &stretched));
+    assert!(largest(&kept.grid, &stretched) < 1e-11, "{:e}", largest(&kept.grid, &stretched));
 }
 
 #[test]
 fn sorenson_gives_walls_their_spacing_and_right_angles() {
     let (m, n) = (33, 21);
     // A channel over a bump.
-    let start = Sheet::<f64>::from_fn(m, n, |i, j| {
+    let start = SurfaceGrid::<f64>::from_fn(m, n, |i, j| {
         let (u, v) = (3.0 * i as f64 / (m - 1) as f64, j as f64 / (n - 1) as f64);
         let bump = 0.15 * libm::exp(-(u - 1.5) * (u - 1.5) * 8.0);
         Vec3::of(u, bump + (1.0 - bump) * v, 0.0)
@@ -231,29 +232,29 @@ fn sorenson_gives_walls_their_spacing_and_right_angles() {
         walls,
         on: None,
     };
-    let off = |sheet: &Sheet<f64>| {
+    let off = |grid: &SurfaceGrid<f64>| {
         let mut worst = [0.0f64; 2];
         for i in 4..m - 4 {
-            let along = sheet.at(i + 1, 0) - sheet.at(i - 1, 0);
-            let out = sheet.at(i, 1) - sheet.at(i, 0);
+            let along = grid.at(i + 1, 0) - grid.at(i - 1, 0);
+            let out = grid.at(i, 1) - grid.at(i, 0);
             worst[0] = worst[0].max((out.norm() / 0.02 - 1.0).abs());
             worst[1] = worst[1].max((along.dot(out) / along.norm() / out.norm()).abs());
         }
         worst
     };
-    let plain = off(&elliptic(&start, &options(Method::Laplace, vec![])).unwrap().sheet);
+    let plain = off(&elliptic(&start, &options(Method::Laplace, vec![])).unwrap().grid);
     let done = elliptic(&start, &options(Method::Sorenson, vec![wall])).unwrap();
-    let held = off(&done.sheet);
+    let held = off(&done.grid);
     println!("spacing and angle off by {plain:?} without, {held:?} with wall terms");
     assert!(plain[0] > 0.5 && held[0] < 0.25, "{held:?}");
     assert!(held[1] < 0.12, "{held:?}");
-    assert!(folded_cells(&done.sheet).is_empty());
+    assert!(folded_cells(&done.grid).is_empty());
 }
 
 #[test]
 fn folded_starts_unfold() {
     let n = 12;
-    let mut start = Sheet::<f64>::from_fn(n + 1, n + 1, |i, j| {
+    let mut start = SurfaceGrid::<f64>::from_fn(n + 1, n + 1, |i, j| {
         Vec3::of(i as f64, j as f64 + 0.1 * i as f64, 0.0)
     });
     for i in 3..8 {
@@ -264,7 +265,7 @@ fn folded_starts_unfold() {
     let folded = folded_cells(&start);
     assert!(folded.len() > 5);
     let done = elliptic(&start, &laplace(300, 1.0)).unwrap();
-    assert!(folded_cells(&done.sheet).is_empty());
+    assert!(folded_cells(&done.grid).is_empty());
 }
 
 struct Ball;
@@ -295,21 +296,21 @@ fn points_stay_on_their_surface() {
         let [u, v] = uv(i, j);
         Surface::<f64>::jet(&Ball, u, v, Order::Zero).p
     };
-    let start = Sheet::<f64>::from_fn(n + 1, n + 1, at);
+    let start = SurfaceGrid::<f64>::from_fn(n + 1, n + 1, at);
     let plane =
         |c: usize| (0..(n + 1) * (n + 1)).map(|k| uv(k / (n + 1), k % (n + 1))[c]).collect();
     let options = Elliptic { on: Some((&Ball, [plane(0), plane(1)])), ..laplace(800, 1.2) };
     let done = elliptic(&start, &options).unwrap();
-    assert!(done.sheet.points().all(|p| (p.norm() - 1.0).abs() < 1e-14));
+    assert!(done.grid.points().all(|p| (p.norm() - 1.0).abs() < 1e-14));
     assert!(done.change < 1e-9);
     // Symmetric as the edges are: the middle point is in the middle.
-    assert!((done.sheet.at(7, 7) - Vec3::of(1.0, 0.0, 0.0)).norm() < 1e-7);
+    assert!((done.grid.at(7, 7) - Vec3::of(1.0, 0.0, 0.0)).norm() < 1e-7);
 }
 
 #[test]
 fn the_same_bits_at_any_number_of_threads() {
     let n = 190;
-    let wavy = Sheet::<f64>::from_fn(n, n + 7, |i, j| {
+    let wavy = SurfaceGrid::<f64>::from_fn(n, n + 7, |i, j| {
         let (u, v) = (i as f64 / (n - 1) as f64, j as f64 / (n + 6) as f64);
         Vec3::of(u + 0.2 * v * v, v + 0.1 * (5.0 * u).sin(), 0.1 * u * v)
     });
@@ -318,11 +319,12 @@ fn the_same_bits_at_any_number_of_threads() {
         pool.install(|| {
             let grid = transfinite(&wavy, Blend::Arc).unwrap();
             let options = Elliptic { method: Method::Middlecoff, ..laplace(7, 1.1) };
-            elliptic(&grid, &options).unwrap().sheet
+            elliptic(&grid, &options).unwrap().grid
         })
     };
-    let bits =
-        |s: &Sheet<f64>| -> Vec<u64> { s.planes.iter().flatten().map(|x| x.to_bits()).collect() };
+    let bits = |s: &SurfaceGrid<f64>| -> Vec<u64> {
+        s.planes.iter().flatten().map(|x| x.to_bits()).collect()
+    };
     let one = bits(&run(1));
     assert!(one == bits(&run(2)) && one == bits(&run(5)));
 }
@@ -330,8 +332,8 @@ fn the_same_bits_at_any_number_of_threads() {
 #[test]
 fn derivatives_flow_through_sweeps() {
     // d/dh of the smoothed grid over a bump of height h.
-    fn grid<T: Real>(h: T) -> Sheet<T> {
-        let start = Sheet::<T>::from_fn(11, 9, |i, j| {
+    fn grid<T: Real>(h: T) -> SurfaceGrid<T> {
+        let start = SurfaceGrid::<T>::from_fn(11, 9, |i, j| {
             let (u, v) = (i as f64 / 10.0, j as f64 / 8.0);
             let bump = h * (u * (1.0 - u));
             Vec3::new(T::from(u + 0.1 * v), bump + (-bump + 1.0) * v, h * (u * v))
@@ -345,7 +347,7 @@ fn derivatives_flow_through_sweeps() {
             walls: vec![Wall { edge: Edge::FirstJ, spacing: vec![h * 0.1], angle: T::from(1.4) }],
             on: None,
         };
-        elliptic(&grid, &options).unwrap().sheet
+        elliptic(&grid, &options).unwrap().grid
     }
     let dual = grid(Dual4::from_parts(|k| [0.4, 1.0, 0.0, 0.0, 0.0][k]));
     let (high, low) = (grid(0.4 + 1e-5), grid(0.4 - 1e-5));
@@ -360,7 +362,7 @@ fn derivatives_flow_through_sweeps() {
 #[test]
 fn metrics_of_known_cells() {
     let one = |f: &dyn Fn(f64, f64) -> Vec3, metric: Metric| {
-        quality(&Sheet::<f64>::from_fn(2, 2, |i, j| f(i as f64, j as f64)), metric)[0]
+        quality(&SurfaceGrid::<f64>::from_fn(2, 2, |i, j| f(i as f64, j as f64)), metric)[0]
     };
     let square = |u: f64, v: f64| Vec3::of(u, v, 0.0);
     for (metric, value) in [
@@ -386,7 +388,7 @@ fn metrics_of_known_cells() {
     let area = one(&lift, Metric::Area);
     assert!((one(&lift, Metric::Warp) - 0.1 / area.sqrt()).abs() < 1e-15);
     // Widths 1, 3, 9 along i; a bend of 30 degrees along j.
-    let grid = Sheet::<f64>::from_fn(4, 3, |i, j| {
+    let grid = SurfaceGrid::<f64>::from_fn(4, 3, |i, j| {
         let x = [0.0, 1.0, 4.0, 13.0][i];
         let a = PI / 6.0;
         let y = [0.0, 1.0, 1.0 + a.cos()][j];
@@ -397,7 +399,7 @@ fn metrics_of_known_cells() {
     assert!(quality(&grid, Metric::GrowthJ).iter().all(|g| (g - 1.0).abs() < 1e-14));
     assert!(quality(&grid, Metric::Turn).iter().all(|g| (g - PI / 6.0).abs() < 1e-14));
     // A pole: triangles, none folded.
-    let fan = Sheet::<f64>::from_fn(3, 5, |i, j| {
+    let fan = SurfaceGrid::<f64>::from_fn(3, 5, |i, j| {
         let a = 0.3 * j as f64;
         Vec3::of(i as f64 * a.cos(), i as f64 * a.sin(), 0.0)
     });
@@ -406,7 +408,10 @@ fn metrics_of_known_cells() {
     assert!((skew[0] - (1.0 - 0.3 / (PI / 3.0))).abs() < 1e-14, "{}", skew[0]);
     assert!(quality(&fan, Metric::ScaledJacobian)[0] > 0.29);
     assert!(
-        quality(&Sheet::<f64>::from_fn(1, 4, |_, j| Vec3::of(j as f64, 0.0, 0.0)), Metric::Area)
-            .is_empty()
+        quality(
+            &SurfaceGrid::<f64>::from_fn(1, 4, |_, j| Vec3::of(j as f64, 0.0, 0.0)),
+            Metric::Area
+        )
+        .is_empty()
     );
 }

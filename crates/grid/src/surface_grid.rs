@@ -1,10 +1,12 @@
+//! Surface grids: points by two indices, their edges and where these must meet.
+
 use crate::{Corner, GridError};
 use moldloft_num::{Real, Vec3};
 use std::fmt;
 
 /// A surface grid of m by n points as three component planes, point (i, j) at `i * n + j`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sheet<T> {
+pub struct SurfaceGrid<T> {
     /// Points along the first index, i.
     pub m: usize,
     /// Points along the second index, j.
@@ -13,7 +15,7 @@ pub struct Sheet<T> {
     pub planes: [Vec<T>; 3],
 }
 
-/// An edge of a sheet, by the index that is constant along it.
+/// An edge of a grid, by the index that is constant along it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
     /// s[1,]
@@ -48,8 +50,8 @@ pub(crate) const SAME: f64 = 1e-10;
 /// A first step of an edge that is so many times the next ones is a gap, not a step.
 const LEAP: f64 = 25.0;
 
-impl<T: Real> Sheet<T> {
-    /// The sheet of these planes.
+impl<T: Real> SurfaceGrid<T> {
+    /// The grid of these planes.
     ///
     /// # Panics
     /// When a plane does not have m n numbers.
@@ -58,7 +60,7 @@ impl<T: Real> Sheet<T> {
         Self { m, n, planes }
     }
 
-    /// The sheet of points in the order of memory.
+    /// The grid of points in the order of memory.
     pub fn of_points(m: usize, n: usize, points: impl IntoIterator<Item = Vec3<T>>) -> Self {
         let mut planes = [(); 3].map(|()| Vec::with_capacity(m * n));
         for p in points {
@@ -69,7 +71,7 @@ impl<T: Real> Sheet<T> {
         Self::new(m, n, planes)
     }
 
-    /// The sheet of the points `f(i, j)`, indices from 0.
+    /// The grid of the points `f(i, j)`, indices from 0.
     pub fn from_fn(m: usize, n: usize, f: impl Fn(usize, usize) -> Vec3<T>) -> Self {
         Self::of_points(m, n, (0..m * n).map(|k| f(k / n, k % n)))
     }
@@ -128,12 +130,12 @@ impl<T: Real> Sheet<T> {
     }
 
     /// The real parts.
-    pub fn re(&self) -> Sheet<f64> {
+    pub fn re(&self) -> SurfaceGrid<f64> {
         let plane = |k: usize| self.planes[k].iter().map(|x| x.re()).collect();
-        Sheet { m: self.m, n: self.n, planes: [plane(0), plane(1), plane(2)] }
+        SurfaceGrid { m: self.m, n: self.n, planes: [plane(0), plane(1), plane(2)] }
     }
 
-    /// Refuses sheets of fewer than `least` points each way.
+    /// Refuses grids of fewer than `least` points each way.
     pub(crate) fn check_count(&self, least: usize) -> Result<(), GridError> {
         if self.m.min(self.n) >= least {
             return Ok(());
@@ -199,13 +201,13 @@ impl<T: Real> Sheet<T> {
     }
 }
 
-/// The sheet of four edges, its inside unset: `edges` are s[1,], s[m,], s[,1] and s[,n], each in
+/// The grid of four edges, its inside unset: `edges` are s[1,], s[m,], s[,1] and s[,n], each in
 /// ascending index.
 ///
 /// # Errors
 /// [`GridError::TooFew`]; [`GridError::FaceSizes`] never; [`GridError::EdgesApart`] with the corner at
 /// which two edges end in different points, and how far they are apart.
-pub fn framed<T: Real>(edges: &[Vec<Vec3<T>>; 4]) -> Result<Sheet<T>, GridError> {
+pub fn framed<T: Real>(edges: &[Vec<Vec3<T>>; 4]) -> Result<SurfaceGrid<T>, GridError> {
     let [first_i, last_i, first_j, last_j] = edges;
     let (m, n) = (first_j.len(), first_i.len());
     let short = [m, n, last_i.len(), last_j.len()].into_iter().min().unwrap_or(0);
@@ -229,14 +231,14 @@ pub fn framed<T: Real>(edges: &[Vec<Vec3<T>>; 4]) -> Result<Sheet<T>, GridError>
             return Err(GridError::EdgesApart { corner: Corner { edge, other, at }, gap });
         }
     }
-    let mut sheet = Sheet::from_fn(m, n, |_, _| Vec3::zero());
+    let mut grid = SurfaceGrid::from_fn(m, n, |_, _| Vec3::zero());
     for (i, (a, b)) in first_j.iter().zip(last_j).enumerate() {
-        sheet.set(i, 0, *a);
-        sheet.set(i, n - 1, *b);
+        grid.set(i, 0, *a);
+        grid.set(i, n - 1, *b);
     }
     for (j, (a, b)) in first_i.iter().zip(last_i).enumerate() {
-        sheet.set(0, j, *a);
-        sheet.set(m - 1, j, *b);
+        grid.set(0, j, *a);
+        grid.set(m - 1, j, *b);
     }
-    Ok(sheet)
+    Ok(grid)
 }
