@@ -7,7 +7,7 @@
 
 use crate::solver::{Panels, title};
 use crate::text::{Line, put, quoted, real, utf8};
-use crate::{Place, ReadError, Skin, WriteError};
+use crate::{PanelFileOptions, Place, ReadError, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
 
@@ -53,8 +53,8 @@ impl Header {
 /// # Errors
 /// Positions that are not finite, and a half that crosses its symmetry plane.
 pub fn write(mesh: &Mesh, header: &Header, lids: bool) -> Result<Vec<u8>, WriteError> {
-    let skin = Skin { mirror_x: header.mirror_x, mirror_y: header.mirror_y, lids };
-    let panels = Panels::of(mesh, skin)?;
+    let options = PanelFileOptions { mirror_x: header.mirror_x, mirror_y: header.mirror_y, lids };
+    let panels = Panels::of(mesh, options)?;
     let mut out = String::with_capacity(200 + 240 * panels.faces.len());
     put!(out, "{}", header.lines());
     put!(out, "{}\n", panels.faces.len());

@@ -102,6 +102,14 @@ pub(crate) fn quoted(word: &str) -> String {
     format!("`{short}`")
 }
 
+/// The bytes as text: UTF-8, else Latin-1, which old files are in and where every byte is a letter.
+pub(crate) fn text_of(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect::<String>().into(),
+    }
+}
+
 /// The bytes as text.
 pub(crate) fn utf8<'a>(bytes: &'a [u8], format: &'static str) -> Result<&'a str, ReadError> {
     std::str::from_utf8(bytes).map_err(|e| ReadError {

@@ -110,7 +110,7 @@ impl PyBlocks {
         let blocks = &self.blocked.blocks;
         let one = |bytes: Vec<u8>| vec![vtk::NamedFile { name: format!("{stem}.{format}"), bytes }];
         let files = py.detach(|| match format {
-            "p3d" => Some(plot3d::write_blocks(blocks, plot3d::Layout::Stream).map(one)),
+            "p3d" => Some(plot3d::write_blocks(blocks, plot3d::Variant::USUAL).map(one)),
             "vts" => Some(vtk::block_files(blocks, stem)),
             "vtu" => Some(vtk::unstructured(blocks).map(one)),
             _ => None,

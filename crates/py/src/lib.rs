@@ -45,7 +45,8 @@ mod _core {
     use crate::fair::{Look, Net, Spline, Web, divided_differences, eta_y, monotone_runs};
     #[pymodule_export]
     use crate::grids::{
-        grids_as_stl, grids_as_vts, read_aerofoil, read_plot3d, read_points, write_plot3d,
+        grid_with_fields, grids_as_stl, grids_as_vts, points_csv, points_text, read_aerofoil,
+        read_plot3d, read_points, write_plot3d,
     };
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet};

@@ -4,8 +4,8 @@ use moldloft_diag::Diagnostic;
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{
-    Skin, Strands, WriteError, aqwa, gdf, gltf, hams, hydrostar, nemoh, obj, plot3d, ply, stl,
-    threemf, vtk,
+    LinesAndPoints, PanelFileOptions, WriteError, aqwa, gdf, gltf, hams, hydrostar, nemoh, obj,
+    plot3d, ply, stl, threemf, vtk,
 };
 use moldloft_lang::{Document, Section};
 use moldloft_mesh::Mesh;
@@ -104,7 +104,7 @@ pub fn files(
         "glb" => gltf::write(mesh, stem, metres, patch_colour).map(one),
         "vtp" => vtk::polydata_with(mesh, &strands, &looks(document)?).map(one),
         "vts" => vtk::structured_files(mesh, stem, &looks(document)?),
-        "p3d" => plot3d::write(mesh, plot3d::Layout::Stream).map(one),
+        "p3d" => plot3d::write_mesh(mesh, plot3d::Variant::USUAL).map(one),
         _ => {
             let message = format!("there is no format `{format}`");
             return Err(vec![Diagnostic::error("unknown-format", message)]);
@@ -114,8 +114,8 @@ pub fn files(
 }
 
 /// The polylines and points of the shown bodies.
-fn strands(document: &Document) -> Strands {
-    let mut strands = Strands::default();
+fn strands(document: &Document) -> LinesAndPoints {
+    let mut strands = LinesAndPoints::default();
     for object in document.graph().objects().filter(|o| o.head.shown()) {
         if let Some(Value::Mesh(body)) = object.value() {
             let name = object.name.to_string();
@@ -188,7 +188,7 @@ fn solver_files(
     let whole = (mirror_x && !flag_x).then(|| mesh.with_mirror_image(0, ".mirror")).transpose();
     let whole = whole.map_err(large)?;
     let mesh = whole.as_ref().unwrap_or(mesh);
-    let skin = Skin { mirror_x: mirror_x && flag_x, mirror_y, lids: wishes.lids };
+    let skin = PanelFileOptions { mirror_x: mirror_x && flag_x, mirror_y, lids: wishes.lids };
     let file = |name: String, bytes| NamedFile { name, bytes };
     Ok(match format {
         "nemoh" => vec![file(format!("{stem}.mar"), nemoh::write(mesh, skin)?)],
@@ -196,7 +196,7 @@ fn solver_files(
         "aqwa" => vec![file(format!("{stem}.dat"), aqwa::write(mesh, stem, skin)?)],
         "hams" => {
             // HAMS reads lids from a file of their own.
-            let hull = Skin { lids: false, ..skin };
+            let hull = PanelFileOptions { lids: false, ..skin };
             let mut files = vec![file(format!("{stem}.pnl"), hams::write(mesh, hull)?)];
             if let Some(lids) = hams::write_lids(mesh, hull)?.filter(|_| wishes.lids) {
                 files.push(file(format!("{stem}.waterplane.pnl"), lids));

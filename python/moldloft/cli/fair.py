@@ -657,13 +657,13 @@ class _Grids(_Source):
 
     def write(self, result: Any, path: Path) -> Path:
         if self.all:
-            return _commit(path, self.file.encoded(list(result.grids)))
+            return self.file.write(path, result.grids)
         if path.suffix.lower() == ".vts":
             result.write_vtk(path)
             return path
         grids = list(self.file.grids)
         grids[self.at] = result.points
-        return _commit(path, self.file.encoded(grids))
+        return self.file.write(path, grids)
 
 
 class _Object(_Source):
@@ -711,9 +711,9 @@ class _Object(_Source):
             if path.suffix.lower() == ".vts":
                 result.write_vtk(path)
                 return path
-            from moldloft.fairing.files import GridFile
+            from moldloft.grids import write_plot3d
 
-            return _commit(path, GridFile(path, [], "stream").encoded([result.points]))
+            return write_plot3d(path, [result.points])
         return _commit(path, _encode_curve(result, path, None))
 
 
