@@ -166,11 +166,11 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
     """
     points = blocks.vertices
     if not np.isfinite(points).all():
-        raise Error("error: cannot write blockMeshDict: a position is not a finite number")
+        raise Error("cannot write blockMeshDict: a position is not a finite number")
     if not blocks.positive:
         worst = min(blocks.blocks, key=lambda b: b.scaled_jacobian)
         raise Error(
-            f"error: cannot write blockMeshDict: `{worst.name}` has cells without positive volume\n"
+            f"cannot write blockMeshDict: `{worst.name}` has cells without positive volume\n"
             "help: exchange the two surfaces of a left-handed block"
         )
     parts = cut(blocks, every)

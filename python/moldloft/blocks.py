@@ -243,9 +243,7 @@ class Blocks:
         from moldloft.files import Output
 
         if format not in FORMATS:
-            raise Error(
-                f"error: there is no volume format `{format}`; there are: {', '.join(FORMATS)}"
-            )
+            raise Error(f"there is no volume format `{format}`; there are: {', '.join(FORMATS)}")
         if format == "cgns":
             from moldloft import volume_cgns
 

@@ -46,6 +46,12 @@ class Error(Exception):
     def __str__(self) -> str:
         return str(self.args[0])
 
+    @property
+    def rendered(self) -> str:
+        """The message as a terminal shows it: diagnostics as they are, others after ``error:``."""
+        text = str(self).rstrip()
+        return text if self.diagnostics else f"error: {text}"
+
 
 class ModelError(Error, ValueError):
     """The model, or an expression or value for it, is wrong; see ``diagnostics``."""

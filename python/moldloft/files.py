@@ -95,11 +95,9 @@ def format_named(name: str) -> str:
     wanted = name.lower()
     wanted = _ALIASES.get(wanted, wanted)
     if wanted == "dat":
-        raise Error(
-            "error: files of Nemoh and of AQWA end in `.dat`; say which format: `nemoh` or `aqwa`"
-        )
+        raise Error("files of Nemoh and of AQWA end in `.dat`; say which format: `nemoh` or `aqwa`")
     if wanted not in FORMATS:
-        raise Error(f"error: there is no format `{name}`; there are: {', '.join(FORMATS)}")
+        raise Error(f"there is no format `{name}`; there are: {', '.join(FORMATS)}")
     return wanted
 
 
@@ -129,7 +127,7 @@ def produce(
     """
     wanted = format_named(format)
     if tolerance is not None and wanted != "gdf-high":
-        raise Error("error: a tolerance is for fitted patches, gdf-high")
+        raise Error("a tolerance is for fitted patches, gdf-high")
     if wanted == "gdf-high" and not immersed and not tags:
         from moldloft import high_order
 
@@ -139,10 +137,10 @@ def produce(
     volume = wanted == "blockmesh" or wanted.startswith("volume-")
     if (volume or wanted in ("gdf-high", "cgns", "offsets")) and (immersed or tags):
         named = "immersed" if immersed else "tags"
-        raise Error(f"error: `{named}` is not for {wanted}, which takes whole surfaces")
+        raise Error(f"`{named}` is not for {wanted}, which takes whole surfaces")
     if (lids or immersed) and wanted not in SOLVERS:
         named = "lids" if lids else "immersed"
-        raise Error(f"error: `{named}` is for the files of panel codes, {', '.join(SOLVERS)}")
+        raise Error(f"`{named}` is for the files of panel codes, {', '.join(SOLVERS)}")
     if volume:
         return model.blocks().outputs(wanted.removeprefix("volume-"), path)
     if wanted == "cgns":
@@ -181,7 +179,7 @@ def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
         for output in outputs:
             target = folder / output.name
             if target.is_dir():
-                raise FileError(f"error: cannot write `{target}`: it is a folder")
+                raise FileError(f"cannot write `{target}`: it is a folder")
             draft = folder / f".{output.name}.{os.getpid()}.part"
             pending.append((draft, target))
             _write_synced(draft, output.data)
@@ -196,7 +194,7 @@ def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
                 new.rmdir()
         if isinstance(error, OSError) and not isinstance(error, FileError):
             where = pending[-1][1] if pending else folder
-            raise FileError(f"error: cannot write `{where}`: {_reason(error)}") from error
+            raise FileError(f"cannot write `{where}`: {_reason(error)}") from error
         raise
     return [target for _, target in pending]
 
@@ -211,7 +209,7 @@ def _make_folder(folder: Path) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(f"error: cannot make the folder `{folder}`: {_reason(error)}") from error
+        raise FileError(f"cannot make the folder `{folder}`: {_reason(error)}") from error
     return missing
 
 

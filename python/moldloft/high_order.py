@@ -221,7 +221,7 @@ def _forms_of(
     assert best is not None
     if depth == _DEEPEST:
         raise Error(
-            f"error: no B-spline comes within {tolerance:.3g} of `{name}`: the best is off by "
+            f"no B-spline comes within {tolerance:.3g} of `{name}`: the best is off by "
             f"{best.deviation:.3g}\nhelp: ask for less with a larger tolerance"
         )
     # A knuckle that is no knot: halve the patch, so that the knuckle becomes an edge.
@@ -257,18 +257,18 @@ def patches(
     """
     mesh = model.mesh()
     if not np.isfinite(mesh.vertices).all():
-        raise Error("error: cannot write gdf-high: a position is not a finite number")
+        raise Error("cannot write gdf-high: a position is not a finite number")
     size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     allowed = 1e-5 * size if tolerance is None else tolerance
     if not allowed > 0:
-        raise Error(f"error: a tolerance is a positive number, not {allowed}")
+        raise Error(f"a tolerance is a positive number, not {allowed}")
     out: list[SplinePatch] = []
     turned = {name: reverse for _, name, _, reverse, _ in mesh._core.blocks()}
     for facts in mesh.patches:
         if facts.tag in ("waterline", "symmetry") or (facts.tag == "lid" and not lids):
             continue
         if facts.name not in turned or facts.name not in model:
-            raise Error(f"error: cannot write gdf-high: `{facts.name}` is no surface of u and v")
+            raise Error(f"cannot write gdf-high: `{facts.name}` is no surface of u and v")
         surface = model[facts.name]
 
         def evaluate(u: Floats, v: Floats, surface: object = surface) -> Floats:
@@ -298,7 +298,7 @@ def _check_side(patch: SplinePatch, symmetry: str, size: float) -> None:
         side = grid[..., axis]
         if letter in symmetry and side.min() < -1e-9 * size and side.max() > 1e-9 * size:
             raise Error(
-                f"error: cannot write gdf-high: a half mirrored in {letter} = 0 must stay on one "
+                f"cannot write gdf-high: a half mirrored in {letter} = 0 must stay on one "
                 f"side, but patch `{patch.name}` crosses it"
             )
 

@@ -435,7 +435,7 @@ class Model:
         (6.0, 3.0)
         """
         if level is not None and draft is not None:
-            raise Error("error: give the level or the draft, not both")
+            raise Error("give the level or the draft, not both")
         given, number = ("level", 0.0 if level is None else float(level))
         if draft is not None:
             given, number = "draft", float(draft)
@@ -488,7 +488,7 @@ class Model:
             free = () if cg is None else ("trim",) if upright else ("trim", "heel")
         unknown = set(free) - {"trim", "heel"}
         if unknown:
-            raise Error(f"error: free are `trim` and `heel`, not `{unknown.pop()}`")
+            raise Error(f"free are `trim` and `heel`, not `{unknown.pop()}`")
         trims, heels = "trim" in free, "heel" in free
         row = ("displacement", float(displacement), float(trim), float(heel), trims, heels)
         return self._floating([row], cg, density, gravity, sides, by)[0]
@@ -552,7 +552,7 @@ class Model:
     ) -> list[Hydrostatics]:
         centre = None if cg is None else [float(x) for x in cg]
         if centre is not None and len(centre) != 3:
-            raise Error(f"error: a centre of gravity is x, y, z, not {len(centre)} numbers")
+            raise Error(f"a centre of gravity is x, y, z, not {len(centre)} numbers")
         answers = self._document.floating(rows, density, gravity, centre, sides, list(by))
         return [Hydrostatics(**answer) for answer in answers]
 

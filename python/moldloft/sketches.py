@@ -73,6 +73,11 @@ class SketchError(Error, ValueError):
         super().__init__(message)
         self.replies = tuple(replies)
 
+    @property
+    def rendered(self) -> str:
+        """The replies as they are, or the message after ``error:``."""
+        return str(self).rstrip() if self.replies else super().rendered
+
 
 @dataclass(frozen=True)
 class Gradient:
@@ -148,9 +153,9 @@ class Sketch:
             text = path.read_text(encoding="utf-8")
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
-            raise FileError(f"error: cannot read `{path}`: {reason}") from error
+            raise FileError(f"cannot read `{path}`: {reason}") from error
         except UnicodeDecodeError as error:
-            raise FileError(f"error: cannot read `{path}`: it is no text in UTF-8") from error
+            raise FileError(f"cannot read `{path}`: it is no text in UTF-8") from error
         sketch = cls(path.parent)
         if text.lstrip().startswith(("[", "{")):
             sketch.run(f'INPUT "{path.name}"', strict=strict)

@@ -30,7 +30,7 @@ pub fn model_error(diagnostics: &[moldloft_diag::Diagnostic], sources: &Sources)
 
 /// An exception without a place in a model.
 pub fn plain_error(message: impl std::fmt::Display) -> PyErr {
-    raised::Error::new_err(format!("error: {message}"))
+    raised::Error::new_err(message.to_string())
 }
 
 /// An exception about a name.

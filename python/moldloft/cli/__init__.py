@@ -69,7 +69,7 @@ def _run(arguments: list[str]) -> int:
     try:
         status: int = options.run(options)
     except Error as error:
-        print(str(error).rstrip(), file=sys.stderr)
+        print(error.rendered, file=sys.stderr)
         return 1
     return status
 

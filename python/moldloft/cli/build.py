@@ -85,7 +85,7 @@ def _format(name: str) -> str:
     try:
         return format_named(name)
     except Error as error:
-        raise argparse.ArgumentTypeError(str(error).removeprefix("error: ")) from error
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def run(options: argparse.Namespace) -> int:
@@ -98,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             sources = _build_watched(options)
         except Error as error:
-            print(str(error).rstrip(), file=sys.stderr)
+            print(error.rendered, file=sys.stderr)
             sources = [options.model]
         print(f"watching {', '.join(sources)}", file=sys.stderr)
         _wait_for_change(sources)

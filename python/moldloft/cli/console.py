@@ -76,7 +76,7 @@ def open_model(options: argparse.Namespace) -> Model:
     model = load(options.model, library=options.library, strict=False)
     if options.refine:
         if options.refine < 0:
-            raise Error("error: --refine takes a whole number of at least 0")
+            raise Error("--refine takes a whole number of at least 0")
         model.refine(options.refine)
     if options.set and not model._document.has_errors():
         model.set(dict(options.set))

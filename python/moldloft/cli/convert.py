@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
         (output,) = produce(model, form, Path(f"{Path(options.model).stem}.{form}"))
         sys.stdout.write(output.data.decode())
     else:
-        raise Error(f"error: {form} is no text for a terminal: name the file with -o")
+        raise Error(f"{form} is no text for a terminal: name the file with -o")
     return 0
 
 
@@ -78,6 +78,6 @@ def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -
         return 0
     model = loads(text, name=f"{Path(options.model).stem}.sdl")
     if target is None:
-        raise Error(f"error: name the {form} file with -o")
+        raise Error(f"name the {form} file with -o")
     commit(target.parent, produce(model, form, target))
     return 0

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     if row is None:
         near = difflib.get_close_matches(options.name, [row["name"] for row in rows], n=1)
         hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
-        raise UnknownNameError(f"error: there is no kind or function `{options.name}`{hint}")
+        raise UnknownNameError(f"there is no kind or function `{options.name}`{hint}")
     if options.pictures:
         _draw([row], options.pictures)
     elif options.json:

@@ -171,7 +171,7 @@ def run(options: argparse.Namespace) -> int:
                     print(line)
             except Error as error:
                 failed = True
-                print(str(error).rstrip(), file=sys.stderr)
+                print(error.rendered, file=sys.stderr)
             except KeyboardInterrupt:
                 if not terminal:
                     raise
@@ -199,7 +199,7 @@ def _command(session: Session, entry: str) -> list[str] | None:
         path = Path(rest.strip())
         commit(path.parent, [Output(path.name, session.model.text.encode())])
         return [f"wrote {path}"]
-    raise Error(f"error: there is no command `{word}`; :help lists them")
+    raise Error(f"there is no command `{word}`; :help lists them")
 
 
 def _read(terminal: bool) -> str:

@@ -68,7 +68,7 @@ def _grids(model: Model, stem: Path, formats: list[str]) -> list[Path]:
     named = {name: value for name, shape, value in variables if shape.startswith("surface[")}
     found = list(named.values())
     if not found:
-        raise Error("error: the program has no surface to write")
+        raise Error("the program has no surface to write")
     stem.parent.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
     for name in dict.fromkeys(formats):
@@ -91,7 +91,7 @@ def _write(folder: Path, files: dict[str, bytes]) -> list[Path]:
     root = folder.resolve()
     for name in files:
         if not (folder / name).resolve().is_relative_to(root):
-            raise FileError(f"error: cannot write `{name}`: a link leads out of `{folder}`")
+            raise FileError(f"cannot write `{name}`: a link leads out of `{folder}`")
     by_folder: dict[Path, list[Output]] = {}
     for name, data in files.items():
         path = folder / name
