@@ -4,7 +4,7 @@
 //! `bytes -> PointTable` keeps what a program needs to write the same file with other numbers: the
 //! headings, what separates the columns, the empty lines between curves, an aerofoil's two halves.
 
-use crate::text::{quoted, text_of};
+use crate::text::{pointed, quoted, text_of};
 use crate::{Place, ReadError};
 use moldloft_num::Vec3;
 use std::ops::Range;
@@ -252,7 +252,7 @@ pub struct PointLayout {
 pub fn write(rows: &[Vec3], columns: usize, layout: &PointLayout) -> String {
     assert!(matches!(columns, 2 | 3));
     let row = |p: &Vec3| {
-        let words: Vec<String> = p.to_array()[..columns].iter().map(|x| number(*x)).collect();
+        let words: Vec<String> = p.to_array()[..columns].iter().map(|x| pointed(*x)).collect();
         words.join(&layout.separator)
     };
     let mut out = layout.head.clone();
@@ -284,22 +284,6 @@ pub fn write(rows: &[Vec3], columns: usize, layout: &PointLayout) -> String {
 pub fn write_csv(rows: &[Vec3], columns: usize) -> String {
     let head = vec!["x,y,z"[..2 * columns - 1].to_owned()];
     write(rows, columns, &PointLayout { head, separator: ",".into(), ..PointLayout::default() })
-}
-
-/// The shortest decimal that reads back as the same double, with a point or an exponent of two
-/// digits and a sign, as C and Python write it; -0 as 0.
-fn number(x: f64) -> String {
-    let text = format!("{:?}", x + 0.0);
-    match text.split_once('e') {
-        None => text,
-        Some((digits, exponent)) => {
-            let (sign, size) = match exponent.strip_prefix('-') {
-                Some(size) => ('-', size),
-                None => ('+', exponent),
-            };
-            format!("{}e{sign}{size:0>2}", digits.strip_suffix(".0").unwrap_or(digits))
-        }
-    }
 }
 
 #[cfg(test)]
@@ -408,8 +392,8 @@ mod tests {
             (1e16, "1e+16"),
             (-1.5e300, "-1.5e+300"),
         ] {
-            assert_eq!(number(x), text);
-            assert_eq!(number(x).parse::<f64>().unwrap(), x);
+            assert_eq!(pointed(x), text);
+            assert_eq!(pointed(x).parse::<f64>().unwrap(), x);
         }
     }
 }
