@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from moldloft.blocks import Blocks, Interface
 
-__all__ = ["Hex", "cut", "write"]
+__all__ = ["Hex", "cut", "encode", "write"]
 
 Place: TypeAlias = tuple[int, int, int]
 
@@ -232,6 +232,11 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
         lines += ["        );", "    }"]
     lines += [");", "", "mergePatchPairs", "(", ");", ""]
     return "\n".join(lines).encode()
+
+
+def encode(blocks: Blocks, title: str = "") -> bytes:
+    """The dictionary, cut only where it must be; it has no place for a title."""
+    return write(blocks)
 
 
 def _vector(point: NDArray[np.float64]) -> str:

@@ -22,6 +22,7 @@ __all__ = [
     "read_aerofoil",
     "read_plot3d",
     "read_points",
+    "write",
     "write_cgns",
     "write_csv",
     "write_plot3d",
@@ -226,6 +227,37 @@ def _commit(path: str | Path, data: bytes) -> Path:
     return commit(target.parent, [Output(target.name, data)])[0]
 
 
+def write(
+    path: str | Path, grids: Sequence[ArrayLike], *, names: Sequence[str] | None = None
+) -> list[Path]:
+    """Write grids in the format that the file's name ends in.
+
+    Parameters
+    ----------
+    path
+        The file: ``.p3d``, ``.vts``, ``.stl`` or ``.cgns``, the formats of
+        :func:`moldloft.formats.formats` whose ``of_grids`` is true.
+    grids
+        Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
+    names
+        Of the zones of a CGNS file.
+
+    Returns
+    -------
+    list of pathlib.Path
+        The files written; ``vts`` takes several for several grids.
+    """
+    from moldloft.formats import format_named, formats
+
+    target = Path(path)
+    rows = [row for row in formats().values() if row.of_grids]
+    row = format_named(target.suffix.lstrip("."), rows)
+    if row.writer:
+        return [write_cgns(target, grids, names)]
+    files = _core.write_grids(_grids(grids), row.name, target.name)
+    return commit(target.parent, [Output(name, data) for name, data in files])
+
+
 def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
     """Write grids as VTK structured grids: one ``.vts``, or several with their ``.vtm``.
 
@@ -237,8 +269,8 @@ def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
         Arrays (ni, nj, 3) or (ni, nj, nk, 3).
     """
     target = Path(path)
-    files = _core.grids_as_vts(_grids(grids), target.stem)
-    return commit(target.parent, [Output(name, bytes(data)) for name, data in files])
+    files = _core.write_grids(_grids(grids), "vts", target.name)
+    return commit(target.parent, [Output(name, data) for name, data in files])
 
 
 def write_cgns(

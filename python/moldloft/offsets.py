@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from moldloft.models import Model
 
-__all__ = ["Offsets", "even", "measure", "parse", "read"]
+__all__ = ["Offsets", "encode", "even", "measure", "parse", "read"]
 
 _COLUMNS = ("station", "waterline", "half_breadth")
 _OTHER = {
@@ -162,6 +162,11 @@ def parse(text: str, name: str = "offsets") -> Offsets:
         if len(points) < 2:
             raise Error(f"{name}: station {x!r} has one point; it needs two or more")
     return Offsets({x: tuple(sorted(stations[x].items())) for x in sorted(stations)})
+
+
+def encode(model: Model, title: str = "") -> bytes:
+    """The file of :func:`even`; it has no place for a title."""
+    return even(model).csv().encode()
 
 
 def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]) -> Offsets:

@@ -137,6 +137,11 @@ class Sketch:
     def __init__(self, folder: str | os.PathLike[str] | None = None) -> None:
         self._session = _core.SketchSession(None if folder is None else os.fspath(folder))
 
+    @property
+    def session(self) -> _core.SketchSession:
+        """The session behind it, for programs that talk with it line by line."""
+        return self._session
+
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, strict: bool = True) -> Sketch:
         """Run a file of commands, or read a JSON twin.

@@ -1,12 +1,13 @@
 //! One export: the document, the name of the main file, what was asked for, and what rows of the
 //! table ask of it.
 
+use crate::formats::Encoder;
 use crate::{Format, Holds, length_unit};
 use moldloft_diag::Diagnostic;
-use moldloft_document::{Blocked, Document, Panelled, PatchFields};
+use moldloft_document::{Document, Panelled, PatchFields};
 use moldloft_io::vtk::{self, NamedFile};
-use moldloft_io::{LinesAndPoints, WriteError};
-use moldloft_mesh::Mesh;
+use moldloft_io::{LinesAndPoints, StructuredGrid, WriteError};
+use moldloft_mesh::{Blocks, Mesh};
 use moldloft_registry::Value;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -31,6 +32,19 @@ pub enum Failure {
     Write(WriteError),
     /// The model is at fault, or the request.
     Model(Vec<Diagnostic>),
+}
+
+impl Failure {
+    /// The same as diagnostics, for the format of that name.
+    pub fn diagnostics(self, format: &str) -> Vec<Diagnostic> {
+        match self {
+            Self::Model(diagnostics) => diagnostics,
+            Self::Write(error) => {
+                let message = format!("cannot write {format}: {error}");
+                vec![Diagnostic::error("cannot-write", message)]
+            }
+        }
+    }
 }
 
 impl From<WriteError> for Failure {
@@ -62,14 +76,9 @@ pub fn write(
     options: &WriteOptions,
 ) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
     refuse_options(format, options).map_err(|d| vec![d])?;
+    let main = FileName(main);
     let mut export = Export { document, format, main, options: options.clone() };
-    (format.write)(&mut export).map_err(|failure| match failure {
-        Failure::Model(diagnostics) => diagnostics,
-        Failure::Write(error) => {
-            let message = format!("cannot write {}: {error}", format.name);
-            vec![Diagnostic::error("cannot-write", message)]
-        }
-    })
+    (format.write)(&mut export).map_err(|failure| failure.diagnostics(format.name))
 }
 
 /// Refuses what the format has no use for, rather than leaving it out.
@@ -97,6 +106,73 @@ fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnos
     Ok(())
 }
 
+/// The files of volume blocks in one format; `main` is the name of the first one, without folder.
+///
+/// # Errors
+/// A format of something else; what the format cannot hold.
+pub fn write_blocks(
+    blocks: &Blocks,
+    format: &Format,
+    main: &str,
+) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
+    encoded(format.volume, "cells of solids", blocks, format, main)
+}
+
+/// The files of grids of points in one format; `main` is the name of the first one, without folder.
+///
+/// # Errors
+/// A format of something else; what the format cannot hold.
+pub fn write_grids(
+    grids: &[StructuredGrid],
+    format: &Format,
+    main: &str,
+) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
+    encoded(format.grids, "grids of points", grids, format, main)
+}
+
+fn encoded<T: ?Sized>(
+    encoder: Option<Encoder<T>>,
+    what: &str,
+    value: &T,
+    format: &Format,
+    main: &str,
+) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
+    let Some(encode) = encoder else {
+        let message = format!("{} is no format of {what}", format.name);
+        return Err(vec![Diagnostic::error("unknown-format", message)]);
+    };
+    let files = encode(value, &FileName(main)).map_err(Failure::from);
+    files.map_err(|failure| failure.diagnostics(format.name))
+}
+
+/// The name of the main file, without folder.
+#[derive(Clone, Copy, Debug)]
+pub struct FileName<'a>(pub &'a str);
+
+impl<'a> FileName<'a> {
+    /// The name without what follows its last dot: titles, and names of other files, are made of it.
+    pub fn stem(&self) -> &'a str {
+        match self.0.rfind('.') {
+            Some(at) if at > 0 => &self.0[..at],
+            _ => self.0,
+        }
+    }
+
+    /// The main file alone.
+    pub fn main_file(&self, bytes: Vec<u8>) -> Vec<NamedFile> {
+        vec![NamedFile { name: self.0.into(), bytes }]
+    }
+
+    /// The files, that which is named after the stem and this ending being the main one.
+    pub fn renamed(&self, ending: &str, mut files: Vec<NamedFile>) -> Vec<NamedFile> {
+        let usual = format!("{}.{ending}", self.stem());
+        if let Some(main) = files.iter_mut().find(|file| file.name == usual) {
+            main.name = self.0.into();
+        }
+        files
+    }
+}
+
 /// What a row's writer is given, and asks.
 pub struct Export<'d> {
     /// The model.
@@ -104,7 +180,7 @@ pub struct Export<'d> {
     /// The row.
     pub format: &'static Format,
     /// The name of the main file.
-    pub main: &'d str,
+    pub main: FileName<'d>,
     /// What was asked for.
     pub options: WriteOptions,
 }
@@ -124,28 +200,24 @@ impl Deref for Panels {
 }
 
 impl Export<'_> {
-    /// The name of the main file without what follows the last dot: titles, and names of other
-    /// files, are made of it.
+    /// See [`FileName::stem`].
     pub fn stem(&self) -> &str {
-        match self.main.rfind('.') {
-            Some(at) if at > 0 => &self.main[..at],
-            _ => self.main,
-        }
+        self.main.stem()
     }
 
     /// The main file alone.
     pub fn main_file(&self, bytes: Vec<u8>) -> Vec<NamedFile> {
-        vec![NamedFile { name: self.main.into(), bytes }]
+        self.main.main_file(bytes)
     }
 
-    /// The files, that which is named after the stem and the format being the main one.
-    pub fn renamed(&self, mut files: Vec<NamedFile>) -> Vec<NamedFile> {
-        let ending = self.format.suffix.rsplit('.').next().unwrap_or_default();
-        let usual = format!("{}.{ending}", self.stem());
-        if let Some(main) = files.iter_mut().find(|file| file.name == usual) {
-            main.name = self.main.into();
-        }
-        files
+    /// The cells of the solids in the row's format.
+    ///
+    /// # Errors
+    /// Cells that cannot be made; what the format cannot hold.
+    pub fn write_volume(&mut self) -> Result<Vec<NamedFile>, Failure> {
+        let blocked = self.document.blocked()?;
+        let Some(encode) = self.format.volume else { return Ok(Vec::new()) };
+        Ok(encode(&blocked.blocks, &self.main)?)
     }
 
     /// The size of the model's unit of length in metres.
@@ -165,14 +237,6 @@ impl Export<'_> {
             self.lines_and_points().refused(self.format.name)?;
         }
         Ok(Panels { whole, part })
-    }
-
-    /// The cells of the solids.
-    ///
-    /// # Errors
-    /// Cells that cannot be made.
-    pub fn blocks(&mut self) -> Result<Arc<Blocked>, Failure> {
-        Ok(self.document.blocked()?)
     }
 
     /// The polylines and points of the shown bodies.

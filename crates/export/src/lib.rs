@@ -30,8 +30,10 @@ mod picture;
 mod spline_patches;
 mod units;
 
-pub use export::{Export, Failure, WriteOptions, tagged, write};
-pub use formats::{FORMATS, Format, Holds, Lids, Symmetry, format_named};
+pub use export::{
+    Export, Failure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
+};
+pub use formats::{Encoder, FORMATS, Format, Holds, Lids, Symmetry, format_named};
 pub use kind_picture::kind_picture;
 pub use moldloft_io::vtk::NamedFile;
 pub use picture::picture;

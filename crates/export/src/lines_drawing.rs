@@ -13,7 +13,10 @@ use moldloft_registry::{Family, Value};
 ///
 /// # Errors
 /// Panels that cannot be made.
-pub(crate) fn lines_drawing(document: &mut Document, stem: &str) -> Result<Vec<NamedFile>, Failure> {
+pub(crate) fn lines_drawing(
+    document: &mut Document,
+    stem: &str,
+) -> Result<Vec<NamedFile>, Failure> {
     let mut contours: Vec<drawing::Contour> =
         document.sections().into_iter().map(contour).collect();
     let panelled = document.panelled()?;

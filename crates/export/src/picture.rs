@@ -20,7 +20,11 @@ const WIRE_WIDTH: f32 = 3.0;
 ///
 /// # Errors
 /// An impossible size.
-pub fn picture(document: &mut Document, width: usize, height: usize) -> Result<Vec<u8>, Vec<Diagnostic>> {
+pub fn picture(
+    document: &mut Document,
+    width: usize,
+    height: usize,
+) -> Result<Vec<u8>, Vec<Diagnostic>> {
     let mut lines: Vec<Line> = document.sections().iter().flat_map(drawn).collect();
     let wires = lines_and_points(document).wires.into_iter();
     lines.extend(wires.map(|(_, points)| Line { points, colour: WIRE_COLOUR, width: WIRE_WIDTH }));

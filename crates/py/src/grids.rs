@@ -1,7 +1,9 @@
 //! Structured grids of points in and out of files.
 
 use crate::arrays;
-use crate::error::{format_error, plain_error};
+use crate::error::{format_error, model_error, plain_error};
+use moldloft_diag::Sources;
+use moldloft_export::format_named;
 use moldloft_io::plot3d::{self, Laid, Variant};
 use moldloft_io::points::{self, PointLayout};
 use moldloft_io::section::{self, Listing};
@@ -105,14 +107,18 @@ pub fn write_plot3d<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// VTK structured grids: names and contents of the files.
+/// The files of grids in a format, the first of them under the name `main`: name and content of each.
 #[pyfunction]
-pub fn grids_as_vts(
-    blocks: Vec<PyReadonlyArray4<'_, f64>>,
-    stem: &str,
-) -> PyResult<Vec<(String, Vec<u8>)>> {
-    let files = vtk::grid_files(&grids(&blocks)?, stem).map_err(plain_error)?;
-    Ok(files.into_iter().map(|file| (file.name, file.bytes)).collect())
+pub fn write_grids<'py>(
+    py: Python<'py>,
+    blocks: Vec<PyReadonlyArray4<'py, f64>>,
+    format: &str,
+    main: &str,
+) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+    let format = format_named(format).map_err(|d| plain_error(d.message))?;
+    let files = moldloft_export::write_grids(&grids(&blocks)?, format, main);
+    let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
+    Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
 }
 
 /// One VTK structured grid with named numbers (ni, nj, nk, parts) at its points.

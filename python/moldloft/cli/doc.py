@@ -25,7 +25,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prints the reference."""
-    from moldloft._core import reference
+    from moldloft.language import reference
 
     rows = reference()
     if options.markdown:
@@ -75,7 +75,7 @@ def _draw(rows: list[dict[str, Any]], folder: str) -> None:
     outputs = []
     for row in filter(_pictured, rows):
         model = moldloft.loads(row["example"], name=f"{row['name']}.sdl")
-        portrait = model._document.portrait(row["name"], 360, 240)
+        portrait = model.kind_picture(row["name"], 360, 240)
         outputs.append(Output(f"{row['name']}.png", portrait))
     commit(Path(folder), outputs)
     print(f"{len(outputs)} pictures in {folder}")

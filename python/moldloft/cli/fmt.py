@@ -21,9 +21,9 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Formats each file; a program that does not parse stays as it is and is reported."""
-    from moldloft._core import format_text
     from moldloft.errors import Error
     from moldloft.files import Output, commit
+    from moldloft.language import format_text
 
     status = 0
     for file in options.files:

@@ -94,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
         progress.stage(f"running {options.model}")
         model = open_model(options)
         report(model.diagnostics)
-        if model._document.has_errors():
+        if model.has_errors:
             return 1
         progress.stage("floating")
         common: dict[str, Any] = {

@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
     if options.edit or not options.file:
         host.prompt()
     if options.json:
-        data = json.loads(sketch._session.objects_json())
+        data = json.loads(sketch.session.objects_json())
         data["ok"] = not host.refused
         data["replies"] = [reply.to_dict() for reply in host.replies]
         print_json(data)
@@ -85,7 +85,7 @@ class Host:
 
     def __init__(self, sketch: Sketch, options: argparse.Namespace) -> None:
         self.sketch = sketch
-        self.session = sketch._session
+        self.session = sketch.session
         self.options = options
         self.refused = False
         self.replies: list[Reply] = []
@@ -276,7 +276,7 @@ def _line_editor(sketch: Sketch) -> Iterator[None]:
 
     def complete(_: str, number: int) -> str | None:
         line = readline.get_line_buffer()[: readline.get_endidx()]
-        found = sketch._session.complete(line)
+        found = sketch.session.complete(line)
         return found[number] + " " if number < len(found) else None
 
     readline.set_completer_delims(" ,=;")

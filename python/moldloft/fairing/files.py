@@ -186,7 +186,7 @@ class GridFile:
         blanks = self.iblank
         if blanks is not None and [b.shape for b in blanks] != [g.shape[:2] for g in grids]:
             blanks = None
-        return write_plot3d(path, grids, variant, iblank=blanks)
+        return write_plot3d(Path(path), grids, variant, iblank=blanks)
 
 
 _GRID_SUFFIXES = {".p3d", ".plot3d", ".xyz", ".x", ".g", ".grd", ".fmt", ".grid"}

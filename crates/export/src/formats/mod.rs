@@ -24,9 +24,12 @@ mod volume_vtu;
 mod vtp;
 mod vts;
 
+use crate::export::FileName;
 use crate::{Export, Failure};
 use moldloft_diag::Diagnostic;
 use moldloft_io::vtk::NamedFile;
+use moldloft_io::{StructuredGrid, WriteError};
+use moldloft_mesh::Blocks;
 
 /// All formats, in the order in which help lists them.
 pub static FORMATS: &[Format] = &[
@@ -75,7 +78,14 @@ pub struct Format {
     pub text: bool,
     /// Makes the files. The main one is named [`Export::main`].
     pub write: fn(&mut Export<'_>) -> Result<Vec<NamedFile>, Failure>,
+    /// Makes the files of grids of points, where the format holds such.
+    pub grids: Option<Encoder<[StructuredGrid]>>,
+    /// Makes the files of the cells of solids, where the format holds such.
+    pub volume: Option<Encoder<Blocks>>,
 }
+
+/// Makes files of something, the main one of a given name.
+pub type Encoder<T> = fn(&T, &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
 
 impl Format {
     /// What most formats are: panels of all patches, one side as it is, binary.
@@ -90,7 +100,13 @@ impl Format {
         immersed: false,
         text: false,
         write: |_| Ok(Vec::new()),
+        grids: None,
+        volume: None,
     };
+
+    /// What formats of the cells of solids are.
+    pub const VOLUME: Self =
+        Self { holds: Holds::Volumes, write: Export::write_volume, ..Self::PANELS };
 
     /// What files of panel codes are: text, the skin, lids when asked for, both planes of symmetry.
     pub const PANEL_CODE: Self = Self {

@@ -1,20 +1,20 @@
 //! The cells of solids as Plot3D.
 
-use super::{Format, Holds};
-use crate::{Export, Failure};
+use super::Format;
+use crate::export::FileName;
+use moldloft_io::WriteError;
 use moldloft_io::plot3d::{Variant, write_blocks};
 use moldloft_io::vtk::NamedFile;
+use moldloft_mesh::Blocks;
 
 pub const FORMAT: Format = Format {
     name: "volume-p3d",
     suffix: "volume.p3d",
     about: "the cells of solids as Plot3D volume grids",
-    holds: Holds::Volumes,
-    write,
-    ..Format::PANELS
+    volume: Some(encode),
+    ..Format::VOLUME
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
-    let blocked = export.blocks()?;
-    Ok(export.main_file(write_blocks(&blocked.blocks, Variant::USUAL)?))
+fn encode(blocks: &Blocks, name: &FileName<'_>) -> Result<Vec<NamedFile>, WriteError> {
+    Ok(name.main_file(write_blocks(blocks, Variant::USUAL)?))
 }

@@ -1,19 +1,19 @@
 //! The cells of solids as VTK structured grids.
 
-use super::{Format, Holds};
-use crate::{Export, Failure};
+use super::Format;
+use crate::export::FileName;
+use moldloft_io::WriteError;
 use moldloft_io::vtk::{self, NamedFile};
+use moldloft_mesh::Blocks;
 
 pub const FORMAT: Format = Format {
     name: "volume-vts",
     suffix: "volume.vts",
     about: "the cells of solids as VTK structured grids, one per block, and a .vtm",
-    holds: Holds::Volumes,
-    write,
-    ..Format::PANELS
+    volume: Some(encode),
+    ..Format::VOLUME
 };
 
-fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
-    let blocked = export.blocks()?;
-    Ok(export.renamed(vtk::block_files(&blocked.blocks, export.stem())?))
+fn encode(blocks: &Blocks, name: &FileName<'_>) -> Result<Vec<NamedFile>, WriteError> {
+    Ok(name.renamed("vts", vtk::block_files(blocks, name.stem())?))
 }
