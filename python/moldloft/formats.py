@@ -147,3 +147,28 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     if len(ends) == 1:
         raise Error(f"files that end in `.{wanted}` may be others; say the format: {ends[0]}")
     raise Error(f"there is no format `{name}`; there are: {', '.join(row.name for row in rows)}")
+
+
+def markdown() -> str:
+    """The table of the docs.
+
+    >>> print(markdown().splitlines()[0])
+    | name | file | what | holds | symmetry | options |
+    """
+    lines = [
+        "| name | file | what | holds | symmetry | options |",
+        "| " + " | ".join(["---"] * 6) + " |",
+    ]
+    for row in formats().values():
+        names = ", ".join(f"`{name}`" for name in (row.name, *row.aliases))
+        options = [word for word in ("lids", "immersed") if getattr(row, word)]
+        if row.holds == "surfaces":
+            options.append("tolerance")
+        planes = row.symmetry or "–"
+        cells = [names, f"`.{row.suffix or row.name}`", row.about, row.holds, planes]
+        lines.append("| " + " | ".join([*cells, ", ".join(options) or "–"]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(markdown(), end="")

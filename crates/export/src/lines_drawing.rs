@@ -5,7 +5,7 @@ use crate::{Failure, length_unit};
 use moldloft_document::{Document, Section};
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
-use moldloft_model::{Polyline, Sectioned};
+use moldloft_panel::{Polyline, Sectioned};
 use moldloft_num::Vec3;
 use moldloft_registry::{Family, Value};
 
