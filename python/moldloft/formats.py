@@ -33,6 +33,8 @@ class Format:
     """A line about it."""
     suffix: str = ""
     """The end of its files' names; the name where it is empty."""
+    other_suffix: str = ""
+    """Another end that its files are known by, which does not tell the format."""
     aliases: tuple[str, ...] = ()
     """Other names that mean it."""
     holds: str = "panels"
@@ -143,9 +145,10 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     for row in rows:
         if wanted == row.name or wanted in row.aliases:
             return row
-    ends = [f"`{row.name}`" for row in rows if row.suffix == wanted]
-    if len(ends) == 1:
-        raise Error(f"files that end in `.{wanted}` may be others; say the format: {ends[0]}")
+    ends = [f"`{row.name}`" for row in rows if wanted in (row.suffix, row.other_suffix) and wanted]
+    if ends:
+        files = f"files that end in `.{wanted}` may be of several formats"
+        raise Error(f"{files}; say which: {' or '.join(ends)}")
     raise Error(f"there is no format `{name}`; there are: {', '.join(row.name for row in rows)}")
 
 

@@ -5,8 +5,8 @@ use crate::{Failure, length_unit};
 use moldloft_document::{Document, Section};
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
-use moldloft_panel::{Polyline, Sectioned};
 use moldloft_num::Vec3;
+use moldloft_panel::{Polyline, Sectioned};
 use moldloft_registry::{Family, Value};
 
 /// The lines drawing: body plan, waterlines and buttocks, a sheet each.

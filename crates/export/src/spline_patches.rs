@@ -81,9 +81,11 @@ pub fn spline_patches(
                 part.turn();
             }
             for axis in (0..2).filter(|&axis| mirrored[axis]) {
-                for p in &mut part.points {
-                    if p[axis].abs() <= IN_PLANE * size {
-                        p[axis] = 0.0;
+                for point in &mut part.points {
+                    let mut xyz = point.to_array();
+                    if xyz[axis].abs() <= IN_PLANE * size {
+                        xyz[axis] = 0.0;
+                        *point = xyz.into();
                     }
                 }
                 check_side(&part, axis, size)?;

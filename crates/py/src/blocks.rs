@@ -108,7 +108,7 @@ impl PyBlocks {
         format: &str,
         main: &str,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-        let format = format_named(format).map_err(|d| plain_error(d.message))?;
+        let format = format_named(format).map_err(|d| plain_error(&d.message))?;
         let files = py.detach(|| write_blocks(&self.blocked.blocks, format, main));
         let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())

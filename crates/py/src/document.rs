@@ -548,7 +548,7 @@ impl PyDocument {
         tags: Vec<String>,
         tolerance: Option<f64>,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-        let format = format_named(format).map_err(|d| plain_error(d.message))?;
+        let format = format_named(format).map_err(|d| plain_error(&d.message))?;
         let options = WriteOptions { lids, immersed, tags, tolerance };
         let files =
             self.long_checked(py, move |d| moldloft_export::write(d, format, &main, &options))?;

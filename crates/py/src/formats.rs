@@ -16,6 +16,7 @@ pub fn formats(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         dict.set_item("name", format.name)?;
         dict.set_item("aliases", format.aliases.to_vec())?;
         dict.set_item("suffix", format.suffix)?;
+        dict.set_item("other_suffix", format.other_suffix)?;
         dict.set_item("about", format.about)?;
         dict.set_item("holds", format.holds.word())?;
         let symmetry = match format.symmetry {

@@ -115,7 +115,7 @@ pub fn write_grids<'py>(
     format: &str,
     main: &str,
 ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-    let format = format_named(format).map_err(|d| plain_error(d.message))?;
+    let format = format_named(format).map_err(|d| plain_error(&d.message))?;
     let files = moldloft_export::write_grids(&grids(&blocks)?, format, main);
     let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
     Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())

@@ -64,6 +64,8 @@ pub struct Format {
     pub aliases: &'static [&'static str],
     /// The end of its files' names, without the dot.
     pub suffix: &'static str,
+    /// Another end that its files are known by, which does not tell the format.
+    pub other_suffix: &'static str,
     /// A line about it.
     pub about: &'static str,
     /// What of a model its files hold.
@@ -93,6 +95,7 @@ impl Format {
         name: "",
         aliases: &[],
         suffix: "",
+        other_suffix: "",
         about: "",
         holds: Holds::Panels,
         symmetry: Symmetry::None,
@@ -106,7 +109,7 @@ impl Format {
 
     /// What formats of the cells of solids are.
     pub const VOLUME: Self =
-        Self { holds: Holds::Volumes, write: Export::write_volume, ..Self::PANELS };
+        Self { holds: Holds::Volumes, write: |e| e.write_volume(), ..Self::PANELS };
 
     /// What files of panel codes are: text, the skin, lids when asked for, both planes of symmetry.
     pub const PANEL_CODE: Self = Self {
@@ -208,8 +211,8 @@ pub fn format_named(name: &str) -> Result<&'static Format, Diagnostic> {
     if let Some(format) = FORMATS.iter().find(is) {
         return Ok(format);
     }
-    let ends = FORMATS.iter().filter(|f| f.suffix == wanted).map(|f| format!("`{}`", f.name));
-    let ends: Vec<String> = ends.collect();
+    let ends = FORMATS.iter().filter(|f| [f.suffix, f.other_suffix].contains(&wanted.as_str()));
+    let ends: Vec<String> = ends.map(|f| format!("`{}`", f.name)).collect();
     let names = FORMATS.iter().map(|f| f.name);
     let error = Diagnostic::error("unknown-format", format!("there is no format `{name}`"));
     Err(match &ends[..] {

@@ -9,6 +9,7 @@ pub const FORMAT: Format = Format {
     name: "nemoh",
     aliases: &["mar"],
     suffix: "mar",
+    other_suffix: "dat",
     about: "Nemoh panels (.mar)",
     symmetry: Symmetry::Y,
     write,

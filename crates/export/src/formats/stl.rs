@@ -6,8 +6,14 @@ use crate::{Export, Failure};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{StructuredGrid, WriteError, stl};
 
-pub const FORMAT: Format =
-    Format { name: "stl", suffix: "stl", about: "triangles, binary STL", write, ..Format::PANELS };
+pub const FORMAT: Format = Format {
+    name: "stl",
+    suffix: "stl",
+    about: "triangles, binary STL",
+    write,
+    grids: Some(encode_grids),
+    ..Format::PANELS
+};
 
 fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
     let mesh = export.panels()?;

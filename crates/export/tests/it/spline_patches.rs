@@ -73,11 +73,13 @@ fn patches_face_out_of_the_water() {
     let mut model = model(crate::BOX);
     let mesh = model.panelled().unwrap();
     for patch in spline_patches(&mut model, None, true).unwrap() {
-        let [a, b, c] = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]].map(|[u, v]| patch.grid(&[u], &[v])[0]);
+        let [a, b, c] =
+            [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]].map(|[u, v]| patch.grid(&[u], &[v])[0]);
         let outward = (b - a).cross(c - a);
         // Panels face the water, counter-clockwise seen from it.
         let own = mesh.mesh.patches().iter().find(|p| p.info.name == patch.name).unwrap();
-        let [p, q, r, _] = mesh.mesh.faces()[own.faces.start].map(|v| mesh.mesh.positions()[v as usize]);
+        let [p, q, r, _] =
+            mesh.mesh.faces()[own.faces.start].map(|v| mesh.mesh.positions()[v as usize]);
         assert!((q - p).cross(r - p).dot(outward) < 0.0, "{}", patch.name);
     }
     assert_eq!(spline_patches(&mut model, None, false).unwrap().len(), 2);
