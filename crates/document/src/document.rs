@@ -11,7 +11,7 @@ use moldloft_lang::value::number_path::NumberPath;
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
 use moldloft_num::Dual4;
-use moldloft_registry::{Class, Registry, Row, Scalar, Value};
+use moldloft_registry::{Class, Kept, Registry, Row, Scalar, Value};
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -38,6 +38,8 @@ pub struct Document {
     /// The solve sets of the last run.
     pub(crate) solved: Vec<Solved>,
     cancelled: Arc<AtomicBool>,
+    /// What calls keep, of the plain run and of those with derivatives alike.
+    kept: Kept,
     pub(crate) settings: Settings,
 }
 
@@ -117,6 +119,7 @@ impl Document {
             applied: Applied { evaluated: 0, objects: 0, failed: 0 },
             solved: Vec::new(),
             cancelled: Arc::default(),
+            kept: Kept::default(),
             settings: Settings::default(),
         }
     }
@@ -196,6 +199,7 @@ impl Document {
     ) -> Applied {
         let mut found = Vec::new();
         evaluation.graph.obey(self.cancelled.clone());
+        evaluation.graph.keep_in(self.kept.clone());
         let inputs = Inputs {
             overrides: &self.overrides,
             seed,

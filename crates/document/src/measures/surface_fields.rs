@@ -2,7 +2,7 @@
 
 use crate::Document;
 use moldloft_diag::Diagnostic;
-use moldloft_fair::surface::{self, Field, Look};
+use moldloft_fair::surface::{self, Field, SurfaceAnalysis};
 use moldloft_num::Vec3;
 use rayon::prelude::*;
 
@@ -35,7 +35,7 @@ impl Document {
         Ok(patches
             .map(|(patch, (surface, uv))| {
                 let turned = patch.block.as_ref().is_some_and(|b| b.reversed);
-                let one = |&[u, v]: &[f64; 2]| -> Option<Look> {
+                let one = |&[u, v]: &[f64; 2]| -> Option<SurfaceAnalysis> {
                     let look = surface::look(&*surface, u, v)?;
                     Some(if turned { look.turned() } else { look })
                 };
