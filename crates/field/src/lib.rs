@@ -17,9 +17,6 @@ mod query;
 mod set;
 mod shapes;
 
-#[cfg(test)]
-mod random;
-
 pub use error::FieldError;
 pub use expr::algebra::{Gradient, GradientRange, Hessian, Unary};
 pub use expr::blend::{

@@ -1,18 +1,14 @@
-//! What the tests of documents share: opening texts, values, random numbers with a fixed seed.
+//! What the tests of documents share: opening texts, values.
 
 use moldloft_diag::Diagnostic;
 use moldloft_document::{Document, NoFiles, ReadError, ReadText, World, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
-
-/// True when the long random tests are to run in full.
-pub fn soak() -> bool {
-    std::env::var("MOLDLOFT_SOAK").is_ok_and(|value| value == "1")
-}
+pub use moldloft_testing::{Random, soak};
 
 /// How many rounds to run: two per cent of a long run, or all of it with `MOLDLOFT_SOAK=1`.
 pub fn rounds(long: usize) -> usize {
-    if soak() { long } else { long / 50 }
+    moldloft_testing::rounds(long / 50, long)
 }
 
 /// A document of a program.
@@ -80,38 +76,4 @@ impl World for Files {
 /// A document of a program that may load files from memory.
 pub fn with_files(text: &str, files: &[(&'static str, &'static str)]) -> Document {
     Document::from_text(registry(), Box::new(Files(files.to_vec())), "model.sdl", text)
-}
-
-/// Marsaglia's xorshift with 64 bits of state (J. Stat. Softw. 8 (2003), 14).
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
-    }
-
-    pub fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    pub fn below(&mut self, limit: usize) -> usize {
-        ((self.next() >> 11) % limit as u64) as usize
-    }
-
-    pub fn chance(&mut self, in_hundred: usize) -> bool {
-        self.below(100) < in_hundred
-    }
-
-    /// A number of three decimals between `low` and `high`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        let x = low + (high - low) * self.below(1 << 20) as f64 / f64::from(1 << 20);
-        (x * 1000.0).round() / 1000.0
-    }
-
-    pub fn pick<'a, T>(&mut self, from: &'a [T]) -> &'a T {
-        &from[self.below(from.len())]
-    }
 }

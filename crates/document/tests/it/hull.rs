@@ -3,6 +3,7 @@
 use moldloft_document::{Document, NoFiles, registry};
 use moldloft_num::Vec3;
 use moldloft_registry::Value;
+use moldloft_testing::ridders;
 
 const HULL: &str = include_str!("hull.sdl");
 
@@ -110,28 +111,6 @@ fn the_same_number_changes_nothing() {
     assert_eq!(document.run().evaluated, 0);
 }
 
-/// Ridders' extrapolation of central differences (Ridders 1982).
-fn ridders(mut f: impl FnMut(f64) -> f64, h: f64) -> f64 {
-    let mut table = vec![vec![0.0; 8]; 8];
-    let (mut best, mut error, mut h) = (0.0, f64::INFINITY, h);
-    for i in 0..8 {
-        table[i][0] = (f(h) - f(-h)) / (2.0 * h);
-        let mut factor = 1.96;
-        for j in 1..=i {
-            table[i][j] = (table[i][j - 1] * factor - table[i - 1][j - 1]) / (factor - 1.0);
-            factor *= 1.96;
-            let e = (table[i][j] - table[i][j - 1])
-                .abs()
-                .max((table[i][j] - table[i - 1][j - 1]).abs());
-            if e < error {
-                (best, error) = (table[i][j], e);
-            }
-        }
-        h /= 1.4;
-    }
-    best
-}
-
 #[test]
 fn derivatives_of_volume_and_vertices_equal_differences() {
     let mut document = hull();
@@ -149,11 +128,11 @@ fn derivatives_of_volume_and_vertices_equal_differences() {
             document.set(&[(name.clone(), start)]).unwrap();
             (volume, positions)
         };
-        let centred = ridders(|h| at(h).0, 1e-2);
+        let centred = ridders(|h| at(h).0, 0.0, 1e-2);
         assert!((exact - centred).abs() < 1e-6 * exact.abs().max(1.0), "{name}: {exact} {centred}");
         for vertex in [0, 57, 130, vertices[k].len() - 1] {
             for axis in 0..3 {
-                let centred = ridders(|h| at(h).1[vertex][axis], 1e-1);
+                let centred = ridders(|h| at(h).1[vertex][axis], 0.0, 1e-1);
                 let exact = vertices[k][vertex][axis];
                 assert!(
                     (exact - centred).abs() < 1e-8,

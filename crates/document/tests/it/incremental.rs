@@ -142,7 +142,7 @@ impl Model {
             }
             text = text.replacen('$', &parent, 1);
         }
-        let numbers = text.matches('#').map(|_| random.between(-9.0, 9.0)).collect();
+        let numbers = text.matches('#').map(|_| random.decimal(-9.0, 9.0)).collect();
         // Made in loops and subroutines: how others refer to it.
         let name = match text.split([' ', '(']).next() {
             Some("for") => name + "[2]",
@@ -213,7 +213,7 @@ impl Model {
             }
             _ => {
                 if !self.lines[at].numbers.is_empty() {
-                    self.lines[at].numbers[0] = random.between(-9.0, 9.0);
+                    self.lines[at].numbers[0] = random.decimal(-9.0, 9.0);
                 }
             }
         }
@@ -277,7 +277,7 @@ fn edited(seed: u64, count: usize) -> Vec<String> {
         }
         match how {
             0..3 => {
-                w = random.between(3.0, 7.0);
+                w = random.decimal(3.0, 7.0);
                 document.set(&[("w".into(), w)]).unwrap();
             }
             3..6 => {
@@ -503,8 +503,8 @@ fn direct_edits_are_written_as_they_are() {
     let mut random = Random::new(3);
     for k in 0..2000 {
         let x = match k % 4 {
-            0 => f64::from_bits(random.next()),
-            1 => random.between(-1e6, 1e6),
+            0 => f64::from_bits(random.bits()),
+            1 => random.decimal(-1e6, 1e6),
             2 => f64::from_bits(random.below(1 << 52) as u64),
             _ => -0.0,
         };

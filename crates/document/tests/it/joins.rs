@@ -239,7 +239,7 @@ fn bands(random: &mut Random, bands: usize, stated: usize) -> String {
         // Rings on the lower and upper snake; the names of those at both ends are common.
         let mut rings = vec![(format!("r{j}_0"), format!("r{}_0", j + 1))];
         for k in 0..cuts {
-            let t = (k as f64 + 0.2 + 0.6 * random.between(0.0, 1.0)) / cuts as f64;
+            let t = (k as f64 + 0.2 + 0.6 * random.decimal(0.0, 1.0)) / cuts as f64;
             let _ =
                 writeln!(text, "AbsRing c{j}_{k}(s{j}, {t}); AbsRing d{j}_{k}(s{}, {t});", j + 1);
             rings.push((format!("c{j}_{k}"), format!("d{j}_{k}")));
@@ -403,9 +403,9 @@ fn panels_made_anew_are_those_made_step_by_step() {
         for _ in 0..4 {
             let before = panelled(&mut d);
             let (name, value) = match random.below(3) {
-                0 => ("Q.y", random.between(0.2, 1.5)),
-                1 => ("T.z", random.between(2.5, 4.0)),
-                _ => ("r0_1.t", random.between(0.97, 1.0)),
+                0 => ("Q.y", random.decimal(0.2, 1.5)),
+                1 => ("T.z", random.decimal(2.5, 4.0)),
+                _ => ("r0_1.t", random.decimal(0.97, 1.0)),
             };
             d.set(&[(name.into(), value)]).unwrap();
             let after = panelled(&mut d);
@@ -488,7 +488,7 @@ fn a_rolled_fillet_joins_what_is_left_of_both_surfaces() {
     assert_eq!(divisions(&mut d, "deck"), [10, 4]);
     assert_eq!(divisions(&mut d, "bulkhead"), [10, 5]);
     let mut random = Random::new(7);
-    for r in [0.5, 0.2, 1.5].into_iter().chain((0..rounds(500)).map(|_| random.between(0.2, 1.5))) {
+    for r in [0.5, 0.2, 1.5].into_iter().chain((0..rounds(500)).map(|_| random.decimal(0.2, 1.5))) {
         d.set(&[("r".into(), r)]).unwrap();
         assert_eq!(pieces(&mut d), (1, 1), "r = {r}");
         let p = panelled(&mut d);

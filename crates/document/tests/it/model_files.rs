@@ -389,14 +389,9 @@ fn a_hundred_thousand_objects_in_reverse() {
 /// Whatever is damaged, reading says what is wrong, and what it takes converts there and back.
 #[test]
 fn damaged_files() {
-    let mut state = 0x2545_f491_4f6c_dd1d_u64;
-    let mut random = |below: usize| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state % below as u64) as usize
-    };
-    let rounds = std::env::var("MOLDLOFT_SOAK").map_or(400, |_| 40_000);
+    let mut source = moldloft_testing::Random::new(5);
+    let mut random = |below: usize| source.below(below);
+    let rounds = moldloft_testing::rounds(400, 40_000);
     let mut converted = 0;
     for k in 0..rounds {
         let mut text = if k % 2 == 0 { HULL } else { EVERYTHING }.to_string();

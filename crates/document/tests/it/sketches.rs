@@ -174,13 +174,11 @@ fn faults_point_into_the_sketch() {
 fn edits_leave_what_a_fresh_run_makes() {
     let text = "load \"bracket.skt\"; load \"dam.skt\";";
     let mut edited = model(text);
-    let mut random = 7u64;
+    let mut random = moldloft_testing::Random::new(7);
     for _ in 0..20 {
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        let share = (random >> 33) as f64 / f64::from(1u32 << 31);
-        let (name, low, high) =
-            [("bracket.R", 0.1, 1.0), ("dam.CREST", 10.0, 30.0)][(random >> 62) as usize & 1];
-        edited.set(&[(name.into(), low + (high - low) * share)]).unwrap();
+        let (name, low, high) = *random.pick(&[("bracket.R", 0.1, 1.0), ("dam.CREST", 10.0, 30.0)]);
+        let value = random.between(low, high);
+        edited.set(&[(name.into(), value)]).unwrap();
     }
     let mut fresh = model(text);
     let values: Vec<(String, f64)> =

@@ -6,7 +6,7 @@
 
 use crate::World;
 use moldloft_diag::{Diagnostic, FileId, Span};
-use moldloft_sketch::{Estimate, Files, Object, Planes, Role, Session, twin};
+use moldloft_sketch::{Estimate, Files, Object, Planes, Role, Session, json_format};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -92,7 +92,7 @@ impl SketchFile {
         let shelf = Arc::new(Mutex::new(Shelf::default()));
         let whole = Span::new(file, 0, text.find('\n').unwrap_or(text.len()) as u32);
         let script = if text.trim_start().starts_with(['{', '[']) {
-            match twin::from_json(text) {
+            match json_format::from_json(text) {
                 Ok(script) => Some(script),
                 Err(why) => {
                     let fault = Diagnostic::error("no-sketch", format!("this is no sketch: {why}"))

@@ -33,7 +33,7 @@ pub fn type_of<T: Real>(value: &Value<T>) -> Type {
     }
 }
 
-pub use moldloft_arrays::called as a;
+pub use moldloft_arrays::type_name as a;
 
 /// [`a`] as a method.
 pub trait Called {

@@ -8,6 +8,7 @@ use crate::common::{line, open, rounds};
 use moldloft_document::Document;
 use moldloft_num::{Order, Vec3, gauss_legendre};
 use moldloft_registry::{Class, Value};
+use moldloft_testing::ridders_vectors;
 
 /// Values, flat, and the object (or measured number) that each belongs to.
 #[derive(Clone)]
@@ -18,6 +19,8 @@ struct Sample {
 
 const TS: [f64; 5] = [0.0, 0.29, 0.5, 0.83, 1.0];
 const US: [f64; 5] = [0.0, 0.23, 0.5, 0.71, 1.0];
+/// Steps of a scheme of differences.
+const LEVELS: usize = 5;
 
 /// The expressions that are measured: positions of objects, and numbers.
 fn expressions(document: &Document) -> (Vec<String>, Vec<String>) {
@@ -105,44 +108,6 @@ fn sample(document: &mut Document, numbers: &[String]) -> Option<Sample> {
     let mesh = document.panelled().ok()?;
     close(&mut sample, xyz(mesh.mesh.positions().to_vec()));
     Some(sample)
-}
-
-/// Ridders' extrapolation of central differences (Ridders 1982), for all values at once.
-fn ridders(mut at: impl FnMut(f64) -> Option<Sample>, mut h: f64) -> Option<Vec<f64>> {
-    const LEVELS: usize = 5;
-    let mut rows: Vec<Vec<Vec<f64>>> = Vec::new();
-    let (mut best, mut error) = (Vec::new(), Vec::new());
-    for i in 0..LEVELS {
-        let (high, low) = (at(h)?.values, at(-h)?.values);
-        // A mesh may have other vertices farther off.
-        let before = rows.first().map_or(high.len(), |row| row[0].len());
-        if high.len() != low.len() || high.len() != before {
-            return None;
-        }
-        let mut row =
-            vec![high.iter().zip(&low).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<f64>>()];
-        if i == 0 {
-            (best, error) = (row[0].clone(), vec![f64::INFINITY; row[0].len()]);
-        }
-        let mut factor = 1.96;
-        for j in 1..=i {
-            let next: Vec<f64> = (0..best.len())
-                .map(|k| {
-                    let x = (row[j - 1][k] * factor - rows[i - 1][j - 1][k]) / (factor - 1.0);
-                    let e = (x - row[j - 1][k]).abs().max((x - rows[i - 1][j - 1][k]).abs());
-                    if e < error[k] {
-                        (best[k], error[k]) = (x, e);
-                    }
-                    x
-                })
-                .collect();
-            row.push(next);
-            factor *= 1.96;
-        }
-        rows.push(row);
-        h /= 1.4;
-    }
-    Some(best)
 }
 
 /// True when the length of a curve is not that of a much finer quadrature.
@@ -238,9 +203,9 @@ fn check(seed: u64) -> Option<Tally> {
         for h in [1e-2, 1e-3, 1e-4, 1e-5] {
             let mut at = |h: f64| {
                 document.set(&[(name.clone(), start + h)]).ok()?;
-                sample(&mut document, &numbers)
+                sample(&mut document, &numbers).map(|sample| sample.values)
             };
-            let Some(centred) = ridders(&mut at, h * scale) else { continue };
+            let Some(centred) = ridders_vectors(&mut at, h * scale, LEVELS) else { continue };
             if centred.len() != derivative.len() {
                 continue;
             }
@@ -353,9 +318,9 @@ fn lengths_across_moving_corners_have_exact_derivatives() {
                 document.set(&[(input.into(), start + h)]).unwrap();
                 let values = vec![crate::common::number(&mut document, number)];
                 document.set(&[(input.into(), start)]).unwrap();
-                Some(Sample { values, owners: vec![0] })
+                Some(values)
             };
-            let centred = ridders(at, 1e-2).unwrap()[0];
+            let centred = ridders_vectors(at, 1e-2, LEVELS).unwrap()[0];
             let close = (exact - centred).abs() < 1e-7 * exact.abs().max(1.0);
             assert!(close, "d({number})/d({input}) = {exact}, differences {centred}");
         }

@@ -19,7 +19,7 @@ pub struct Program<'r> {
 
 impl Program<'_> {
     pub fn number(&mut self, low: f64, high: f64) -> String {
-        format!("{:?}", self.random.between(low, high))
+        format!("{:?}", self.random.decimal(low, high))
     }
 
     pub fn name(&mut self, stem: &str) -> String {
@@ -200,7 +200,7 @@ pub fn model(seed: u64) -> String {
     for k in 0..9 {
         // Spread out, so that few points are in line or near each other.
         let at = [k % 3, k / 3, (k * 5) % 7]
-            .map(|g| p.random.between(-0.3, 0.3) + f64::from(g) * 1.5 - 1.5);
+            .map(|g| p.random.decimal(-0.3, 0.3) + f64::from(g) * 1.5 - 1.5);
         let name = p.object("AbsPoint", &format!("{:?}, {:?} + 0.1*h, {:?}", at[0], at[1], at[2]));
         p.points.push(name);
     }
