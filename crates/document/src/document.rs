@@ -8,8 +8,9 @@ use moldloft_lang::source::env::{Binding, Evaluation, Param, Seed};
 use moldloft_lang::source::module::Modules;
 use moldloft_lang::source::sketch_file::{self, SketchFile};
 use moldloft_mesh::Mesh;
-use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
+use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::Dual4;
+use moldloft_panel::{Nominal, Panelling};
 use moldloft_registry::{Kept, Registry, Row, Scalar, Value};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -365,7 +366,7 @@ impl Document {
         Ok(remarks.iter().map(|remark| self.told(remark)).collect())
     }
 
-    fn told(&self, remark: &moldloft_model::Remark) -> Diagnostic {
+    fn told(&self, remark: &moldloft_panel::Remark) -> Diagnostic {
         let mut diagnostic =
             Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
         let object =

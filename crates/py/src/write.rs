@@ -9,8 +9,8 @@ use moldloft_io::{
     threemf, vtk,
 };
 use moldloft_mesh::Mesh;
-use moldloft_model::{Polyline, Sectioned};
 use moldloft_num::Vec3;
+use moldloft_panel::{Polyline, Sectioned};
 use moldloft_picture::{Line, Options, patch_colour, render};
 use moldloft_registry::{Family, Value};
 

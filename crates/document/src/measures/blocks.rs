@@ -3,8 +3,8 @@
 use crate::Document;
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::{Blocks, BlocksReport};
-use moldloft_model::Blocking;
 use moldloft_num::Vec3;
+use moldloft_panel::Blocking;
 use std::sync::Arc;
 
 /// The blocks of a model with their positions.

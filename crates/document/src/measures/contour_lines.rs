@@ -1,8 +1,8 @@
 //! The sections that a model asks for: stations, waterlines, buttocks, cylinders, meridians.
 
 use crate::Document;
-use moldloft_model::{Polyline, Sectioned, body_section};
 use moldloft_num::trace::Key;
+use moldloft_panel::{Polyline, Sectioned, body_section};
 use moldloft_registry::Value;
 use std::collections::HashMap;
 

@@ -2,8 +2,8 @@
 
 use crate::common::{Random, ids, open, rounds, sound, told};
 use moldloft_document::{Document, Panelled};
-use moldloft_model::Remark;
 use moldloft_num::Vec3;
+use moldloft_panel::Remark;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;

@@ -2,10 +2,9 @@
 
 use moldloft_diag::Diagnostic;
 use moldloft_mesh::{Blocks, HexBlock, Mesh, PatchInfo, TopologyBuilder, measure};
-use moldloft_model::{
-    Graph, MOST_CELLS, MOST_PANELS, Object, divisions, solid_grid, too_many_panels,
-};
+use moldloft_model::{Graph, Object};
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
+use moldloft_panel::{MOST_CELLS, MOST_PANELS, divisions, solid_grid, too_many_panels};
 use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value, Vectors};
 use std::sync::Arc;
 

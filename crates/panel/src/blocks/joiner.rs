@@ -1,243 +1,15 @@
-//! From solids to volume meshes: blocks of hexahedra from their own parameters, joined by identity.
-//!
-//! Vertices of different blocks become one when they lie at the same place of the same surface
-//! object, of the same root curve between the same ends, at the same point object, or on lines
-//! along w that follow one law between vertices that are one. Divisions are solved through all
-//! blocks: a number given for one block holds for every block that shares the edge, and so on.
+//! Which vertices of blocks are one.
 
-use crate::blocks_marks::{Marks, runs};
-use crate::blocks_solve::{Classes, Solved};
-use crate::panel::UnionFind;
-use crate::{Graph, Object};
-use moldloft_mesh::{BlockFace, Blocks, HexBlock};
-use moldloft_num::trace::{Edge, Edges, Face, Faces, Key, Law, Mark, Piece, Root, Turn};
-use moldloft_num::{Box3, Real, Vec3};
-use moldloft_registry::{Fault, Scalar, SolidRef, Value};
+use super::draft::{Draft, FaceId, Stretch, face_axes, face_id, grid, stretch};
+use super::marks::{Marks, runs};
+use super::notes::BlockRemark;
+use moldloft_num::trace::{Edge, Edges, Face, Key, Law, Mark, Piece, Root, Turn};
+use moldloft_num::union_find::UnionFind;
+use moldloft_num::{Box3, Vec3};
 use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
-
-/// The most cells of a model.
-pub const MOST_CELLS: u64 = 20_000_000;
 
 /// Blocks whose shared vertices disagree by more than this share of the model's size are reported.
 const JOIN_ACCURACY: f64 = 1e-9;
-
-/// Something about the joins of blocks that the user may want to know.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BlockRemark {
-    /// The cells of one block along a part of another's edge do not fit, so they are not joined.
-    Divisions {
-        /// The block whose edge has several parts, and the other one along one of them.
-        blocks: [String; 2],
-        /// Cells along the edge of the first.
-        divisions: usize,
-        /// Cells of the other along the part.
-        along: f64,
-        /// The share of the edge that the part is.
-        share: f64,
-    },
-    /// A shared vertex is not in the same place in both blocks.
-    Apart {
-        /// The blocks.
-        blocks: [String; 2],
-        /// How far apart the two positions are.
-        distance: f64,
-        /// Where.
-        at: Vec3,
-    },
-}
-
-impl BlockRemark {
-    /// A stable word for its kind.
-    pub fn id(&self) -> &'static str {
-        match self {
-            BlockRemark::Divisions { .. } => "divisions-contradict",
-            BlockRemark::Apart { .. } => "faces-apart",
-        }
-    }
-}
-
-impl std::fmt::Display for BlockRemark {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            BlockRemark::Divisions { blocks: [a, b], divisions: n, along: m, share } => write!(
-                f,
-                "`{a}` has {n} cells along an edge of which `{b}` has {m} along a share of {share}, \
-                 so their cells do not join"
-            ),
-            BlockRemark::Apart { blocks: [a, b], distance, at } => write!(
-                f,
-                "`{a}` and `{b}` share a face or edge but lie {distance:.3e} apart at ({}, {}, {})",
-                at.x, at.y, at.z
-            ),
-        }
-    }
-}
-
-/// Which vertices of volume blocks there are and who computes them; independent of the scalar.
-#[derive(Clone, Debug)]
-pub struct Blocking {
-    plans: Vec<Plan>,
-    vertices: usize,
-    remarks: Vec<BlockRemark>,
-}
-
-#[derive(Clone, Debug)]
-struct Plan {
-    name: Arc<str>,
-    divisions: [usize; 3],
-    /// Vertex of (i, j, k) at `[(i * (nv + 1) + j) * (nw + 1) + k]`.
-    vertices: Vec<u32>,
-    faces: [BlockFace; 6],
-}
-
-impl Blocking {
-    /// The blocks of all shown solids that have a value.
-    ///
-    /// # Errors
-    /// A [`Fault`] when divisions contradict each other or there would be too many cells.
-    pub fn new(graph: &Graph<f64>) -> Result<Self, Fault> {
-        let drafts: Vec<Draft> = graph
-            .objects()
-            .filter(|o| o.head.shown())
-            .filter_map(|object| {
-                let solid = solid_of(object)?;
-                Some(Draft { object, solid, faces: solid.faces() })
-            })
-            .collect();
-        // Who meets whom is found on undivided blocks first: then the divisions follow.
-        let rough = vec![[1; 3]; drafts.len()];
-        let mut joiner = Joiner::new(&drafts, &rough);
-        joiner.join_all();
-        let Solved { divisions, mut remarks } = joiner.classes()?;
-        let cells = divisions.iter().map(|d| d.iter().map(|&n| n as u64).product::<u64>());
-        let cells = cells.fold(0u64, u64::saturating_add);
-        if cells > MOST_CELLS {
-            return Err(Fault::new("too-many-cells", format!("{cells} cells are too many"))
-                .expected(format!("at most {MOST_CELLS}"))
-                .found(cells.to_string())
-                .help("lower the divisions of the solids"));
-        }
-        let mut joiner = Joiner::new(&drafts, &divisions);
-        joiner.join_all();
-        remarks.extend(joiner.apart());
-        let mut number: HashMap<u32, u32> = HashMap::new();
-        let mut plans = Vec::with_capacity(drafts.len());
-        for (b, draft) in drafts.iter().enumerate() {
-            let [nu, nv, nw] = divisions[b];
-            let count = ((nu + 1) * (nv + 1) * (nw + 1)) as u32;
-            let vertices = (joiner.first[b]..joiner.first[b] + count).map(|v| {
-                let next = number.len() as u32;
-                *number.entry(joiner.joined.find(v)).or_insert(next)
-            });
-            plans.push(Plan {
-                name: draft.object.name.clone(),
-                divisions: divisions[b],
-                vertices: vertices.collect(),
-                faces: draft.face_names(graph),
-            });
-        }
-        Ok(Self { plans, vertices: number.len(), remarks })
-    }
-
-    /// What was noticed at the joins.
-    pub fn remarks(&self) -> &[BlockRemark] {
-        &self.remarks
-    }
-
-    /// True when there are no solids.
-    pub fn is_empty(&self) -> bool {
-        self.plans.is_empty()
-    }
-
-    /// The positions of all vertices, evaluated with the scalar of `graph`; `None` when a solid has
-    /// no value there.
-    pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
-        let mut positions = vec![Vec3::zero(); self.vertices];
-        // Backwards, so that the first block has the last word.
-        for plan in self.plans.iter().rev() {
-            let solid = solid_of(graph.get(graph.find(&plan.name)?)?)?;
-            for (&vertex, p) in plan.vertices.iter().zip(grid(solid, plan.divisions)) {
-                positions[vertex as usize] = p;
-            }
-        }
-        Some(positions)
-    }
-
-    /// The volume mesh, evaluated with the scalar of `graph`.
-    pub fn blocks<T: Scalar>(&self, graph: &Graph<T>) -> Option<Blocks<T>> {
-        let blocks = self.plans.iter().map(|plan| HexBlock {
-            name: plan.name.to_string(),
-            size: plan.divisions.map(|n| n + 1),
-            vertices: plan.vertices.clone(),
-            faces: plan.faces.clone(),
-        });
-        Blocks::new(self.positions(graph)?, blocks.collect()).ok()
-    }
-}
-
-fn solid_of<T: Scalar>(object: &Object<T>) -> Option<&SolidRef<T>> {
-    match object.value()? {
-        Value::Solid(solid) => Some(solid),
-        _ => None,
-    }
-}
-
-/// The grid of a solid with so many cells.
-pub fn grid<T: Real>(solid: &SolidRef<T>, divisions: [usize; 3]) -> Vec<Vec3<T>> {
-    let [us, vs, ws] =
-        divisions.map(|n| (0..=n).map(|i| i as f64 / n as f64).collect::<Vec<f64>>());
-    let mut points = vec![Vec3::zero(); us.len() * vs.len() * ws.len()];
-    solid.grid(&us, &vs, &ws, &mut points);
-    points
-}
-
-pub(crate) struct Draft<'g> {
-    pub object: &'g Object<f64>,
-    solid: &'g SolidRef<f64>,
-    pub faces: Faces<f64>,
-}
-
-impl Draft<'_> {
-    /// The names of the surfaces that the faces are, or of the solid and the face.
-    fn face_names(&self, graph: &Graph<f64>) -> [BlockFace; 6] {
-        std::array::from_fn(|f| {
-            let surface = match &self.faces.faces[f] {
-                Face::On { surface: Some(key), .. } => graph.get(*key),
-                _ => None,
-            };
-            let side = format!("{}.{}{}", self.object.name, ["u", "v", "w"][f / 2], f % 2);
-            BlockFace { name: surface.map_or(side, |s| s.name.to_string()) }
-        })
-    }
-}
-
-/// The identity of a face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum FaceId {
-    Surface(Key),
-    Solid(Key, u8),
-}
-
-/// The identity of a mark on a root.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum MarkId {
-    Point(Key),
-    At(u64),
-}
-
-pub(crate) fn mark_id(mark: &Mark<f64>) -> MarkId {
-    mark.point.map_or(MarkId::At(mark.t.to_bits()), MarkId::Point)
-}
-
-/// A stretch of a root, from its lower to its higher end; and whether the piece runs against it.
-pub(crate) type Stretch = (Root, MarkId, MarkId);
-
-pub(crate) fn stretch(piece: &Piece<f64>) -> (Stretch, bool) {
-    let backwards = piece.from.t > piece.to.t;
-    let (low, high) = if backwards { (piece.to, piece.from) } else { (piece.from, piece.to) };
-    ((piece.root, mark_id(&low), mark_id(&high)), backwards)
-}
 
 /// Where a vertex is, by identity.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -249,12 +21,6 @@ enum Spot {
     OnFace(FaceId, [u32; 2], [u32; 2]),
     /// Division `at` of `of` of a line along w between vertices that are one.
     OnLine(Vec<u32>, Law, u32, u32),
-}
-
-/// The axes of the parameters of face 0..6.
-pub(crate) fn face_axes(face: usize) -> [usize; 2] {
-    let [a, b, _] = HexBlock::face_axes(face);
-    [a, b]
 }
 
 /// Vertices of a surface's grid in its own parameters.
@@ -285,7 +51,7 @@ pub(crate) struct Joiner<'a, 'g> {
     pub drafts: &'a [Draft<'g>],
     divisions: &'a [[usize; 3]],
     /// The first vertex of each block.
-    first: Vec<u32>,
+    pub first: Vec<u32>,
     /// The first vertex of each inner layer of each block: layers 1, 2, ... of a loft.
     layers: Vec<Vec<u32>>,
     pub joined: UnionFind,
@@ -296,7 +62,7 @@ pub(crate) struct Joiner<'a, 'g> {
 }
 
 impl<'a, 'g> Joiner<'a, 'g> {
-    fn new(drafts: &'a [Draft<'g>], divisions: &'a [[usize; 3]]) -> Self {
+    pub fn new(drafts: &'a [Draft<'g>], divisions: &'a [[usize; 3]]) -> Self {
         let (mut first, mut layers) = (Vec::new(), Vec::new());
         let mut next = 0u32;
         for (draft, [nu, nv, nw]) in drafts.iter().zip(divisions) {
@@ -375,7 +141,7 @@ impl<'a, 'g> Joiner<'a, 'g> {
         self.joined.join(known, vertex);
     }
 
-    fn join_all(&mut self) {
+    pub fn join_all(&mut self) {
         let drafts = self.drafts;
         for (b, draft) in drafts.iter().enumerate() {
             for (c, point) in draft.faces.corners.iter().enumerate() {
@@ -546,12 +312,8 @@ impl<'a, 'g> Joiner<'a, 'g> {
         }
     }
 
-    fn classes(&mut self) -> Result<Solved, Fault> {
-        Classes::of(self).solved(self.drafts)
-    }
-
     /// Shared vertices that are not in one place.
-    fn apart(&mut self) -> Vec<BlockRemark> {
+    pub fn apart(&mut self) -> Vec<BlockRemark> {
         let mut owner: HashMap<u32, (usize, Vec3)> = HashMap::new();
         let mut worst: HashMap<(usize, usize), (f64, Vec3)> = HashMap::new();
         let grids: Vec<Vec<Vec3>> =
@@ -579,13 +341,5 @@ impl<'a, 'g> Joiner<'a, 'g> {
             at,
         };
         worst.into_iter().map(remark).collect()
-    }
-}
-
-/// The identity of a face that is a surface: that of the solid's face, if it is one.
-pub(crate) fn face_id(surface: Option<Key>, face_of: Option<(Key, u8)>) -> Option<FaceId> {
-    match face_of {
-        Some((solid, face)) => Some(FaceId::Solid(solid, face)),
-        None => surface.map(FaceId::Surface),
     }
 }

@@ -1,12 +1,12 @@
 //! What of a model its panels' connectivity follows from: patches, the stretches that their edges
 //! run along, and the counts of divisions on these.
 
-use super::divide::{Conflict, Divider, Links, Node, Sum};
-use super::remark::{ChainStep, Remark};
-use super::roots::{PlaceId, Roots, Span, Stop, StretchId};
-use super::spread::{EdgePlan, Segment, Shares, reversed, shares_of};
-use super::{Draft, Nominal};
-use crate::Graph;
+use crate::counts::{Conflict, Divider, Links, Node, Sum};
+use crate::draft::Draft;
+use crate::edges::{EdgePlan, Segment, Shares, reversed, shares_of};
+use crate::notes::{ChainStep, Remark};
+use crate::roots::{PlaceId, Roots, Span, Stop, StretchId};
+use moldloft_model::Graph;
 use moldloft_num::trace::{Edge, Key, Root};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::Spacing;
@@ -24,7 +24,7 @@ const MOST_DIVISIONS: f64 = 1e6;
 
 /// What an edge of a patch runs along.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Rim {
+pub(crate) enum Rim {
     /// These stretches, with the count on each.
     Along(Vec<(Span, u32)>),
     /// Stretches whose counts do not add up to that of the patch: its two ends.
@@ -37,7 +37,7 @@ pub(super) enum Rim {
 
 /// A patch without its shape.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Frame {
+pub(crate) struct Frame {
     pub key: Key,
     pub name: Arc<str>,
     pub kind: Arc<str>,
@@ -59,14 +59,14 @@ pub(super) struct Frame {
 
 /// All of it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Skeleton {
+pub(crate) struct Skeleton {
     pub frames: Vec<Frame>,
     /// The point objects at each place.
     pub points: Vec<Vec<Key>>,
 }
 
 /// The skeleton and what was found while it was made.
-pub(super) struct Made {
+pub(crate) struct Made {
     pub skeleton: Skeleton,
     pub remarks: Vec<Remark>,
     /// True when some count follows from lengths, so that it may change with any parameter.
@@ -82,6 +82,16 @@ fn side(patch: usize, direction: usize) -> Node {
 /// backwards or not.
 type Settled = HashMap<(StretchId, u32), (bool, Shares)>;
 
+/// The counts of divisions of another state of a model, to be kept where they are free.
+#[derive(Clone, Debug, Default)]
+pub struct Nominal(pub(crate) HashMap<(Arc<str>, Option<u32>), Counts>);
+
+#[derive(Clone, Debug)]
+pub(crate) struct Counts {
+    pub divisions: [usize; 2],
+    pub edges: [Vec<u32>; 4],
+}
+
 struct Maker<'a, 'g> {
     graph: &'g Graph<f64>,
     drafts: &'a [Draft<'g>],
@@ -95,7 +105,7 @@ struct Maker<'a, 'g> {
     measured: bool,
 }
 
-pub(super) fn make<'g>(
+pub(crate) fn make<'g>(
     graph: &'g Graph<f64>,
     roots: Roots,
     drafts: &[Draft<'g>],

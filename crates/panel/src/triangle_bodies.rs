@@ -1,11 +1,13 @@
 //! Bodies of triangles among the panels: they come as they are, but for sheets with a border, whose
 //! vertices there are those of their neighbours.
 
-use super::hems::border;
-use super::spread::along_edge;
-use super::{Joint, Known, Panelling, Remark};
-use crate::{Graph, Object};
+use crate::border_curves::border;
+use crate::edges::along_edge;
+use crate::joined_patches::Joint;
+use crate::notes::Remark;
+use crate::patch_values::Known;
 use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
+use moldloft_model::{Graph, Object};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Facets, Scalar, Value};
 use std::collections::{HashMap, HashSet};
@@ -13,13 +15,13 @@ use std::sync::Arc;
 
 /// A shown object that is a body.
 #[derive(Clone, Debug)]
-pub(super) struct Body {
+pub(crate) struct Body {
     name: Arc<str>,
     kind: Arc<str>,
     colour: i32,
     tags: Vec<Arc<str>>,
     reversed: bool,
-    facets: Arc<Facets<f64>>,
+    pub facets: Arc<Facets<f64>>,
     /// The parameters at which its border is divided, curve by curve; none when it has no border.
     divided: Vec<Vec<f64>>,
     /// The patch without panels that stands for each curve of its border, where there is one.
@@ -32,7 +34,7 @@ pub(super) struct Body {
 }
 
 /// The shown bodies in the order of declaration, as they are by themselves.
-pub(super) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
+pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
     let shown = graph.objects().filter(|o| o.head.shown());
     shown
         .filter_map(|object| {
@@ -55,7 +57,7 @@ pub(super) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
 }
 
 /// A topology and the bodies after it.
-pub(super) fn with_bodies(base: &Topology, bodies: &[Body]) -> Result<Arc<Topology>, MeshError> {
+pub(crate) fn with_bodies(base: &Topology, bodies: &[Body]) -> Result<Arc<Topology>, MeshError> {
     let mut builder = TopologyBuilder::extending(base.clone());
     for body in bodies {
         body.add(&mut builder)?;
@@ -66,7 +68,7 @@ pub(super) fn with_bodies(base: &Topology, bodies: &[Body]) -> Result<Arc<Topolo
 /// Divides the borders of the bodies as the patches that stand for them are, and gives all of their
 /// vertices a number; `before` are those of an earlier state and what it calls unchanged. Returns what
 /// does not join.
-pub(super) fn sewn(
+pub(crate) fn sewn(
     bodies: &mut [Body],
     known: &Known<f64>,
     joint: &Joint,
@@ -241,8 +243,28 @@ impl Body {
         Ok(())
     }
 
+    /// Its facets with the scalar of `graph`, divided as here; `None` when it has no value there, or other
+    /// triangles.
+    pub fn facets_in<'k, T: Scalar>(
+        &self,
+        graph: &Graph<T>,
+        known: impl FnOnce() -> &'k Known<'k, T>,
+    ) -> Option<Arc<Facets<T>>> {
+        let object = graph.get(graph.find(&self.name)?)?;
+        let Some(Value::Mesh(facets)) = object.value() else { return None };
+        let facets = match border(object).filter(|_| !self.hems.is_empty()) {
+            None => facets.clone(),
+            Some(border) => {
+                let usual = border.hems().iter().map(|h| h.usual);
+                let at = parameters(&self.hems, known(), usual)?;
+                Arc::new(border.divided(&at)?.0)
+            }
+        };
+        (facets.points.len() == self.facets.points.len()).then_some(facets)
+    }
+
     /// The positions of its own vertices, from those of its facets and of the patches.
-    fn own_points<T: Real>(
+    pub fn own_points<T: Real>(
         &self,
         facets: &Facets<T>,
         patches: &[Arc<Vec<Vec3<T>>>],
@@ -270,41 +292,4 @@ fn parameters<T: Scalar>(
         None => Some(even(n)),
     };
     patches.iter().zip(usual).map(of).collect()
-}
-
-impl Panelling {
-    /// The vertices of the bodies' own, evaluated with the scalar of `graph`; `None` when one has no
-    /// value there, or other triangles. `patches` are the points of the patches.
-    pub(super) fn body_points<T: Scalar>(
-        &self,
-        graph: &Graph<T>,
-        patches: &[Arc<Vec<Vec3<T>>>],
-    ) -> Option<Vec<Vec3<T>>> {
-        let mut points = Vec::new();
-        let mut known = None;
-        for body in self.bodies.iter() {
-            let object = graph.get(graph.find(&body.name)?)?;
-            let Some(Value::Mesh(facets)) = object.value() else { return None };
-            let facets = match border(object).filter(|_| !body.hems.is_empty()) {
-                None => facets.clone(),
-                Some(border) => {
-                    let known =
-                        known.get_or_insert_with(|| Known::new(graph, &self.skeleton, &self.names));
-                    let usual = border.hems().iter().map(|h| h.usual);
-                    let at = parameters(&body.hems, known, usual)?;
-                    Arc::new(border.divided(&at)?.0)
-                }
-            };
-            if facets.points.len() != body.facets.points.len() {
-                return None;
-            }
-            points.extend(body.own_points(&facets, patches));
-        }
-        Some(points)
-    }
-
-    /// The same at the state that the panelling was made of.
-    pub(super) fn own_body_points(&self) -> Vec<Vec3> {
-        self.bodies.iter().flat_map(|b| b.own_points(&b.facets, &self.points)).collect()
-    }
 }

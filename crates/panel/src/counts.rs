@@ -22,11 +22,11 @@ const REACH: usize = 20_000;
 const MOST_STEPS: usize = 2000;
 
 /// The number of a count to be found.
-pub(super) type Node = usize;
+pub(crate) type Node = usize;
 
 /// A count that is the sum of others.
 #[derive(Clone, Debug)]
-pub(super) struct Sum {
+pub(crate) struct Sum {
     pub whole: Node,
     /// Two or more, with the weights by which they share a whole that is known.
     pub parts: Vec<(Node, f64)>,
@@ -34,7 +34,7 @@ pub(super) struct Sum {
 
 /// The counts, what they must fulfil and what is wished of them.
 #[derive(Debug, Default)]
-pub(super) struct Divider {
+pub(crate) struct Divider {
     /// By node.
     pub stated: Vec<Option<u32>>,
     pub wished: Vec<Option<u32>>,
@@ -46,7 +46,7 @@ pub(super) struct Divider {
 
 /// Statements that cannot all hold.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Conflict {
+pub(crate) enum Conflict {
     /// The nodes from one stated count to another that should be equal.
     Chain(Vec<Node>),
     /// A sum, by its index, that does not come out.
@@ -55,13 +55,13 @@ pub(super) enum Conflict {
 
 /// The counts by node, and the contradictions among the statements.
 #[derive(Debug)]
-pub(super) struct Divided {
+pub(crate) struct Divided {
     pub counts: Vec<u32>,
     pub conflicts: Vec<Conflict>,
 }
 
 /// Neighbours of all nodes, those of one node in the order of the links.
-pub(super) struct Links {
+pub(crate) struct Links {
     start: Vec<usize>,
     to: Vec<Node>,
 }

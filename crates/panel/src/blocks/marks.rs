@@ -1,6 +1,6 @@
 //! Edges of blocks that are a part of another's edge: pieces broken where others begin or end.
 
-use crate::blocks::Draft;
+use super::draft::Draft;
 use moldloft_num::trace::{Edge, Edges, Face, Mark, Piece, Root};
 use std::collections::HashMap;
 

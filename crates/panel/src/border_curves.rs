@@ -4,7 +4,7 @@
 //! Such a patch is the curve itself at any v, with one division along v: its edges v = 0 and v = 1 are
 //! one line, and u = 0 and u = 1 are points.
 
-use crate::Object;
+use moldloft_model::Object;
 use moldloft_num::trace::{Edge, Edges, Trace};
 use moldloft_num::{CurveJet, Order, Real, SurfJet, Surface};
 use moldloft_registry::{CurveRef, Hem, Hemmed, Scalar, SurfaceRef, Value};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// A hem among the drafts.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct HemCounts {
+pub(crate) struct HemCounts {
     /// Which of its sheet's.
     pub index: u32,
     /// Divisions that are stated.
@@ -22,7 +22,7 @@ pub(super) struct HemCounts {
 }
 
 /// The border of an object that has one.
-pub(super) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn Hemmed<T>>> {
+pub(crate) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn Hemmed<T>>> {
     match object.value()? {
         Value::Mesh(facets) => Some(&facets.border.as_ref()?.0),
         _ => None,
@@ -30,7 +30,7 @@ pub(super) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn Hemmed<T>
 }
 
 /// A hem as a patch; `None` for a curve that no neighbour can name.
-pub(super) fn line<T: Real>(hem: &Hem<T>) -> Option<SurfaceRef<T>> {
+pub(crate) fn line<T: Real>(hem: &Hem<T>) -> Option<SurfaceRef<T>> {
     let curve = &hem.curve;
     let known = !curve.pieces().is_empty() || matches!(curve.trace(), Trace::Point(_));
     known.then(|| SurfaceRef::new(Line(curve.clone()), curve.depth))

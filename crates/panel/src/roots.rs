@@ -4,8 +4,8 @@
 //! between beads. All marks of a root cut it into *stretches*; an edge is a chain of these, so the
 //! neighbours of a part have their corners among the vertices of the whole.
 
-use super::Draft;
-use crate::Graph;
+use crate::draft::Draft;
+use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_num::trace::{Edge, Key, Mark, Piece, Root};
 use moldloft_registry::{Point, Value};
@@ -18,7 +18,7 @@ const SAME_MARK: f64 = 1e-9;
 
 /// Where the parameter of a mark is to be had, with any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum MarkSource {
+pub(crate) enum MarkSource {
     /// The begin or end of a piece of an edge of a patch.
     Piece { draft: u32, edge: u8, piece: u16, end: bool },
     /// A bead or ring, by its object.
@@ -29,7 +29,7 @@ pub(super) enum MarkSource {
 
 /// A place on a root that some patch ends at.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(crate) struct Place {
     /// Lowest and highest parameter under which it is known.
     low: f64,
     high: f64,
@@ -46,14 +46,14 @@ impl Place {
 }
 
 /// The number of a place among those of all roots.
-pub(super) type PlaceId = u32;
+pub(crate) type PlaceId = u32;
 
 /// The stretch from a place to the next on its root has the number of the place.
-pub(super) type StretchId = u32;
+pub(crate) type StretchId = u32;
 
 /// The places of all roots in ascending order, root by root.
 #[derive(Debug, Default)]
-pub(super) struct Roots {
+pub(crate) struct Roots {
     ids: HashMap<Root, usize>,
     /// The first place of each root, and one past the last.
     start: Vec<u32>,
@@ -63,7 +63,7 @@ pub(super) struct Roots {
 
 /// A part of an edge that is one stretch of a root, or a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
+pub(crate) struct Span {
     /// `None` for a piece without length.
     pub stretch: Option<StretchId>,
     /// True when the edge runs against the root.
@@ -76,7 +76,7 @@ pub(super) struct Span {
 
 /// A parameter of an edge, as something that can be had with any scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Stop {
+pub(crate) enum Stop {
     /// Where a piece ends.
     Piece(u16),
     /// Inside a piece, at a mark of its root.
@@ -264,7 +264,7 @@ fn on_root<T: Real>(piece: &Piece<T>, t: T) -> T {
 }
 
 /// The pieces of an edge that has any: of its own, the whole of itself.
-pub(super) fn pieces<T: Real>(
+pub(crate) fn pieces<T: Real>(
     edge: &Edge<T>,
     owner: Key,
     k: usize,
@@ -282,7 +282,7 @@ pub(super) fn pieces<T: Real>(
 }
 
 /// The parameter on its root of a bead, ring or magnet that marks it.
-pub(super) fn on_its_root<T: Real>(point: &Point<T>, source: MarkSource) -> Option<T> {
+pub(crate) fn on_its_root<T: Real>(point: &Point<T>, source: MarkSource) -> Option<T> {
     match source {
         MarkSource::Bead(_) => {
             let place = point.on_curve.as_ref()?;

@@ -1,13 +1,14 @@
 //! Which vertices are one: those at the same place of a root, at the same point object, at the same
 //! division of a stretch, and images of such. Never because they look close.
 
-use super::roots::{PlaceId, StretchId};
-use super::skeleton::{Frame, Rim, Skeleton};
+use crate::roots::{PlaceId, StretchId};
+use crate::topology::{Frame, Rim, Skeleton};
 use moldloft_num::trace::Key;
+use moldloft_num::union_find::UnionFind;
 use std::collections::HashMap;
 
 /// Numbers of vertices before they are joined: patch by patch, `[i * (nv + 1) + j]` in each.
-pub(super) struct Grids {
+pub(crate) struct Grids {
     first: Vec<u32>,
 }
 
@@ -54,7 +55,7 @@ impl Grids {
     }
 }
 
-pub(super) struct Joiner<'s> {
+pub(crate) struct Joiner<'s> {
     skeleton: &'s Skeleton,
     pub grids: Grids,
     pub joined: UnionFind,
@@ -185,37 +186,5 @@ impl<'s> Joiner<'s> {
                 }
             }
         }
-    }
-}
-
-/// Sets of vertices that are one; the smallest number stands for the set.
-#[derive(Debug)]
-pub(crate) struct UnionFind {
-    parent: Vec<u32>,
-}
-
-impl UnionFind {
-    pub fn new(n: usize) -> Self {
-        Self { parent: (0..n as u32).collect() }
-    }
-
-    /// One more set, of one number, which is returned.
-    pub fn push(&mut self) -> u32 {
-        self.parent.push(self.parent.len() as u32);
-        self.parent.len() as u32 - 1
-    }
-
-    pub fn find(&mut self, mut v: u32) -> u32 {
-        while self.parent[v as usize] != v {
-            let above = self.parent[self.parent[v as usize] as usize];
-            self.parent[v as usize] = above;
-            v = above;
-        }
-        v
-    }
-
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.parent[a.max(b) as usize] = a.min(b);
     }
 }

@@ -1,9 +1,11 @@
 //! The divisions of volume blocks, solved through all of them.
 
-use crate::blocks::{BlockRemark, Draft, FaceId, Joiner, Stretch, face_axes, face_id, stretch};
-use crate::blocks_marks::{Marks, Part};
-use crate::panel::UnionFind;
+use super::draft::{Draft, FaceId, Stretch, face_axes, face_id, stretch};
+use super::joiner::Joiner;
+use super::marks::{Marks, Part};
+use super::notes::BlockRemark;
 use moldloft_num::trace::{Edge, Edges, Face, Law, Piece, Turn};
+use moldloft_num::union_find::UnionFind;
 use moldloft_registry::Fault;
 use std::collections::HashMap;
 

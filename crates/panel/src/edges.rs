@@ -2,7 +2,7 @@
 //! that neighbours mark are among them, and between the edges along straight lines of the
 //! parameter square.
 
-use super::roots::{MarkSource, Stop, on_its_root, pieces};
+use crate::roots::{MarkSource, Stop, on_its_root, pieces};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Point, Scalar, SurfaceRef};
@@ -14,11 +14,11 @@ const PART: usize = 1024;
 
 /// How the divisions between two stops are spaced: shares of the way in ascending order, without 0
 /// and 1; `None` for even ones.
-pub(super) type Shares = Option<Arc<[f64]>>;
+pub(crate) type Shares = Option<Arc<[f64]>>;
 
 /// A run of divisions along an edge.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Segment {
+pub(crate) struct Segment {
     /// The edge's parameter where it ends; it begins where the one before does, or at 0.
     pub until: Stop,
     pub count: u32,
@@ -27,7 +27,7 @@ pub(super) struct Segment {
 
 /// How an edge is divided.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum EdgePlan {
+pub(crate) enum EdgePlan {
     /// From 0 to 1 in one run.
     Whole(u32, Shares),
     /// Run by run.
@@ -39,7 +39,7 @@ pub(super) enum EdgePlan {
 }
 
 /// What a scalar needs to know of a model to place divisions.
-pub(super) trait Places<T: Real> {
+pub(crate) trait Places<T: Real> {
     /// How the edges of a draft are divided.
     fn plans(&self, draft: u32) -> &[EdgePlan; 4];
     /// The edges of a draft.
@@ -51,7 +51,7 @@ pub(super) trait Places<T: Real> {
 }
 
 /// The parameters of the divisions of edge `k` of a draft, from 0 to 1.
-pub(super) fn along_edge<T: Real>(k: usize, draft: u32, places: &impl Places<T>) -> Option<Vec<T>> {
+pub(crate) fn along_edge<T: Real>(k: usize, draft: u32, places: &impl Places<T>) -> Option<Vec<T>> {
     let mut out = Vec::new();
     let run = |out: &mut Vec<T>, from: T, to: T, count: u32, shares: &Shares| {
         let step = to - from;
@@ -114,7 +114,7 @@ fn parameter<T: Real>(source: MarkSource, places: &impl Places<T>) -> Option<T> 
 
 /// The points of a patch whose edges have their divisions at `edges`; that of (i, j) at
 /// `[i * (nv + 1) + j]`.
-pub(super) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4]) -> Vec<Vec3<T>> {
+pub(crate) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4]) -> Vec<Vec3<T>> {
     let [south, east, north, west] = edges;
     let (nu, nv) = (south.len(), west.len());
     let mut points = vec![Vec3::zero(); nu * nv];
@@ -139,7 +139,7 @@ pub(super) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4])
 }
 
 /// The parameters of the points of a patch whose edges have their divisions at `edges`.
-pub(super) fn parameters<T: Real>([south, east, north, west]: &[Vec<T>; 4]) -> Vec<[T; 2]> {
+pub(crate) fn parameters<T: Real>([south, east, north, west]: &[Vec<T>; 4]) -> Vec<[T; 2]> {
     let mut uv = Vec::with_capacity(south.len() * west.len());
     for i in 0..south.len() {
         for j in 0..west.len() {
@@ -170,7 +170,7 @@ fn crossing<T: Real>(a: T, b: T, c: T, d: T) -> [T; 2] {
 }
 
 /// How the panels along a side of a patch are spaced.
-pub(super) fn shares_of(law: &moldloft_registry::Spacing, from: u32, to: u32, of: u32) -> Shares {
+pub(crate) fn shares_of(law: &moldloft_registry::Spacing, from: u32, to: u32, of: u32) -> Shares {
     if law.is_even() || to - from < 2 {
         return None;
     }
@@ -180,7 +180,7 @@ pub(super) fn shares_of(law: &moldloft_registry::Spacing, from: u32, to: u32, of
 }
 
 /// The shares seen from the other end.
-pub(super) fn reversed(shares: &Shares) -> Shares {
+pub(crate) fn reversed(shares: &Shares) -> Shares {
     shares.as_ref().map(|s| s.iter().rev().map(|x| 1.0 - x).collect())
 }
 

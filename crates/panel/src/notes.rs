@@ -1,3 +1,5 @@
+//! What is noticed at the joins of patches and may interest the user.
+
 use moldloft_num::Vec3;
 
 /// A patch on the way from one stated count to another, and what it shares with the next.

@@ -1,8 +1,11 @@
 //! Corners that lie on an edge of another patch without being joined to it.
 
-use super::spread::along_edge;
-use super::{Known, Panelling, Remark, indices};
-use crate::Graph;
+use crate::draft::indices;
+use crate::edges::along_edge;
+use crate::notes::Remark;
+use crate::panelling::Panelling;
+use crate::patch_values::Known;
+use moldloft_model::Graph;
 use moldloft_num::{Order, Vec3};
 use std::collections::{HashMap, HashSet};
 

@@ -1,16 +1,20 @@
 //! Which way the panels of each patch face: neighbours alike, and bodies outward.
 
-use super::skeleton::{Frame, Skeleton};
-use super::{RimEdge, indices};
+use crate::draft::indices;
+use crate::topology::{Frame, Skeleton};
 use moldloft_num::Vec3;
+use moldloft_num::union_find::SignedUnionFind;
 use std::sync::Arc;
 
 /// Cones that come to less than this share of their absolute volumes do not say where outside is.
 const NEARLY_FLAT: f64 = 0.05;
 
+/// A panel edge with one panel: the patch and the places of both ends in its grid.
+pub(crate) type RimEdge = (u32, u32, u32);
+
 /// How the patches of a mesh hang together.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Facing {
+pub(crate) struct Facing {
     /// For each patch the first one of its body, and whether it is turned against that one.
     sides: Vec<(usize, bool)>,
     /// For the first patch of each body, whether it has no rim.
@@ -20,7 +24,7 @@ pub(super) struct Facing {
 impl Facing {
     /// From the vertices of the patches, and the panel edges with one panel.
     pub fn new(skeleton: &Skeleton, vertices: &[Vec<u32>], rim: &[RimEdge]) -> Self {
-        let mut bodies = Bodies::new(skeleton.frames.len());
+        let mut bodies = SignedUnionFind::new(skeleton.frames.len());
         let mut all: Vec<((u32, u32), usize, bool)> = Vec::new();
         for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
             for k in 0..4 {
@@ -126,39 +130,4 @@ fn cone(frame: &Frame, points: &[Vec3], centre: Vec3) -> (f64, f64) {
         size += cone.abs();
     }
     (volume, size)
-}
-
-/// Sets of patches that hang together; the smallest number stands for the set.
-struct Bodies {
-    /// Another patch of the set, and whether this one is turned against it.
-    above: Vec<(usize, bool)>,
-}
-
-impl Bodies {
-    fn new(n: usize) -> Self {
-        Self { above: (0..n).map(|patch| (patch, false)).collect() }
-    }
-
-    fn find(&mut self, patch: usize) -> (usize, bool) {
-        let mut chain = Vec::new();
-        let mut at = patch;
-        while self.above[at].0 != at {
-            chain.push(at);
-            at = self.above[at].0;
-        }
-        let mut against = false;
-        for &link in chain.iter().rev() {
-            against ^= self.above[link].1;
-            self.above[link] = (at, against);
-        }
-        (at, against)
-    }
-
-    /// Patches in one set already stay as they are: a band with a twist has no sides.
-    fn join(&mut self, p: usize, q: usize, against: bool) {
-        let ((a, turned_a), (b, turned_b)) = (self.find(p), self.find(q));
-        if a != b {
-            self.above[a.max(b)] = (a.min(b), turned_a ^ turned_b ^ against);
-        }
-    }
 }
