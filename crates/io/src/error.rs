@@ -1,3 +1,5 @@
+//! Errors of readers and writers: what is wrong with the data, and where in the file.
+
 use moldloft_mesh::{Blocks, Mesh, MeshError};
 use std::fmt;
 

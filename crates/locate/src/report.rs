@@ -1,3 +1,5 @@
+//! Solutions of searches and reports about how they were found, or why there is none.
+
 use moldloft_num::Vec3;
 use smallvec::SmallVec;
 use std::fmt;

@@ -1,3 +1,7 @@
+//! The graph of named objects: declared, matched with the run before, evaluated rank by rank where something changed.
+//!
+//! An evaluation whose result is bitwise equal to the one before ends the wave there.
+
 use crate::memo::Memo;
 use crate::object::{Failure, Object, State};
 use indexmap::IndexMap;

@@ -1,3 +1,5 @@
+//! Gauss-Legendre quadrature: the 8-point rule, and its adaptive use to an accuracy.
+
 use crate::Real;
 
 /// Nodes and weights on [-1, 1] of the Gauss-Legendre rule with 8 points, exact for polynomials

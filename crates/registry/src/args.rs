@@ -1,3 +1,6 @@
+//! Arguments of a call bound to the fields of its row: order, defaults, counts, names and classes are checked here,
+//! so that the kinds need not.
+
 use crate::{Argument, Attributes, CallError, Class, Field, FieldId, Row, Value};
 use moldloft_num::Real;
 use moldloft_num::trace::Key;

@@ -1,3 +1,6 @@
+//! Attributes that every object has besides its geometry: visibility, colour, orientation, divisions and their
+//! spacing. A change of them does not evaluate the object again.
+
 use crate::{CallError, Class, DefaultValue, Field, Unit, Value};
 use moldloft_num::Real;
 use std::sync::Arc;

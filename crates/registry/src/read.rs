@@ -1,3 +1,5 @@
+//! Arguments read as the types of the fields of a kind: each type says its class and what it refuses.
+
 use crate::{
     CallError, Class, CurveRef, FieldRef, Point, ReparametrizationRef, SetRef, SolidRef,
     SurfaceRef, TriangleBody, Value,

@@ -1,3 +1,6 @@
+//! Evaluated parents as arguments: located points, curves, surfaces, solids, fields, sets and reparametrizations, with
+//! the identity of their objects.
+
 use crate::SearchReport;
 use moldloft_num::trace::{Key, Piece, Root, Trace};
 use moldloft_num::{

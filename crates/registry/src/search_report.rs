@@ -1,3 +1,5 @@
+//! Reports of searches that a value carries, and the remarks that follow from them. They depend on the model only.
+
 use moldloft_num::Vec3;
 use std::fmt;
 

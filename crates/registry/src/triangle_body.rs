@@ -1,3 +1,5 @@
+//! Bodies bounded by triangles and open sheets of them, with borders that can be divided anew, and their measures.
+
 use crate::CurveRef;
 use moldloft_num::{Real, Vec3};
 use std::ops::Range;

@@ -1,3 +1,5 @@
+//! Circular arcs by three points, uniform in angle.
+
 use crate::even_functions::{atanc_of_sq, cos_of_sq, sinc_of_sq};
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3, curve_jet_of};
 use std::f64::consts::{FRAC_PI_2, PI};

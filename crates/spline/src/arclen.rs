@@ -1,3 +1,5 @@
+//! Arc length of curves, integrals along them and the inverse of the length, with derivatives.
+
 use moldloft_num::{Curve, Order, Real, integrate};
 use std::fmt;
 

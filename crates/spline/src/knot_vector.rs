@@ -1,3 +1,5 @@
+//! Knot vectors: checked once, non-decreasing, `n + degree + 1` knots for `n` control points.
+
 use std::fmt;
 
 /// The highest polynomial degree of a spline.

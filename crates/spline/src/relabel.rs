@@ -1,3 +1,6 @@
+//! Closed forms of reparametrizations: B-spline, cosine, geometric, hyperbolic tangent, tables. Each is monotone and
+//! runs from 0 to 1 exactly, or is refused.
+
 use crate::even_functions::{cos_of_sq, sinc_of_sq};
 use crate::{KnotError, KnotVector};
 use moldloft_num::{Jet, Order, Real, Reparametrization, ReparametrizationJet};

@@ -1,3 +1,5 @@
+//! Structured blocks of hexahedra that share vertices by number.
+
 use super::{Boundary, Hexahedron, Interface};
 use crate::MeshError;
 use moldloft_num::{Real, Vec3};

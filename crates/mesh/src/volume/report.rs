@@ -1,3 +1,5 @@
+//! Quality of the cells of volume blocks.
+
 use super::Blocks;
 use rayon::prelude::*;
 

@@ -1,3 +1,5 @@
+//! Circular arcs by three points.
+
 use crate::curve::Ended;
 use crate::faults;
 use moldloft_num::Real;

@@ -1,3 +1,5 @@
+//! Conic sections by three points and a shape factor.
+
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 

@@ -1,3 +1,5 @@
+//! Foil sections as curves.
+
 use super::Ended;
 use crate::foil::foil_kind;
 use moldloft_num::Real;

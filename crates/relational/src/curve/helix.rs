@@ -1,3 +1,5 @@
+//! Helices.
+
 use super::Ended;
 use moldloft_num::{Axis, CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};

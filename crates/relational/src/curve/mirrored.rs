@@ -1,3 +1,5 @@
+//! Mirror images of curves, which know their originals.
+
 use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
 use moldloft_registry::{CurveRef, Kind, MirrorArgument};
 use std::sync::Arc;

@@ -1,3 +1,5 @@
+//! Curves at a distance from others in a plane.
+
 use moldloft_num::{Curve, CurveJet, Order, Plane, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 

@@ -1,3 +1,5 @@
+//! Curves and snakes end to end as one.
+
 use crate::arguments::{Snake, common_surface};
 use moldloft_num::trace::{Key, Piece, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real};

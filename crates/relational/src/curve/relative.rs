@@ -1,3 +1,5 @@
+//! Copies of curves: moved to new ends, scaled, turned.
+
 use super::Ended;
 use crate::affine::{Affine, Mapped};
 use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Reparametrization, Vec3};

@@ -1,3 +1,5 @@
+//! Parts of curves and snakes between beads and rings; divisions of a part are those of the whole.
+
 use crate::arguments::{Bead, Ring, common_curve};
 use moldloft_num::trace::{Mark, Root, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, find_root};

@@ -1,3 +1,5 @@
+//! The locus of a point whose bead runs along its curve.
+
 use crate::arguments::Bead;
 use crate::chebyshev::{DEEPEST, MOST_PIECES, NODES, Piece, Way, nodes};
 use moldloft_num::{Real, Vec3};

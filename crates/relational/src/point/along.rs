@@ -1,3 +1,5 @@
+//! Beads and rings at a length along curves, and copies of beads and magnets.
+
 use crate::arguments::{Bead, Magnet, Ring, Snake, Start};
 use moldloft_num::{Order, Real};
 use moldloft_registry::{

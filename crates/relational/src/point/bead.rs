@@ -1,3 +1,5 @@
+//! Beads: points on curves by their parameter.
+
 use crate::arguments::Bead;
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};

@@ -1,3 +1,5 @@
+//! Points off surfaces, on tangents, turned, copied, blended, and centroids.
+
 use crate::affine::Affine;
 use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;

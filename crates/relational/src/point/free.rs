@@ -1,3 +1,5 @@
+//! Points by coordinates, by offsets and by mirroring.
+
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, MirrorArgument, Point, Value};
 

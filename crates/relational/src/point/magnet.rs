@@ -1,3 +1,5 @@
+//! Magnets: points on surfaces by their parameters.
+
 use crate::arguments::Magnet;
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Value};

@@ -1,3 +1,5 @@
+//! Reparametrizations from others: by arc length, copied, inverted.
+
 use moldloft_num::{
     Composed, Order, Real, Reparametrization, ReparametrizationJet, inv_reparametrization_in,
 };

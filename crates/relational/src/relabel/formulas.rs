@@ -1,3 +1,5 @@
+//! Reparametrizations by formulas: B-spline, cosine, geometric, hyperbolic tangent.
+
 use moldloft_num::Real;
 use moldloft_registry::{
     Build, CallError, Class, Context, FromValue, Kind, ReparametrizationRef, Value,

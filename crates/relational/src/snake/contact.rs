@@ -1,3 +1,5 @@
+//! The curves along which a fillet touches its surfaces.
+
 use super::edge_trace;
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};

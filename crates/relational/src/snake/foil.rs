@@ -1,3 +1,5 @@
+//! Foil sections in the parameter plane of a surface.
+
 use super::through::{flat, snake};
 use crate::arguments::{Magnet, common_surface};
 use crate::foil::foil_kind;

@@ -1,3 +1,5 @@
+//! Edges and parameter lines of surfaces as snakes.
+
 use crate::curve::Segment;
 use crate::snake::OnSurface;
 use moldloft_num::trace::{Edge, Mark, Piece, Root, Trace};

@@ -1,3 +1,5 @@
+//! Arcs, interpolating splines, NURBS and conics in the parameter plane of a surface.
+
 use super::through::{flat, snake};
 use crate::arguments::{EndRule, Magnet, Snake, common_surface};
 use crate::curve::{Moved, Oblique, clamped_ends, spline};

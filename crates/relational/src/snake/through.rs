@@ -1,3 +1,5 @@
+//! Snakes through magnets: straight and B-spline in the parameter plane.
+
 use crate::arguments::{Magnet, common_surface};
 use crate::curve::Segment;
 use crate::faults;

@@ -1,3 +1,5 @@
+//! Solids by transfinite blending of six faces.
+
 use super::layers::on;
 use moldloft_num::trace::{Faces, Turn};
 use moldloft_num::{Box3, Jet, Order, Real, SolidFormula, Vec3};

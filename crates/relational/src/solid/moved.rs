@@ -1,3 +1,5 @@
+//! Solids of surfaces that are translated or swept.
+
 use super::layers::{edges_of, on};
 use crate::surface::{Mode, Moving};
 use moldloft_num::trace::{Face, Faces, LayerLaw, Layers, Turn};

@@ -1,3 +1,5 @@
+//! Lofts of circular arcs through three curves.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use moldloft_num::trace::{Edge, Edges};

@@ -1,3 +1,5 @@
+//! Interpolating lofts: through their master curves. A grid of points builds the loft of each column once.
+
 use super::chunk::{Chunk, LANES, Part, Plane, widest};
 use super::masters::{Masters, Points};
 use crate::arguments::EndRule;

@@ -1,3 +1,5 @@
+//! Developable surfaces between two curves, by rulings of equal tangent planes.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use super::rulings::{Pairing, pair};

@@ -1,3 +1,5 @@
+//! Developable surfaces laid flat, lengths and angles kept.
+
 use super::column::{Column, Columns};
 use super::inherited;
 use crate::curve::Segment;

@@ -1,3 +1,5 @@
+//! Fillets between snakes, tangent to their surfaces.
+
 use super::column::{Bezier, Column, Columns};
 use super::masters::{Points, along};
 use super::ribbon::{Along, ribbon, unit};

@@ -1,3 +1,5 @@
+//! Parallel surfaces. A distance beyond a radius of curvature is refused.
+
 use super::inherited;
 use super::ribbon::unit;
 use crate::faults::{digits, parameter};

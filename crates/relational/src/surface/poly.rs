@@ -1,3 +1,5 @@
+//! Surfaces side by side as one.
+
 use crate::arguments::Named;
 use crate::snake::edge_trace;
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};

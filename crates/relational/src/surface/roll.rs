@@ -1,3 +1,5 @@
+//! Rolling-ball fillets between two surfaces: a spine, and arcs about it.
+
 use super::column::{Column, Columns};
 use super::law::law;
 use super::offset::{beside, curvatures, parallel};

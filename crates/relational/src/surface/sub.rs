@@ -1,3 +1,5 @@
+//! Parts of surfaces between snakes and magnets.
+
 use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};

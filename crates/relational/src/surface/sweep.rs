@@ -1,3 +1,5 @@
+//! Curves swept along paths by a moving frame.
+
 use super::law::law;
 use super::masters::{along, is_closed};
 use crate::third_derivatives::tangent;

@@ -1,3 +1,5 @@
+//! The surface that a curve describes while the bead it depends on runs along its curve.
+
 use super::column::{Column, Columns};
 use crate::arguments::Bead;
 use crate::chebyshev::{NODES, Piece, Way, nodes};

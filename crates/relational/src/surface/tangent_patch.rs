@@ -1,3 +1,5 @@
+//! Patches between four curves that are tangent to the surfaces of their neighbours.
+
 use super::coons::Boundary;
 use super::ribbon::{Along, ribbon, unit};
 use crate::arguments::Snake;

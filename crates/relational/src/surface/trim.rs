@@ -1,3 +1,5 @@
+//! Parts of surfaces within loops of snakes, as triangles whose borders divide as their neighbours do.
+
 use crate::arguments::{Snake, common_surface};
 use crate::curve::Segment;
 use crate::snake::{OnSurface, edge_trace};

@@ -1,3 +1,5 @@
+//! Thickness forms of foils: four-digit, modified, 16-series, and those of propellers.
+
 use super::FoilError;
 use super::six_series::{Blended, STEPS};
 use crate::{End, Ends, InterpolatingSpline};
