@@ -22,8 +22,8 @@ pub enum ArcError {
 impl fmt::Display for ArcError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Collinear => write!(f, "the three points of the arc lie on a line"),
-            Self::AtCentre => write!(f, "a point of the arc lies at its centre"),
+            Self::Collinear => write!(f, "the three points of the arc are collinear"),
+            Self::AtCentre => write!(f, "a point of the arc is at its centre"),
             Self::NotFinite { index } => write!(f, "point {} of the arc is not finite", index + 1),
         }
     }

@@ -15,7 +15,7 @@ pub struct BeyondEnd {
 impl fmt::Display for BeyondEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { asked, available } = self;
-        write!(f, "the length {asked} lies beyond the end of the curve, which is {available} away")
+        write!(f, "the length {asked} is beyond the end of the curve, at {available}")
     }
 }
 

@@ -15,7 +15,7 @@ use std::f64::consts::PI;
                Helix h(A, axis, 9.5, 0.75);"
 )]
 pub struct Helix<T: Real> {
-    /// Where it begins.
+    /// Start.
     point: Point<T>,
     /// Its axis, from the line's first end to its last.
     line: Axis<T>,

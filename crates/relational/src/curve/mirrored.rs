@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub struct MirrCurve<T: Real> {
     /// The curve to mirror.
     curve: CurveRef<T>,
-    /// What to mirror it in.
+    /// The mirror: a plane, line or point.
     mirror: MirrorArgument<T>,
 }
 

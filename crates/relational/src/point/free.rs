@@ -65,7 +65,7 @@ impl<T: Real> Build<T> for RelPoint<T> {
 pub struct MirrPoint<T: Real> {
     /// The point to mirror.
     point: Point<T>,
-    /// What to mirror it in.
+    /// The mirror: a plane, line or point.
     mirror: MirrorArgument<T>,
 }
 

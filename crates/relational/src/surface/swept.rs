@@ -31,10 +31,10 @@ pub struct ProcSurf<T: Real> {
     bead: Bead<T>,
     /// The curve that follows.
     curve: MovingCurve<T>,
-    /// Where the bead begins.
+    /// Start of the bead.
     #[field(default = 0)]
     t1: T,
-    /// Where it ends.
+    /// End.
     #[field(default = 1)]
     t2: T,
 }
