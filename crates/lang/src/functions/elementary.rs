@@ -2,6 +2,7 @@
 
 use crate::value::variables::Called as _;
 use moldloft_num::Real;
+use moldloft_registry::export::field_id;
 use moldloft_registry::{
     Array, Body, Class, Context, DefaultValue, Fault, Field, Row, Unit, Value,
 };
@@ -23,12 +24,12 @@ const fn argument(name: &'static str, help: &'static str) -> Field {
     }
 }
 
-fn not_a_number<T: Real>(value: &Value<T>, field: usize) -> Fault {
+fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> Fault {
     let found = value.called();
     Fault::new("wrong-class", format!("expected a number or a row of numbers, found {found}"))
         .expected("a number or an farray")
         .found(found)
-        .in_field(field)
+        .in_field(field_id(position))
 }
 
 fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault> {
