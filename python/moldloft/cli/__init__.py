@@ -22,6 +22,7 @@ COMMANDS = {
     "new": "a model to start from",
     "fmt": "canonical text",
     "convert": "between programs, model files, tables of offsets and all other formats",
+    "formats": "what models are written as",
     "graph": "the dependency digraph as SVG",
     "render": "a picture without a display",
     "sketch": "a sketch file, or the sketch language line by line",
