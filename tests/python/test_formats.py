@@ -115,3 +115,12 @@ def test_messages_leave_their_heading_to_who_prints_them() -> None:
                 texts = [n.value for n in ast.walk(node) if isinstance(n, ast.Constant)]
                 bad = [t for t in texts if isinstance(t, str) and t.startswith("error")]
                 assert not bad, f"{path.name}:{node.lineno}: {bad}"
+
+
+def test_off_is_read_by_others(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    model = moldloft.loads(SHIP)
+    (path,) = model.write(tmp_path / "ship.off")
+    mesh = trimesh.load(path, process=False)
+    assert len(mesh.vertices) == len(model.mesh().vertices)
+    assert mesh.area == pytest.approx(4.0) and len(mesh.faces) == 12
