@@ -7,7 +7,7 @@ use crate::work::interruptible_shared;
 use moldloft_document::searches::{CommonPoints, Meeting, NearestPoints, With};
 use moldloft_locate::branches::Branches;
 use moldloft_locate::march::{Branch, End};
-use moldloft_locate::{Nearest, Status};
+use moldloft_locate::{Nearest, LocateStatus};
 use moldloft_num::{Plane, Vec3};
 use moldloft_registry::Value;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
@@ -17,13 +17,13 @@ use pyo3::types::{PyDict, PyList};
 /// More points than this are answered on another thread, so that Ctrl-C is heard.
 const LARGE: usize = 50_000;
 
-fn code(status: Status) -> u8 {
+fn code(status: LocateStatus) -> u8 {
     match status {
-        Status::Ok | Status::Fallback => 0,
-        Status::EdgeClamped => 1,
-        Status::Multiple { .. } => 2,
-        Status::Tangent => 3,
-        Status::NoSolution | Status::Diverged => 4,
+        LocateStatus::Ok | LocateStatus::Fallback => 0,
+        LocateStatus::EdgeClamped => 1,
+        LocateStatus::Multiple { .. } => 2,
+        LocateStatus::Tangent => 3,
+        LocateStatus::NoSolution | LocateStatus::Diverged => 4,
     }
 }
 
