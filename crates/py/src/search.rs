@@ -7,7 +7,7 @@ use crate::work::interruptible_shared;
 use moldloft_document::searches::{CommonPoints, Meeting, NearestPoints, With};
 use moldloft_locate::branches::Branches;
 use moldloft_locate::march::{Branch, End};
-use moldloft_locate::{Nearest, LocateStatus};
+use moldloft_locate::{LocateStatus, Nearest};
 use moldloft_num::{Plane, Vec3};
 use moldloft_registry::Value;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
