@@ -7,7 +7,7 @@ use crate::source::scope::Binding;
 use moldloft_diag::Diagnostic;
 use moldloft_model::{Declaration, Extent, Failure};
 use moldloft_num::trace::Key;
-use moldloft_registry::{Head, Scalar, Value};
+use moldloft_registry::{Attributes, Scalar, Value};
 use moldloft_syntax::sdl::{Declarator, StmtId, StmtKind, Symbol, Type};
 
 /// The class of objects that a declaration of this type makes.
@@ -73,7 +73,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let text = m.program.name(item.name.symbol);
         let origin = self.env.origins.len() as u32;
-        let (args, head) = (vec![value, parents], Head::of(row.class));
+        let (args, head) = (vec![value, parents], Attributes::of(row.class));
         let declaration = Declaration { name: text, row, args, head, origin };
         let key = self
             .run

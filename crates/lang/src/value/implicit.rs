@@ -5,7 +5,7 @@ use moldloft_diag::Diagnostic;
 use moldloft_field::{Primitive, field_value, primitive_of, set_of, set_value};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::field_id;
-use moldloft_registry::{Array, Class, Fault, Value};
+use moldloft_registry::{Array, CallError, Class, Value};
 use moldloft_syntax::sdl::{BinaryOp, Type};
 use std::sync::Arc;
 
@@ -110,9 +110,9 @@ pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Option<Value<T>> {
 }
 
 /// A function of one number applied to a field; `None` for other values.
-pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value<T>, Fault>> {
+pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value<T>, CallError>> {
     if let Value::Set(_) = a {
-        return Some(Err(Fault::new("wrong-class", format!("{name} takes no set"))
+        return Some(Err(CallError::new("wrong-class", format!("{name} takes no set"))
             .expected("a number, a row of numbers or a field")
             .found("a set")
             .help("apply it to the field, then make the set")
@@ -129,7 +129,7 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
         "cos" => f.cos(),
         "exp" => f.exp(),
         _ => {
-            return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
+            return Some(Err(CallError::new("wrong-class", format!("{name} takes no field"))
                 .expected("of fields abs, sign, sqrt, s_sqrt, sin, cos, exp, min, max, atan2")
                 .found("a field")
                 .in_field(field_id(0))));
@@ -138,7 +138,10 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
 }
 
 /// A function of several numbers applied to fields; `None` when there is no field among them.
-pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result<Value<T>, Fault>> {
+pub(crate) fn functions<T: Real>(
+    name: &str,
+    args: &[Value<T>],
+) -> Option<Result<Value<T>, CallError>> {
     let at = args.iter().position(is_implicit)?;
     let mut fields = Vec::new();
     for (k, arg) in args.iter().enumerate().filter(|(_, a)| !matches!(a, Value::Unset)) {
@@ -146,7 +149,7 @@ pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result
             Some(f) => fields.push(f),
             None => {
                 return Some(Err(
-                    Fault::wrong_class(Class::Field, arg.class()).in_field(field_id(k))
+                    CallError::wrong_class(Class::Field, arg.class()).in_field(field_id(k))
                 ));
             }
         }
@@ -161,7 +164,7 @@ pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result
         "atan2" => fields[0].atan2(&fields[1]),
         "hypot" => combined(|a, b| (a * a + b * b).sqrt()),
         _ => {
-            return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
+            return Some(Err(CallError::new("wrong-class", format!("{name} takes no field"))
                 .expected("numbers or rows of numbers")
                 .found("a field")
                 .in_field(field_id(at))));
