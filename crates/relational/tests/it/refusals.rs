@@ -1,8 +1,6 @@
 //! What makes no shape is refused with an id and a place.
 
-mod common;
-
-use common::{attempt, fault};
+use crate::common::{attempt, fault};
 use moldloft_num::trace::Key;
 
 const POINTS: &str = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(2, 0, 0);
@@ -92,7 +90,7 @@ fn messages_name_the_items() {
     let loft = fault(&format!("{POINTS} CLoftSurf c({{m, l, l}});"));
     assert_eq!(loft.message, "curves 2 and 3 coincide");
     let flipped = fault(&format!("{POINTS} SubSurf c({{pq, qr, rs, ps}});"));
-    assert_eq!(flipped.help[0], "they do when these sides run the other way: 3");
+    assert_eq!(flipped.help[0], "they do when these sides are reversed: 3");
     let surfaces = fault(&format!("{POINTS} LineSnake c(p, x);"));
     let keys: Vec<Key> = surfaces.related.iter().map(|(key, _)| *key).collect();
     // Objects are numbered in order: S and T, p and x.
@@ -101,7 +99,7 @@ fn messages_name_the_items() {
 
 #[test]
 fn lofts_may_end_in_a_point() {
-    let scene = common::scene(
+    let scene = crate::common::scene(
         "AbsPoint O(0, 0, 0); AbsPoint A(3, 0, 0); AbsPoint B(3, 2, 0); AbsPoint C(2, 3, 1);
          Line a(O, A); Line b(O, B); Line c(O, C); CLoftSurf fan({a, b, c}); float u = length(a);",
     );
@@ -117,7 +115,7 @@ fn lofts_may_end_in_a_point() {
 
 #[test]
 fn a_parameter_that_is_no_number_gives_no_panic() {
-    let hull = common::scene(common::HULL);
+    let hull = crate::common::scene(crate::common::HULL);
     let surface = hull.surface("hull");
     let p = surface.jet(f64::NAN, 0.5, moldloft_num::Order::First).p;
     assert!(p.x.is_nan());

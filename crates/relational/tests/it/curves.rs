@@ -1,8 +1,6 @@
 //! Points, curves, snakes and frames whose numbers are known.
 
-mod common;
-
-use common::{fault, scene};
+use crate::common::{fault, scene};
 use moldloft_num::trace::{Root, Trace};
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{CurveRef, Value};
@@ -198,7 +196,7 @@ fn chains_run_along_their_pieces() {
     assert_eq!((gap.id, gap.field().map(|field| (field, gap.item()))), ("gap", Some((0, Some(1)))));
     assert_eq!(gap.related.len(), 2);
     let turned = fault(&format!("{text} BCurve r({{D, B, C}}); PolyCurve c2({{c, r}});"));
-    assert_eq!(turned.help, ["piece 2 ends there: let it run the other way"]);
+    assert_eq!(turned.help, ["piece 2 ends there: reverse it"]);
 }
 
 #[test]

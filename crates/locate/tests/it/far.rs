@@ -1,9 +1,7 @@
 //! Nearest points from very far away, where all of a shape is nearly equally near, and from where all of
 //! it is equally near exactly.
 
-mod common;
-
-use common::{Circle, Random, Sphere, bumpy};
+use crate::common::{Circle, Random, Sphere, bumpy};
 use moldloft_locate::{
     LocateStatus, NearestCurve, NearestSurface, nearest_on_curve, nearest_on_surface,
 };
@@ -54,7 +52,7 @@ fn from_far_away_the_foremost_point_is_the_nearest() {
             for x in found {
                 assert!(x.dot(d) > most_surface - slack, "{far}: {x:?} along {d:?}");
             }
-            // The distance is told as it is.
+            // The distance is reported as it is.
             let told = surface.nearest(&s, p).distance / far;
             assert!((told - 1.0).abs() < 1e-4, "{far}: {told}");
         }
