@@ -3,9 +3,10 @@
 use crate::model_file::names::plain_name;
 use crate::run::interpreter::{Inputs, Interpreter, STACK_BYTES};
 use crate::run::sketches::Site;
-use crate::source::env::{Binding, Bound, Environment, Evaluation};
+use crate::source::env::{Environment, Evaluation};
 use crate::source::fault_location;
 use crate::source::module::{Convert, Loader, Module, Modules};
+use crate::source::scope::{Binding, Bound};
 use crate::source::sketch_file::SketchFile;
 use crate::source::world::World;
 use crate::value::number_path::NumberPath;
@@ -226,10 +227,10 @@ fn bind_objects<T: Scalar>(
     graph: &Graph<T>,
     env: &mut Environment<T>,
 ) {
-    env.globals.resize_with(modules.name_count(), || None);
+    env.scope.make_room(modules.name_count());
     for &name in &expression.names {
         let text = modules.text(name);
-        let known = &mut env.globals[name.0 as usize];
+        let known = &mut env.scope.globals[name.0 as usize];
         if known.is_none()
             && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
         {
