@@ -18,9 +18,13 @@ use std::sync::Arc;
 
 /// What running a program needs.
 pub struct Program<'a> {
+    /// The modules parsed up to now.
     pub modules: &'a mut Modules,
+    /// The files that may be read.
     pub world: &'a dyn World,
+    /// The rows of everything that can be called.
     pub registry: &'a Registry,
+    /// The source texts, for places in diagnostics.
     pub sources: &'a mut Sources,
     /// The sketch that is the model, when it is not a program.
     pub sketch: Option<Arc<SketchFile>>,
@@ -31,9 +35,17 @@ pub struct Program<'a> {
 /// Why a number of an object is not a literal of the text.
 pub enum NotLiteral {
     /// It is computed from these names.
-    Expression { span: Span, names: Vec<String> },
+    Expression {
+        /// The place of the expression.
+        span: Span,
+        /// The names that it reads.
+        names: Vec<String>,
+    },
     /// Several objects are made by the statement it stands in.
-    Shared { span: Span },
+    Shared {
+        /// The place of the statement.
+        span: Span,
+    },
     /// It is a default.
     Default,
 }

@@ -1,3 +1,5 @@
+//! What a run leaves behind: the names, parameters, solve sets and printed lines that expressions refer to afterwards.
+
 use crate::functions::files::Files;
 use crate::source::scope::Scope;
 use indexmap::IndexMap;
@@ -32,7 +34,9 @@ pub struct Param {
 /// Where an object was declared.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin {
+    /// The module, by its number.
     pub module: u32,
+    /// The statement of the module.
     pub stmt: StmtId,
     /// True when the statement may be executed more than once: in a loop or a subroutine.
     pub repeated: bool,
@@ -40,7 +44,9 @@ pub struct Origin {
 
 /// A graph and what the run that made it left behind.
 pub struct Evaluation<T: Scalar> {
+    /// The objects.
     pub graph: Graph<T>,
+    /// The names, parameters and results of the run.
     pub env: Environment<T>,
 }
 
@@ -84,7 +90,9 @@ impl SolveStatus {
 /// A solve set as a run found it.
 #[derive(Clone, Debug)]
 pub struct Solve<T> {
+    /// The name of the set.
     pub name: Arc<str>,
+    /// The place of its declaration.
     pub span: Span,
     /// Parameters, by their numbers.
     pub unknowns: Vec<usize>,
@@ -99,16 +107,21 @@ pub struct Solve<T> {
 pub struct Environment<T: Scalar> {
     /// What names mean at the end of the run.
     pub scope: Scope<T>,
+    /// The design parameters, in the order of their declaration.
     pub params: Vec<Param>,
+    /// Their values, by the same numbers.
     pub param_values: Vec<T>,
     /// Objects made in loops and subroutines, by the name without its last index.
     pub families: IndexMap<Arc<str>, Vec<Key>>,
+    /// The place of declaration of each object, by its key.
     pub origins: Vec<Origin>,
     /// Variables and formulas of a model file.
     pub numbers: IndexMap<String, T>,
+    /// The solve sets, in the order of the text.
     pub solves: Vec<Solve<T>>,
     /// Steps and status of the solve sets, once they are solved.
     pub solved: IndexMap<String, (usize, SolveStatus)>,
+    /// The lines printed.
     pub printed: Vec<String>,
     /// Files that were opened, and what was written.
     pub files: Files,

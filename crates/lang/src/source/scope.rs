@@ -14,7 +14,16 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub enum Binding<T: Scalar> {
     /// A variable of a type; `fixed` when its dimensions were declared.
-    Variable { ty: Type, value: Value<T>, fixed: bool, known: Known },
+    Variable {
+        /// The declared type.
+        ty: Type,
+        /// The value now.
+        value: Value<T>,
+        /// True when the dimensions were declared.
+        fixed: bool,
+        /// The elements that have a value, and whether edges meet.
+        known: Known,
+    },
     /// A part of a variable of a caller, passed by reference.
     Reference(Place),
     /// The arguments that a multiple argument takes.
@@ -24,7 +33,14 @@ pub enum Binding<T: Scalar> {
     /// An object.
     Object(Key),
     /// Something made in loops: in the turn `turn` it means `now`, afterwards all of them.
-    Turn { now: Key, turn: u64, family: Arc<str> },
+    Turn {
+        /// The object of the turn.
+        now: Key,
+        /// The turn, by its number.
+        turn: u64,
+        /// The name of all turns' objects.
+        family: Arc<str>,
+    },
     /// A named call of a subroutine: the family of the objects in it.
     Instance(Arc<str>),
     /// Its declaration failed and was reported; what uses it stays silent.
@@ -41,7 +57,9 @@ impl<T: Scalar> Binding<T> {
 /// A multiple argument, read one after the other.
 #[derive(Clone, Debug)]
 pub struct Multiple<T: Scalar> {
+    /// The declared type of every argument.
     pub ty: Type,
+    /// The arguments, in order.
     pub items: Vec<Passed<T>>,
     /// How many were read by `next`.
     pub read: usize,
@@ -50,25 +68,31 @@ pub struct Multiple<T: Scalar> {
 /// An argument as it was passed.
 #[derive(Clone, Debug)]
 pub enum Passed<T: Scalar> {
+    /// A value, copied.
     Value(Value<T>),
+    /// A variable of the caller, by reference.
     Place(Place),
 }
 
 /// A binding and where it was made.
 #[derive(Clone, Debug)]
 pub struct Bound<T: Scalar> {
+    /// The place of the declaration.
     pub span: Span,
+    /// The meaning of the name.
     pub what: Binding<T>,
 }
 
 /// The variables of a routine's call, or of the file level of a load.
 #[derive(Debug)]
 pub struct Frame<T: Scalar> {
+    /// The variables, in the order of their declaration.
     pub locals: Vec<(Name, Bound<T>)>,
     /// True at file level, where names are global.
     pub global: bool,
     /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
     pub prefix: Arc<str>,
+    /// The loops under way, outermost first.
     pub loops: Vec<Turn>,
     /// The call that the frame belongs to, and the module it stands in.
     pub called: Option<(Span, u32)>,
@@ -84,6 +108,7 @@ pub struct Turn {
 }
 
 impl<T: Scalar> Frame<T> {
+    /// A frame without variables.
     pub fn new(global: bool, prefix: Arc<str>) -> Self {
         Self { locals: Vec::new(), global, prefix, loops: Vec::new(), called: None }
     }
