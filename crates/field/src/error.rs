@@ -76,6 +76,24 @@ pub enum FieldError {
         /// How many are allowed.
         limit: f64,
     },
+    /// Part of the set is thinner than the cells.
+    Thin {
+        /// Where.
+        place: Box3,
+        /// The side of a cell.
+        step: f64,
+        /// From about which depth on its cells are small enough.
+        depth: u32,
+    },
+    /// The accuracy was not reached with the cells allowed.
+    NotReached {
+        /// What was asked.
+        asked: f64,
+        /// What was reached.
+        reached: f64,
+        /// With how many cells.
+        cells: usize,
+    },
     /// The box is thinner than its cells, so that what is in it would get lost.
     ThinBox {
         /// The axis along which it is, 0 to 2.
@@ -142,6 +160,17 @@ impl fmt::Display for FieldError {
             Self::TooFine { boxes, limit } => write!(
                 f,
                 "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed"
+            ),
+            Self::Thin { place, step, depth } => write!(
+                f,
+                "near {} a part of the set is thinner than cells of {step:.3e}, and would get lost: depth = {depth} would \
+                 show it",
+                Corners(place)
+            ),
+            Self::NotReached { asked, reached, cells } => write!(
+                f,
+                "with {cells} cells the volume is known to {reached:.3e}, not to the {asked:.3e} asked: ask for that, \
+                 or allow more `cells`"
             ),
             Self::Unbounded { axis, sign } => {
                 let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);

@@ -25,6 +25,7 @@ pub(crate) mod shells;
 mod simplify;
 mod split;
 pub(crate) mod types;
+mod unresolved;
 pub(crate) mod vertex;
 
 use crate::error::solid_box;
@@ -36,12 +37,12 @@ pub use crossing::crossing_faces;
 use grid::Grid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
-use refine::{Rule, refine};
+use refine::{Rule, Tapes, refine};
 use smallvec::SmallVec;
 use std::sync::Arc;
 use types::Block;
 use types::Reuse;
-pub use types::{Options, Resolution};
+pub use types::{Options, Resolution, Unresolved};
 
 /// The boundary of a set within a box.
 #[derive(Clone, Debug)]
@@ -62,6 +63,10 @@ pub struct Facets {
     /// Cells with an edge or corner that no vertex lies on or within a hundredth of a cell, so that it is cut off there: it is thinner than a
     /// cell, or its vertices would have made triangles cut each other.
     pub blunt: Vec<Box3>,
+    /// Cells, or parts of them, that may hold what their corners do not show, by place. Elsewhere nothing is missed.
+    pub unresolved: Vec<Unresolved>,
+    /// The point about which moments are taken: the middle of the box.
+    pub(crate) about: Vec3,
     /// How many cells the surface passes through.
     pub cells: usize,
     /// Side of a cell.
@@ -178,7 +183,13 @@ pub(crate) fn facet_within(
             let part = 2f64.powi(LEVEL_OF_SIDE - level.min(1000) as i32);
             let step = step_of(level).min(shortest(&over).1 * part.min(1.0));
             check(step)?;
-            at_step(set, &over, step, f64::INFINITY, options, before)
+            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            // Integrals have their own means for what is thin.
+            if options.sharp {
+                return Ok(facets);
+            }
+            let (facets, _) = whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?;
+            Ok(facets)
         }
         Resolution::Depth(depth) => {
             let step = step_of(depth);
@@ -190,9 +201,21 @@ pub(crate) fn facet_within(
             crate::error::positive("accuracy", accuracy)?;
             let mut step = step_of(least_depth(size, &over).max(4));
             check(step)?;
+            // First fine enough that nothing is missed.
+            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            let most = MOST_CELLS.min(options.limit);
+            let (mut facets, all) = whole(set, &over, facets, most, options)?;
+            step = facets.step;
+            let side = |b: &Box3| (0..3).map(|k| b.high[k] - b.low[k]).fold(0.0, f64::max);
+            let larger = facets.unresolved.iter().find(|u| side(&u.place) > accuracy);
+            if let (false, Some(u)) = (all, larger) {
+                let thickness = u.volume / side(&u.place).powi(2);
+                let depth = (size / thickness.min(0.5 * step)).log2().ceil() as u32 + 1;
+                let place = u.place;
+                return Err(FieldError::Thin { place, step, depth });
+            }
             // The error is of second order, so one estimate nearly hits; a few correct it. The few triangles
             // that are worse than the others then are divided edge by edge.
-            let mut facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
             for _ in 0..8 {
                 let mut all = facets.centre_distances();
                 all.sort_by(f64::total_cmp);
@@ -218,6 +241,31 @@ pub(crate) fn facet_within(
             }
             Ok(facets)
         }
+    }
+}
+
+/// How many cells are taken, unless asked otherwise, for the sake of what is thin; and at most when an accuracy is asked.
+const USUAL_CELLS: f64 = 4e5;
+const MOST_CELLS: f64 = 3e6;
+
+/// The facets with cells halved until nothing is missed, and whether that was reached with about as many cells as allowed.
+fn whole(
+    set: &Set,
+    over: &Box3,
+    mut facets: Facets,
+    most: f64,
+    options: &Options,
+) -> Result<(Facets, bool), FieldError> {
+    loop {
+        let missed = facets.unresolved.iter().filter(|u| u.missed).count();
+        if missed == 0 {
+            return Ok((facets, true));
+        }
+        // Halved cells of a surface are four times as many.
+        if 4.0 * (facets.cells + missed) as f64 > most {
+            return Ok((facets, false));
+        }
+        facets = at_step(set, over, 0.5 * facets.step, f64::INFINITY, options, None)?;
     }
 }
 
@@ -253,7 +301,10 @@ fn at_step(
     let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let rule = Rule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
-    refine(&mut made, &leaves, &compiled.tape, rule);
+    let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);
+    refine(&mut made, &leaves, &tapes, rule);
+    let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();
+    let unresolved = unresolved::not_shown(open, &made.positions, &made.triangles, step);
 
     let mut builder = TopologyBuilder::new();
     let broken =
@@ -285,6 +336,8 @@ fn at_step(
         surfaces: made.surfaces,
         undecided,
         blunt,
+        unresolved,
+        about: over.centre(),
         cells: divided.blocks.iter().map(|(_, b)| b.active).sum(),
         step,
         blocks: divided.blocks.len(),

@@ -112,7 +112,7 @@ impl<T: Real> FromValue<T> for Solid<T> {
     }
 }
 
-/// The error as a fault that says how to mend it.
+/// The error as a fault with its remedy.
 pub fn fault(error: &FieldError) -> Fault {
     let id = match error {
         FieldError::NotFinite { .. } => "not-finite",
@@ -128,6 +128,8 @@ pub fn fault(error: &FieldError) -> Fault {
         FieldError::Unbounded { .. } => "unbounded-set",
         FieldError::TooFine { .. } => "too-fine",
         FieldError::ThinBox { .. } => "thin-box",
+        FieldError::Thin { .. } => "thin-part",
+        FieldError::NotReached { .. } => "accuracy-not-reached",
         FieldError::NotClosed { .. } => "not-closed",
         FieldError::ManyFaces { .. } | FieldError::RoundSides => "faces-tangled",
         FieldError::Cancelled => "cancelled",
@@ -135,7 +137,9 @@ pub fn fault(error: &FieldError) -> Fault {
     };
     let fault = Fault::new(id, error.to_string());
     match error {
-        FieldError::Division => fault.help("multiply out, or divide by a number"),
+        FieldError::Division => {
+            fault.help("divide by a number, or by a field that is not 0 everywhere")
+        }
         FieldError::Exponent { .. } => {
             fault.expected("a whole number from 0 to 1000").help("roots are sqrt() and s_sqrt()")
         }
@@ -150,6 +154,9 @@ pub fn fault(error: &FieldError) -> Fault {
         FieldError::TooFine { .. } => fault.help("ask for a coarser accuracy, or a smaller box"),
         FieldError::ThinBox { depth, .. } => {
             fault.expected(format!("a depth of {depth} or more, or a thicker box"))
+        }
+        FieldError::Thin { depth, .. } => {
+            fault.help(format!("give `depth = {depth}`, or thicken it"))
         }
         FieldError::NotClosed { .. } => fault.expected("a closed, oriented body"),
         FieldError::ManyFaces { .. } | FieldError::RoundSides => {

@@ -403,6 +403,37 @@ impl<T: Real> Set<T> {
         self.rebuilt(&|p| Self::of(Kind::Leaf(-p), Vec::new()), true, &Self::combined)
     }
 
+    /// What `leaf` makes of the primitives, joined up the tree: unions with `true`.
+    pub(crate) fn folded<R: Clone>(
+        &self,
+        leaf: &dyn Fn(&Primitive<T>) -> R,
+        everything: R,
+        nothing: R,
+        join: &dyn Fn(bool, R, R) -> R,
+    ) -> R {
+        let mut out: Vec<R> = Vec::new();
+        let mut stack = vec![(self, false)];
+        while let Some((set, ready)) = stack.pop() {
+            let made = match (&set.node.kind, ready) {
+                (Kind::Everything, _) => everything.clone(),
+                (Kind::Nothing, _) => nothing.clone(),
+                (Kind::Leaf(p), _) => leaf(p),
+                (_, false) => {
+                    stack.push((set, true));
+                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
+                    continue;
+                }
+                (kind, true) => {
+                    let b = out.pop().unwrap_or_else(|| nothing.clone());
+                    let a = out.pop().unwrap_or_else(|| nothing.clone());
+                    join(matches!(kind, Kind::Union), a, b)
+                }
+            };
+            out.push(made);
+        }
+        out.pop().unwrap_or(nothing)
+    }
+
     /// The set with real parts only.
     pub fn re(&self) -> Set<f64> {
         let any: &dyn std::any::Any = self;
