@@ -117,6 +117,18 @@ pub enum FieldError {
     },
     /// Round sides of a body touch, or cross, so that no plane beside them parts them.
     RoundSides,
+    /// A primitive of which no distance is known in closed form.
+    NoDistance {
+        /// What it was made as.
+        kind: &'static str,
+    },
+    /// Two faces that meet in no edge of the set.
+    NoEdge {
+        /// Their names.
+        faces: [String; 2],
+    },
+    /// A function from outside, which has no text.
+    Outside,
     /// The caller asked to stop.
     Cancelled,
     /// A primitive had no finite value.
@@ -188,6 +200,19 @@ impl fmt::Display for FieldError {
                 write!(f, "the faces cross each other so much that their set has over {most} parts")
             }
             Self::RoundSides => write!(f, "round sides touch each other and cannot be told apart"),
+            Self::NoDistance { kind } => write!(
+                f,
+                "the distance from a {kind} has no closed form; planes, balls, cylinders, cones and tori have one"
+            ),
+            Self::NoEdge { faces: [a, b] } => {
+                write!(f, "there is no edge between faces called `{a}` and `{b}`")
+            }
+            Self::Outside => {
+                write!(
+                    f,
+                    "a function from outside (a scan, a surface, a Python function) has no text"
+                )
+            }
             Self::Cancelled => write!(f, "cancelled"),
             Self::NoValue { at } => {
                 write!(f, "the field has no finite value at ({}, {}, {})", at.x, at.y, at.z)

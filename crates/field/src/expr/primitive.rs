@@ -415,6 +415,21 @@ impl<T: Real> Primitive<T> {
         }
     }
 
+    /// What tells its node from every other one while it lives.
+    pub(crate) fn identity(&self) -> usize {
+        Arc::as_ptr(&self.0) as usize
+    }
+
+    /// How it is made.
+    pub(crate) fn operation(&self) -> &Op<T> {
+        &self.0.op
+    }
+
+    /// Its value, when it is a constant.
+    pub fn constant_value(&self) -> Option<f64> {
+        self.as_real().map(T::re)
+    }
+
     /// True when no point changes its value.
     pub fn is_constant(&self) -> bool {
         self.as_real().is_some()
@@ -470,6 +485,13 @@ impl<T: Real> Primitive<T> {
             &|form| form.re(),
         )
     }
+}
+
+/// The coordinates of a twist about the z axis by `rate` radians for each unit of z.
+pub fn twist<T: Real>(rate: T) -> [Primitive<T>; 3] {
+    let [x, y, z] = Primitive::axes();
+    let (cos, sin) = ((&z * rate).cos(), (&z * rate).sin());
+    [&x * &cos + &y * &sin, &y * &cos - &x * &sin, z]
 }
 
 impl Primitive<f64> {

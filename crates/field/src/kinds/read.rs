@@ -132,6 +132,9 @@ pub fn fault(error: &FieldError) -> Fault {
         FieldError::NotReached { .. } => "accuracy-not-reached",
         FieldError::NotClosed { .. } => "not-closed",
         FieldError::ManyFaces { .. } | FieldError::RoundSides => "faces-tangled",
+        FieldError::NoDistance { .. } => "no-distance",
+        FieldError::NoEdge { .. } => "no-edge",
+        FieldError::Outside => "no-text",
         FieldError::Cancelled => "cancelled",
         FieldError::NoValue { .. } => "no-value",
     };

@@ -142,6 +142,18 @@ pub fn mass_of<T: Real>(
     }
     let bracket = checked.bracket;
     let lifter = Lifter::of(set, &plain, corners);
+    let from_cells = |cells: &Certified, bracket: &Moments<Interval>| {
+        let leaves = cells.leaves();
+        let lifted: Vec<Option<Primitive<T>>> =
+            leaves.iter().map(|l| lifter.primitive(l)).collect();
+        within(cells.best_by(&|leaf| lifted[leaf as usize].clone()), bracket)
+    };
+    // Bodies of planes are known to rounding.
+    let size = (0..3).map(|k| over.high[k] - over.low[k]).product::<f64>();
+    let exact = width <= 1e-3 * measure.agreement.unwrap_or(USUAL * size);
+    if exact && corners.is_none() {
+        return Ok(Mass { bracket, best: from_cells(&checked, &bracket) });
+    }
     if let Some(best) = by_facets(&solid, over, &lifter, measure, memo, &bracket)? {
         return Ok(Mass { bracket, best: within(best, &bracket) });
     }
@@ -150,11 +162,8 @@ pub fn mass_of<T: Real>(
         true => checked,
         false => certified(&solid, over, &Effort::of_cells(THIN), cancel)?,
     };
-    let leaves = thin.leaves();
-    let lifted: Vec<Option<Primitive<T>>> = leaves.iter().map(|l| lifter.primitive(l)).collect();
-    let best = thin.best_by(&|leaf| lifted[leaf as usize].clone());
     let bracket = narrower(bracket, &thin);
-    Ok(Mass { bracket, best: within(best, &bracket) })
+    Ok(Mass { bracket, best: from_cells(&thin, &bracket) })
 }
 
 /// The numbers of both brackets.

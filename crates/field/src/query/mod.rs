@@ -6,4 +6,4 @@ pub(crate) mod foot;
 pub(crate) mod nearest;
 pub(crate) mod ray;
 pub(crate) mod ray_trace;
-mod separation;
+pub(crate) mod separation;

@@ -56,7 +56,7 @@ fn inner(form: &Form<f64>) -> Option<Vec3> {
 }
 
 /// True when the primitive is solid within the surface of its form, false when it is solid outside.
-fn solid_within(f: &Primitive) -> Option<bool> {
+pub(crate) fn solid_within(f: &Primitive) -> Option<bool> {
     let value = f.value(inner(f.form())?);
     (value != 0.0 && value.is_finite()).then_some(value < 0.0)
 }

@@ -194,7 +194,7 @@ fn clearances_of_faces_axes_and_centres_are_exact() {
     let (d, least) = apart(&ball(1.0), &(ball(3.0) - ball(2.0)), &cube(3.2));
     assert!((d - 1.0).abs() < 1e-9 && least > 1.0 - 1e-8, "{d} {least}");
     let pipe = |r: f64| cylinder(o, z, r) & half(z, z) & half(-z, -z);
-    let (d, least) = apart(&pipe(0.5), &(pipe(2.0) - pipe(1.25)), &cube(2.2));
+    let (d, least) = apart(&pipe(0.5), &(pipe(2.0) - cylinder(o, z, 1.25)), &cube(2.2));
     assert!((d - 0.75).abs() < 1e-9 && least > 0.75 - 1e-8, "{d} {least}");
     for (set, exact) in [(ball(1.0), 1.0), (cylinder(o, z, 0.7), 0.7)] {
         let n = moldloft_field::nearest(&set, o, &cube(2.0), 1e-9).unwrap().unwrap();
