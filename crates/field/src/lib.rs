@@ -19,9 +19,6 @@ mod set;
 mod shapes;
 mod text;
 
-#[cfg(test)]
-mod random;
-
 pub use design::{Edges, chamfer_edges, fillet_sets, round_edges};
 pub use error::FieldError;
 pub use expr::algebra::{Gradient, GradientRange, Hessian, Unary};

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// A bent hull side, cut at `cut` along u: the nets of both parts, with noise of up to `noise`.
 fn halves(noise: f64) -> [Vec<Vec3<f64>>; 2] {
-    let mut random = Random(5);
+    let mut random = Lcg::new(5);
     let all: Vec<Vec<Vec3<f64>>> = (0..16)
         .map(|i| {
             (0..8)
@@ -20,7 +20,7 @@ fn halves(noise: f64) -> [Vec<Vec3<f64>>; 2] {
                         - 1.0;
                     let z = f64::from(j) / 7.0;
                     let y = (1.2 - x * x) * (0.3 + z - 0.4 * z * z);
-                    Vec3::of(x, y + noise * random.unit(), z)
+                    Vec3::of(x, y + noise * random.centred(), z)
                 })
                 .collect()
         })

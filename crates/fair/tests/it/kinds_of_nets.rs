@@ -22,11 +22,11 @@ fn call<T: Scalar>(
 
 /// Point objects of a hull: station i, waterline j has the key 7 i + j.
 fn hull() -> Vec<Vec3<f64>> {
-    let mut random = Random(3);
+    let mut random = Lcg::new(3);
     (0..9 * 7)
         .map(|k| {
             let (x, z) = (f64::from(k / 7) / 4.0 - 1.0, f64::from(k % 7) / 6.0);
-            let y = (1.0 - x * x) * (0.3 + z - 0.4 * z * z) + 4e-3 * random.unit();
+            let y = (1.0 - x * x) * (0.3 + z - 0.4 * z * z) + 4e-3 * random.centred();
             Vec3::of(x, y, z)
         })
         .collect()

@@ -328,7 +328,7 @@ mod tests {
 
     /// Samples of pairs of intervals and of numbers inside them, from a fixed sequence.
     fn samples(mut check: impl FnMut(Interval, Interval, f64, f64)) {
-        let mut random = crate::random::Random::new(7);
+        let mut random = moldloft_testing::Random::new(7);
         for _ in 0..3000 {
             let mut interval = || {
                 let scale = [1e-3, 1.0, 30.0][random.below(3)];

@@ -169,7 +169,7 @@ mod tests {
             let j = Saddle.jet(u, v, Order::First);
             (p - j.p).dot(j.normal())
         };
-        let mut random = crate::random::Random::new(5);
+        let mut random = moldloft_testing::Random::new(5);
         let mut unknown = 0;
         for _ in 0..400 {
             let c = Vec3::of(

@@ -5,25 +5,13 @@ use moldloft_field::{
     Affine, Effort, Measure, Options, Primitive, Resolution, Set, around, certified, facet, mass,
 };
 use moldloft_num::{Axis, Box3, Vec3};
+use moldloft_testing::Random;
 use std::f64::consts::PI;
 
-/// Numbers between 0 and 1, the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-    fn direction(&mut self) -> Vec3 {
-        let z = self.between(-1.0, 1.0);
-        let (t, r) = (self.between(0.0, 2.0 * PI), (1.0 - z * z).sqrt());
-        v(r * t.cos(), r * t.sin(), z)
-    }
+fn direction(random: &mut Random) -> Vec3 {
+    let z = random.between(-1.0, 1.0);
+    let (t, r) = (random.between(0.0, 2.0 * PI), (1.0 - z * z).sqrt());
+    v(r * t.cos(), r * t.sin(), z)
 }
 
 fn ball(r: f64) -> Set {
@@ -74,15 +62,15 @@ fn thin(kind: usize, t: f64) -> (Set, f64, &'static str) {
 #[test]
 fn thin_bodies_anywhere_have_their_volume_inside_the_bracket() {
     let soak = std::env::var_os("MOLDLOFT_SOAK").is_some();
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for k in 0..if soak { 500 } else { 18 } {
         let t = 10f64.powf(random.between(-4.0, -1.0));
         let (set, exact, name) = thin(k % 6, t);
         let turn = Affine::rotation(
-            &Axis { point: v(0.1, 0.2, 0.3), direction: random.direction() },
+            &Axis { point: v(0.1, 0.2, 0.3), direction: direction(&mut random) },
             random.between(0.0, 6.0),
         );
-        let move_by = Affine::translation(random.direction() * random.between(0.0, 3.0));
+        let move_by = Affine::translation(direction(&mut random) * random.between(0.0, 3.0));
         let set = set.mapped(&turn).unwrap().mapped(&move_by).unwrap();
         let over = around(&set).unwrap().unwrap();
         let found = certified(&set, &over, &Effort::of_cells(20_000), &Default::default()).unwrap();
@@ -153,11 +141,11 @@ fn the_bracket_of_a_curved_body_closes_at_second_order() {
 
 #[test]
 fn facets_miss_nothing_in_silence() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for k in 0..12 {
         let t = [0.05, 0.02, 0.004][k / 6 % 2 + usize::from(k == 7)];
         let (set, exact, name) = thin(k % 5, t);
-        let turn = Affine::rotation(&axis(v(0.0, 0.0, 0.0), random.direction()), 0.7);
+        let turn = Affine::rotation(&axis(v(0.0, 0.0, 0.0), direction(&mut random)), 0.7);
         let set = set.mapped(&turn).unwrap();
         let over = around(&set).unwrap().unwrap();
         let f = facet(&set, &over, &Options::new(Resolution::Level(6))).unwrap();

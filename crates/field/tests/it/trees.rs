@@ -5,22 +5,16 @@
 use crate::common::{axis, cube, facets, sound, v};
 use moldloft_field::{Affine, Primitive, Set, bracket, crossing_faces};
 use moldloft_num::Vec3;
+use moldloft_testing::{Random, rounds};
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
+struct Trees(Random);
 
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
+impl Trees {
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.between(low, high)
     }
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
+    fn below(&mut self, n: usize) -> usize {
+        self.0.below(n)
     }
     fn point(&mut self) -> Vec3 {
         v(self.between(-0.7, 0.7), self.between(-0.7, 0.7), self.between(-0.7, 0.7))
@@ -48,7 +42,7 @@ impl Random {
         Set::new(&primitive.unwrap())
     }
 
-    fn tree(&mut self, leaves: u64) -> Set {
+    fn tree(&mut self, leaves: usize) -> Set {
         if leaves == 1 {
             return self.leaf();
         }
@@ -65,14 +59,13 @@ impl Random {
 
 #[test]
 fn random_trees_are_closed_manifold_and_oriented() {
-    let soak = std::env::var_os("MOLDLOFT_SOAK").is_some();
     // Edges and corners thinner than a cell are cut off: where several pass through one, and along lines where
     // surfaces meet at a small angle. Their share falls as the cells do, so every tenth tree has finer ones.
     let (mut cells, mut undecided, mut blunt) = ([0; 2], [0; 2], [0; 2]);
-    for seed in 0..if soak { 10_000 } else { 60 } {
+    for seed in 0..rounds(60, 10_000) as u64 {
         let fine = usize::from(seed % 10 == 0);
         let depth = [5, 7][fine];
-        let mut random = Random(seed * 7919 + 1);
+        let mut random = Trees(Random::new(seed * 7919 + 1));
         let leaves = 1 + random.below(6);
         let set = random.tree(leaves);
         let f = facets(&set, &cube(1.2), depth);
