@@ -339,10 +339,10 @@ def _from_text(text: str) -> Field:
 
 
 def read_fidget(text: str) -> Field:
-    """The field of a text of fidget: a line ``name operation operands`` for each value.
+    r"""The field of a text of fidget: a line ``name operation operands`` for each value.
 
     >>> from moldloft import implicit as im
-    >>> im.read_fidget("_0 var-x\\n_1 square _0")((3, 0, 0))
+    >>> im.read_fidget("_0 var-x\n_1 square _0")((3, 0, 0))
     9.0
     """
     return Field(_core.Field.from_text(text, "fidget"))

@@ -49,6 +49,9 @@ impl Interval {
     /// Moves both ends outward by one rounding error.
     #[inline(always)]
     fn outward(low: f64, high: f64) -> Self {
+        // A low end beyond the largest number is at least that, and likewise a high one.
+        let low = if low > f64::MAX { f64::MAX } else { low };
+        let high = if high < f64::MIN { f64::MIN } else { high };
         Self { low: low - ulp(low), high: high + ulp(high) }
     }
 

@@ -12,6 +12,7 @@
 mod assemble;
 mod block;
 mod cell;
+mod contacts;
 mod crossing;
 mod divide;
 mod grid;
@@ -40,6 +41,7 @@ use moldloft_num::{Box3, Vec3};
 use refine::{Rule, Tapes, refine};
 use smallvec::SmallVec;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use types::Block;
 use types::Reuse;
 pub use types::{Options, Resolution, Unresolved};
@@ -65,6 +67,8 @@ pub struct Facets {
     pub blunt: Vec<Box3>,
     /// Cells, or parts of them, that may hold what their corners do not show, by place. Elsewhere nothing is missed.
     pub unresolved: Vec<Unresolved>,
+    /// Where bodies that share no volume touch, and were made by themselves.
+    pub contacts: Vec<Vec3>,
     /// The point about which moments are taken: the middle of the box.
     pub(crate) about: Vec3,
     /// How many cells the surface passes through.
@@ -188,14 +192,18 @@ pub(crate) fn facet_within(
             if options.sharp {
                 return Ok(facets);
             }
-            let (facets, _) = whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?;
-            Ok(facets)
+            Ok(whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?.facets)
         }
         Resolution::Depth(depth) => {
             let step = step_of(depth);
             check(step)?;
             thin(step)?;
-            at_step(set, &over, step, f64::INFINITY, options, before)
+            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            // The cells are as asked; bodies that only touch are parted all the same.
+            if options.sharp {
+                return Ok(facets);
+            }
+            Ok(whole(set, &over, facets, 0.0, options)?.facets)
         }
         Resolution::Accuracy(accuracy) => {
             crate::error::positive("accuracy", accuracy)?;
@@ -204,11 +212,12 @@ pub(crate) fn facet_within(
             // First fine enough that nothing is missed.
             let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
             let most = MOST_CELLS.min(options.limit);
-            let (mut facets, all) = whole(set, &over, facets, most, options)?;
+            let found = whole(set, &over, facets, most, options)?;
+            let mut facets = found.facets.clone();
             step = facets.step;
             let side = |b: &Box3| (0..3).map(|k| b.high[k] - b.low[k]).fold(0.0, f64::max);
             let larger = facets.unresolved.iter().find(|u| side(&u.place) > accuracy);
-            if let (false, Some(u)) = (all, larger) {
+            if let (false, Some(u)) = (found.all, larger) {
                 let thickness = u.volume / side(&u.place).powi(2);
                 let depth = (size / thickness.min(0.5 * step)).log2().ceil() as u32 + 1;
                 let place = u.place;
@@ -227,7 +236,7 @@ pub(crate) fn facet_within(
                     break;
                 }
                 if most <= accuracy {
-                    facets = at_step(set, &over, step, accuracy, options, Some(&facets))?;
+                    facets = found.again(set, &over, (step, accuracy), options, Some(&facets))?;
                     if facets.worst_centre() <= accuracy {
                         break;
                     }
@@ -237,7 +246,7 @@ pub(crate) fn facet_within(
                 if boxes > options.limit {
                     return Err(FieldError::TooFine { boxes, limit: options.limit });
                 }
-                facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+                facets = found.again(set, &over, (step, f64::INFINITY), options, before)?;
             }
             Ok(facets)
         }
@@ -248,24 +257,71 @@ pub(crate) fn facet_within(
 const USUAL_CELLS: f64 = 4e5;
 const MOST_CELLS: f64 = 3e6;
 
-/// The facets with cells halved until nothing is missed, and whether that was reached with about as many cells as allowed.
+/// What is missed matters to the eye, and is worth finer cells unasked, if it is this part of the body.
+const MATTERS: f64 = 1e-5;
+
+/// Facets that miss nothing, with the sets that they are made of where these only touch.
+struct Whole {
+    facets: Facets,
+    /// False when more cells would have been needed than allowed.
+    all: bool,
+    parted: Option<(Vec<Set>, Vec<Vec3>)>,
+}
+
+impl Whole {
+    fn again(
+        &self,
+        set: &Set,
+        over: &Box3,
+        (step, accuracy): (f64, f64),
+        options: &Options,
+        before: Option<&Facets>,
+    ) -> Result<Facets, FieldError> {
+        match &self.parted {
+            Some((sets, contacts)) => {
+                contacts::together(sets, contacts, over, step, accuracy, options)
+            }
+            None => at_step(set, over, step, accuracy, options, before),
+        }
+    }
+}
+
+/// The facets with bodies that only touch apart, and with cells halved until nothing is missed.
 fn whole(
     set: &Set,
     over: &Box3,
-    mut facets: Facets,
+    facets: Facets,
     most: f64,
     options: &Options,
-) -> Result<(Facets, bool), FieldError> {
+) -> Result<Whole, FieldError> {
+    let mut found = Whole { facets, all: true, parted: None };
+    let mut asked = false;
     loop {
-        let missed = facets.unresolved.iter().filter(|u| u.missed).count();
-        if missed == 0 {
-            return Ok((facets, true));
+        let missed = found.facets.unresolved.iter().filter(|u| u.missed);
+        let (count, volume) = missed.fold((0, 0.0), |(n, v), u| (n + 1, v + u.volume));
+        if count == 0 {
+            return Ok(found);
         }
+        if !asked {
+            asked = true;
+            let never = AtomicBool::new(false);
+            let cancel = options.cancel.as_deref().unwrap_or(&never);
+            found.parted = contacts::parted(set, over, cancel)?;
+            if found.parted.is_some() {
+                let step = found.facets.step;
+                found.facets = found.again(set, over, (step, f64::INFINITY), options, None)?;
+                continue;
+            }
+        }
+        let body = moldloft_mesh::measure(&found.facets.mesh).volume.abs();
+        let matters = most > USUAL_CELLS || volume > MATTERS * body;
         // Halved cells of a surface are four times as many.
-        if 4.0 * (facets.cells + missed) as f64 > most {
-            return Ok((facets, false));
+        if !matters || 4.0 * (found.facets.cells + count) as f64 > most {
+            found.all = false;
+            return Ok(found);
         }
-        facets = at_step(set, over, 0.5 * facets.step, f64::INFINITY, options, None)?;
+        let step = 0.5 * found.facets.step;
+        found.facets = found.again(set, over, (step, f64::INFINITY), options, None)?;
     }
 }
 
@@ -337,6 +393,7 @@ fn at_step(
         undecided,
         blunt,
         unresolved,
+        contacts: Vec::new(),
         about: over.centre(),
         cells: divided.blocks.iter().map(|(_, b)| b.active).sum(),
         step,

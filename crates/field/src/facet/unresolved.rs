@@ -150,7 +150,8 @@ impl Search<'_> {
         }
         let tape = tape.pruned(&self.room.ranges.ranges).map_or_else(|| tape.clone(), Arc::new);
         let full = volume(sides);
-        let parts = Combination::of(&tape).map(|c| taylor::bounds(&tape, &c, sides, self.room));
+        let parts =
+            Combination::of(&tape).map(|c| taylor::bounds(&tape, &c, sides, true, self.room));
         let (least, most) = parts.as_ref().map_or((0.0, full), |p| (p.least[0], p.most[0]));
         // What there may be, and what there is for sure, of the other kind.
         let (may, sure) = if solid { (full - least, full - most) } else { (most, least) };

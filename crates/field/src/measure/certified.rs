@@ -9,7 +9,7 @@ use super::moments::{Moments, POWERS};
 use super::taylor::{self, Combination, TaylorRoom, frame};
 use crate::error::solid_box;
 use crate::expr::interval::{Interval, sides};
-use crate::expr::tape::Tape;
+use crate::expr::tape::{Code, Tape};
 use crate::facet::sheets::solid_part;
 use crate::set::Leaf;
 use crate::{FieldError, Primitive, Set};
@@ -32,12 +32,12 @@ pub struct Effort {
 impl Effort {
     /// Until the volume's bracket is that narrow, with at most 400 000 cells.
     pub fn to(accuracy: f64) -> Self {
-        Self { accuracy, cells: 400_000, depth: 40 }
+        Self { accuracy, cells: 400_000, depth: ALL }
     }
 
     /// As narrow as that many cells make it.
     pub fn of_cells(cells: usize) -> Self {
-        Self { accuracy: 0.0, cells, depth: 40 }
+        Self { accuracy: 0.0, cells, depth: ALL }
     }
 }
 
@@ -73,6 +73,8 @@ enum Outcome {
     Open(Box<Open>),
 }
 
+/// Below this depth all cells are divided as deep.
+const ALL: u32 = 40;
 /// Integrals are known to this part of what a whole cell has: some hundred roundings.
 const ROUNDING: f64 = 1e-13;
 /// Cells with at least this part of the widest bracket are divided together.
@@ -101,6 +103,8 @@ fn shifted(m: &[Interval; 10], d: [Interval; 3]) -> [Interval; 10] {
 
 struct Work<'a> {
     about: Vec3,
+    /// The depth that all cells are divided to, when there is one.
+    last: Option<u32>,
     cancel: &'a AtomicBool,
 }
 
@@ -123,8 +127,20 @@ impl Work<'_> {
         }
         let tape = tape.pruned(&room.ranges.ranges).map_or_else(|| tape.clone(), Arc::new);
         let all = whole(&local);
-        let combination = Combination::of(&tape);
-        let Some(parts) = combination.as_ref().map(|c| taylor::bounds(&tape, c, &sides, room))
+        // Cells that are divided whatever their bounds need none, but for bodies of planes, which they end.
+        let divided = self.last.is_some_and(|last| depth < last);
+        let planes = || {
+            let of = |code: &Code<f64>| {
+                matches!(code, Code::Plane(..) | Code::Union(..) | Code::Common(..))
+            };
+            tape.code.iter().all(of)
+        };
+        let combination = match divided && !planes() {
+            true => None,
+            false => Combination::of(&tape),
+        };
+        let Some(parts) =
+            combination.as_ref().map(|c| taylor::bounds(&tape, c, &sides, false, room))
         else {
             // Nothing is known but that at most all of it is solid.
             let bracket = self.between(&[Interval::ZERO; 10], all[0].high, &local);
@@ -221,7 +237,8 @@ pub fn certified(
     // Sheets have no volume.
     let compiled = solid_part(set).compiled();
     let about = over.centre();
-    let work = Work { about, cancel };
+    let last = (effort.accuracy <= 0.0 && effort.depth < ALL).then_some(effort.depth);
+    let work = Work { about, last, cancel };
     let mut sealed = Moments::zero(about);
     let mut open: Vec<Open> = Vec::new();
     let mut cells = 1;

@@ -168,6 +168,22 @@ impl<T: Real> Polytope<T> {
         }
         out
     }
+
+    /// Its volume.
+    pub fn volume(&self) -> T {
+        let mut out = T::zero();
+        let Some(apex) = self.faces.first().and_then(|f| f.corners.first()).copied() else {
+            return out;
+        };
+        for face in &self.faces {
+            let first = face.corners[0] - apex;
+            for k in 1..face.corners.len().saturating_sub(1) {
+                let (b, c) = (face.corners[k] - apex, face.corners[k + 1] - apex);
+                out += first.dot(b.cross(c));
+            }
+        }
+        out / 6.0
+    }
 }
 
 /// The axes of the moments of degree two.

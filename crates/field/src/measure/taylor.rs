@@ -148,11 +148,13 @@ pub(crate) struct TaylorRoom {
     centre: Vec<GradientRange>,
 }
 
-/// Bounds of the integrals over the solid part of a box, about its middle.
+/// Bounds of the integrals over the solid part of a box, about its middle; of what is solid at most the volume only,
+/// unless its other `moments` are asked for.
 pub(crate) fn bounds(
     tape: &Tape<f64>,
     combination: &Combination,
     sides: &[Interval; 3],
+    moments: bool,
     room: &mut TaylorRoom,
 ) -> Parts {
     let (centre, half) = frame(sides);
@@ -215,7 +217,11 @@ pub(crate) fn bounds(
             .collect();
         let mut sum = [0.0; 10];
         combination.solid_parts(whole.clone(), &cuts, signs, 0, &mut |part| {
-            sum.iter_mut().zip(part.moments()).for_each(|(s, x)| *s += x);
+            if least || moments {
+                sum.iter_mut().zip(part.moments()).for_each(|(s, x)| *s += x);
+            } else {
+                sum[0] += part.volume();
+            }
         });
         sum
     };

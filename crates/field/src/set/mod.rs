@@ -307,6 +307,15 @@ impl<T: Real> Set<T> {
         Self { attributes: Some(Arc::new(attributes)), ..self.clone() }
     }
 
+    /// The same set, its own attributes completed by those of a set around it.
+    pub(crate) fn within(&self, outer: Attributes) -> Self {
+        let attributes = match &self.attributes {
+            Some(own) => own.or(&outer),
+            None => outer,
+        };
+        Self { attributes: Some(Arc::new(attributes)), ..self.clone() }
+    }
+
     /// The same set under a name.
     pub fn named(&self, name: &str) -> Self {
         self.with(Attributes { name: Some(name.to_owned()), ..Attributes::default() })

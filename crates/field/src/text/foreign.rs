@@ -176,7 +176,10 @@ pub fn read_libfive(text: &str) -> Result<Primitive, TextError> {
                     (Some(p), _) => p,
                     (_, Ok(x)) if x.is_finite() => Primitive::real(x),
                     _ => {
-                        return wrong(line, format!("expected x, y, z or a number, found `{word}`"));
+                        return wrong(
+                            line,
+                            format!("expected x, y, z or a number, found `{word}`"),
+                        );
                     }
                 }
             }

@@ -61,9 +61,8 @@ fn thin(kind: usize, t: f64) -> (Set, f64, &'static str) {
 
 #[test]
 fn thin_bodies_anywhere_have_their_volume_inside_the_bracket() {
-    let soak = std::env::var_os("MOLDLOFT_SOAK").is_some();
     let mut random = Random::new(11);
-    for k in 0..if soak { 500 } else { 18 } {
+    for k in 0..moldloft_testing::rounds(12, 500) {
         let t = 10f64.powf(random.between(-4.0, -1.0));
         let (set, exact, name) = thin(k % 6, t);
         let turn = Affine::rotation(
@@ -91,7 +90,7 @@ fn thin_bodies_anywhere_have_their_volume_inside_the_bracket() {
 
 #[test]
 fn the_volume_is_the_same_whatever_asks() {
-    for t in [0.03, 0.01, 1e-3] {
+    for t in [0.03, 0.01, 1e-3, 1e-5] {
         let (plate, exact, _) = thin(0, t);
         let over = around(&plate).unwrap().unwrap();
         let m = mass(&plate, &over, &Measure::default()).unwrap();
@@ -133,16 +132,16 @@ fn the_bracket_of_a_curved_body_closes_at_second_order() {
     println!("{widths:?}");
     assert!(widths[1] < widths[0] / 3.5 && widths[2] < widths[1] / 3.5, "{widths:?}");
     assert!(widths[1] < 8e-3, "{widths:?}");
-    let piece = certified(&t_piece(), &cube(4.0), &Effort::to(0.02), &Default::default()).unwrap();
+    let piece = certified(&t_piece(), &cube(4.0), &Effort::to(0.05), &Default::default()).unwrap();
     let v = piece.bracket.volume();
     println!("T-piece: {v:?} after {} cells, best {}", piece.cells, piece.best.volume());
-    assert!(v.contains(25.097_230_6) && v.width() <= 0.02);
+    assert!(v.contains(25.097_230_6) && v.width() <= 0.05);
 }
 
 #[test]
 fn facets_miss_nothing_in_silence() {
     let mut random = Random::new(5);
-    for k in 0..12 {
+    for k in 0..moldloft_testing::rounds(6, 60) {
         let t = [0.05, 0.02, 0.004][k / 6 % 2 + usize::from(k == 7)];
         let (set, exact, name) = thin(k % 5, t);
         let turn = Affine::rotation(&axis(v(0.0, 0.0, 0.0), direction(&mut random)), 0.7);
@@ -187,5 +186,97 @@ fn clearances_of_faces_axes_and_centres_are_exact() {
     for (set, exact) in [(ball(1.0), 1.0), (cylinder(o, z, 0.7), 0.7)] {
         let n = moldloft_field::nearest(&set, o, &cube(2.0), 1e-9).unwrap().unwrap();
         assert!((n.distance - exact).abs() < 1e-9 && n.at_least > exact - 1e-8, "{n:?}");
+    }
+}
+
+#[test]
+fn texts_give_the_same_set_again() {
+    let set = (ball(1.0).named("ball")
+        - cylinder(v(0.0, 0.0, 0.0), v(1.0, 2.0, 3.0), 0.3).named("a \"hole\""))
+        | thin(2, 0.1).0.named("ring");
+    let text = set.to_text().unwrap();
+    let again = Set::from_text(&text).unwrap();
+    assert!(again.same(&set));
+    let forms = |s: &Set| s.leaves().iter().map(|l| l.primitive.form().clone()).collect::<Vec<_>>();
+    assert_eq!(forms(&again), forms(&set));
+    assert_eq!(again.to_text().unwrap(), text);
+    for (wrong, line) in [
+        ("", 1),
+        ("moldloft set 2\n", 1),
+        ("moldloft set 1\n0 real x\n", 2),
+        ("moldloft set 1\n0 real 1.0\n1 neg 5\n", 3),
+        ("moldloft set 1\n0 real 1.0\n1 leaf 0 with colour 99\nroot 1\n", 3),
+        ("moldloft set 1\n0 real 1.0\n", 2),
+    ] {
+        assert_eq!(Set::from_text(wrong).unwrap_err().line, line, "{wrong}");
+    }
+    let sdl = set.to_sdl("part").unwrap();
+    assert!(sdl.contains("set part = ") && sdl.contains("name = \"ring\""), "{sdl}");
+    for wrong in ["_0 cosh _1", "_0 var-x\n_1 sin _7", "_0 const nan", ""] {
+        assert!(moldloft_field::read_fidget(wrong).is_err(), "{wrong}");
+    }
+    for wrong in ["(", "(+ 1", ")", "(foo x)", "x y", "(1 2)", ""] {
+        assert!(moldloft_field::read_libfive(wrong).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn fillets_rounds_and_chamfers_of_sets_have_their_volumes() {
+    let volume = |set: &Set| {
+        let over = around(set).unwrap().unwrap();
+        mass(set, &over, &Measure::default()).unwrap().best.volume()
+    };
+    let block = Set::cuboid(v(0.0, 0.0, 0.0), v(10.0, 6.0, 4.0)).unwrap();
+    let chamfered = moldloft_field::chamfer_edges(&block, 1.0, None).unwrap();
+    assert!((volume(&chamfered) - 206.0).abs() < 1e-6);
+    let grown = block.offset(0.5).unwrap();
+    assert!((volume(&grown) - 11.0 * 7.0 * 5.0).abs() < 1e-6);
+    assert!((volume(&block.shell(0.5).unwrap()) - (240.0 - 9.0 * 5.0 * 3.0)).abs() < 1e-6);
+    // A long post on a plate: along each edge a fillet of setback w of chamfer shape has the section w^2/2.
+    let plate = Set::cuboid(v(-3.0, -3.0, -1.0), v(3.0, 3.0, 0.0)).unwrap();
+    let post = Set::cuboid(v(-1.0, -1.0, -0.5), v(1.0, 1.0, 2.0)).unwrap();
+    let joined = moldloft_field::fillet_sets([&plate, &post], [0.5, 0.5], 2.0 / 3.0, None).unwrap();
+    // A quarter of a square of side 0.5 less its circle, four times, two long each.
+    let section = 0.25 * (1.0 - PI / 4.0);
+    let exact = 36.0 + 8.0 + 4.0 * 2.0 * section;
+    assert!((volume(&joined) - exact).abs() < 1e-4, "{} {exact}", volume(&joined));
+    let none = [["top".to_owned(), "side".to_owned()]];
+    assert!(
+        moldloft_field::fillet_sets([&plate, &post], [0.5, 0.5], 2.0 / 3.0, Some(&none)).is_err()
+    );
+}
+
+#[test]
+fn quotients_logarithms_and_replaced_coordinates_have_proved_ranges() {
+    let [x, y, z] = Primitive::<f64>::axes();
+    let one = &x * 0.0 + 1.0;
+    let fields = [
+        (&x + 3.0).ln() - &y * 0.3,
+        x.over(&(y.power(2) + 1.0)).unwrap() - &z,
+        (&x * 0.4).tan() - &y,
+        x.remainder(&Primitive::real(0.7)).unwrap() - 0.3,
+        Primitive::sphere(v(0.1, 0.2, 0.3), 1.0).unwrap().remapped(&moldloft_field::twist(0.7)),
+        one.over(&(x.power(2) + y.power(2) + 0.5)).unwrap() - 0.9,
+    ];
+    let mut random = Random::new(3);
+    for (k, f) in fields.iter().enumerate() {
+        for _ in 0..200 {
+            let c =
+                v(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+            let h = v(random.between(0.0, 0.4), random.between(0.0, 0.4), random.between(0.0, 0.4));
+            let over = Box3 { low: c - h, high: c + h };
+            let range = f.gradient_range(&over);
+            let u =
+                v(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+            let p = c + v(u.x * h.x, u.y * h.y, u.z * h.z);
+            let g = f.gradient(p);
+            assert!(range.value.contains(g.value), "{k}: {:?} {}", range.value, g.value);
+            for axis in 0..3 {
+                assert!(range.slope[axis].contains(g.slope[axis]), "{k}");
+            }
+            let mut bulk = [0.0];
+            f.values(&[p], &mut bulk);
+            assert_eq!(bulk[0], f.value(p), "{k}");
+        }
     }
 }

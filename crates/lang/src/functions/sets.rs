@@ -136,7 +136,9 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
         "tan" => f.tan(),
         _ => {
             return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
-                .expected("of fields abs, sign, sqrt, s_sqrt, sin, cos, tan, exp, log, min, max, atan2")
+                .expected(
+                    "of fields abs, sign, sqrt, s_sqrt, sin, cos, tan, exp, log, min, max, atan2",
+                )
                 .found("a field")
                 .in_field(0)));
         }
