@@ -105,9 +105,9 @@ pub(super) fn together(
         let start = positions.len() as u32;
         builder.add_vertices(part.mesh.positions().len()).map_err(broken)?;
         positions.extend_from_slice(part.mesh.positions());
-        surfaces.extend(part.surfaces.iter().map(|on| {
-            on.iter().map(|l| number(*l as usize) as u32).collect()
-        }));
+        surfaces.extend(
+            part.surfaces.iter().map(|on| on.iter().map(|l| number(*l as usize) as u32).collect()),
+        );
         for (patch, leaf) in part.mesh.patches().iter().zip(&part.patch_leaves) {
             let faces = &part.mesh.faces()[patch.faces.clone()];
             let faces: Vec<[u32; 4]> = faces.iter().map(|f| f.map(|v| v + start)).collect();
