@@ -3,7 +3,7 @@
 use super::read::{Shape, Solid, fault, field, primitive_of, set, set_of, set_value};
 use crate::{Affine, Primitive, Set};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, Value};
 use std::sync::Arc;
 
 /// A field or a set.
@@ -11,30 +11,30 @@ pub struct Any<T: Real>(Value<T>);
 
 impl<T: Real> FromValue<T> for Any<T> {
     const CLASS: Class = Class::Set;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Field(_) | Value::Set(_) | Value::Plane(_) => Ok(Self(value.clone())),
-            other => Err(Fault::wrong_class(Class::Set, other.class())),
+            other => Err(CallError::wrong_class(Class::Set, other.class())),
         }
     }
 }
 
 impl<T: Real> Any<T> {
-    fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Result<Value<T>, Fault> {
+    fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Result<Value<T>, CallError> {
         match (&self.0, set_of(&self.0), primitive_of(&self.0)) {
             (Value::Set(_), Some(s), _) => Ok(set_value(s.remapped(coordinates))),
             (_, _, Some(f)) => field(Ok(f.remapped(coordinates))),
-            (value, ..) => Err(Fault::wrong_class(Class::Set, value.class())),
+            (value, ..) => Err(CallError::wrong_class(Class::Set, value.class())),
         }
     }
 }
 
 /// Edges as "face, face; face, face", or none for all.
-fn edges(text: Option<&Arc<str>>, place: usize) -> Result<Option<Vec<[String; 2]>>, Fault> {
+fn edges(text: Option<&Arc<str>>, place: FieldId) -> Result<Option<Vec<[String; 2]>>, CallError> {
     let Some(text) = text else { return Ok(None) };
     let pair = |part: &str| match part.split(',').map(str::trim).collect::<Vec<_>>()[..] {
         [a, b] if !a.is_empty() && !b.is_empty() => Ok([a.to_owned(), b.to_owned()]),
-        _ => Err(Fault::new("wrong-edges", format!("`{}` names no edge", part.trim()))
+        _ => Err(CallError::new("wrong-edges", format!("`{}` names no edge", part.trim()))
             .expected("the names of two faces, and more after `;`: \"top, side; top, front\"")
             .in_field(place)),
     };
@@ -63,7 +63,7 @@ pub struct Remapped<T: Real> {
 }
 
 impl<T: Real> Build<T> for Remapped<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         self.shape.remapped(&[self.x.primitive, self.y.primitive, self.z.primitive])
     }
 }
@@ -85,7 +85,7 @@ pub struct Twisted<T: Real> {
 }
 
 impl<T: Real> Build<T> for Twisted<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         self.shape.remapped(&crate::twist(self.rate))
     }
 }
@@ -106,8 +106,8 @@ pub struct Remainder<T: Real> {
 }
 
 impl<T: Real> Build<T> for Remainder<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        field(self.x.primitive.remainder(&self.y.primitive)).map_err(|f| f.in_field(1))
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        field(self.x.primitive.remainder(&self.y.primitive)).map_err(|f| f.in_field(Self::Y))
     }
 }
 
@@ -130,7 +130,7 @@ pub struct Repeated<T: Real> {
 }
 
 impl<T: Real> Build<T> for Repeated<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let copy = |k: u32| {
             let by: Vec3<T> = self.by.xyz * T::from(f64::from(k));
             self.set.0.mapped(&Affine::translation(by))
@@ -159,7 +159,7 @@ pub struct Offset<T: Real> {
 }
 
 impl<T: Real> Build<T> for Offset<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         set(self.set.0.offset(self.distance))
     }
 }
@@ -181,7 +181,7 @@ pub struct Shell<T: Real> {
 }
 
 impl<T: Real> Build<T> for Shell<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         set(self.set.0.shell(self.thickness))
     }
 }
@@ -214,8 +214,8 @@ pub struct FilletSets<T: Real> {
 }
 
 impl<T: Real> Build<T> for FilletSets<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let chosen = edges(self.edges.as_ref(), 5)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let chosen = edges(self.edges.as_ref(), Self::EDGES)?;
         let widths = [self.width, self.other.unwrap_or(self.width)];
         set(crate::fillet_sets([&self.a.0, &self.b.0], widths, self.lambda, chosen.as_deref()))
     }
@@ -244,8 +244,8 @@ pub struct RoundEdges<T: Real> {
 }
 
 impl<T: Real> Build<T> for RoundEdges<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let chosen = edges(self.edges.as_ref(), 3)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let chosen = edges(self.edges.as_ref(), Self::EDGES)?;
         set(crate::round_edges(&self.set.0, self.width, self.lambda, chosen.as_deref()))
     }
 }
@@ -270,8 +270,8 @@ pub struct ChamferEdges<T: Real> {
 }
 
 impl<T: Real> Build<T> for ChamferEdges<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let chosen = edges(self.edges.as_ref(), 2)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let chosen = edges(self.edges.as_ref(), Self::EDGES)?;
         set(crate::chamfer_edges(&self.set.0, self.width, chosen.as_deref()))
     }
 }

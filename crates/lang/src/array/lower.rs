@@ -113,7 +113,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(value)
     }
 
-    /// What comes of an expression, by its recipe when it has one that fits, else through the tree.
+    /// The value of an expression, from its cached tape if one fits, else through the tree.
     fn worked(
         &mut self,
         m: &Module,
@@ -178,7 +178,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// A part of an expression that is no operator, executed as it stands; an object is read when
+    /// A part of an expression that is not an operator, executed as it stands; an object is read when
     /// `read`.
     fn leaf(&mut self, m: &Module, id: ExprId, read: bool, work: &mut Work<T>) -> Operated<T> {
         if let ExprKind::Number(literal) = m.program[id].kind {
@@ -634,7 +634,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let spans: Vec<Span> = args.iter().map(|&a| m.program[a].span).collect();
         // Scalars, and whatever is not taken, by the row itself.
         let value = elementary::apply(name, function, &values).map_err(|fault| {
-            let at = fault.place.map_or(span, |p| spans[p.field.min(spans.len() - 1)]);
+            let at = fault.field().map_or(span, |field| spans[field]);
             let d = crate::source::fault_location::unplaced(&fault);
             match &values[..] {
                 [a, b] => {
@@ -673,7 +673,7 @@ pub(crate) fn is_elementwise(op: BinaryOp) -> bool {
     )
 }
 
-/// True when the outermost part of an expression is an operator, so that it is no object.
+/// True when the outermost part of an expression is an operator, so that it is not an object.
 fn is_operator(m: &Module, id: ExprId) -> bool {
     match m.program[m.program.bare(id)].kind {
         ExprKind::Chain(_) | ExprKind::Magnitude(_) | ExprKind::Unary { .. } => true,
