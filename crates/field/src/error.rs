@@ -147,7 +147,7 @@ impl fmt::Display for FieldError {
             }
             Self::Degenerate { what } => write!(f, "the {what} is degenerate"),
             Self::Division => {
-                write!(f, "a field can be divided by a number other than 0 only, not by a field")
+                write!(f, "a field can be divided by a number or a field other than 0 only")
             }
             Self::Exponent { value } => {
                 write!(f, "the exponent of a field is a whole number from 0 to 1000, found {value}")
