@@ -310,8 +310,6 @@ def test_python_functions_that_fail():
         (lambda: im.sphere((0, 0, math.nan), 1), "centre is not a finite number"),
         (lambda: im.sphere((0, 0), 1), "three coordinates"),
         (lambda: im.plane((0, 0, 0), (0, 0, 0)), "normal is degenerate"),
-        (lambda: im.axes()[0] / im.axes()[1], "divided by a number"),
-        (lambda: 1 / im.axes()[0], "divided by a number"),
         (lambda: im.axes()[0] / 0, "divided by a number"),
         (lambda: im.axes()[0] ** 0.5, "whole number"),
         (lambda: im.axes()[0] ** -1, "whole number"),

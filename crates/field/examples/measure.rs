@@ -46,7 +46,13 @@ fn main() {
     let bulk = best(7, || set.values(&points, &mut out));
     println!("bulk: {:.2} ns per point", bulk / n as f64 * 1e9);
     for depth in [6, 7, 8] {
-        let Ok(m) = moldloft_field::mass(&set, &common::cube(4.0), depth) else { continue };
+        let Ok(m) = moldloft_field::mass(
+            &set,
+            &common::cube(4.0),
+            &moldloft_field::Measure::to_depth(depth),
+        ) else {
+            continue;
+        };
         let v = m.bracket.volume();
         println!("volume, depth {depth}: {:.6} in [{:.4}, {:.4}]", m.best.volume(), v.low, v.high);
     }

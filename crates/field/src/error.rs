@@ -76,6 +76,24 @@ pub enum FieldError {
         /// How many are allowed.
         limit: f64,
     },
+    /// Part of the set is thinner than the cells.
+    Thin {
+        /// Where.
+        place: Box3,
+        /// The side of a cell.
+        step: f64,
+        /// From about which depth on its cells are small enough.
+        depth: u32,
+    },
+    /// The accuracy was not reached with the cells allowed.
+    NotReached {
+        /// What was asked.
+        asked: f64,
+        /// What was reached.
+        reached: f64,
+        /// With how many cells.
+        cells: usize,
+    },
     /// The box is thinner than its cells, so that what is in it would get lost.
     ThinBox {
         /// The axis along which it is, 0 to 2.
@@ -99,6 +117,18 @@ pub enum FieldError {
     },
     /// Round sides of a body touch, or cross, so that no plane beside them parts them.
     RoundSides,
+    /// A primitive of which no distance is known in closed form.
+    NoDistance {
+        /// What it was made as.
+        kind: &'static str,
+    },
+    /// Two faces that meet in no edge of the set.
+    NoEdge {
+        /// Their names.
+        faces: [String; 2],
+    },
+    /// A function from outside, which has no text.
+    Outside,
     /// The caller asked to stop.
     Cancelled,
     /// A primitive had no finite value.
@@ -117,7 +147,7 @@ impl fmt::Display for FieldError {
             }
             Self::Degenerate { what } => write!(f, "the {what} is degenerate"),
             Self::Division => {
-                write!(f, "a field can be divided by a number other than 0 only, not by a field")
+                write!(f, "a field can be divided by a number or a field other than 0 only")
             }
             Self::Exponent { value } => {
                 write!(f, "the exponent of a field is a whole number from 0 to 1000, found {value}")
@@ -143,6 +173,17 @@ impl fmt::Display for FieldError {
                 f,
                 "this accuracy needs about {boxes:.1e} boxes, more than the {limit:.0e} allowed"
             ),
+            Self::Thin { place, step, depth } => write!(
+                f,
+                "near {} a part of the set is thinner than cells of {step:.3e}, and would get lost: depth = {depth} would \
+                 show it",
+                Corners(place)
+            ),
+            Self::NotReached { asked, reached, cells } => write!(
+                f,
+                "with {cells} cells the volume is known to {reached:.3e}, not to the {asked:.3e} asked: ask for that, \
+                 or allow more `cells`"
+            ),
             Self::Unbounded { axis, sign } => {
                 let (end, axis) = (if *sign > 0.0 { '+' } else { '-' }, ["x", "y", "z"][*axis]);
                 write!(f, "the set has no end towards {end}{axis}: give the box to look at")
@@ -160,6 +201,19 @@ impl fmt::Display for FieldError {
             }
             Self::RoundSides => {
                 write!(f, "round sides touch each other and cannot be distinguished")
+            }
+            Self::NoDistance { kind } => write!(
+                f,
+                "the distance from a {kind} has no closed form; planes, balls, cylinders, cones and tori have one"
+            ),
+            Self::NoEdge { faces: [a, b] } => {
+                write!(f, "there is no edge between faces called `{a}` and `{b}`")
+            }
+            Self::Outside => {
+                write!(
+                    f,
+                    "a function from outside (a scan, a surface, a Python function) has no text"
+                )
             }
             Self::Cancelled => write!(f, "cancelled"),
             Self::NoValue { at } => {

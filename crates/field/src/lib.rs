@@ -8,6 +8,7 @@
 //! Invariant: this crate knows no graph, no language and no file. Ranges are rounded outward; sums and
 //! maps run in fixed order, so their bits do not depend on threads.
 
+mod design;
 mod error;
 mod expr;
 mod facet;
@@ -16,7 +17,9 @@ mod measure;
 mod query;
 mod set;
 mod shapes;
+mod text;
 
+pub use design::{Edges, chamfer_edges, fillet_sets, round_edges};
 pub use error::FieldError;
 pub use expr::algebra::{Gradient, GradientRange, Hessian, Unary};
 pub use expr::blend::{
@@ -26,14 +29,15 @@ pub use expr::blend::{
 pub use expr::form::Form;
 pub use expr::interval::Interval;
 pub use expr::oracle::{Affine, Constant, Oracle};
-pub use expr::primitive::{Binary, Primitive};
+pub use expr::primitive::{Binary, Primitive, twist};
 pub use facet::memo::FacetMemo;
 pub use facet::sheets::{Dot, Mixed, Sheet, Wire, facet_mixed, solid_part};
 pub use facet::shells::Shell;
 pub use facet::types::On;
-pub use facet::{Facets, Options, Resolution, crossing_faces, facet, refacet};
+pub use facet::{Facets, Options, Resolution, Unresolved, crossing_faces, facet, refacet};
+pub use measure::certified::{Certified, Effort, certified};
 pub use measure::implicit_derivatives::{Lifted, Lifter};
-pub use measure::mass::{Mass, bracket, bracket_until, mass};
+pub use measure::mass::{Mass, Measure, bracket, mass, mass_of};
 pub use measure::moments::Moments;
 pub use query::bounds::bounds;
 pub use query::distance::{Distance, distance};
@@ -43,6 +47,7 @@ pub use query::ray_trace::{Light, RayTrace, ray_trace};
 pub use set::{Attributes, Leaf, Membership, Set};
 pub use shapes::faces::{Profile, Round, Sides, faced};
 pub use shapes::{Beside, Inside, Near, NotClosed, Tube};
+pub use text::{TextError, read_fidget, read_libfive};
 
 pub use kinds::body::Pieces;
 pub use kinds::read::{field_value, primitive_of, set_of, set_value};

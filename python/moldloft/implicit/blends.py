@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from moldloft import _core
 from moldloft.implicit.fields import Field, triple
@@ -112,14 +112,32 @@ def _blended(
     return Blend(Set(core), Field(field))
 
 
+@overload
 def fillet(
     l1: Field, l2: Field, width: float, other: float | None = None, *, lam: float = CIRCULAR
-) -> Blend:
+) -> Blend: ...
+@overload
+def fillet(
+    l1: Set, l2: Set | Field, width: float, other: float | None = None, *, lam: float = CIRCULAR
+) -> Set: ...
+def fillet(
+    l1: Field | Set,
+    l2: Field | Set,
+    width: float,
+    other: float | None = None,
+    *,
+    lam: float = CIRCULAR,
+) -> Blend | Set:
     """The union of two bodies with a fillet in their corner, of setback ``width`` on both.
 
     ``lam`` shapes it between 0 (a chamfer) and 1 (the corner). With true distances the widths are
-    lengths.
+    lengths. Of sets see :meth:`Set.filleted`.
     """
+    from moldloft.implicit.sets import Set
+
+    if isinstance(l1, Set) or isinstance(l2, Set):
+        a = l1 if isinstance(l1, Set) else Set(l1)
+        return a.filleted(l2, width, other, lam=lam)
     return _blended("fillet", l1, l2, width, other, lam)
 
 

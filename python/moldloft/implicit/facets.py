@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["Contour", "FacetPatch", "Facets", "Sheet"]
+__all__ = ["Contour", "FacetPatch", "Facets", "Sheet", "Unresolved"]
 
 FORMATS = ("stl", "obj", "ply", "glb", "vtp", "3mf")
 """Formats of facets; wires and points go into obj and vtp only."""
@@ -40,6 +40,20 @@ class FacetPatch:
     """One past its last triangle."""
     sheet: bool
     """True for a piece of surface without an inside."""
+
+
+@dataclass(frozen=True)
+class Unresolved:
+    """A place of which the corners of its cell say nothing."""
+
+    low: Floats
+    """Low corner of a cell, or of a part of one."""
+    high: Floats
+    """Its high corner."""
+    volume: float
+    """How much solid it may hold where the facets have air, or air where they have solid."""
+    missed: bool
+    """True when there is some for sure: a wall or a gap thinner than the cell."""
 
 
 @dataclass(frozen=True)
@@ -195,6 +209,14 @@ class Facets:
         Elsewhere no two triangles meet except where they join.
         """
         return self._core.undecided()
+
+    @cached_property
+    def unresolved(self) -> list[Unresolved]:
+        """Places of which the cells say nothing, or that they miss; elsewhere nothing is missed."""
+        return [
+            Unresolved(np.array(low), np.array(high), volume, missed)
+            for (low, high), volume, missed in self._core.unresolved()
+        ]
 
     @cached_property
     def blunt(self) -> list[tuple[list[float], list[float]]]:

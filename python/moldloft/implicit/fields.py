@@ -37,8 +37,8 @@ def points_of(points: ArrayLike) -> tuple[Floats, tuple[int, ...]]:
 class Field:
     """An implicit function f(x, y, z): solid where negative, zero on the surface, air elsewhere.
 
-    Fields are combined by ``+ - *`` with fields and numbers, ``/`` by a number, ``**`` a whole
-    number and the functions of this module; :func:`abs` gives a sheet. They never change.
+    Fields are combined by ``+ - * / %`` with fields and numbers, ``**`` a whole number and the
+    functions of this module; :func:`abs` gives a sheet. They never change.
 
     Examples
     --------
@@ -130,6 +130,26 @@ class Field:
             raise ValueError(f"the matrix has the shape (3, 3), found {rows.shape}")
         return Field(self._core.mapped(rows.tolist(), triple(shift, "shift")))
 
+    def remapped(self, x: Field, y: Field, z: Field) -> Field:
+        """The field with its coordinates replaced: ``f(x, y, z)`` of three fields.
+
+        >>> from moldloft import implicit as im
+        >>> x, y, z = im.axes()
+        >>> im.sphere((0, 0, 0), 1).remapped(x, y, 2 * z)((0, 0, 0.5))
+        0.0
+        """
+        return Field(self._core.remapped(x._core, y._core, z._core))
+
+    def dumps(self) -> str:
+        """The field as text, from which :func:`loads` makes the same one, bit for bit."""
+        return self._core.to_text()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _from_text, (self.dumps(),)
+
+    def __deepcopy__(self, memo: object) -> Field:
+        return self
+
     def _with(self, other: object, name: str, *, swap: bool = False) -> Any:
         o = _field(other)
         if o is None:
@@ -160,6 +180,9 @@ class Field:
 
     def __rtruediv__(self, other: object) -> Any:
         return self._with(other, "/", swap=True)
+
+    def __mod__(self, other: object) -> Any:
+        return self._with(other, "%")
 
     def __pow__(self, exponent: float) -> Field:
         return Field(self._core.power(float(exponent)))
@@ -311,6 +334,30 @@ def function(
     return Field(_core.Field.user(value, gradient, range, lipschitz))
 
 
+def _from_text(text: str) -> Field:
+    return Field(_core.Field.from_text(text, "moldloft"))
+
+
+def read_fidget(text: str) -> Field:
+    r"""The field of a text of fidget: a line ``name operation operands`` for each value.
+
+    >>> from moldloft import implicit as im
+    >>> im.read_fidget("_0 var-x\n_1 square _0")((3, 0, 0))
+    9.0
+    """
+    return Field(_core.Field.from_text(text, "fidget"))
+
+
+def read_libfive(text: str) -> Field:
+    """The field of a text of libfive: nested lists.
+
+    >>> from moldloft import implicit as im
+    >>> im.read_libfive("(- (sqrt (+ (square x) (square y))) 1)")((3, 4, 0))
+    4.0
+    """
+    return Field(_core.Field.from_text(text, "libfive"))
+
+
 def _unary(name: str, x: Field) -> Field:
     return Field(_required(x)._core.unary(name))
 
@@ -328,6 +375,27 @@ def cos(x: Field) -> Field:
 def exp(x: Field) -> Field:
     """The exponential."""
     return _unary("exp", x)
+
+
+def ln(x: Field) -> Field:
+    """The natural logarithm; it has no value where the field is not above zero."""
+    return _unary("ln", x)
+
+
+def tan(x: Field) -> Field:
+    """The tangent, of radians."""
+    return _unary("tan", x)
+
+
+def twist(rate: float) -> tuple[Field, Field, Field]:
+    """The coordinates of a twist about the z axis, by ``rate`` radians for each unit of z.
+
+    >>> from moldloft import implicit as im
+    >>> drill = im.cuboid((-1, -0.3, 0), (1, 0.3, 4)).remapped(*im.twist(0.8))
+    """
+    x, y, z = axes()
+    c, s = cos(z * float(rate)), sin(z * float(rate))
+    return x * c + y * s, y * c - x * s, z
 
 
 def sqrt(x: Field) -> Field:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,6 +48,8 @@ class Attributes:
     """Material."""
     tolerance: float | None = None
     """Distance below which two points count as one."""
+    tags: Mapping[str, str] = dataclass_field(default_factory=dict)
+    """What else is said, by tag."""
 
 
 @dataclass(frozen=True)
@@ -149,6 +152,15 @@ class Lamp:
 Corners = "tuple[list[float], list[float]] | None"
 
 
+def _whole(value: int | None, what: str, least: int) -> int | None:
+    """A whole number that is not below the least."""
+    if value is None:
+        return None
+    if int(value) != value or not least <= value < 2**31:
+        raise ValueError(f"the {what} is a whole number from {least}, found {value}")
+    return int(value)
+
+
 def _corners(low: Triple | None, high: Triple | None) -> tuple[list[float], list[float]] | None:
     if low is None and high is None:
         return None
@@ -166,7 +178,7 @@ class Set:
     ----------
     of
         A field, whose solid side is meant.
-    name, colour, material, tolerance
+    name, colour, material, tolerance, tags
         Attributes; they reach every triangle.
 
     Examples
@@ -188,13 +200,15 @@ class Set:
         colour: int | None = None,
         material: str | None = None,
         tolerance: float | None = None,
+        tags: Mapping[str, str] | None = None,
     ) -> None:
         core = _core.Set.of_field(of._core) if isinstance(of, Field) else of
         if not isinstance(core, _core.Set):
             raise TypeError(f"a set is made of a field, not of {type(of).__name__}")
         self._core = core
-        if not (name is None and colour is None and material is None and tolerance is None):
-            self._core = self._with(name, colour, material, tolerance)
+        given = (name, colour, material, tolerance, tags)
+        if any(x is not None for x in given):
+            self._core = self._with(name, colour, material, tolerance, tags)
 
     def _with(
         self,
@@ -202,10 +216,12 @@ class Set:
         colour: int | None,
         material: str | None,
         tolerance: float | None,
+        tags: Mapping[str, str] | None,
     ) -> _core.Set:
         if colour is not None and colour not in range(16):
             raise ValueError(f"a palette colour is a whole number from 0 to 15, found {colour}")
-        return self._core.with_attributes(name, colour, material, tolerance)
+        words = {str(k): str(v) for k, v in (tags or {}).items()}
+        return self._core.with_attributes(name, colour, material, tolerance, words)
 
     def with_attributes(
         self,
@@ -214,9 +230,10 @@ class Set:
         colour: int | None = None,
         material: str | None = None,
         tolerance: float | None = None,
+        tags: Mapping[str, str] | None = None,
     ) -> Set:
         """The same set with these attributes; what its parts say of themselves stays."""
-        return Set(self._with(name, colour, material, tolerance))
+        return Set(self._with(name, colour, material, tolerance, tags))
 
     # -- combination -----------------------------------------------------------------------
 
@@ -279,6 +296,100 @@ class Set:
         if rows.shape != (3, 3):
             raise ValueError(f"the matrix has the shape (3, 3), found {rows.shape}")
         return Set(self._core.mapped(rows.tolist(), triple(shift, "shift")))
+
+    def remapped(self, x: Field, y: Field, z: Field) -> Set:
+        """The set with its coordinates replaced by three fields; see :meth:`Field.remapped`."""
+        return Set(self._core.remapped(x._core, y._core, z._core))
+
+    def offset(self, distance: float) -> Set:
+        """The set grown by a distance, or shrunk by a negative one; edges stay sharp.
+
+        >>> from moldloft import implicit as im
+        >>> round(im.cuboid((0, 0, 0), (1, 1, 1)).offset(0.1).mass().volume, 9)
+        1.728
+        """
+        return Set(self._core.offset(float(distance)))
+
+    def shell(self, thickness: float) -> Set:
+        """The wall of that thickness inside of the surface."""
+        return Set(self._core.shell(float(thickness)))
+
+    def rounded(
+        self, width: float, *, lam: float = 2 / 3, edges: Sequence[Sequence[str]] | None = None
+    ) -> Set:
+        """The set with its convex edges rounded, of setback ``width`` on both faces.
+
+        ``edges`` are pairs of the names of faces, by default all; ``lam`` shapes the round between
+        0 (a chamfer) and 1 (the edge), 2/3 is an arc between perpendicular planes.
+        """
+        return Set(self._core.rounded(float(width), float(lam), _pairs(edges)))
+
+    def filleted(
+        self,
+        other: Set | Field,
+        width: float,
+        other_width: float | None = None,
+        *,
+        lam: float = 2 / 3,
+        edges: Sequence[Sequence[str]] | None = None,
+    ) -> Set:
+        """The union with another set, with fillets of setback ``width`` where their faces meet.
+
+        ``edges`` are pairs of the names of a face of this set and one of the other, by default all.
+        The faces are planes, balls, cylinders, cones and tori.
+
+        >>> from moldloft import implicit as im
+        >>> plate, post = im.cuboid((-2, -2, -1), (2, 2, 0)), im.cuboid((-1, -1, -1), (1, 1, 2))
+        >>> round(plate.filleted(post, 0.5).mass().volume - 24, 2) > 0
+        True
+        """
+        o = Set(other) if isinstance(other, Field) else other
+        widths = [float(width), float(width if other_width is None else other_width)]
+        return Set(self._core.filleted(o._core, widths, float(lam), _pairs(edges)))
+
+    def chamfered(self, width: float, *, edges: Sequence[Sequence[str]] | None = None) -> Set:
+        """The set with its convex edges chamfered, of setback ``width`` on both faces.
+
+        >>> from moldloft import implicit as im
+        >>> round(im.cuboid((0, 0, 0), (10, 6, 4)).chamfered(1).mass().volume, 6)
+        206.0
+        """
+        return Set(self._core.rounded(float(width), None, _pairs(edges)))
+
+    # -- kept ------------------------------------------------------------------------------
+
+    def dumps(self) -> str:
+        """The set as text, from which :func:`loads` makes the same one, bit for bit.
+
+        Raises
+        ------
+        Error
+            When a primitive is a function from outside, which has no text.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> ball = im.Set(im.sphere((0, 0, 0), 1), name="ball")
+        >>> im.loads(ball.dumps()).same(ball)
+        True
+        """
+        return self._core.to_text()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes :meth:`dumps` to a file; :func:`load` reads it."""
+        Path(path).write_text(self.dumps(), encoding="utf-8")
+
+    def sdl(self, name: str = "part") -> str:
+        """The set as a program of the language that declares it under ``name``."""
+        if not name.isidentifier():
+            raise ValueError(f"a set is declared under a name, found {name!r}")
+        return self._core.to_sdl(name)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return loads, (self.dumps(),)
+
+    def __deepcopy__(self, memo: object) -> Set:
+        return self
 
     # -- questions -------------------------------------------------------------------------
 
@@ -356,18 +467,47 @@ class Set:
         return None if found is None else (np.array(found[0]), np.array(found[1]))
 
     def mass(
-        self, low: Triple | None = None, high: Triple | None = None, *, depth: int = 6
+        self,
+        low: Triple | None = None,
+        high: Triple | None = None,
+        *,
+        depth: int | None = None,
+        accuracy: float | None = None,
+        cells: int | None = None,
     ) -> Mass:
         """Volume, centroid and inertia within a box, each as a proved bracket and a best value.
+
+        Best values lie inside their brackets, and are those of the language. Parts of any thinness
+        count.
 
         Parameters
         ----------
         low, high
             The box; found around a set that has an end. Its faces cut the set.
         depth
-            How often the box is halved; brackets close by a factor of about 4 with each.
+            How often the box is halved for the brackets; they close by a factor of about 4 with
+            each. By default some thousand cells are divided where the brackets are widest.
+        accuracy
+            Instead: how far the volume may be from its best value, proved.
+        cells
+            The most cells by which the accuracy is sought, by default 400 000.
+
+        Raises
+        ------
+        Error
+            When the accuracy is not reached with that many cells; it says what is.
+
+        Examples
+        --------
+        >>> from moldloft import implicit as im
+        >>> low, high = im.Set(im.sphere((0, 0, 0), 1)).mass(accuracy=0.01).volume_bracket
+        >>> high - low <= 0.02
+        True
         """
-        facts = self._core.mass(_corners(low, high), int(depth))
+        if depth is not None and accuracy is not None:
+            raise ValueError("give a depth or an accuracy, not both")
+        depth = _whole(depth, "depth", 0)
+        facts = self._core.mass(_corners(low, high), depth, accuracy, _whole(cells, "cells", 1))
         return Mass(
             volume=facts["volume"],
             volume_bracket=facts["volume_bracket"],
@@ -456,6 +596,7 @@ class Set:
         """
         if depth is not None and accuracy is not None:
             raise ValueError("give a depth or an accuracy, not both")
+        depth = _whole(depth, "depth", 0)
         old = None if before is None else before._core
         core = self._core.facets(_corners(low, high), depth, accuracy, float(limit), old)
         return Facets(core)
@@ -555,6 +696,27 @@ class Set:
             return "<empty set>"
         count = self._core.contents
         return f"<set of {count} primitive{'s' if count != 1 else ''}>"
+
+
+def _pairs(edges: Sequence[Sequence[str]] | None) -> list[list[str]] | None:
+    """Edges by the names of two faces each."""
+    if edges is None:
+        return None
+    pairs = [[str(name) for name in edge] for edge in edges]
+    for pair in pairs:
+        if len(pair) != 2:
+            raise ValueError(f"an edge is named by two faces, found {len(pair)}")
+    return pairs
+
+
+def loads(text: str) -> Set:
+    """The set of a text that :meth:`Set.dumps` made."""
+    return Set(_core.Set.from_text(text))
+
+
+def load(path: str | os.PathLike[str]) -> Set:
+    """The set of a file that :meth:`Set.save` wrote."""
+    return loads(Path(path).read_text(encoding="utf-8"))
 
 
 def everything() -> Set:

@@ -24,6 +24,12 @@ pub enum Unary {
     Cos,
     /// Exponential.
     Exp,
+    /// Natural logarithm; it has no value where x is not above 0.
+    Ln,
+    /// Tangent; it has poles.
+    Tan,
+    /// 1 / x; it has a pole at 0.
+    Reciprocal,
 }
 
 impl Unary {
@@ -53,6 +59,9 @@ impl Unary {
             Unary::Sin => x.sin(),
             Unary::Cos => x.cos(),
             Unary::Exp => x.exp(),
+            Unary::Ln => x.ln(),
+            Unary::Tan => x.tan(),
+            Unary::Reciprocal => T::one() / x,
         }
     }
 
@@ -77,6 +86,15 @@ impl Unary {
             Unary::Sin => (f, x.cos(), -f),
             Unary::Cos => (f, -x.sin(), -f),
             Unary::Exp => (f, f, f),
+            Unary::Ln => {
+                let d = one / x;
+                (f, d, -(d * d))
+            }
+            Unary::Tan => {
+                let d = f * f + one;
+                (f, d, f * d * 2.0)
+            }
+            Unary::Reciprocal => (f, -(f * f), f * f * f * 2.0),
         }
     }
 
@@ -94,6 +112,9 @@ impl Unary {
             Unary::Sin => x.sin(),
             Unary::Cos => x.cos(),
             Unary::Exp => x.exp(),
+            Unary::Ln => x.ln(),
+            Unary::Tan => x.tan(),
+            Unary::Reciprocal => x.reciprocal(),
         }
     }
 
@@ -118,6 +139,34 @@ impl Unary {
             Unary::Sin => x.cos(),
             Unary::Cos => -x.sin(),
             Unary::Exp => x.exp(),
+            Unary::Ln => x.reciprocal_above_zero(),
+            Unary::Tan => x.tan().square().plus_real(1.0),
+            Unary::Reciprocal => -x.reciprocal().square(),
+        }
+    }
+
+    /// A range of the second derivative; everything where the slope jumps or is unbounded.
+    pub(crate) fn curvature(self, x: Interval) -> Interval {
+        let smooth = x.low > 0.0 || x.high < 0.0;
+        match self {
+            Unary::Neg => Interval::ZERO,
+            Unary::Abs | Unary::Sign if smooth => Interval::ZERO,
+            Unary::Sqrt if x.high < 0.0 => Interval::ZERO,
+            // -+ 1 / (4 |x| sqrt |x|)
+            Unary::Sqrt | Unary::SignedSqrt if smooth => {
+                let bend = (x.abs() * x.abs().sqrt()).scaled(4.0).reciprocal();
+                if x.low > 0.0 { -bend } else { bend }
+            }
+            Unary::Abs | Unary::Sign | Unary::Sqrt | Unary::SignedSqrt => Interval::ENTIRE,
+            Unary::Sin => -x.sin(),
+            Unary::Cos => -x.cos(),
+            Unary::Exp => x.exp(),
+            Unary::Ln => -x.reciprocal_above_zero().square(),
+            Unary::Tan => {
+                let t = x.tan();
+                (t * t.square().plus_real(1.0)).scaled(2.0)
+            }
+            Unary::Reciprocal => x.reciprocal().powi(3).scaled(2.0),
         }
     }
 }
@@ -144,6 +193,14 @@ pub(crate) trait Algebra<T: Real>: Copy {
     fn smaller(self, o: Self) -> Self;
     fn larger(self, o: Self) -> Self;
     fn angle(self, x: Self) -> Self;
+    fn quotient(self, o: Self) -> Self;
+    /// x - y floor(x / y).
+    fn remainder(self, o: Self) -> Self;
+}
+
+/// x - y floor(x / y), of the sign of y.
+pub(crate) fn remainder<T: Real>(x: T, y: T) -> T {
+    x - y * (x.re() / y.re()).floor()
 }
 
 /// x^n by squaring; the same order of multiplications for every scalar.
@@ -211,6 +268,13 @@ impl<T: Real> Algebra<T> for T {
     }
     fn angle(self, x: Self) -> Self {
         self.atan2(x)
+    }
+    #[inline(always)]
+    fn quotient(self, o: Self) -> Self {
+        self / o
+    }
+    fn remainder(self, o: Self) -> Self {
+        remainder(self, o)
     }
 }
 
@@ -303,6 +367,15 @@ impl<T: Real> Algebra<T> for Gradient<T> {
             Vec3::zero()
         };
         Self { value: y.atan2(x0), slope }
+    }
+    #[inline(always)]
+    fn quotient(self, o: Self) -> Self {
+        let value = self.value / o.value;
+        Self { value, slope: (self.slope - o.slope * value) / o.value }
+    }
+    fn remainder(self, o: Self) -> Self {
+        let turns = (self.value.re() / o.value.re()).floor();
+        Self { value: remainder(self.value, o.value), slope: self.slope - o.slope * T::from(turns) }
     }
 }
 
@@ -411,6 +484,19 @@ impl<T: Real> Algebra<T> for Hessian<T> {
         });
         Self { value: y0.atan2(x0), slope: gy * yx + gx * yy, second }
     }
+    fn quotient(self, o: Self) -> Self {
+        let value = self.value / o.value;
+        let inverse = o.unary(Unary::Reciprocal);
+        Self { value, ..self.times(inverse) }
+    }
+    fn remainder(self, o: Self) -> Self {
+        let turns = T::from((self.value.re() / o.value.re()).floor());
+        Self {
+            value: remainder(self.value, o.value),
+            slope: self.slope - o.slope * turns,
+            second: [0, 1, 2].map(|k| self.second[k] - o.second[k] * turns),
+        }
+    }
 }
 
 impl Algebra<f64> for Interval {
@@ -480,6 +566,12 @@ impl Algebra<f64> for Interval {
     }
     fn angle(self, x: Self) -> Self {
         self.atan2(x)
+    }
+    fn quotient(self, o: Self) -> Self {
+        if o.low == o.high && o.low != 0.0 { self.divided(o.low) } else { self * o.reciprocal() }
+    }
+    fn remainder(self, o: Self) -> Self {
+        Interval::remainder(self, o)
     }
 }
 
@@ -581,6 +673,18 @@ impl Algebra<f64> for GradientRange {
                 (self.slope[k] * x.value - x.slope[k] * self.value) * size
             }
         });
+        Self { value, slope }
+    }
+    fn quotient(self, o: Self) -> Self {
+        let inverse = o.unary(Unary::Reciprocal);
+        Self { value: Algebra::quotient(self.value, o.value), ..self.times(inverse) }
+    }
+    fn remainder(self, o: Self) -> Self {
+        let value = Interval::remainder(self.value, o.value);
+        let slope = match Interval::turns(self.value, o.value) {
+            Some(n) => [0, 1, 2].map(|k| self.slope[k] - o.slope[k].scaled(n)),
+            None => [Interval::ENTIRE; 3],
+        };
         Self { value, slope }
     }
 }

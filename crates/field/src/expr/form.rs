@@ -214,6 +214,30 @@ impl<T: Real> Primitive<T> {
         Ok(f.remembered(Form::Torus { axis, major, minor }))
     }
 
+    /// The torus as a true distance, sqrt(h^2 + (sqrt(p^2 + q^2) - R)^2) - r.
+    ///
+    /// # Errors
+    /// As [`Primitive::torus`].
+    pub fn torus_distance(axis: Axis<T>, major: T, minor: T) -> Result<Self, FieldError> {
+        let (major, minor) = (positive("major radius", major)?, positive("minor radius", minor)?);
+        let [p, q, h] = cylindrical(&axis, None)?;
+        let ring = (p.power(2) + q.power(2)).sqrt() - major;
+        let f = (h.power(2) + ring.power(2)).sqrt() - minor;
+        Ok(f.remembered(Form::Torus { axis, major, minor }))
+    }
+
+    /// The double cone as a true distance, sqrt(p^2 + q^2) cos(a/2) - |h| sin(a/2).
+    ///
+    /// # Errors
+    /// As [`Primitive::cone`].
+    pub fn cone_distance(axis: Axis<T>, angle: T) -> Result<Self, FieldError> {
+        let form = Self::cone(axis, angle)?.form().clone();
+        let [p, q, h] = cylindrical(&axis, None)?;
+        let half = angle * 0.5;
+        let f = (p.power(2) + q.power(2)).sqrt() * half.cos() - h.abs() * half.sin();
+        Ok(f.remembered(form))
+    }
+
     /// The Dupin cyclide (p^2 + q^2 + h^2 + b^2 - m^2)^2 = (2 a p - 2 c m)^2 + 4 b^2 q^2 with
     /// b^2 = a^2 - c^2 (Forsyth 1912; Chandru, Dutta, Hoffmann 1989, eq. 2).
     ///

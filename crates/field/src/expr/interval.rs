@@ -49,6 +49,9 @@ impl Interval {
     /// Moves both ends outward by one rounding error.
     #[inline(always)]
     fn outward(low: f64, high: f64) -> Self {
+        // A low end beyond the largest number is at least that, and likewise a high one.
+        let low = if low > f64::MAX { f64::MAX } else { low };
+        let high = if high < f64::MIN { f64::MIN } else { high };
         Self { low: low - ulp(low), high: high + ulp(high) }
     }
 
@@ -217,6 +220,60 @@ impl Interval {
         let low = angles.into_iter().fold(f64::INFINITY, f64::min);
         let high = angles.into_iter().fold(f64::NEG_INFINITY, f64::max);
         Self { low: low - 2.0 * ulp(low), high: high + 2.0 * ulp(high) }
+    }
+
+    /// Natural logarithms; numbers that are not above zero have none.
+    pub fn ln(self) -> Self {
+        if self.high <= 0.0 {
+            return Self::ENTIRE;
+        }
+        let end = |x: f64| if x > 0.0 { libm::log(x) } else { f64::NEG_INFINITY };
+        let (a, b) = (end(self.low), end(self.high));
+        Self { low: a - 2.0 * ulp(a), high: b + 2.0 * ulp(b) }
+    }
+
+    /// Tangents; everything when a pole lies inside.
+    pub fn tan(self) -> Self {
+        // Poles are counted too often rather than too seldom, as extremes of the cosine are.
+        let turn = |x: f64| ((x - FRAC_PI_2) / PI).floor();
+        let margin = 1e-6;
+        let clear = self.magnitude() < 1e9 && turn(self.low - margin) == turn(self.high + margin);
+        if clear { self.growing(libm::tan) } else { Self::ENTIRE }
+    }
+
+    /// The whole quotient of all numbers by all numbers of `o`, rounded down, when there is one.
+    pub(crate) fn turns(self, o: Self) -> Option<f64> {
+        if o.low <= 0.0 && o.high >= 0.0 {
+            return None;
+        }
+        let ratio = self * o.reciprocal();
+        let n = ratio.low.floor();
+        (ratio.low.is_finite() && n == ratio.high.floor()).then_some(n)
+    }
+
+    /// x - y floor(x / y).
+    pub fn remainder(self, o: Self) -> Self {
+        if o.low <= 0.0 && o.high >= 0.0 {
+            return Self::ENTIRE;
+        }
+        match self.turns(o) {
+            Some(n) => self - o.scaled(n),
+            None => {
+                let (low, high) = (o.low.min(0.0), o.high.max(0.0));
+                Self { low: low - ulp(low), high: high + ulp(high) }
+            }
+        }
+    }
+
+    /// The reciprocals of the positive numbers in it.
+    pub(crate) fn reciprocal_above_zero(self) -> Self {
+        if self.low > 0.0 {
+            self.reciprocal()
+        } else if self.high > 0.0 {
+            Self { low: (1.0 / self.high) * (1.0 - f64::EPSILON), high: f64::INFINITY }
+        } else {
+            Self::ENTIRE
+        }
     }
 
     /// The reciprocals; everything when zero lies inside.

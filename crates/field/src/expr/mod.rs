@@ -9,5 +9,6 @@ pub(crate) mod form;
 pub(crate) mod interval;
 pub(crate) mod oracle;
 pub(crate) mod primitive;
+pub(crate) mod second_order;
 pub(crate) mod tape;
 mod transform;

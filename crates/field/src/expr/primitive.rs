@@ -25,6 +25,10 @@ pub enum Binary {
     Max,
     /// The angle of the point (second, first).
     Atan2,
+    /// Quotient.
+    Div,
+    /// The remainder x - y floor(x / y).
+    Mod,
 }
 
 /// How a primitive is made.
@@ -213,6 +217,8 @@ impl<T: Real> Primitive<T> {
                 Binary::Min => a.min(b),
                 Binary::Max => a.max(b),
                 Binary::Atan2 => a.atan2(b),
+                Binary::Div => a / b,
+                Binary::Mod => crate::expr::algebra::remainder(a, b),
             });
         }
         let line = |p: &Self| p.as_plane().or_else(|| Some((Vec3::zero(), p.as_real()?)));
@@ -258,6 +264,14 @@ impl<T: Real> Primitive<T> {
     pub fn exp(&self) -> Self {
         self.unary(Unary::Exp)
     }
+    /// Natural logarithm: without a value where it is not above zero.
+    pub fn ln(&self) -> Self {
+        self.unary(Unary::Ln)
+    }
+    /// Tangent, of radians.
+    pub fn tan(&self) -> Self {
+        self.unary(Unary::Tan)
+    }
     /// The smaller of two.
     pub fn min(&self, o: &Self) -> Self {
         self.binary(Binary::Min, o)
@@ -293,15 +307,59 @@ impl<T: Real> Primitive<T> {
         }
     }
 
-    /// The quotient by a constant primitive.
+    /// The quotient. Where the divisor is zero it has a pole; facets that come upon one are refused with the place.
     ///
     /// # Errors
-    /// [`FieldError::Division`] when the divisor is not constant, or is zero.
+    /// [`FieldError::Division`] when the divisor is zero everywhere.
     pub fn over(&self, divisor: &Self) -> Result<Self, FieldError> {
         match divisor.as_real() {
             Some(c) if c.re() != 0.0 && c.is_finite() => Ok(self / c),
-            _ => Err(FieldError::Division),
+            Some(_) => Err(FieldError::Division),
+            None => Ok(self.binary(Binary::Div, divisor)),
         }
+    }
+
+    /// The remainder x - y floor(x / y): x repeated with the period y.
+    ///
+    /// # Errors
+    /// [`FieldError::Division`] when the divisor is zero everywhere.
+    pub fn remainder(&self, divisor: &Self) -> Result<Self, FieldError> {
+        match divisor.as_real() {
+            Some(c) if c.re() == 0.0 || !c.is_finite() => Err(FieldError::Division),
+            _ => Ok(self.binary(Binary::Mod, divisor)),
+        }
+    }
+
+    /// The primitive with its coordinates replaced: f(x', y', z') of three primitives.
+    ///
+    /// A twist, a bend, a taper or a repetition is such a replacement; its inverse moves the solid.
+    pub fn remapped(&self, coordinates: &[Self; 3]) -> Self {
+        let [x, y, z] = coordinates;
+        self.rebuilt(
+            &|c| c,
+            &|op| match op {
+                Op::Plane { normal, offset } => {
+                    let term = |n: T, p: &Self| (n.re() != 0.0 || !n.is_constant()).then(|| p * n);
+                    let terms = [term(normal.x, x), term(normal.y, y), term(normal.z, z)];
+                    let sum = terms.into_iter().flatten().reduce(|a, b| a + b);
+                    sum.unwrap_or_else(|| Self::real(T::zero())) + *offset
+                }
+                Op::User { oracle, map } => {
+                    let inner = super::oracle::Remapped {
+                        oracle: oracle.clone(),
+                        map: *map,
+                        coordinates: coordinates.clone(),
+                    };
+                    Self::user(Arc::new(inner))
+                }
+                Op::Real(c) => Self::real(*c),
+                _ => unreachable!("leaves only"),
+            },
+            &|form| match form {
+                Form::Real(_) => form.clone(),
+                _ => Form::General,
+            },
+        )
     }
 
     /// What it was made as.
@@ -355,6 +413,21 @@ impl<T: Real> Primitive<T> {
             },
             _ => self,
         }
+    }
+
+    /// What tells its node from every other one while it lives.
+    pub(crate) fn identity(&self) -> usize {
+        Arc::as_ptr(&self.0) as usize
+    }
+
+    /// How it is made.
+    pub(crate) fn operation(&self) -> &Op<T> {
+        &self.0.op
+    }
+
+    /// Its value, when it is a constant.
+    pub fn constant_value(&self) -> Option<f64> {
+        self.as_real().map(T::re)
     }
 
     /// True when no point changes its value.
@@ -412,6 +485,13 @@ impl<T: Real> Primitive<T> {
             &|form| form.re(),
         )
     }
+}
+
+/// The coordinates of a twist about the z axis by `rate` radians for each unit of z.
+pub fn twist<T: Real>(rate: T) -> [Primitive<T>; 3] {
+    let [x, y, z] = Primitive::axes();
+    let (cos, sin) = ((&z * rate).cos(), (&z * rate).sin());
+    [&x * &cos + &y * &sin, &y * &cos - &x * &sin, z]
 }
 
 impl Primitive<f64> {

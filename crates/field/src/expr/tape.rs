@@ -33,6 +33,8 @@ pub(crate) enum Code<T> {
     Min(u32, u32),
     Max(u32, u32),
     Atan2(u32, u32),
+    Div(u32, u32),
+    Mod(u32, u32),
     /// A minimum of which only the sign and, near zero, the value matter: a union of sets.
     Union(u32, u32),
     /// Likewise a maximum: an intersection of sets.
@@ -141,6 +143,8 @@ impl<T: Real> Builder<T> {
                         (Binary::Min, ..) => Code::Min(i, j),
                         (Binary::Max, ..) => Code::Max(i, j),
                         (Binary::Atan2, ..) => Code::Atan2(i, j),
+                        (Binary::Div, ..) => Code::Div(i, j),
+                        (Binary::Mod, ..) => Code::Mod(i, j),
                     }
                 }
             };
@@ -186,6 +190,8 @@ fn key<T: Real>(code: &Code<T>) -> Option<NumberKey> {
         Code::Atan2(a, b) => (12, a, b, [0; 4]),
         Code::Union(a, b) => (13, a, b, [0; 4]),
         Code::Common(a, b) => (14, a, b, [0; 4]),
+        Code::Div(a, b) => (15, a, b, [0; 4]),
+        Code::Mod(a, b) => (16, a, b, [0; 4]),
     })
 }
 
@@ -205,6 +211,8 @@ impl<T> Code<T> {
             | Code::Max(a, b)
             | Code::Union(a, b)
             | Code::Common(a, b)
+            | Code::Div(a, b)
+            | Code::Mod(a, b)
             | Code::Atan2(a, b) => [Some(a), Some(b)],
         }
     }
@@ -234,6 +242,8 @@ impl<T> Code<T> {
             | Code::Max(a, b)
             | Code::Union(a, b)
             | Code::Common(a, b)
+            | Code::Div(a, b)
+            | Code::Mod(a, b)
             | Code::Atan2(a, b) => {
                 *a = of(*a);
                 *b = of(*b);
@@ -365,6 +375,8 @@ impl<T: Real> Tape<T> {
             Code::Min(a, b) | Code::Union(a, b) => of(a).smaller(of(b)),
             Code::Max(a, b) | Code::Common(a, b) => of(a).larger(of(b)),
             Code::Atan2(a, b) => of(a).angle(of(b)),
+            Code::Div(a, b) => of(a).quotient(of(b)),
+            Code::Mod(a, b) => of(a).remainder(of(b)),
         }
     }
 
@@ -601,6 +613,8 @@ impl Tape<f64> {
             Code::Max(a, b) | Code::Common(a, b) => {
                 two(out, of(a), of(b), |a, b| if b > a { b } else { a })
             }
+            Code::Div(a, b) => two(out, of(a), of(b), |a, b| a / b),
+            Code::Mod(a, b) => two(out, of(a), of(b), |a, b| crate::expr::algebra::remainder(a, b)),
             Code::Atan2(a, b) => {
                 for ((o, a), b) in out[..count].iter_mut().zip(of(a)).zip(of(b)) {
                     *o = libm::atan2(*a, *b);

@@ -4,14 +4,17 @@ use super::cell::{case, face_edges, start_corner};
 use super::grid::Grid;
 use super::place_vertices::{PieceVertices, Placement};
 use super::types::{Block, Crossing, Ring, SIDE, Several, Vertex, cell_index};
+use super::unresolved::Quiet;
 use super::vertex::{Placed, Solver, Surfaces};
 use crate::expr::tape::{Room, Tape};
+use crate::measure::taylor::TaylorRoom;
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
+use std::sync::Arc;
 
 /// Corners along a side.
-const CORNERS: usize = SIDE + 1;
+pub(super) const CORNERS: usize = SIDE + 1;
 
 fn corner_index(c: [usize; 3]) -> usize {
     (c[0] * CORNERS + c[1]) * CORNERS + c[2]
@@ -25,19 +28,20 @@ pub(super) struct Scratch {
     room: Room,
     registers: Vec<f64>,
     solver: Solver,
+    taylor: TaylorRoom,
 }
 
 /// Computes the block; the point where the set has no value is the error.
 pub(super) fn compute(
     grid: &Grid,
     at: [u32; 3],
-    tape: &Tape<f64>,
+    tape: &Arc<Tape<f64>>,
     leaves: &[Leaf],
     scratch: &mut Scratch,
 ) -> Result<Block, Vec3> {
     let base = at.map(|b| b as usize * SIDE);
     let corner = |c: [usize; 3]| grid.corner([0, 1, 2].map(|k| base[k] + c[k]));
-    let Scratch { points, values, room, registers, solver } = scratch;
+    let Scratch { points, values, room, registers, solver, taylor } = scratch;
     points.clear();
     for i in 0..CORNERS {
         for j in 0..CORNERS {
@@ -90,7 +94,14 @@ pub(super) fn compute(
         splits: Vec::new(),
         crossings: Vec::new(),
         active: 0,
+        unresolved: Vec::new(),
     };
+    // Primitives from outside know too little of themselves.
+    if !tape.has_users() {
+        let corner = |c: [usize; 3]| corner(c).to_array();
+        let quiet = Quiet { tape, values: &*values, corner: &corner, step: grid.step };
+        block.unresolved = quiet.unresolved(taylor);
+    }
     if crossings.is_empty() {
         return Ok(block);
     }

@@ -56,6 +56,11 @@ impl Grid {
         [0, 1, 2].map(|k| Interval { low: a[k], high: b[k] })
     }
 
+    /// The block that a point lies in.
+    pub(super) fn block_of(&self, p: Vec3) -> [u32; 3] {
+        [0, 1, 2].map(|k| ((p[k] - self.origin[k]) / (self.step * SIDE as f64)).max(0.0) as u32)
+    }
+
     /// The box of a cell.
     pub(super) fn cell(&self, at: [usize; 3]) -> Box3 {
         Box3 { low: self.corner(at), high: self.corner(at.map(|x| x + 1)) }

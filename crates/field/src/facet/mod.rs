@@ -12,6 +12,7 @@
 mod assemble;
 mod block;
 mod cell;
+mod contacts;
 mod crossing;
 mod divide;
 mod grid;
@@ -25,6 +26,7 @@ pub(crate) mod shells;
 mod simplify;
 mod split;
 pub(crate) mod types;
+mod unresolved;
 pub(crate) mod vertex;
 
 use crate::error::solid_box;
@@ -36,12 +38,13 @@ pub use crossing::crossing_faces;
 use grid::Grid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
-use refine::{Rule, refine};
+use refine::{Rule, Tapes, refine};
 use smallvec::SmallVec;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use types::Block;
 use types::Reuse;
-pub use types::{Options, Resolution};
+pub use types::{Options, Resolution, Unresolved};
 
 /// The boundary of a set within a box.
 #[derive(Clone, Debug)]
@@ -62,6 +65,12 @@ pub struct Facets {
     /// Cells with an edge or corner that no vertex lies on or within a hundredth of a cell, so that it is cut off there: it is thinner than a
     /// cell, or its vertices would have made triangles cut each other.
     pub blunt: Vec<Box3>,
+    /// Cells, or parts of them, that may hold what their corners do not show, by place. Elsewhere nothing is missed.
+    pub unresolved: Vec<Unresolved>,
+    /// Where bodies that share no volume touch, and were made by themselves.
+    pub contacts: Vec<Vec3>,
+    /// The point about which moments are taken: the middle of the box.
+    pub(crate) about: Vec3,
     /// How many cells the surface passes through.
     pub cells: usize,
     /// Side of a cell.
@@ -178,21 +187,44 @@ pub(crate) fn facet_within(
             let part = 2f64.powi(LEVEL_OF_SIDE - level.min(1000) as i32);
             let step = step_of(level).min(shortest(&over).1 * part.min(1.0));
             check(step)?;
-            at_step(set, &over, step, f64::INFINITY, options, before)
+            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            // Integrals have their own means for what is thin.
+            if options.sharp {
+                return Ok(facets);
+            }
+            Ok(whole(set, &over, facets, USUAL_CELLS.min(options.limit), options)?.facets)
         }
         Resolution::Depth(depth) => {
             let step = step_of(depth);
             check(step)?;
             thin(step)?;
-            at_step(set, &over, step, f64::INFINITY, options, before)
+            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            // The cells are as asked; bodies that only touch are parted all the same.
+            if options.sharp {
+                return Ok(facets);
+            }
+            Ok(whole(set, &over, facets, 0.0, options)?.facets)
         }
         Resolution::Accuracy(accuracy) => {
             crate::error::positive("accuracy", accuracy)?;
             let mut step = step_of(least_depth(size, &over).max(4));
             check(step)?;
+            // First fine enough that nothing is missed.
+            let facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+            let most = MOST_CELLS.min(options.limit);
+            let found = whole(set, &over, facets, most, options)?;
+            let mut facets = found.facets.clone();
+            step = facets.step;
+            let side = |b: &Box3| (0..3).map(|k| b.high[k] - b.low[k]).fold(0.0, f64::max);
+            let larger = facets.unresolved.iter().find(|u| side(&u.place) > accuracy);
+            if let (false, Some(u)) = (found.all, larger) {
+                let thickness = u.volume / side(&u.place).powi(2);
+                let depth = (size / thickness.min(0.5 * step)).log2().ceil() as u32 + 1;
+                let place = u.place;
+                return Err(FieldError::Thin { place, step, depth });
+            }
             // The error is of second order, so one estimate nearly hits; a few correct it. The few triangles
             // that are worse than the others then are divided edge by edge.
-            let mut facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
             for _ in 0..8 {
                 let mut all = facets.centre_distances();
                 all.sort_by(f64::total_cmp);
@@ -204,7 +236,7 @@ pub(crate) fn facet_within(
                     break;
                 }
                 if most <= accuracy {
-                    facets = at_step(set, &over, step, accuracy, options, Some(&facets))?;
+                    facets = found.again(set, &over, (step, accuracy), options, Some(&facets))?;
                     if facets.worst_centre() <= accuracy {
                         break;
                     }
@@ -214,10 +246,82 @@ pub(crate) fn facet_within(
                 if boxes > options.limit {
                     return Err(FieldError::TooFine { boxes, limit: options.limit });
                 }
-                facets = at_step(set, &over, step, f64::INFINITY, options, before)?;
+                facets = found.again(set, &over, (step, f64::INFINITY), options, before)?;
             }
             Ok(facets)
         }
+    }
+}
+
+/// How many cells are taken, unless asked otherwise, for the sake of what is thin; and at most when an accuracy is asked.
+const USUAL_CELLS: f64 = 4e5;
+const MOST_CELLS: f64 = 3e6;
+
+/// What is missed matters to the eye, and is worth finer cells unasked, if it is this part of the body.
+const MATTERS: f64 = 1e-5;
+
+/// Facets that miss nothing, with the sets that they are made of where these only touch.
+struct Whole {
+    facets: Facets,
+    /// False when more cells would have been needed than allowed.
+    all: bool,
+    parted: Option<(Vec<Set>, Vec<Vec3>)>,
+}
+
+impl Whole {
+    fn again(
+        &self,
+        set: &Set,
+        over: &Box3,
+        (step, accuracy): (f64, f64),
+        options: &Options,
+        before: Option<&Facets>,
+    ) -> Result<Facets, FieldError> {
+        match &self.parted {
+            Some((sets, contacts)) => {
+                contacts::together(sets, contacts, over, step, accuracy, options)
+            }
+            None => at_step(set, over, step, accuracy, options, before),
+        }
+    }
+}
+
+/// The facets with bodies that only touch apart, and with cells halved until nothing is missed.
+fn whole(
+    set: &Set,
+    over: &Box3,
+    facets: Facets,
+    most: f64,
+    options: &Options,
+) -> Result<Whole, FieldError> {
+    let mut found = Whole { facets, all: true, parted: None };
+    let mut asked = false;
+    loop {
+        let missed = found.facets.unresolved.iter().filter(|u| u.missed);
+        let (count, volume) = missed.fold((0, 0.0), |(n, v), u| (n + 1, v + u.volume));
+        if count == 0 {
+            return Ok(found);
+        }
+        if !asked {
+            asked = true;
+            let never = AtomicBool::new(false);
+            let cancel = options.cancel.as_deref().unwrap_or(&never);
+            found.parted = contacts::parted(set, over, cancel)?;
+            if found.parted.is_some() {
+                let step = found.facets.step;
+                found.facets = found.again(set, over, (step, f64::INFINITY), options, None)?;
+                continue;
+            }
+        }
+        let body = moldloft_mesh::measure(&found.facets.mesh).volume.abs();
+        let matters = most > USUAL_CELLS || volume > MATTERS * body;
+        // Halved cells of a surface are four times as many.
+        if !matters || 4.0 * (found.facets.cells + count) as f64 > most {
+            found.all = false;
+            return Ok(found);
+        }
+        let step = 0.5 * found.facets.step;
+        found.facets = found.again(set, over, (step, f64::INFINITY), options, None)?;
     }
 }
 
@@ -253,7 +357,10 @@ fn at_step(
     let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
     let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let rule = Rule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
-    refine(&mut made, &leaves, &compiled.tape, rule);
+    let tapes = Tapes::new(&grid, &divided.blocks, &compiled.tape);
+    refine(&mut made, &leaves, &tapes, rule);
+    let open = divided.blocks.iter().flat_map(|b| b.1.unresolved.iter().copied()).collect();
+    let unresolved = unresolved::not_shown(open, &made.positions, &made.triangles, step);
 
     let mut builder = TopologyBuilder::new();
     let broken =
@@ -285,6 +392,9 @@ fn at_step(
         surfaces: made.surfaces,
         undecided,
         blunt,
+        unresolved,
+        contacts: Vec::new(),
+        about: over.centre(),
         cells: divided.blocks.iter().map(|(_, b)| b.active).sum(),
         step,
         blocks: divided.blocks.len(),

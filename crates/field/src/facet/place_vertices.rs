@@ -5,6 +5,7 @@ use super::cell::faces_of;
 use super::split::split;
 use super::types::{Crossing, Ring, Split};
 use super::vertex::{Placed, Solver, Surfaces};
+use crate::expr::form::Form;
 use crate::expr::tape::{NO_LEAF, Tape};
 use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
@@ -73,6 +74,10 @@ impl Placement<'_> {
                 }
             }
         }
+        // The tip of a cone is a vertex.
+        if let Some(apex) = self.apex(&surfaces) {
+            placed = Placed { point: apex, residual: 0.0, strayed: false };
+        }
         // A primitive without a crossing of its own may still cut the vertex off: an edge or corner
         // that only pokes into the cell.
         while surfaces.len() < 3 && placed.residual <= self.goal {
@@ -87,6 +92,17 @@ impl Placement<'_> {
             (placed, surfaces) = (Placed { strayed: placed.strayed, ..other }, more);
         }
         PieceVertices::One { placed, surfaces, blunt: false }
+    }
+
+    /// The apex of the cone that a piece of surface shows, if it is in the cell and on the set's surface.
+    fn apex(&mut self, surfaces: &[u32]) -> Option<Vec3> {
+        let [leaf] = surfaces else { return None };
+        let Form::Cone { axis, .. } = self.leaves[*leaf as usize].primitive.form() else {
+            return None;
+        };
+        let (p, cell) = (axis.point, self.cell);
+        let within = (0..3).all(|k| cell.low[k] <= p[k] && p[k] <= cell.high[k]);
+        (within && self.blocking_leaf(p, surfaces).is_none()).then_some(p)
     }
 
     /// True when a point is further from one of the surfaces than may go unsaid.

@@ -8,6 +8,8 @@
 
 use super::assemble::Assembled;
 use super::crossing::crossings;
+use super::grid::Grid;
+use super::types::Block;
 use super::vertex::{Solver, Surfaces};
 use crate::expr::tape::Tape;
 use crate::set::Leaf;
@@ -15,6 +17,7 @@ use moldloft_num::{Box3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
+use std::sync::Arc;
 
 /// When an edge is divided.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +47,27 @@ const FACING: f64 = 0.2;
 const THIN: f64 = 0.05;
 /// A diagonal is turned when the squares of distances fall below this part.
 const GAIN: f64 = 0.9;
+
+/// The set as it is near a point: the whole one costs as much as it has primitives.
+pub(super) struct Tapes<'a> {
+    grid: &'a Grid,
+    at: FxHashMap<[u32; 3], &'a Tape<f64>>,
+    whole: &'a Tape<f64>,
+}
+
+impl<'a> Tapes<'a> {
+    pub(super) fn new(
+        grid: &'a Grid,
+        blocks: &'a [(Arc<Tape<f64>>, Arc<Block>)],
+        whole: &'a Tape<f64>,
+    ) -> Self {
+        Self { grid, at: blocks.iter().map(|(tape, b)| (b.at, &**tape)).collect(), whole }
+    }
+
+    fn at(&self, p: Vec3) -> &Tape<f64> {
+        self.at.get(&self.grid.block_of(p)).copied().unwrap_or(self.whole)
+    }
+}
 
 type Corner = [u32; 3];
 /// Unit normals, one for each of a vertex's surfaces.
@@ -77,7 +101,7 @@ fn key(a: u32, b: u32) -> (u32, u32) {
 struct Work<'a> {
     rule: Rule,
     leaves: &'a [Leaf],
-    tape: &'a Tape<f64>,
+    tapes: &'a Tapes<'a>,
     positions: Vec<Vec3>,
     surfaces: Vec<Surfaces>,
     normals: Vec<Normals>,
@@ -204,7 +228,9 @@ impl Work<'_> {
         let point = placed.point;
         // Another primitive may cut the place off.
         let slope = self.solver.gradient(self.leaves[on[0] as usize].primitive.tape(), point).slope;
-        if self.solver.value(self.tape, point).abs() > 10.0 * self.rule.goal * slope.norm() {
+        if self.solver.value(self.tapes.at(point), point).abs()
+            > 10.0 * self.rule.goal * slope.norm()
+        {
             return false;
         }
         let found: Normals =
@@ -333,12 +359,12 @@ impl Work<'_> {
 }
 
 /// Divides the edges that want it. Where that makes triangles cut others, all is left as it was.
-pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tape: &Tape<f64>, rule: Rule) {
+pub(super) fn refine(made: &mut Assembled, leaves: &[Leaf], tapes: &Tapes, rule: Rule) {
     let normals = normals(&made.positions, &made.surfaces, leaves);
     let mut work = Work {
         rule,
         leaves,
-        tape,
+        tapes,
         positions: std::mem::take(&mut made.positions),
         surfaces: std::mem::take(&mut made.surfaces),
         normals,

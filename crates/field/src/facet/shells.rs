@@ -57,7 +57,7 @@ impl Facets {
     pub fn touching(&self) -> Vec<Vec3> {
         let shells = self.shells();
         if shells.len() < 2 {
-            return Vec::new();
+            return self.contacts.clone();
         }
         let positions = self.mesh.positions();
         let mut shell = vec![0usize; positions.len()];
@@ -95,6 +95,7 @@ impl Facets {
         };
         let mut found: Vec<Vec3> =
             (0..positions.len()).filter(|&v| meets(v)).map(|v| positions[v]).collect();
+        found.extend_from_slice(&self.contacts);
         found.sort_by(|a, b| {
             a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
         });

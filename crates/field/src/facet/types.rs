@@ -5,7 +5,7 @@ use super::cell::{Case, NONE, case};
 use super::vertex::{Placed, Surfaces};
 use crate::expr::tape::Tape;
 use crate::set::Leaf;
-use moldloft_num::Vec3;
+use moldloft_num::{Box3, Vec3};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -79,6 +79,21 @@ pub(super) struct Vertex {
     pub(super) surfaces: Surfaces,
 }
 
+/// A place that the corners of cells say nothing of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unresolved {
+    /// A cell, or a part of one.
+    pub place: Box3,
+    /// How much solid it may hold where the facets have air, or air where they have solid; proved.
+    pub volume: f64,
+    /// True when there is some for sure: a wall or gap thinner than the cell.
+    pub missed: bool,
+    /// A point of it, …
+    pub(super) witness: Vec3,
+    /// … and whether it is solid.
+    pub(super) solid: bool,
+}
+
 /// What a block contributes.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
@@ -97,6 +112,8 @@ pub(super) struct Block {
     pub(super) crossings: Vec<Crossing>,
     /// How many cells the surface passes through.
     pub(super) active: usize,
+    /// What the corners of its cells do not show.
+    pub(super) unresolved: Vec<Unresolved>,
 }
 
 /// A piece of surface with several vertices.

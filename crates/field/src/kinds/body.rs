@@ -75,6 +75,16 @@ impl<T: Real> Build<T> for SetBody<T> {
                 .and_then(|pieces| pieces.body(&lifter))
                 .map_err(|e| fault(&e))?;
         if body.triangles.is_empty() && body.wires.is_empty() && body.dots.is_empty() {
+            if let Some(flaw) = body.flaws.iter().find(|f| f.name == "unresolved") {
+                let remark = &flaw.remark;
+                return Err(CallError::new(
+                    "thin-part",
+                    format!("nothing of the set shows: {}", remark.message),
+                )
+                .expected("a set that is thicker than the cells")
+                .help(remark.advice)
+                .in_field(Self::SET));
+            }
             return Err(CallError::new("empty-set", "the set has no surface in the box")
                 .expected("a set whose surface passes through the box")
                 .in_field(Self::SET));

@@ -15,10 +15,14 @@ fn counted(places: &[Vec3], facets: &Facets) -> String {
     )
 }
 
-/// The places where facets are not the set's surface, or may not be; none of the three is usual.
+/// The places where facets are not the set's surface, or may not be; none of the four is usual.
 pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
     let centres = |boxes: &[moldloft_num::Box3]| boxes.iter().map(|b| b.centre()).collect();
-    let lists: [(&'static str, Vec<Vec3>); 3] = [
+    let open = facets.unresolved.iter().map(|u| u.place.centre()).collect();
+    let may_hold: f64 = facets.unresolved.iter().map(|u| u.volume).sum();
+    let missed = facets.unresolved.iter().any(|u| u.missed);
+    let lists: [(&'static str, Vec<Vec3>); 4] = [
+        ("unresolved", open),
         ("undecided", centres(&facets.undecided)),
         ("blunt", centres(&facets.blunt)),
         ("touching", facets.touching()),
@@ -29,6 +33,18 @@ pub(crate) fn flaws(facets: &Facets) -> Vec<Flaw> {
             "undecided" => (
                 "undecided-cells",
                 format!("{}, triangles cut each other", counted(&places, facets)),
+                "give smaller cells: a greater depth, or a finer accuracy",
+            ),
+            "unresolved" => (
+                "unresolved-cells",
+                format!(
+                    "{} {}, up to {may_hold:.3e} of volume",
+                    counted(&places, facets),
+                    match missed {
+                        true => "a part or a gap thinner than the cell is missing",
+                        false => "it is not proved that no part thinner than the cell is missing",
+                    }
+                ),
                 "give smaller cells: a greater depth, or a finer accuracy",
             ),
             "blunt" => (

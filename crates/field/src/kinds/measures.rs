@@ -7,7 +7,8 @@ use crate::facet::{Facets, Resolution};
 use crate::measure::curved::{self, Curved};
 use crate::query::foot;
 use crate::{
-    FacetMemo, FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, facet_mixed,
+    FacetMemo, FieldError, Lifter, Measure, Membership, Moments, Primitive, Set, bracket,
+    facet_mixed, mass_of,
 };
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{
@@ -18,9 +19,6 @@ use std::sync::Arc;
 /// The coarsest and finest divisions of the box by which integrals are made.
 const DEPTHS: [u32; 2] = [5, 9];
 
-/// The least part of the box's volume to which volumes agree unless asked otherwise.
-const USUAL: f64 = 1e-8;
-
 /// The part of themselves to which areas and lengths agree unless asked otherwise.
 const ALIKE: f64 = 1e-6;
 
@@ -29,46 +27,19 @@ fn sharp(depth: u32, context: &Context) -> crate::Options {
     crate::Options { sharp: true, ..options(Resolution::Level(depth), context) }
 }
 
-fn none<T: Real>() -> Moments<T> {
-    Moments([T::zero(); 10])
-}
-
-/// Moments of a set from facets that are made finer until two agree.
+/// Moments of a set: best values inside a proved bracket.
 fn moments<T: Real>(
     set: &Set<T>,
     region: &Region<T>,
     accuracy: Option<T>,
     context: &Context,
 ) -> Result<Moments<T>, FieldError> {
-    // Sheets, wires and points have no volume.
-    let plain = set.re();
-    let solid = crate::solid_part(&plain);
-    let size = (0..3).map(|k| region.over.high[k] - region.over.low[k]).product::<f64>();
-    let accuracy = match accuracy {
-        Some(a) => crate::error::positive("accuracy", a.re())?,
-        None => USUAL * size,
+    let measure = Measure {
+        agreement: accuracy.map(T::re),
+        cancel: Some(context.cancel.clone()),
+        ..Measure::default()
     };
-    let mut before: Option<(Arc<Facets>, f64)> = None;
-    let memo = context.kept.of::<FacetMemo>();
-    for depth in DEPTHS[0]..=DEPTHS[1] {
-        let facets = memo.facet(&solid, &region.over, &sharp(depth, context))?;
-        if facets.mesh.faces().is_empty() {
-            return Ok(none());
-        }
-        let volume = facets.moments().volume();
-        let close = before.is_some_and(|(_, coarser)| (volume - coarser).abs() <= accuracy);
-        before = Some((facets, volume));
-        if close {
-            break;
-        }
-    }
-    match before {
-        Some((facets, _)) => {
-            let lifter = Lifter::of(set, &plain, region.corners);
-            Ok(facets.lifted_by(&lifter)?.moments)
-        }
-        None => Ok(none()),
-    }
+    Ok(mass_of(set, &region.over, region.corners, &measure, &context.kept.of())?.best)
 }
 
 macro_rules! measure {

@@ -2,6 +2,7 @@
 
 mod blends;
 pub mod body;
+mod design;
 mod faced;
 mod flaws;
 mod measures;
@@ -54,6 +55,15 @@ pub fn rows() -> Vec<Row> {
         blends::Fillet,
         blends::Rounded,
         blends::Transition,
+        design::Remapped,
+        design::Twisted,
+        design::Remainder,
+        design::Repeated,
+        design::Offset,
+        design::Shell,
+        design::FilletSets,
+        design::RoundEdges,
+        design::ChamferEdges,
         measures::Volume,
         measures::Area,
         measures::WireLength,

@@ -128,14 +128,21 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::Unbounded { .. } => "unbounded-set",
         FieldError::TooFine { .. } => "too-fine",
         FieldError::ThinBox { .. } => "thin-box",
+        FieldError::Thin { .. } => "thin-part",
+        FieldError::NotReached { .. } => "accuracy-not-reached",
         FieldError::NotClosed { .. } => "not-closed",
         FieldError::ManyFaces { .. } | FieldError::RoundSides => "faces-tangled",
+        FieldError::NoDistance { .. } => "no-distance",
+        FieldError::NoEdge { .. } => "no-edge",
+        FieldError::Outside => "no-text",
         FieldError::Cancelled => "cancelled",
         FieldError::NoValue { .. } => "no-value",
     };
     let fault = CallError::new(id, error.to_string());
     match error {
-        FieldError::Division => fault.help("multiply out, or divide by a number"),
+        FieldError::Division => {
+            fault.help("divide by a number, or by a field that is not 0 everywhere")
+        }
         FieldError::Exponent { .. } => {
             fault.expected("a whole number from 0 to 1000").help("roots are sqrt() and s_sqrt()")
         }
@@ -150,6 +157,9 @@ pub fn fault(error: &FieldError) -> CallError {
         FieldError::TooFine { .. } => fault.help("use a coarser accuracy, or a smaller box"),
         FieldError::ThinBox { depth, .. } => {
             fault.expected(format!("a depth of {depth} or more, or a thicker box"))
+        }
+        FieldError::Thin { depth, .. } => {
+            fault.help(format!("give `depth = {depth}`, or thicken it"))
         }
         FieldError::NotClosed { .. } => fault.expected("a closed, oriented body"),
         FieldError::ManyFaces { .. } | FieldError::RoundSides => {

@@ -201,17 +201,31 @@ pub struct Attributed<T: Real> {
     /// Distance below which two of its points count as one.
     #[field(default, min = 0)]
     tolerance: Option<T>,
+    /// What else is to be said, as `tag = text` parted by `;`.
+    #[field(default)]
+    tags: Option<Arc<str>>,
 }
 
 impl<T: Real> Build<T> for Attributed<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let text = |t: Option<Arc<str>>| t.map(|t| t.to_string());
+        let pair = |part: &str| match part.split_once('=') {
+            Some((tag, value)) if !tag.trim().is_empty() => {
+                Ok((tag.trim().to_owned(), value.trim().to_owned()))
+            }
+            _ => Err(CallError::new("wrong-tags", format!("`{}` is no tag", part.trim()))
+                .expected("`tag = text`, and more after `;`")
+                .in_field(Self::TAGS)),
+        };
+        let parts = self.tags.as_deref().unwrap_or_default().split(';');
+        let tags = parts.filter(|p| !p.trim().is_empty()).map(pair).collect::<Result<_, _>>()?;
         Ok(set_value(self.set.0.with(Attributes {
             given: self.name.is_some(),
             name: text(self.name),
             colour: self.colour.map(|c| c as u8),
             material: text(self.material),
             tolerance: self.tolerance.map(T::re),
+            tags,
         })))
     }
 }

@@ -212,14 +212,16 @@ impl<'a> Curved<'a> {
         total
     }
 
-    /// The moments of the body that closed triangles bound.
+    /// The moments, about a point, of the body that closed triangles bound.
     pub fn moments<T: Real>(
         &self,
         positions: &[Vec3<T>],
         primitives: &[Option<Primitive<T>>],
+        about: Vec3,
     ) -> Moments<T> {
         let size = self.size();
         let each = |_: u32, jet: Option<&Gradient<T>>, x: Vec3<T>, area: Vec3<T>| {
+            let x = x - Vec3::lifted(about);
             let flux = x.dot(area);
             let mut layer = T::zero();
             if let Some(g) = jet {
@@ -240,7 +242,7 @@ impl<'a> Curved<'a> {
             }
             terms
         };
-        Moments(self.sum(positions, primitives, each))
+        Moments { about, terms: self.sum(positions, primitives, each) }
     }
 
     /// The area of the faces of those leaves.

@@ -37,7 +37,7 @@ impl<T: Real> Lifter<T> {
 
     /// The primitive of a leaf with derivatives: one of the set, its complement or what it is a sheet
     /// of, or a face of the box.
-    fn primitive(&self, leaf: &Leaf) -> Option<Primitive<T>> {
+    pub(crate) fn primitive(&self, leaf: &Leaf) -> Option<Primitive<T>> {
         let wanted = &leaf.primitive;
         for (plain, lifted) in &self.pairs {
             for (p, q) in [(plain, lifted), (plain.of_sheet(), lifted.of_sheet())] {
@@ -136,7 +136,7 @@ impl Facets {
     pub fn lifted_by<T: Real>(&self, lifter: &Lifter<T>) -> Result<Lifted<T>, FieldError> {
         let primitives = lifter.primitives(self)?;
         let positions = moved(self.mesh.positions(), &self.surfaces, &primitives);
-        let moments = Curved::new(&self.flat()).moments(&positions, &primitives);
+        let moments = Curved::new(&self.flat()).moments(&positions, &primitives, self.about);
         let foreign = FieldError::Degenerate { what: "set: it is not the one of these facets" };
         let mesh = Mesh::new(self.mesh.topology().clone(), positions).map_err(|_| foreign)?;
         Ok(Lifted { mesh, moments })

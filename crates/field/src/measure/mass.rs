@@ -1,25 +1,39 @@
-//! Volume, centroid and inertia: certified brackets by ranges, and best values by facets.
+//! Volume, centroid and inertia: certified brackets, and best values within them.
+//!
+//! Best values are those of curved facets, which have the most digits where they show the whole set. Where a part is
+//! thinner than their cells, or their volume leaves the bracket, the certified cells have the better ones.
 
+use super::certified::{Certified, Effort, certified};
 use super::curved::Curved;
-use super::moments::{Moments, integral};
-use crate::error::solid_box;
-use crate::expr::interval::{Interval, sides};
-use crate::expr::tape::{NO_LEAF, RangeRoom, Tape};
-use crate::facet::Facets;
+use super::moments::Moments;
+use crate::expr::interval::Interval;
+use crate::facet::memo::FacetMemo;
 use crate::facet::sheets::solid_part;
 use crate::facet::types::Flat;
-use crate::{FieldError, Primitive, Set};
-use moldloft_num::Box3;
-use rayon::prelude::*;
+use crate::facet::{Facets, Options, Resolution};
+use crate::{FieldError, Lifter, Primitive, Set};
+use moldloft_num::{Box3, Real, Vec3};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-/// Certified brackets of the moments of a set within a box, from ranges over boxes halved `depth`
-/// times along each axis at most.
-///
-/// Boxes that are proved solid count fully. In the smallest boxes where one primitive decides, the
-/// solid part is bracketed by two parallel planes, from the range of the gradient; in others it is
-/// anything from nothing to the whole. Both make the brackets close at second order.
+/// Boxes may be halved this often at most.
+const DEEPEST: u32 = 12;
+/// The most cells of brackets.
+const MOST_CELLS: usize = 30_000_000;
+/// Cells of the bracket that every best value is checked by.
+const CHECK: usize = 3000;
+/// Cells of best values where facets have none.
+const THIN: usize = 120_000;
+/// The coarsest and finest levels of facets for best values, and how many cells these have at most.
+const LEVELS: [u32; 2] = [5, 9];
+const MOST_FACET_CELLS: usize = 400_000;
+/// The finest level for what is thin along a line only, such as a rod: its cells stay few.
+const FINEST: u32 = 15;
+/// The part of the box's volume to which two best values agree unless asked otherwise.
+const USUAL: f64 = 1e-8;
+
+/// Certified brackets of the moments of a set within a box, from boxes halved `depth` times along each axis at
+/// most; they close at second order, also along edges and in thin walls.
 ///
 /// # Errors
 /// A box without volume, a depth above 12.
@@ -32,194 +46,190 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
 /// let over = Box3 { low: Vec3::of(-1.1, -1.1, -1.1), high: Vec3::of(1.1, 1.1, 1.1) };
 /// let volume = bracket(&ball, &over, 5)?.volume();
-/// assert!(volume.contains(4.0 / 3.0 * std::f64::consts::PI) && volume.width() < 0.1);
+/// assert!(volume.contains(4.0 / 3.0 * std::f64::consts::PI) && volume.width() < 0.02);
 /// # Ok::<(), moldloft_field::FieldError>(())
 /// ```
 pub fn bracket(set: &Set, over: &Box3, depth: u32) -> Result<Moments<Interval>, FieldError> {
-    bracket_until(set, over, depth, &AtomicBool::new(false))
+    Ok(certified(set, over, &effort(depth)?, &AtomicBool::new(false))?.bracket)
 }
 
-/// As [`bracket`]; ends early when `cancel` is set.
-///
-/// # Errors
-/// As [`bracket`]; [`FieldError::Cancelled`].
-pub fn bracket_until(
-    set: &Set,
-    over: &Box3,
-    depth: u32,
-    cancel: &AtomicBool,
-) -> Result<Moments<Interval>, FieldError> {
-    let over = solid_box(*over)?;
-    if depth > 12 {
-        return Err(FieldError::TooFine { boxes: 4f64.powi(depth as i32), limit: 4f64.powi(12) });
+fn effort(depth: u32) -> Result<Effort, FieldError> {
+    if depth > DEEPEST {
+        let boxes = |d: u32| 4f64.powi(d as i32);
+        return Err(FieldError::TooFine { boxes: boxes(depth), limit: boxes(DEEPEST) });
     }
-    // Sheets have no volume.
-    let tape = solid_part(set).compiled().tape;
-    // The first two levels are spread over threads; sums are taken in order of the boxes.
-    let spread = depth.min(2);
-    let n = 1usize << spread;
-    let boxes: Vec<[Interval; 3]> = (0..n * n * n)
-        .map(|k| {
-            let place = [k / (n * n), k / n % n, k % n];
-            let all = sides(&over);
-            [0, 1, 2].map(|axis| {
-                let cut = |j: usize| {
-                    if j == n {
-                        all[axis].high
-                    } else {
-                        all[axis].low + all[axis].width() * j as f64 / n as f64
-                    }
-                };
-                Interval::new(cut(place[axis]), cut(place[axis] + 1))
-            })
-        })
-        .collect();
-    let parts: Vec<Moments<Interval>> = boxes
-        .par_iter()
-        .map(|b| {
-            let mut sum = Moments::ZERO;
-            let mut room = RangeRoom::default();
-            halve(&tape, b, depth - spread, cancel, (&mut room, &mut sum));
-            sum
-        })
-        .collect();
-    if cancel.load(Ordering::Relaxed) {
-        return Err(FieldError::Cancelled);
-    }
-    let mut sum = Moments::ZERO;
-    for part in &parts {
-        sum.add(part);
-    }
-    Ok(sum)
+    Ok(Effort { accuracy: 0.0, cells: MOST_CELLS, depth })
 }
 
-fn halve(
-    tape: &Arc<Tape<f64>>,
-    b: &[Interval; 3],
-    depth: u32,
-    cancel: &AtomicBool,
-    (room, sum): (&mut RangeRoom, &mut Moments<Interval>),
-) {
-    if cancel.load(Ordering::Relaxed) {
-        return;
-    }
-    let range = tape.range(b, &mut room.ranges);
-    if range.low > 0.0 {
-        return;
-    }
-    let volume = b.iter().fold(Interval::point(1.0), |v, side| v * integral(*side, 0));
-    if range.high < 0.0 {
-        sum.take(b, volume, true);
-        return;
-    }
-    let tape = tape.pruned(&room.ranges).map_or_else(|| tape.clone(), Arc::new);
-    if depth == 0 {
-        let single = tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
-        let fraction =
-            if single { solid_fraction(&tape, b, room) } else { Interval::new(0.0, 1.0) };
-        sum.take(b, volume * fraction, false);
-        return;
-    }
-    for k in 0..8 {
-        let half = [0, 1, 2].map(|axis| {
-            let middle = b[axis].middle();
-            if k >> axis & 1 == 0 {
-                Interval::new(b[axis].low, middle)
-            } else {
-                Interval::new(middle, b[axis].high)
-            }
-        });
-        halve(&tape, &half, depth - 1, cancel, (&mut *room, &mut *sum));
-    }
+/// How integrals are made.
+#[derive(Clone, Default)]
+pub struct Measure {
+    /// Boxes of the bracket are halved this often at most; by default a few thousand are enough.
+    pub depth: Option<u32>,
+    /// How far the volume may be from its best value, proved.
+    pub accuracy: Option<f64>,
+    /// The most cells by which that accuracy is sought; by default 400 000.
+    pub cells: Option<usize>,
+    /// How well the volumes of two levels of facets agree; by default to 1e-8 of the box's volume.
+    pub agreement: Option<f64>,
+    /// Set it to true from elsewhere to stop.
+    pub cancel: Option<Arc<AtomicBool>>,
 }
 
-/// A bracket of the part of a box in which one primitive is negative.
-///
-/// With g the middle of the gradient's range, f lies within e of f(c) + g (X - c), where e sums
-/// the half widths of the gradient's range times those of the box, and the error of f(c).
-fn solid_fraction(tape: &Tape<f64>, b: &[Interval; 3], room: &mut RangeRoom) -> Interval {
-    let range = tape.mean_value(b, room);
-    if range.value.low > 0.0 {
-        return Interval::ZERO;
+impl Measure {
+    /// With a bracket of boxes halved that often.
+    pub fn to_depth(depth: u32) -> Self {
+        Self { depth: Some(depth), ..Self::default() }
     }
-    if range.value.high < 0.0 {
-        return Interval::point(1.0);
-    }
-    let centre = b.map(|side| Interval::point(side.middle()));
-    let value = tape.range(&centre, &mut room.ranges);
-    let mut error = Interval::ZERO;
-    let mut widths = [0.0; 3];
-    for k in 0..3 {
-        let reach = (b[k] - centre[k]).magnitude();
-        let middle = range.slope[k].middle();
-        error = error + (range.slope[k] - Interval::point(middle)).abs().scaled(reach);
-        widths[k] = middle.abs() * b[k].width();
-    }
-    if !(error.high.is_finite() && widths.iter().all(|w| w.is_finite())) {
-        return Interval::new(0.0, 1.0);
-    }
-    // Directions in which hardly anything changes join the error, to keep the formula well conditioned.
-    let top = widths.iter().copied().fold(0.0, f64::max);
-    let mut slack = error.high;
-    for w in &mut widths {
-        if *w < 1e-3 * top {
-            slack += *w;
-            *w = 0.0;
-        }
-    }
-    slack *= 1.0 + 1e-9;
-    // 8 terms of at most 5e6 each with a few roundings: below 1e-7.
-    let low = below(widths, -value.high - slack) - 1e-7;
-    let high = below(widths, -value.low + slack) + 1e-7;
-    Interval::new(low.clamp(0.0, 1.0), high.clamp(0.0, 1.0))
-}
 
-/// The part of the unit cube about the origin in which w . X <= t, for weights that are zero or of like
-/// size: by inclusion and exclusion of corners (Barrow and Smith, Am. Math. Monthly 86, 1979).
-fn below(w: [f64; 3], t: f64) -> f64 {
-    let kept: Vec<f64> = w.into_iter().filter(|w| *w > 0.0).collect();
-    let n = kept.len();
-    let t = t + 0.5 * kept.iter().sum::<f64>();
-    if n == 0 {
-        return if t >= 0.0 { 1.0 } else { 0.0 };
+    /// With a volume that is proved to be that near to its best value.
+    pub fn to_accuracy(accuracy: f64) -> Self {
+        Self { accuracy: Some(accuracy), ..Self::default() }
     }
-    if t >= kept.iter().sum() {
-        return 1.0;
-    }
-    let mut sum = 0.0;
-    for corner in 0..1usize << n {
-        let inside: f64 = (0..n).filter(|k| corner >> k & 1 == 1).map(|k| kept[k]).sum();
-        let term = (t - inside).max(0.0).powi(n as i32);
-        sum += if corner.count_ones().is_multiple_of(2) { term } else { -term };
-    }
-    let factorial = [1.0, 1.0, 2.0, 6.0][n];
-    sum / (factorial * kept.iter().product::<f64>())
 }
 
 /// A bracket and the best value inside it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mass {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mass<T: Real = f64> {
     /// Proved.
     pub bracket: Moments<Interval>,
-    /// From facets, curved and corrected for their distance from the surface; within the bracket.
-    pub best: Moments<f64>,
+    /// Within the bracket.
+    pub best: Moments<T>,
 }
 
-/// The moments of a set within a box: a proved bracket and a best value, from boxes halved `depth`
-/// times.
+/// The moments of a set within a box: a proved bracket, and a best value inside it.
 ///
 /// # Errors
-/// As [`bracket`] and [`crate::facet`].
-pub fn mass(set: &Set, over: &Box3, depth: u32) -> Result<Mass, FieldError> {
-    let bracket = bracket(set, over, depth)?;
-    let resolution = crate::Resolution::Level(depth);
-    let options = crate::Options { sharp: true, ..crate::Options::new(resolution) };
-    let facets = crate::facet(&solid_part(set), over, &options)?;
-    let mut best = facets.moments();
-    for (x, range) in best.0.iter_mut().zip(&bracket.0) {
-        *x = x.clamp(range.low, range.high);
+/// As [`bracket`] and [`crate::facet`]; [`FieldError::NotReached`] when the accuracy would need more cells than
+/// allowed.
+pub fn mass(set: &Set, over: &Box3, measure: &Measure) -> Result<Mass, FieldError> {
+    mass_of(set, over, None, measure, &FacetMemo::default())
+}
+
+/// As [`mass`], of a set and a box whose numbers may carry derivatives; facets are taken from the memo.
+///
+/// # Errors
+/// As [`mass`].
+pub fn mass_of<T: Real>(
+    set: &Set<T>,
+    over: &Box3,
+    corners: Option<[Vec3<T>; 2]>,
+    measure: &Measure,
+    memo: &FacetMemo,
+) -> Result<Mass<T>, FieldError> {
+    let plain = set.re();
+    let solid = solid_part(&plain);
+    let never = Arc::new(AtomicBool::new(false));
+    let cancel = measure.cancel.as_ref().unwrap_or(&never);
+    let wanted = match (measure.depth, measure.accuracy) {
+        (_, Some(accuracy)) => {
+            let width = 2.0 * crate::error::positive("accuracy", accuracy)?;
+            Effort { cells: measure.cells.unwrap_or(Effort::to(width).cells), ..Effort::to(width) }
+        }
+        (Some(depth), None) => effort(depth)?,
+        (None, None) => Effort::of_cells(CHECK),
+    };
+    let checked = certified(&solid, over, &wanted, cancel)?;
+    let width = checked.bracket.volume().width();
+    if let Some(accuracy) = measure.accuracy
+        && width > 2.0 * accuracy
+    {
+        return Err(FieldError::NotReached {
+            asked: accuracy,
+            reached: 0.5 * width,
+            cells: checked.cells,
+        });
     }
-    Ok(Mass { bracket, best })
+    let bracket = checked.bracket;
+    let lifter = Lifter::of(set, &plain, corners);
+    let from_cells = |cells: &Certified, bracket: &Moments<Interval>| {
+        let leaves = cells.leaves();
+        let lifted: Vec<Option<Primitive<T>>> =
+            leaves.iter().map(|l| lifter.primitive(l)).collect();
+        within(cells.best_by(&|leaf| lifted[leaf as usize].clone()), bracket)
+    };
+    // Bodies of planes are known to rounding.
+    let size = (0..3).map(|k| over.high[k] - over.low[k]).product::<f64>();
+    let exact = width <= 1e-3 * measure.agreement.unwrap_or(USUAL * size);
+    if exact && corners.is_none() {
+        return Ok(Mass { bracket, best: from_cells(&checked, &bracket) });
+    }
+    if let Some(best) = by_facets(&solid, over, &lifter, measure, memo, &bracket)? {
+        return Ok(Mass { bracket, best: within(best, &bracket) });
+    }
+    // What facets do not show.
+    let thin = match checked.cells >= THIN {
+        true => checked,
+        false => certified(&solid, over, &Effort::of_cells(THIN), cancel)?,
+    };
+    let bracket = narrower(bracket, &thin);
+    Ok(Mass { bracket, best: from_cells(&thin, &bracket) })
+}
+
+/// The numbers of both brackets.
+fn narrower(mut bracket: Moments<Interval>, other: &Certified) -> Moments<Interval> {
+    for (a, b) in bracket.terms.iter_mut().zip(&other.bracket.terms) {
+        *a = a.meet(*b);
+    }
+    bracket
+}
+
+/// The best values with their real parts inside the bracket.
+fn within<T: Real>(mut best: Moments<T>, bracket: &Moments<Interval>) -> Moments<T> {
+    for (x, range) in best.terms.iter_mut().zip(&bracket.terms) {
+        let inside = x.re().clamp(range.low, range.high);
+        let old = *x;
+        *x = T::from_parts(|k| if k == 0 { inside } else { old.part(k) });
+    }
+    best
+}
+
+/// Moments from facets that are made finer until two agree; `None` when these do not show the whole set.
+fn by_facets<T: Real>(
+    solid: &Set,
+    over: &Box3,
+    lifter: &Lifter<T>,
+    measure: &Measure,
+    memo: &FacetMemo,
+    bracket: &Moments<Interval>,
+) -> Result<Option<Moments<T>>, FieldError> {
+    let size = (0..3).map(|k| over.high[k] - over.low[k]).product::<f64>();
+    let agreement = match measure.agreement {
+        Some(a) => crate::error::positive("accuracy", a)?,
+        None => USUAL * size,
+    };
+    let mut before: Option<(Arc<Facets>, f64)> = None;
+    for level in LEVELS[0]..=FINEST {
+        let options = Options {
+            sharp: true,
+            cancel: measure.cancel.clone(),
+            ..Options::new(Resolution::Level(level))
+        };
+        let facets = memo.facet(solid, over, &options)?;
+        let missed = facets.unresolved.iter().filter(|u| u.missed).count();
+        let next = 4 * (facets.cells + missed);
+        if missed > 0 && (level == FINEST || next > MOST_FACET_CELLS) {
+            return Ok(None);
+        }
+        let volume = facets.moments().volume();
+        let close = before.as_ref().is_some_and(|(_, v)| (volume - v).abs() <= agreement);
+        before = Some((facets, volume));
+        if missed == 0 && (close || level >= LEVELS[1] || next > MOST_FACET_CELLS) {
+            break;
+        }
+    }
+    let Some((facets, volume)) = before else { return Ok(None) };
+    let v = bracket.volume();
+    // Facets that the bracket refutes show something else.
+    let far = (v.low - volume).max(volume - v.high);
+    if far > 1e-9 * v.high.max(1e-12 * size) + agreement {
+        return Ok(None);
+    }
+    if facets.mesh.faces().is_empty() {
+        let zero = Moments { about: facets.about, terms: [T::zero(); 10] };
+        return Ok((v.high <= agreement || v.low <= 0.0).then_some(zero));
+    }
+    Ok(Some(facets.lifted_by(lifter)?.moments))
 }
 
 impl Facets {
@@ -228,7 +238,7 @@ impl Facets {
     pub fn moments(&self) -> Moments<f64> {
         let primitives: Vec<Option<Primitive>> =
             self.leaves.iter().map(|l| Some(l.primitive.clone())).collect();
-        Curved::new(&self.flat()).moments(self.mesh.positions(), &primitives)
+        Curved::new(&self.flat()).moments(self.mesh.positions(), &primitives, self.about)
     }
 
     /// The area of the set's surface, of the order of [`Facets::moments`]; faces of the box do not count.
@@ -249,34 +259,5 @@ impl Facets {
             leaves: &self.leaves,
             surfaces: &self.surfaces,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_cut_cube_equals_counting() {
-        for (w, t) in [
-            ([1.0, 0.7, 0.4], 0.3),
-            ([1.0, 0.0, 0.4], -0.2),
-            ([0.0, 0.0, 2.0], 0.5),
-            ([1.0, 1.0, 1.0], 0.0),
-        ] {
-            let n = 60;
-            let at = |k: usize| (k as f64 + 0.5) / n as f64 - 0.5;
-            let mut count = 0;
-            for i in 0..n {
-                for j in 0..n {
-                    count +=
-                        (0..n).filter(|&k| w[0] * at(i) + w[1] * at(j) + w[2] * at(k) <= t).count();
-                }
-            }
-            let counted = count as f64 / (n * n * n) as f64;
-            assert!((below(w, t) - counted).abs() < 0.01, "{w:?} {t}: {} {counted}", below(w, t));
-        }
-        assert_eq!(below([1.0, 1.0, 1.0], 1.5), 1.0);
-        assert_eq!(below([1.0, 1.0, 1.0], -1.5), 0.0);
     }
 }

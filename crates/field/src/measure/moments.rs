@@ -3,9 +3,15 @@
 use crate::expr::interval::Interval;
 use moldloft_num::{Real, Vec3};
 
-/// Integrals over a body of 1; x, y, z; xx, yy, zz; xy, yz, zx.
+/// Integrals over a body, about a point near it: far from the origin those about the origin would be differences of
+/// large numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moments<N>(pub [N; 10]);
+pub struct Moments<N> {
+    /// The point about which they are; it depends on nothing.
+    pub about: Vec3,
+    /// Those of 1; x, y, z; xx, yy, zz; xy, yz, zx.
+    pub terms: [N; 10],
+}
 
 /// The exponents of the monomials.
 pub(crate) const POWERS: [[u32; 3]; 10] = [
@@ -24,20 +30,21 @@ pub(crate) const POWERS: [[u32; 3]; 10] = [
 impl<N: Copy> Moments<N> {
     /// Volume.
     pub fn volume(&self) -> N {
-        self.0[0]
+        self.terms[0]
     }
 }
 
 impl<T: Real> Moments<T> {
     /// The centre of mass.
     pub fn centroid(&self) -> Vec3<T> {
-        let m = &self.0;
-        Vec3::new(m[1], m[2], m[3]) / m[0]
+        let m = &self.terms;
+        Vec3::new(m[1], m[2], m[3]) / m[0] + Vec3::lifted(self.about)
     }
 
     /// The rows of the matrix of inertia about the centroid, for unit density.
     pub fn inertia(&self) -> [Vec3<T>; 3] {
-        let (m, c) = (&self.0, self.centroid());
+        let m = &self.terms;
+        let c = Vec3::new(m[1], m[2], m[3]) / m[0];
         let central = |k: usize, i: usize, j: usize| m[k] - m[0] * c[i] * c[j];
         let (xx, yy, zz) = (central(4, 0, 0), central(5, 1, 1), central(6, 2, 2));
         let (xy, yz, zx) = (central(7, 0, 1), central(8, 1, 2), central(9, 2, 0));
@@ -45,26 +52,66 @@ impl<T: Real> Moments<T> {
     }
 }
 
-impl Moments<Interval> {
-    pub(super) const ZERO: Self = Self([Interval::ZERO; 10]);
+impl Moments<f64> {
+    /// These, those that lie outside of a bracket moved to its end.
+    pub(crate) fn clamped(&self, bracket: &Moments<Interval>) -> Self {
+        let mut out = *self;
+        for (x, range) in out.terms.iter_mut().zip(&bracket.terms) {
+            *x = x.clamp(range.low, range.high);
+        }
+        out
+    }
+}
 
-    /// Adds those of another part.
-    pub(super) fn add(&mut self, o: &Self) {
-        for (a, b) in self.0.iter_mut().zip(&o.0) {
+impl Moments<Interval> {
+    /// Those of nothing.
+    pub(super) fn zero(about: Vec3) -> Self {
+        Self { about, terms: [Interval::ZERO; 10] }
+    }
+
+    /// Adds those of another part, about the same point.
+    pub(super) fn add(&mut self, part: &[Interval; 10]) {
+        for (a, b) in self.terms.iter_mut().zip(part) {
             *a = *a + *b;
+        }
+    }
+
+    /// The same about another point.
+    fn moved(&self, about: Vec3) -> Self {
+        let m = &self.terms;
+        let d = [0, 1, 2].map(|k| Interval::point(self.about[k]) - Interval::point(about[k]));
+        let mut terms = *m;
+        for i in 0..3 {
+            terms[1 + i] = m[1 + i] + m[0] * d[i];
+        }
+        for (k, [i, j]) in super::polytope::SECOND.into_iter().enumerate() {
+            let square = if i == j { d[i].square() } else { d[i] * d[j] };
+            terms[4 + k] = m[4 + k] + m[1 + i] * d[j] + m[1 + j] * d[i] + m[0] * square;
+        }
+        Self { about, terms }
+    }
+
+    /// About the middle of the centroid's bracket: there the products of first moments are of second order.
+    fn central(&self) -> Self {
+        let one = self.terms[0].reciprocal();
+        let middle = [1, 2, 3].map(|k| (self.terms[k] * one).middle());
+        if middle.iter().all(|x| x.is_finite()) {
+            self.moved(self.about + Vec3::from(middle))
+        } else {
+            *self
         }
     }
 
     /// A bracket of each coordinate of the centroid; everything when the volume may be zero.
     pub fn centroid(&self) -> [Interval; 3] {
-        let one = self.0[0].reciprocal();
-        [1, 2, 3].map(|k| self.0[k] * one)
+        let one = self.terms[0].reciprocal();
+        [0, 1, 2].map(|k| self.terms[1 + k] * one + Interval::point(self.about[k]))
     }
 
     /// Brackets of the matrix of inertia about the centroid, for unit density; everything when the volume
-    /// may be zero. Each moment stands in several terms, so they are wider than those of the moments.
+    /// may be zero.
     pub fn inertia(&self) -> [[Interval; 3]; 3] {
-        let m = &self.0;
+        let m = &self.central().terms;
         let one = m[0].reciprocal();
         let central = |k: usize, i: usize, j: usize| m[k] - m[1 + i] * m[1 + j] * one;
         let square = |k: usize, i: usize| m[k] - m[1 + i].square() * one;
@@ -73,21 +120,9 @@ impl Moments<Interval> {
         [[yy + zz, -xy, -zx], [-xy, zz + xx, -yz], [-zx, -yz, xx + yy]]
     }
 
-    /// True when all of `m` lies inside.
+    /// True when all of `m`, about the same point, lies inside.
     pub fn contains(&self, m: &Moments<f64>) -> bool {
-        self.0.iter().zip(&m.0).all(|(range, x)| range.contains(*x))
-    }
-
-    /// Adds what a box contributes of which at least `part.low` and at most `part.high` is solid.
-    pub(super) fn take(&mut self, b: &[Interval; 3], part: Interval, whole: bool) {
-        for (sum, powers) in self.0.iter_mut().zip(POWERS) {
-            let term = if whole {
-                (0..3).fold(Interval::point(1.0), |product, k| product * integral(b[k], powers[k]))
-            } else {
-                (0..3).fold(part, |product, k| product * b[k].powi(powers[k]))
-            };
-            *sum = *sum + term;
-        }
+        self.terms.iter().zip(&m.terms).all(|(range, x)| range.contains(*x))
     }
 }
 

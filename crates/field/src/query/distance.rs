@@ -1,6 +1,7 @@
 //! How far two sets are apart.
 
 use super::foot;
+use super::separation::{Gauge, proved as separation, suggested};
 use crate::expr::interval::{Interval, sides};
 use crate::expr::tape::{NO_LEAF, RangeRoom, Tape};
 use crate::{FieldError, Set};
@@ -116,7 +117,7 @@ impl Ord for Pair {
 }
 
 /// The most pairs of boxes to look at.
-const MOST: usize = 300_000;
+const MOST: usize = 40_000;
 /// Boxes are halved this often at most.
 const DEPTH: u32 = 60;
 
@@ -141,11 +142,11 @@ fn apart(a: &Sides, b: &Sides) -> (f64, [Vec3; 2]) {
 /// The distance of two sets within a box, to `accuracy`; `None` when one of them has no point in it.
 ///
 /// Pairs of boxes are visited by their distance, those proved to be air left out, until none is nearer than
-/// the best pair of points by more than `accuracy`.
+/// the best pair of points by more than `accuracy`, or 40 000 pairs were seen: `at_least` is what is proved. Parallel
+/// faces, concentric balls, coaxial cylinders and the like are proved at once (`separation`).
 ///
 /// # Errors
-/// A box without volume; an accuracy that is not above zero or needs too many boxes, as parallel
-/// faces do.
+/// A box without volume; an accuracy that is not above zero.
 ///
 /// # Example
 /// ```
@@ -193,22 +194,28 @@ pub fn distance(
     let mut heap = BinaryHeap::from([Pair { distance: 0.0, depth: 0, parts: [first, second] }]);
     let mut best: Option<(f64, [Vec3; 2])> = None;
     let mut seen = 0;
-    while let Some(Pair { distance, depth, parts }) = heap.pop() {
+    let gauges = suggested(sets);
+    let mut proved = gauges.iter().map(|g| separation(g, sets, &over)).fold(0.0, f64::max);
+    while let Some(Pair { distance: apart_by, depth, parts }) = heap.pop() {
+        let distance = apart_by.max(proved);
         if let Some((found, [p, q])) = best
-            && distance >= found - accuracy
+            && (distance >= found - accuracy || seen >= MOST)
         {
             let at_least = distance.min(found);
             return Ok(Some(Distance { distance: found, at_least, first: p, second: q }));
         }
         seen += 1;
-        if seen > MOST {
-            return Err(FieldError::TooFine { boxes: seen as f64, limit: MOST as f64 });
+        if seen > 10 * MOST {
+            return Err(FieldError::TooFine { boxes: seen as f64, limit: 10.0 * MOST as f64 });
         }
         let (_, [p, q]) = apart(&parts[0].sides, &parts[1].sides);
         if let Some(pair) = tried(sets, &parts, [p, q], near) {
             let found = pair[0].distance(pair[1]);
             if best.is_none_or(|b| found < b.0) {
                 best = Some((found, pair));
+                if let Some(way) = (pair[1] - pair[0]).normalized() {
+                    proved = proved.max(separation(&Gauge::Along(way), sets, &over));
+                }
             }
         }
         if depth == DEPTH || parts.iter().all(|p| p.solid) {
@@ -245,7 +252,7 @@ pub fn distance(
     }
     Ok(best.map(|(distance, [p, q])| Distance {
         distance,
-        at_least: (distance - accuracy).max(0.0),
+        at_least: (distance - accuracy).max(proved).min(distance),
         first: p,
         second: q,
     }))

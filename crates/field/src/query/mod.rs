@@ -6,3 +6,4 @@ pub(crate) mod foot;
 pub(crate) mod nearest;
 pub(crate) mod ray;
 pub(crate) mod ray_trace;
+pub(crate) mod separation;

@@ -55,16 +55,15 @@ pub struct Nearest {
 /// Boxes are halved this often along each axis, at most.
 const DEPTH: u32 = 24;
 /// The most boxes to look at.
-const MOST: usize = 400_000;
+const MOST: usize = 100_000;
 
 /// The point of a set's surface in a box that is nearest to `p`, or `None` when there is none.
 ///
 /// Boxes are visited by their distance, those proved all solid or all air left out, until none is
-/// nearer than the best point found by more than `accuracy`.
+/// nearer than the best point found by more than `accuracy`, or 100 000 were seen: `at_least` is what is proved.
 ///
 /// # Errors
-/// A box without volume, an accuracy that is not above zero or needs too many boxes (seen from a centre
-/// of symmetry every point of the surface is nearest).
+/// A box without volume, an accuracy that is not above zero.
 ///
 /// # Example
 /// ```
@@ -94,9 +93,12 @@ pub fn nearest(
     let distance = reach(&start, p);
     heap.push(Candidate { distance, sides: start, depth: 0, tape: compiled.tape.clone() });
     let mut seen = 0;
+    // From a centre of symmetry every point is nearest: boxes would not prove that in a lifetime, distances do.
+    let proved = super::separation::from_point(set, p);
     while let Some(Candidate { distance, sides, depth, tape }) = heap.pop() {
+        let distance = distance.max(proved);
         if let Some((point, found)) = best
-            && distance >= found - accuracy
+            && (distance >= found - accuracy || seen >= MOST)
         {
             // Near a minimum of the distance the place is known by its root only: Newton's method settles it.
             let point = crate::query::foot::polished(set, p, point, 1e-9 * over.diagonal());
@@ -104,8 +106,8 @@ pub fn nearest(
             return Ok(Some(Nearest { point, distance: found, at_least: distance.min(found) }));
         }
         seen += 1;
-        if seen > MOST {
-            return Err(FieldError::TooFine { boxes: seen as f64, limit: MOST as f64 });
+        if seen > 2 * MOST {
+            return Err(FieldError::TooFine { boxes: seen as f64, limit: 2.0 * MOST as f64 });
         }
         let range = tape.range(&sides, &mut room);
         if range.low > 0.0 || range.high < 0.0 {
@@ -143,7 +145,11 @@ pub fn nearest(
             }
         }
     }
-    Ok(best.map(|(point, distance)| Nearest { point, distance, at_least: distance - accuracy }))
+    Ok(best.map(|(point, distance)| Nearest {
+        point,
+        distance,
+        at_least: (distance - accuracy).max(proved).min(distance),
+    }))
 }
 
 /// True when one primitive alone decides in the box, away from the faces of all of it, and its gradient

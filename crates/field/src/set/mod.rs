@@ -6,6 +6,7 @@ use crate::expr::primitive::{Binary, Op};
 use crate::expr::tape::{Builder, Code, NO_LEAF, Tape};
 use crate::{Affine, FieldError, Primitive};
 use moldloft_num::{Box3, Real, Vec3};
+use std::collections::BTreeMap;
 use std::ops::{BitAnd, BitOr, BitXor, Neg, Sub};
 use std::sync::Arc;
 
@@ -22,6 +23,8 @@ pub struct Attributes {
     pub material: Option<String>,
     /// Distance below which two points count as one.
     pub tolerance: Option<f64>,
+    /// What else is said, by tag.
+    pub tags: BTreeMap<String, String>,
 }
 
 impl Attributes {
@@ -33,6 +36,11 @@ impl Attributes {
             colour: self.colour.or(outer.colour),
             material: self.material.clone().or_else(|| outer.material.clone()),
             tolerance: self.tolerance.or(outer.tolerance),
+            tags: match (self.tags.is_empty(), outer.tags.is_empty()) {
+                (_, true) => self.tags.clone(),
+                (true, _) => outer.tags.clone(),
+                _ => outer.tags.clone().into_iter().chain(self.tags.clone()).collect(),
+            },
         }
     }
 }
@@ -254,6 +262,27 @@ impl<T: Real> Set<T> {
         }
     }
 
+    /// What tells its node and its attributes from others while they live.
+    pub(crate) fn identity(&self) -> (usize, usize) {
+        let attributes = self.attributes.as_ref().map_or(0, |a| Arc::as_ptr(a) as usize);
+        (Arc::as_ptr(&self.node) as usize, attributes)
+    }
+
+    /// True for a union.
+    pub(crate) fn is_union(&self) -> bool {
+        matches!(self.node.kind, Kind::Union)
+    }
+
+    /// A primitive as it is, without looking for unions in it.
+    pub(crate) fn of_leaf(p: &Primitive<T>) -> Self {
+        Self::of(Kind::Leaf(p.clone()), Vec::new())
+    }
+
+    /// Two sets joined as they are.
+    pub(crate) fn of_two(union: bool, a: Self, b: Self) -> Self {
+        Self::of(if union { Kind::Union } else { Kind::Intersection }, vec![a, b])
+    }
+
     /// True for the whole of space, known as such.
     pub fn is_everything(&self) -> bool {
         matches!(self.node.kind, Kind::Everything)
@@ -274,6 +303,15 @@ impl<T: Real> Set<T> {
         let attributes = match &self.attributes {
             Some(old) => attributes.or(old),
             None => attributes,
+        };
+        Self { attributes: Some(Arc::new(attributes)), ..self.clone() }
+    }
+
+    /// The same set, its own attributes completed by those of a set around it.
+    pub(crate) fn within(&self, outer: Attributes) -> Self {
+        let attributes = match &self.attributes {
+            Some(own) => own.or(&outer),
+            None => outer,
         };
         Self { attributes: Some(Arc::new(attributes)), ..self.clone() }
     }
@@ -403,6 +441,37 @@ impl<T: Real> Set<T> {
         self.rebuilt(&|p| Self::of(Kind::Leaf(-p), Vec::new()), true, &Self::combined)
     }
 
+    /// What `leaf` makes of the primitives, joined up the tree: unions with `true`.
+    pub(crate) fn folded<R: Clone>(
+        &self,
+        leaf: &dyn Fn(&Primitive<T>) -> R,
+        everything: R,
+        nothing: R,
+        join: &dyn Fn(bool, R, R) -> R,
+    ) -> R {
+        let mut out: Vec<R> = Vec::new();
+        let mut stack = vec![(self, false)];
+        while let Some((set, ready)) = stack.pop() {
+            let made = match (&set.node.kind, ready) {
+                (Kind::Everything, _) => everything.clone(),
+                (Kind::Nothing, _) => nothing.clone(),
+                (Kind::Leaf(p), _) => leaf(p),
+                (_, false) => {
+                    stack.push((set, true));
+                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
+                    continue;
+                }
+                (kind, true) => {
+                    let b = out.pop().unwrap_or_else(|| nothing.clone());
+                    let a = out.pop().unwrap_or_else(|| nothing.clone());
+                    join(matches!(kind, Kind::Union), a, b)
+                }
+            };
+            out.push(made);
+        }
+        out.pop().unwrap_or(nothing)
+    }
+
     /// The set with real parts only.
     pub fn re(&self) -> Set<f64> {
         let any: &dyn std::any::Any = self;
@@ -410,6 +479,12 @@ impl<T: Real> Set<T> {
             return plain.clone();
         }
         self.rebuilt(&|p| Set::of(Kind::Leaf(p.re()), Vec::new()), false, &Set::combined)
+    }
+
+    /// The set with its coordinates replaced; see [`Primitive::remapped`].
+    pub fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Self {
+        let leaf = |p: &Primitive<T>| Self::of_leaf(&p.remapped(coordinates));
+        self.rebuilt(&leaf, false, &Self::combined)
     }
 
     /// The set moved by an affine map.

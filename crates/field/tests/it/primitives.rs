@@ -320,9 +320,8 @@ fn bad_arguments_are_refused() {
         FieldError::Degenerate { what: "normal" }
     );
     let [x, y, _] = Primitive::<f64>::axes();
-    assert_eq!(err(x.over(&y)), FieldError::Division);
     assert_eq!(err(x.over(&Primitive::real(0.0))), FieldError::Division);
-    assert!(x.over(&Primitive::real(2.0)).is_ok());
+    assert!(x.over(&Primitive::real(2.0)).is_ok() && x.over(&y).is_ok());
     assert_eq!(err(x.to_power(0.5)), FieldError::Exponent { value: 0.5 });
     assert_eq!(x.to_power(3.0).unwrap().degree(), 3);
 }

@@ -1,7 +1,9 @@
 //! Boxes that are thinner than their cells: what has no thickness is whole there, and bodies are refused.
 
 use crate::common::{at_depth, v};
-use moldloft_field::{FieldError, Options, Primitive, Resolution, Set, facet, facet_mixed, mass};
+use moldloft_field::{
+    FieldError, Measure, Options, Primitive, Resolution, Set, facet, facet_mixed, mass,
+};
 use moldloft_num::Box3;
 
 fn thin() -> Box3 {
@@ -58,7 +60,7 @@ fn what_the_box_cuts_is_refused_or_finer() {
     }
     let strips = facet_mixed(&wave, &thin(), &level).unwrap();
     assert_eq!(strips.sheets[0].mesh.report().open_loops.len(), 3);
-    let found = mass(&ball, &thin(), 5).unwrap();
+    let found = mass(&ball, &thin(), &Measure::to_depth(5)).unwrap();
     assert!((found.best.volume() - 0.6283).abs() < 1e-4);
     // An accuracy finds its own cells.
     let fine = facet(&ball, &thin(), &Options::new(Resolution::Accuracy(1e-3))).unwrap();

@@ -128,9 +128,13 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
         "sin" => f.sin(),
         "cos" => f.cos(),
         "exp" => f.exp(),
+        "log" => f.ln(),
+        "tan" => f.tan(),
         _ => {
             return Some(Err(CallError::new("wrong-class", format!("{name} takes no field"))
-                .expected("of fields abs, sign, sqrt, s_sqrt, sin, cos, exp, min, max, atan2")
+                .expected(
+                    "of fields abs, sign, sqrt, s_sqrt, sin, cos, tan, exp, log, min, max, atan2",
+                )
                 .found("a field")
                 .in_field(field_id(0))));
         }

@@ -159,6 +159,17 @@ impl PyFacets {
         solid.undecided.iter().map(|b| (b.low.to_array(), b.high.to_array())).collect()
     }
 
+    /// Places that the corners of cells say nothing of: the box, the volume it may hold, and whether there is some
+    /// for sure.
+    #[allow(clippy::type_complexity)]
+    fn unresolved(&self) -> Vec<(([f64; 3], [f64; 3]), f64, bool)> {
+        let solid = solid_of(&self.pieces);
+        let row = |u: &moldloft_field::Unresolved| {
+            ((u.place.low.to_array(), u.place.high.to_array()), u.volume, u.missed)
+        };
+        solid.unresolved.iter().map(row).collect()
+    }
+
     /// The boxes with an edge or corner that is cut off.
     fn blunt(&self) -> Vec<([f64; 3], [f64; 3])> {
         let solid = solid_of(&self.pieces);

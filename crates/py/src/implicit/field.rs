@@ -135,6 +135,7 @@ impl PyField {
             "-" => a - b,
             "*" => a * b,
             "/" => a.over(b).map_err(plain_error)?,
+            "%" => a.remainder(b).map_err(plain_error)?,
             "min" => a.min(b),
             "max" => a.max(b),
             "atan2" => a.atan2(b),
@@ -154,6 +155,8 @@ impl PyField {
             "sin" => a.sin(),
             "cos" => a.cos(),
             "exp" => a.exp(),
+            "ln" => a.ln(),
+            "tan" => a.tan(),
             _ => return Err(plain_error(format!("there is no function {name} of fields"))),
         }))
     }
@@ -276,6 +279,28 @@ impl PyField {
     fn mapped(&self, rows: [[f64; 3]; 3], shift: [f64; 3]) -> PyResult<Self> {
         let map = Affine { rows: rows.map(Vec3::from), shift: Vec3::from(shift) };
         self.inner.mapped(&map).map(|p| self.from(p)).map_err(plain_error)
+    }
+
+    fn remapped(&self, x: &Self, y: &Self, z: &Self) -> Self {
+        let coordinates = [&x.inner, &y.inner, &z.inner].map(Clone::clone);
+        let slots = self.slots.with(&x.slots).with(&y.slots).with(&z.slots);
+        Self { inner: self.inner.remapped(&coordinates), slots }
+    }
+
+    /// The field as text.
+    fn to_text(&self) -> PyResult<String> {
+        self.inner.to_text().map_err(plain_error)
+    }
+
+    /// The field of a text: ours, fidget's or libfive's.
+    #[staticmethod]
+    fn from_text(text: &str, format: &str) -> PyResult<Self> {
+        let made = match format {
+            "fidget" => moldloft_field::read_fidget(text),
+            "libfive" => moldloft_field::read_libfive(text),
+            _ => Primitive::from_text(text),
+        };
+        made.map(Self::of).map_err(plain_error)
     }
 
     fn same(&self, o: &Self) -> bool {

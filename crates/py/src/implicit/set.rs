@@ -7,8 +7,8 @@ use crate::arrays;
 use crate::error::plain_error;
 use crate::work::interruptible;
 use moldloft_field::{
-    Affine, Attributes, Caster, FieldError, Light, Membership, Options, Pieces, Ray, RayTrace,
-    Resolution, Set, facet_mixed,
+    Affine, Attributes, Caster, FieldError, Light, Mass, Measure, Membership, Options, Pieces, Ray,
+    RayTrace, Resolution, Set, facet_mixed,
 };
 use moldloft_num::{Box3, Vec3};
 use numpy::{PyArray1, PyReadonlyArray2};
@@ -134,6 +134,67 @@ impl PySet {
         self.inner.mapped(&map).map(|s| self.from(s)).map_err(plain_error)
     }
 
+    fn remapped(&self, x: &PyField, y: &PyField, z: &PyField) -> Self {
+        let coordinates = [&x.inner, &y.inner, &z.inner].map(Clone::clone);
+        let slots = self.slots.with(&x.slots).with(&y.slots).with(&z.slots);
+        Self { inner: self.inner.remapped(&coordinates), slots }
+    }
+
+    /// The set as text of its own format.
+    fn to_text(&self) -> PyResult<String> {
+        self.inner.to_text().map_err(plain_error)
+    }
+
+    /// The set as a program of the language.
+    fn to_sdl(&self, name: &str) -> PyResult<String> {
+        self.inner.to_sdl(name).map_err(plain_error)
+    }
+
+    #[staticmethod]
+    fn from_text(text: &str) -> PyResult<Self> {
+        Set::from_text(text).map(Self::of).map_err(plain_error)
+    }
+
+    fn offset(&self, distance: f64) -> PyResult<Self> {
+        self.inner.offset(distance).map(|s| self.from(s)).map_err(plain_error)
+    }
+
+    fn shell(&self, thickness: f64) -> PyResult<Self> {
+        self.inner.shell(thickness).map(|s| self.from(s)).map_err(plain_error)
+    }
+
+    /// The union with another set, with fillets.
+    fn filleted(
+        &self,
+        py: Python<'_>,
+        o: &Self,
+        widths: [f64; 2],
+        lambda: f64,
+        edges: Option<Vec<[String; 2]>>,
+    ) -> PyResult<Self> {
+        let (a, b) = (&self.inner, &o.inner);
+        let made =
+            py.detach(|| moldloft_field::fillet_sets([a, b], widths, lambda, edges.as_deref()));
+        let inner = made.map_err(plain_error)?;
+        Ok(Self { inner, slots: self.slots.with(&o.slots) })
+    }
+
+    /// The set with its convex edges rounded, or chamfered without a weight.
+    fn rounded(
+        &self,
+        py: Python<'_>,
+        width: f64,
+        lambda: Option<f64>,
+        edges: Option<Vec<[String; 2]>>,
+    ) -> PyResult<Self> {
+        let set = &self.inner;
+        let made = py.detach(|| match lambda {
+            Some(lambda) => moldloft_field::round_edges(set, width, lambda, edges.as_deref()),
+            None => moldloft_field::chamfer_edges(set, width, edges.as_deref()),
+        });
+        made.map(|s| self.from(s)).map_err(plain_error)
+    }
+
     #[staticmethod]
     fn blended(
         kind: &str,
@@ -180,6 +241,7 @@ impl PySet {
         colour: Option<u8>,
         material: Option<String>,
         tolerance: Option<f64>,
+        tags: std::collections::BTreeMap<String, String>,
     ) -> Self {
         self.from(self.inner.with(Attributes {
             given: name.is_some(),
@@ -187,6 +249,7 @@ impl PySet {
             colour,
             material,
             tolerance,
+            tags,
         }))
     }
 
@@ -327,23 +390,34 @@ impl PySet {
         &self,
         py: Python<'py>,
         corners: Corners,
-        depth: u32,
+        depth: Option<u32>,
+        accuracy: Option<f64>,
+        cells: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (bracket, best) = self.long(py, move |set, cancel| {
-            let over = region(set, given(corners))?;
-            let bracket = moldloft_field::bracket_until(set, &over, depth, &cancel)?;
-            let options = Options {
-                cancel: Some(cancel),
-                sharp: true,
-                ..Options::new(Resolution::Level(depth))
+        let found = self.long(py, move |set, cancel| {
+            let over = match given(corners) {
+                Some(over) => over,
+                None => match moldloft_field::around(set)? {
+                    Some(over) => over,
+                    None => return Ok(None),
+                },
             };
-            let mut best =
-                moldloft_field::facet(&moldloft_field::solid_part(set), &over, &options)?.moments();
-            for (x, range) in best.0.iter_mut().zip(&bracket.0) {
-                *x = x.clamp(range.low, range.high);
-            }
-            Ok((bracket, best))
+            let measure =
+                Measure { depth, accuracy, cells, cancel: Some(cancel), ..Measure::default() };
+            moldloft_field::mass(set, &over, &measure).map(Some)
         })?;
+        let Some(Mass { bracket, best }) = found else {
+            let dict = PyDict::new(py);
+            dict.set_item("volume", 0.0)?;
+            dict.set_item("volume_bracket", (0.0, 0.0))?;
+            for name in ["centroid", "inertia"] {
+                dict.set_item(name, None::<f64>)?;
+            }
+            let all = (f64::NEG_INFINITY, f64::INFINITY);
+            dict.set_item("centroid_bracket", [all; 3])?;
+            dict.set_item("inertia_bracket", [[all; 3]; 3])?;
+            return Ok(dict);
+        };
         let dict = PyDict::new(py);
         dict.set_item("volume", best.volume())?;
         let v = bracket.volume();
@@ -487,6 +561,7 @@ pub fn attributes<'py>(py: Python<'py>, a: &Attributes) -> PyResult<Bound<'py, P
     dict.set_item("colour", a.colour)?;
     dict.set_item("material", &a.material)?;
     dict.set_item("tolerance", a.tolerance)?;
+    dict.set_item("tags", a.tags.clone())?;
     Ok(dict)
 }
 

@@ -1,0 +1,277 @@
+//! Operations on whole sets and replaced coordinates, as rows of the registry.
+
+use super::read::{Shape, Solid, fault, field, primitive_of, set, set_of, set_value};
+use crate::{Affine, Primitive, Set};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, Value};
+use std::sync::Arc;
+
+/// A field or a set.
+pub struct Any<T: Real>(Value<T>);
+
+impl<T: Real> FromValue<T> for Any<T> {
+    const CLASS: Class = Class::Set;
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
+        match value {
+            Value::Field(_) | Value::Set(_) | Value::Plane(_) => Ok(Self(value.clone())),
+            other => Err(CallError::wrong_class(Class::Set, other.class())),
+        }
+    }
+}
+
+impl<T: Real> Any<T> {
+    fn remapped(&self, coordinates: &[Primitive<T>; 3]) -> Result<Value<T>, CallError> {
+        match (&self.0, set_of(&self.0), primitive_of(&self.0)) {
+            (Value::Set(_), Some(s), _) => Ok(set_value(s.remapped(coordinates))),
+            (_, _, Some(f)) => field(Ok(f.remapped(coordinates))),
+            (value, ..) => Err(CallError::wrong_class(Class::Set, value.class())),
+        }
+    }
+}
+
+/// Edges as "face, face; face, face", or none for all.
+fn edges(text: Option<&Arc<str>>, place: FieldId) -> Result<Option<Vec<[String; 2]>>, CallError> {
+    let Some(text) = text else { return Ok(None) };
+    let pair = |part: &str| match part.split(',').map(str::trim).collect::<Vec<_>>()[..] {
+        [a, b] if !a.is_empty() && !b.is_empty() => Ok([a.to_owned(), b.to_owned()]),
+        _ => Err(CallError::new("wrong-edges", format!("`{}` names no edge", part.trim()))
+            .expected("the names of two faces, and more after `;`: \"top, side; top, front\"")
+            .in_field(place)),
+    };
+    text.split(';').filter(|p| !p.trim().is_empty()).map(pair).collect::<Result<_, _>>().map(Some)
+}
+
+/// A field or set with its coordinates replaced: what was at (x, y, z) is where the three fields have these values.
+///
+/// Twists, bends, tapers and repetitions are such replacements.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "remapped",
+    example = "field x = plane({1, 0, 0}, {0, 0, 0}); field y = plane({0, 1, 0}, {0, 0, 0}); field z = plane({0, 0, 1}, {0, 0, 0}); field egg = remapped(sphere({0, 0, 0}, 1), x, y, z*(1 + z/10));"
+)]
+pub struct Remapped<T: Real> {
+    /// What is moved.
+    shape: Any<T>,
+    /// What takes the place of x.
+    x: Shape<T>,
+    /// What takes the place of y.
+    y: Shape<T>,
+    /// What takes the place of z.
+    z: Shape<T>,
+}
+
+impl<T: Real> Build<T> for Remapped<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        self.shape.remapped(&[self.x.primitive, self.y.primitive, self.z.primitive])
+    }
+}
+
+/// A field or set twisted about the z axis.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "twisted",
+    example = "set drill = twisted(cuboid({-1, -0.3, 0}, {1, 0.3, 4}), 0.8);"
+)]
+pub struct Twisted<T: Real> {
+    /// What is twisted.
+    shape: Any<T>,
+    /// The angle by which each unit of z is turned.
+    #[field(angle)]
+    rate: T,
+}
+
+impl<T: Real> Build<T> for Twisted<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        self.shape.remapped(&crate::twist(self.rate))
+    }
+}
+
+/// The remainder x - y floor(x / y) of fields: x repeated with the period y.
+#[derive(Kind)]
+#[kind(
+    class = Field,
+    function,
+    name = "remainder",
+    example = "field x = plane({1, 0, 0}, {0, 0, 0}); field teeth = remainder(x, 0.5);"
+)]
+pub struct Remainder<T: Real> {
+    /// The dividend.
+    x: Shape<T>,
+    /// The divisor.
+    y: Shape<T>,
+}
+
+impl<T: Real> Build<T> for Remainder<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        field(self.x.primitive.remainder(&self.y.primitive)).map_err(|f| f.in_field(Self::Y))
+    }
+}
+
+/// Copies of a set, each moved from the one before by the same vector.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "repeated",
+    example = "set row = repeated(set(sphere({0, 0, 0}, 0.4)), {1, 0, 0}, 5); assert components(row) == 5;"
+)]
+pub struct Repeated<T: Real> {
+    /// The set.
+    set: Solid<T>,
+    /// From each copy to the next.
+    by: Point<T>,
+    /// How many there are.
+    #[field(min = 1, max = 10000)]
+    count: u32,
+}
+
+impl<T: Real> Build<T> for Repeated<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let copy = |k: u32| {
+            let by: Vec3<T> = self.by.xyz * T::from(f64::from(k));
+            self.set.0.mapped(&Affine::translation(by))
+        };
+        let mut all = Set::nothing();
+        for k in 0..self.count {
+            all = all | copy(k).map_err(|e| fault(&e))?;
+        }
+        Ok(set_value(all))
+    }
+}
+
+/// A set grown by a distance, or shrunk by a negative one: every face moves along its normals, edges stay sharp.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set_offset",
+    example = "set grown = set_offset(cuboid({0, 0, 0}, {1, 1, 1}), 0.1); assert abs(volume(grown) - 1.728) < 1e-9;"
+)]
+pub struct Offset<T: Real> {
+    /// The set, of planes, balls, cylinders, cones and tori.
+    set: Solid<T>,
+    /// How far its faces move outward.
+    distance: T,
+}
+
+impl<T: Real> Build<T> for Offset<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        set(self.set.0.offset(self.distance))
+    }
+}
+
+/// The wall inside of a set's surface.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set_shell",
+    example = "set tank = set_shell(cuboid({0, 0, 0}, {1, 1, 1}), 0.1); assert abs(volume(tank) - 0.488) < 1e-9;"
+)]
+pub struct Shell<T: Real> {
+    /// The set, of planes, balls, cylinders, cones and tori.
+    set: Solid<T>,
+    /// How thick the wall is.
+    #[field(min = 0)]
+    thickness: T,
+}
+
+impl<T: Real> Build<T> for Shell<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        set(self.set.0.shell(self.thickness))
+    }
+}
+
+/// The union of two sets with fillets where their faces meet.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set_fillet",
+    example = "set post = set_fillet(cuboid({-2, -2, -1}, {2, 2, 0}), cuboid({-0.5, -0.5, -0.5}, {0.5, 0.5, 2}), 0.2);"
+)]
+pub struct FilletSets<T: Real> {
+    /// A set, of planes, balls, cylinders, cones and tori.
+    a: Solid<T>,
+    /// The other.
+    b: Solid<T>,
+    /// Setback of the blend on both.
+    #[field(min = 0)]
+    width: T,
+    /// Setback on the first set, where it differs.
+    #[field(default, min = 0)]
+    other: Option<T>,
+    /// Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between perpendicular planes.
+    #[field(default = crate::CIRCULAR)]
+    lambda: T,
+    /// The edges, by the names of a face of each set: "top, side; top, front". All of them by default.
+    #[field(default)]
+    edges: Option<Arc<str>>,
+}
+
+impl<T: Real> Build<T> for FilletSets<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let chosen = edges(self.edges.as_ref(), Self::EDGES)?;
+        let widths = [self.width, self.other.unwrap_or(self.width)];
+        set(crate::fillet_sets([&self.a.0, &self.b.0], widths, self.lambda, chosen.as_deref()))
+    }
+}
+
+/// A set with the convex edges between its faces rounded.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set_round",
+    example = "set soft = set_round(cuboid({0, 0, 0}, {3, 2, 1}), 0.2);"
+)]
+pub struct RoundEdges<T: Real> {
+    /// The set, of planes, balls, cylinders, cones and tori.
+    set: Solid<T>,
+    /// Setback of the round on both faces.
+    #[field(min = 0)]
+    width: T,
+    /// Shape between 0 (a chamfer) and 1 (the corner); 2/3 is a circular arc between perpendicular planes.
+    #[field(default = crate::CIRCULAR)]
+    lambda: T,
+    /// The edges, by the names of both faces: "top, side; top, front". All of them by default.
+    #[field(default)]
+    edges: Option<Arc<str>>,
+}
+
+impl<T: Real> Build<T> for RoundEdges<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let chosen = edges(self.edges.as_ref(), Self::EDGES)?;
+        set(crate::round_edges(&self.set.0, self.width, self.lambda, chosen.as_deref()))
+    }
+}
+
+/// A set with the convex edges between its faces chamfered.
+#[derive(Kind)]
+#[kind(
+    class = Set,
+    function,
+    name = "set_chamfer",
+    example = "set block = set_chamfer(cuboid({0, 0, 0}, {10, 6, 4}), 1); assert abs(volume(block) - 206) < 1e-6;"
+)]
+pub struct ChamferEdges<T: Real> {
+    /// The set, of planes, balls, cylinders, cones and tori.
+    set: Solid<T>,
+    /// Setback of the chamfer on both faces.
+    #[field(min = 0)]
+    width: T,
+    /// The edges, by the names of both faces: "top, side; top, front". All of them by default.
+    #[field(default)]
+    edges: Option<Arc<str>>,
+}
+
+impl<T: Real> Build<T> for ChamferEdges<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let chosen = edges(self.edges.as_ref(), Self::EDGES)?;
+        set(crate::chamfer_edges(&self.set.0, self.width, chosen.as_deref()))
+    }
+}
