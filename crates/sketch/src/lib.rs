@@ -87,4 +87,5 @@ pub use object::{Face, Object, Reference};
 pub use solid::gradient::{Gradient, Swept, gradient};
 pub use solid::mass::Mass;
 pub use solid::ruled_faces::RoundFace;
+pub use solid::feature::{Feature, FeatureKind, NoBody, Operand, Placement, body};
 pub use solid::{Solid, curve, faces, merge, solid};

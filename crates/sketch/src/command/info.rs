@@ -199,6 +199,16 @@ impl Session {
                 }
             }
         }
+        let finished =
+            object.feature.is_some() || (layout.complete() && !object.faces.is_empty());
+        if let Err(why) = worked.body()
+            && finished
+        {
+            let fault = super::boolean::no_body(&object, why);
+            let mut reply = Reply::warning(fault.text);
+            (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
+            self.out.push(reply);
+        }
         if let Some(solid) = worked.solid() {
             for (id, face) in &object.faces {
                 let at: Vec<_> =
@@ -469,14 +479,9 @@ impl Session {
             args.skip();
         }
         args.end()?;
-        let object = self.active()?.clone();
-        let Some(solid) = self.solid_of(&object) else {
-            return Err(CommandError::new(
-                404,
-                format!("{} has no faces or is not fully dimensioned", object.name),
-                "CONVERT says what is missing; then GENERATE FACES",
-            ));
-        };
+        let object = self.active_arc()?;
+        let worked = self.worked(&object);
+        let solid = worked.body().map_err(|why| super::boolean::no_body(&object, why))?;
         let mass = solid.mass();
         let c = mass.centroid.to_array().map(plain).join(" ");
         let rows = [

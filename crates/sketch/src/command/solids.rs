@@ -453,62 +453,6 @@ impl Session {
         }
     }
 
-    pub(super) fn revolve(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        if !args.at_number() {
-            if let Some(token) = args.peek() {
-                self.known(&token.text)?;
-            }
-            self.take_object(args)?;
-        }
-        let line = args.line()?;
-        let angle = if args.at_number() { args.number("an angle in degrees")? } else { 360.0 };
-        args.end()?;
-        let mut object = self.active()?.clone();
-        let line = require_line(&object, line)?;
-        if object.drawing.section.is_none() {
-            return Err(CommandError::new(
-                113,
-                format!("{} is no cross section", object.name),
-                "SKETCH name 2D starts one",
-            ));
-        }
-        if angle == 0.0 || object.drawing.points.len() > 200 {
-            return Err(CommandError::new(
-                300,
-                "nothing to revolve, or more than 200 points",
-                "give an angle and a smaller section",
-            ));
-        }
-        let at = self.placed(&object)?;
-        if object.faces.is_empty() {
-            self.generate(&mut Args::new(&[faces_word()], ""))?;
-            object = self.active()?.clone();
-        }
-        let axis = [at[&line.p], at[&line.q]];
-        let direction = (axis[1] - axis[0]).normalized().unwrap_or_default();
-        let sides = at.values().map(|p| {
-            let off = (*p - axis[0]).cross(direction);
-            off.x + off.y + off.z
-        });
-        let (low, high) = sides.fold((0.0f64, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
-        let size = at.values().map(|p| p.distance(axis[0])).fold(0.0, f64::max);
-        if low < -1e-9 * size && high > 1e-9 * size {
-            return Err(CommandError::new(
-                701,
-                "the section lies on both sides of the line",
-                "revolve about a line on its border",
-            ));
-        }
-        let Some(solid) = merge::revolved(&object, &at, axis, angle) else {
-            return Err(CommandError::new(300, "the line has no length", "choose another"));
-        };
-        *self.active_mut()? = solid;
-        self.out.push(Reply::note(
-            "every coordinate is given outright now; edit the section to change it",
-        ));
-        self.report_validity()
-    }
-
     pub(super) fn clean(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if let Some(token) = args.peek() {
             self.known(&token.text)?;
@@ -645,9 +589,25 @@ impl Session {
     }
 
     pub(super) fn transform(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
-        let name = args.name("the name of an object")?;
+        let Some(name) = args.peek().map(|t| t.text.clone()) else {
+            return Err(args.wants("the name of an object"));
+        };
         let object = self.known(&name)?.clone();
         let key = name.to_lowercase();
+        // By expressions, by other angles than quarter turns, about other places than the origin, and
+        // for what has no drawing: a feature.
+        let quarters = |k: usize| args.number_of(k).is_some_and(|a| (a / 90.0).fract() == 0.0);
+        let drawn = object.feature.is_none()
+            && match verb {
+                "MOVE" => (1..4).all(|k| args.number_of(k).is_some()),
+                "SCALE" => args.number_of(1).is_some(),
+                "MIRROR" => args.len() == 2,
+                _ => args.len() == 3 && quarters(2),
+            };
+        if !drawn && args.len() > 1 {
+            return self.place(args, verb);
+        }
+        args.skip();
         let new = match verb {
             "MOVE" => {
                 let by =
@@ -671,14 +631,6 @@ impl Session {
                 } else {
                     let angle = args.number("an angle in degrees")?;
                     let quarters = angle / 90.0;
-                    if quarters.fract() != 0.0 || quarters.abs() > 1e6 {
-                        return Err(CommandError::text(
-                            format!(
-                                "{angle} degrees are no quarter turns: lines would lose their types"
-                            ),
-                            "turn by 90, 180 or 270",
-                        ));
-                    }
                     let n = (quarters as i64).rem_euclid(4);
                     (0..n).fold(object.clone(), |o, _| merge::quarter_turned(&o, axis))
                 };
@@ -692,7 +644,7 @@ impl Session {
     }
 }
 
-fn faces_word() -> super::words::Token {
+pub(super) fn faces_word() -> super::words::Token {
     super::words::Token { kind: super::words::Kind::Word, text: "FACES".to_owned() }
 }
 

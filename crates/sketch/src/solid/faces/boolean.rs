@@ -22,7 +22,16 @@ pub enum Operation {
 }
 
 impl Operation {
-    fn holds(self, a: bool, b: bool) -> bool {
+    /// The command word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Operation::Union => "UNION",
+            Operation::Cut => "CUT",
+            Operation::Common => "COMMON",
+        }
+    }
+
+    pub(crate) fn holds(self, a: bool, b: bool) -> bool {
         match self {
             Operation::Union => a || b,
             Operation::Cut => a && !b,
