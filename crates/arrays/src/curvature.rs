@@ -1,8 +1,8 @@
 //! How arrays of points bend.
 
 use crate::grids::jets;
-use crate::value::{Lattice, Points, farray, numbers, vectors};
-use moldloft_grid::Sheet;
+use crate::value::{GridArg, Points, farray, numbers, vectors};
+use moldloft_grid::SurfaceGrid;
 use moldloft_num::{Real, SurfJet, Vec3};
 use moldloft_registry::{ArrayShape, Build, Context, Fault, Kind, Scalar, Value};
 
@@ -127,11 +127,11 @@ fn forms<T: Real>(jet: &SurfJet<T>) -> Option<(Vec3<T>, [T; 6])> {
 
 /// A number at each point of a grid; at singular ones (poles) the mean of the next line's.
 fn at_points<T: Real>(
-    sheet: &Sheet<T>,
+    grid: &SurfaceGrid<T>,
     f: impl Fn(&SurfJet<T>) -> Option<Vec3<T>>,
 ) -> Result<Vec<Vec3<T>>, Fault> {
-    let (m, n) = (sheet.m, sheet.n);
-    let all: Vec<Option<Vec3<T>>> = jets(sheet)?.iter().map(f).collect();
+    let (m, n) = (grid.m, grid.n);
+    let all: Vec<Option<Vec3<T>>> = jets(grid)?.iter().map(f).collect();
     let mut known = Vec::with_capacity(m * n);
     for k in 0..m * n {
         let (i, j) = (k / n, k % n);
@@ -157,8 +157,8 @@ fn at_points<T: Real>(
     Ok(known)
 }
 
-fn grid_of<T: Real>(sheet: &Sheet<T>, values: Vec<Vec3<T>>) -> Value<T> {
-    numbers(ArrayShape::Grid(sheet.m, sheet.n), values.into_iter().map(|v| v.x).collect())
+fn grid_of<T: Real>(grid: &SurfaceGrid<T>, values: Vec<Vec3<T>>) -> Value<T> {
+    numbers(ArrayShape::Grid(grid.m, grid.n), values.into_iter().map(|v| v.x).collect())
 }
 
 /// The Gaussian curvatures at the points of a surface: K = (L N - M^2) / (E G - F^2), of the bicubic
@@ -176,7 +176,7 @@ fn grid_of<T: Real>(sheet: &Sheet<T>, values: Vec<Vec3<T>>) -> Value<T> {
 )]
 pub struct Gauss<T: Scalar> {
     /// The points.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Gauss<T> {
@@ -203,7 +203,7 @@ impl<T: Scalar> Build<T> for Gauss<T> {
 )]
 pub struct Mean<T: Scalar> {
     /// The points.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Mean<T> {
@@ -230,7 +230,7 @@ impl<T: Scalar> Build<T> for Mean<T> {
 )]
 pub struct Normals<T: Scalar> {
     /// The points.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Normals<T> {

@@ -1,8 +1,8 @@
 //! Structured grids: interpolated from edges and faces, smoothed, measured.
 
-use crate::value::{Lattice, Points, surface};
+use crate::value::{GridArg, Points, surface};
 use moldloft_grid::{
-    Blend, Edge, Elliptic, Faces, GridError, Hyperbolic, Method, Metric, Sheet, Side, Wall,
+    Blend, Edge, Elliptic, Faces, GridError, Hyperbolic, Method, Metric, Side, SurfaceGrid, Wall,
     elliptic_until, folded_cells, framed, hyperbolic, hyperbolic_curve, quality, transfinite,
     transfinite_block,
 };
@@ -100,8 +100,8 @@ impl<T: Scalar> Build<T> for Tfi<T> {
             }
         };
         let Value::List(items) = &self.s else {
-            let Lattice(sheet) = Lattice::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
-            return transfinite(&sheet, blend).map(surface).map_err(fault);
+            let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+            return transfinite(&grid, blend).map(surface).map_err(fault);
         };
         let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(0);
         match items.len() {
@@ -121,13 +121,13 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                             .in_field(0));
                     }
                 }
-                let sheet = framed(&edges).map_err(fault)?;
-                transfinite(&sheet, blend).map(surface).map_err(fault)
+                let grid = framed(&edges).map_err(fault)?;
+                transfinite(&grid, blend).map(surface).map_err(fault)
             }
             6 => {
-                let mut faces: Vec<Sheet<T>> = Vec::with_capacity(6);
+                let mut faces: Vec<SurfaceGrid<T>> = Vec::with_capacity(6);
                 for (k, item) in items.iter().enumerate() {
-                    faces.push(Lattice::from_value(item).map_err(place(k))?.0);
+                    faces.push(GridArg::from_value(item).map_err(place(k))?.0);
                 }
                 let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6))?;
                 let layers = transfinite_block(&faces).map_err(fault)?;
@@ -170,7 +170,7 @@ const EDGES: [(&str, Edge); 4] =
 )]
 pub struct EllipticGrid<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
     /// The most sweeps.
     #[field(default = 200, min = 0, max = 1e6)]
     n: usize,
@@ -236,15 +236,15 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
                     .in_field(3));
             }
         };
-        let sheet = self.s.0;
-        sheet.re().check_edges().map_err(fault)?;
+        let grid = self.s.0;
+        grid.re().check_edges().map_err(fault)?;
         let own;
         let on: Option<(&dyn Surface<T>, [Vec<T>; 2])> = match &self.on {
-            Some(surface) => Some((&**surface, on_surface(&sheet, surface)?)),
-            None if plane(&sheet) => None,
+            Some(surface) => Some((&**surface, on_surface(&grid, surface)?)),
+            None if plane(&grid) => None,
             None => {
-                own = through(&sheet)?;
-                let (m, n) = (sheet.m, sheet.n);
+                own = through(&grid)?;
+                let (m, n) = (grid.m, grid.n);
                 let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
                 let u = (0..m * n).map(|k| even(k / n, m)).collect();
                 let v = (0..m * n).map(|k| even(k % n, n)).collect();
@@ -259,7 +259,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             walls,
             on,
         };
-        let smoothed = elliptic_until(&sheet, &options, &context.cancel).map_err(fault)?.sheet;
+        let smoothed = elliptic_until(&grid, &options, &context.cancel).map_err(fault)?.grid;
         let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
         if let Some(&[i, j]) = folded.first() {
             let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };
@@ -290,8 +290,8 @@ fn walls<T: Real>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fau
 }
 
 /// True when all points lie in one plane, to rounding.
-fn plane<T: Real>(sheet: &Sheet<T>) -> bool {
-    let plain = sheet.re();
+fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
+    let plain = grid.re();
     let points: Vec<Vec3> = plain.points().collect();
     let first = points[0];
     let far = |f: &dyn Fn(&Vec3) -> f64| {
@@ -315,21 +315,21 @@ fn plane<T: Real>(sheet: &Sheet<T>) -> bool {
 }
 
 /// The spline surface through the points, even in the indices.
-fn through<T: Real>(sheet: &Sheet<T>) -> Result<GridSpline<T>, Fault> {
+fn through<T: Real>(grid: &SurfaceGrid<T>) -> Result<GridSpline<T>, Fault> {
     let knots = |n: usize| (0..n).map(|k| T::from(k as f64 / (n - 1) as f64)).collect();
     let ends = Ends::Open(End::NotAKnot, End::NotAKnot);
-    GridSpline::bicubic(knots(sheet.m), knots(sheet.n), sheet.points().collect(), ends)
+    GridSpline::bicubic(knots(grid.m), knots(grid.n), grid.points().collect(), ends)
         .map_err(|error| crate::spline::fault(error, "point"))
 }
 
 /// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
-fn on_surface<T: Real>(sheet: &Sheet<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
-    let points: Vec<Vec3<T>> = sheet.points().collect();
+fn on_surface<T: Real>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
+    let points: Vec<Vec3<T>> = grid.points().collect();
     let (uv, off) = crate::locate::nearest_parameters(on, &points);
-    let size = sheet.size();
+    let size = grid.size();
     let worst = (0..points.len()).fold(0, |w, k| if off[k] > off[w] { k } else { w });
     if off[worst] > 1e-6 * size {
-        let (i, j) = (worst / sheet.n + 1, worst % sheet.n + 1);
+        let (i, j) = (worst / grid.n + 1, worst % grid.n + 1);
         let message = format!("point [{i},{j}] of the grid is {} off the surface", off[worst]);
         return Err(Fault::new("off-surface", message)
             .expected("a grid whose points lie on the surface")
@@ -399,9 +399,8 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             let grid = hyperbolic_curve(&curve, normal, &heights, ends, smoothing);
             return grid.map(surface).map_err(place);
         }
-        let Lattice(sheet) = Lattice::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
-        let layers =
-            hyperbolic(&sheet, &Hyperbolic { heights, sides, smoothing }).map_err(place)?;
+        let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+        let layers = hyperbolic(&grid, &Hyperbolic { heights, sides, smoothing }).map_err(place)?;
         Ok(Value::list(layers.into_iter().map(surface)))
     }
 }
@@ -461,7 +460,7 @@ fn metric(word: &str) -> Result<Metric, Fault> {
 )]
 pub struct QualityOf<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
     /// What is measured.
     #[field(default = "sj")]
     metric: Arc<str>,
@@ -470,12 +469,12 @@ pub struct QualityOf<T: Scalar> {
 impl<T: Scalar> Build<T> for QualityOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let metric = metric(&self.metric)?;
-        let sheet = self.s.0;
-        if sheet.m.min(sheet.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [sheet.m, sheet.n] }));
+        let grid = self.s.0;
+        if grid.m.min(grid.n) < 2 {
+            return Err(fault(GridError::TooFew { expected: 2, actual: [grid.m, grid.n] }));
         }
-        let values = quality(&sheet, metric);
-        Ok(crate::value::numbers(ArrayShape::Grid(sheet.m - 1, sheet.n - 1), values))
+        let values = quality(&grid, metric);
+        Ok(crate::value::numbers(ArrayShape::Grid(grid.m - 1, grid.n - 1), values))
     }
 }
 
@@ -490,7 +489,7 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
 )]
 pub struct Folds<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
@@ -511,23 +510,23 @@ impl<T: Scalar> Build<T> for Folds<T> {
 )]
 pub struct Report<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         use std::fmt::Write;
-        let sheet = self.s.0.re();
-        if sheet.m.min(sheet.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [sheet.m, sheet.n] }));
+        let grid = self.s.0.re();
+        if grid.m.min(grid.n) < 2 {
+            return Err(fault(GridError::TooFew { expected: 2, actual: [grid.m, grid.n] }));
         }
-        let n = sheet.n - 1;
-        let folded = folded_cells(&sheet).len();
-        let mut text = format!("grid [{},{}], {folded} folded cells\n", sheet.m, sheet.n);
+        let n = grid.n - 1;
+        let folded = folded_cells(&grid).len();
+        let mut text = format!("grid [{},{}], {folded} folded cells\n", grid.m, grid.n);
         let _ =
             writeln!(text, "{:<11}{:>13}{:>13}{:>13}  worst cell", "metric", "min", "mean", "max");
         for metric in Metric::ALL {
-            let values = quality(&sheet, metric);
+            let values = quality(&grid, metric);
             let low_is_worse = matches!(metric, Metric::ScaledJacobian | Metric::Area);
             let worse = |x: f64, y: f64| if low_is_worse { x < y } else { x > y };
             let worst =
@@ -544,12 +543,12 @@ impl<T: Scalar> Build<T> for Report<T> {
 }
 
 /// Jets of the spline through a grid's own points, at its points.
-pub fn jets<T: Real>(sheet: &Sheet<T>) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
-    if sheet.m.min(sheet.n) < 3 {
-        return Err(fault(GridError::TooFew { expected: 3, actual: [sheet.m, sheet.n] }));
+pub fn jets<T: Real>(grid: &SurfaceGrid<T>) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
+    if grid.m.min(grid.n) < 3 {
+        return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }));
     }
-    let spline = through(sheet)?;
+    let spline = through(grid)?;
     let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
-    let (m, n) = (sheet.m, sheet.n);
+    let (m, n) = (grid.m, grid.n);
     Ok((0..m * n).map(|k| spline.jet(even(k / n, m), even(k % n, n), Order::Second)).collect())
 }

@@ -1,4 +1,4 @@
-use crate::{Class, Fault, FromValue, Value};
+use crate::{Class, Fault, FromValue, Kept, Value};
 use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
@@ -41,11 +41,13 @@ pub struct Context {
     pub nesting: u32,
     /// Set to true from elsewhere to end long calls.
     pub cancel: Arc<AtomicBool>,
+    /// What calls keep from one to the next.
+    pub kept: Kept,
 }
 
 impl Default for Context {
     fn default() -> Self {
-        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default() }
+        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default(), kept: Kept::default() }
     }
 }
 

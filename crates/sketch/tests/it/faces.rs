@@ -3,26 +3,7 @@
 use crate::common::*;
 use moldloft_num::{Real, Vec3};
 use moldloft_sketch::faces::{Fitted, Polygon, fit};
-
-/// xorshift64*, for repeatable tests.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        (self.next() >> 33) % n
-    }
-
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+use moldloft_testing::{Random, rounds};
 
 fn turned(cycle: &[usize]) -> Vec<usize> {
     let mut cycle = cycle.to_vec();
@@ -239,20 +220,16 @@ fn voxel_edges(size: [i64; 3], solid: &dyn Fn([i64; 3]) -> bool) -> (Vec<Vec3>, 
     (vertices, edges)
 }
 
-fn rounds(short: usize) -> usize {
-    if std::env::var_os("MOLDLOFT_SOAK").is_some() { short * 10 } else { short }
-}
-
 /// T20: slabs with bosses, pockets and holes, rebuilt uniquely.
 #[test]
 fn random_slabs_are_rebuilt() {
-    let mut random = Random(20);
-    for round in 0..rounds(200) {
+    let mut random = Random::new(20);
+    for round in 0..rounds(200, 2000) {
         let mut height = [[2i64; 7]; 7];
         for _ in 0..1 + random.below(4) {
-            let h = [0, 1, 3, 4][random.below(4) as usize];
-            let (x, y) = (1 + random.below(4) as usize, 1 + random.below(4) as usize);
-            let (w, d) = (1 + random.below(2) as usize, 1 + random.below(2) as usize);
+            let h = [0, 1, 3, 4][random.below(4)];
+            let (x, y) = (1 + random.below(4), 1 + random.below(4));
+            let (w, d) = (1 + random.below(2), 1 + random.below(2));
             for row in &mut height[x..(x + w).min(6)] {
                 row[y..(y + d).min(6)].fill(h);
             }
@@ -292,14 +269,14 @@ fn check_voxels(round: usize, size: [i64; 3], solid: &dyn Fn([i64; 3]) -> bool, 
 /// T20: random connected polycubes of 3 x 3 x 3.
 #[test]
 fn random_polycubes_are_rebuilt() {
-    let mut random = Random(21);
-    for round in 0..rounds(300) {
+    let mut random = Random::new(21);
+    for round in 0..rounds(300, 3000) {
         let mut filled = [[[false; 3]; 3]; 3];
         let mut at = [random.below(3) as i64, random.below(3) as i64, random.below(3) as i64];
         for _ in 0..4 + random.below(12) {
             filled[at[0] as usize][at[1] as usize][at[2] as usize] = true;
-            let axis = random.below(3) as usize;
-            at[axis] = (at[axis] + [1, -1][random.below(2) as usize]).clamp(0, 2);
+            let axis = random.below(3);
+            at[axis] = (at[axis] + [1, -1][random.below(2)]).clamp(0, 2);
         }
         let solid = |[x, y, z]: [i64; 3]| filled[x as usize][y as usize][z as usize];
         check_voxels(round, [3, 3, 3], &solid, true);
@@ -309,10 +286,10 @@ fn random_polycubes_are_rebuilt() {
 /// Convex hulls of random points, cut by random planes: oblique solids.
 #[test]
 fn random_oblique_solids_are_rebuilt() {
-    let mut random = Random(22);
-    for round in 0..rounds(200) {
+    let mut random = Random::new(22);
+    for round in 0..rounds(200, 2000) {
         // Half-spaces n . x <= d around the origin; vertices are triple points inside all others.
-        let count = 6 + random.below(8) as usize;
+        let count = 6 + random.below(8);
         let mut planes: Vec<(Vec3, f64)> = Vec::new();
         for axis in 0..3 {
             for sign in [1.0, -1.0] {

@@ -600,22 +600,11 @@ fn examples() {
     close(volume(&mut s, "DAM"), 50.0 * (20.0 * 78.0 + 45.0 * 60.0 / 2.0));
 }
 
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) as usize) % n
-    }
-}
-
 /// No line panics or hangs: random commands of plausible words on a living session.
 /// `MOLDLOFT_SOAK=1` runs ten million lines.
 #[test]
 fn any_line_is_answered() {
-    let rounds = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 10_000_000 } else { 30_000 };
+    let rounds = moldloft_testing::rounds(30_000, 10_000_000);
     let verbs: Vec<&str> = command::verbs::VERBS.iter().map(|v| v.name).collect();
     let words = [
         "A",
@@ -707,7 +696,7 @@ fn any_line_is_answered() {
         "(",
         "\u{0}",
     ];
-    let mut random = Random(18);
+    let mut random = moldloft_testing::Random::new(18);
     let mut s = Session::new();
     for round in 0..rounds {
         if round % 400 == 0 {
