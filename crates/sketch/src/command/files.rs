@@ -307,8 +307,7 @@ impl Session {
             }
             _ => {
                 let worked = self.worked(&object);
-                let solid =
-                    worked.body().map_err(|why| super::boolean::no_body(&object, why))?;
+                let solid = worked.body().map_err(|why| super::features::no_body(&object, why))?;
                 let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
                 let mesh = export::Facets::of(&solid.mesh(1e-3 * size));
                 match format.as_str() {

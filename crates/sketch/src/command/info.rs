@@ -199,12 +199,11 @@ impl Session {
                 }
             }
         }
-        let finished =
-            object.feature.is_some() || (layout.complete() && !object.faces.is_empty());
+        let finished = object.feature.is_some() || (layout.complete() && !object.faces.is_empty());
         if let Err(why) = worked.body()
             && finished
         {
-            let fault = super::boolean::no_body(&object, why);
+            let fault = super::features::no_body(&object, why);
             let mut reply = Reply::warning(fault.text);
             (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
             self.out.push(reply);
@@ -481,7 +480,7 @@ impl Session {
         args.end()?;
         let object = self.active_arc()?;
         let worked = self.worked(&object);
-        let solid = worked.body().map_err(|why| super::boolean::no_body(&object, why))?;
+        let solid = worked.body().map_err(|why| super::features::no_body(&object, why))?;
         let mass = solid.mass();
         let c = mass.centroid.to_array().map(plain).join(" ");
         let rows = [

@@ -72,7 +72,10 @@ impl Session {
         let name = args.name("the name of a feature")?;
         args.end()?;
         if self.state.outside.len() >= 32 {
-            return Err(CommandError::text("features are nested too deeply", "make fewer of each other"));
+            return Err(CommandError::text(
+                "features are nested too deeply",
+                "make fewer of each other",
+            ));
         }
         let objects = std::mem::take(&mut self.state.objects);
         self.state.outside.push((objects, self.state.active.take(), name));

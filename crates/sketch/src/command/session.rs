@@ -221,7 +221,13 @@ impl Session {
             window: None,
         };
         Session {
-            state: State { objects: IndexMap::new(), active: None, picture, outside: vec![], sketch83: false },
+            state: State {
+                objects: IndexMap::new(),
+                active: None,
+                picture,
+                outside: vec![],
+                sketch83: false,
+            },
             undo: Vec::new(),
             forgotten: 0,
             redo: Vec::new(),

@@ -2,7 +2,7 @@
 
 use super::CommandError;
 use super::args::Args;
-use super::draw::{require_line, require_point};
+use super::draw::require_point;
 use super::session::{MAX_POINTS, Reply, Session};
 use crate::solid::faces::{Fit, Fitted, Polygon, fit, fit_plane};
 use crate::solid::merge::{self, Placed};

@@ -50,8 +50,7 @@ fn write_feature(object: &Object, feature: &Feature, out: &mut String) -> std::f
     for operand in &feature.operands {
         write(&operand.object, out)?;
     }
-    let parts: Vec<String> =
-        feature.operands.iter().map(|o| quoted(&o.object.name)).collect();
+    let parts: Vec<String> = feature.operands.iter().map(|o| quoted(&o.object.name)).collect();
     let parts = parts.join(" ");
     let value = |e: &Expr| quoted(e.text());
     let vector = |v: &[Expr; 3]| v.each_ref().map(value).join(" ");

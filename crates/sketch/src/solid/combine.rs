@@ -11,7 +11,7 @@ use super::curve::{GAUSS, Piece};
 use super::surface::{Met, On, Surface, meet};
 use super::{Solid, SolidEdge, SolidFace, Trace, Trim, Vertex};
 use crate::PointId;
-use crate::solid::faces::Operation;
+use crate::solid::operation::Operation;
 use moldloft_mesh::triangulate;
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -105,8 +105,7 @@ fn build<T: Real>(
     }
     all.sources = operands;
     let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
-    let arranged =
-        arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
+    let arranged = arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
     if arranged.faces.is_empty() {
         return Err(CombineError::Empty);
     }
@@ -273,14 +272,13 @@ impl<'a, T: Real> Placing<'a, T> {
             let other = left.get(&(b, a)).and_then(|l| l.get(place).or(l.last()));
             let other = other.copied().unwrap_or(own);
             let round = !faces[own].plane || !faces[other].plane;
-            let edge = (self.arranged.edges.get(&(a.min(b), a.max(b))))
-                .filter(|_| round)
-                .and_then(|list| {
-                    let known = |e: &&(usize, u32)| {
-                        self.all.sources[e.0].edges[e.1 as usize].0.is_some()
-                    };
+            let edge = (self.arranged.edges.get(&(a.min(b), a.max(b)))).filter(|_| round).and_then(
+                |list| {
+                    let known =
+                        |e: &&(usize, u32)| self.all.sources[e.0].edges[e.1 as usize].0.is_some();
                     list.iter().find(known).copied()
-                });
+                },
+            );
             (own.min(other), own.max(other), edge)
         };
         let mut corners: BTreeSet<u32> = BTreeSet::new();
@@ -471,8 +469,7 @@ impl<'a, T: Real> Placing<'a, T> {
 
     /// The points of an edge that is not straight, with their places on the round faces beside it.
     fn trace(&self, chain: &[u32], kind: Kind) -> Result<Trace<T>, CombineError> {
-        let rough: Vec<Vec3> =
-            chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
+        let rough: Vec<Vec3> = chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
         let curve = kind.2.and_then(|(o, t)| self.all.sources[o].edges[t as usize].0.as_ref());
         let pair = [self.surface(kind.0), self.surface(kind.1)];
         let fixed: Vec<On<'_, T>> = match curve {
@@ -490,7 +487,8 @@ impl<'a, T: Real> Placing<'a, T> {
                 .collect()
         };
         let mut start = first(rough[0]);
-        let solve = |plane: &Surface<T>, guess: Vec3, start: &mut Vec<[f64; 2]>| {
+        // A plane across an edge may meet its surfaces elsewhere too.
+        let solve = |plane: &Surface<T>, guess: Vec3, reach: f64, start: &mut Vec<[f64; 2]>| {
             let mut on = fixed.clone();
             on.push(On::Surface(plane));
             let from = |s: &Vec<[f64; 2]>| {
@@ -498,7 +496,7 @@ impl<'a, T: Real> Placing<'a, T> {
                 s.push([0.0; 2]);
                 s
             };
-            let near = |m: &Met<T>| m.at.re().distance(guess) <= 0.25 * self.scale;
+            let near = |m: &Met<T>| m.at.re().distance(guess) <= reach;
             let met = meet(&on, guess, &from(start), self.scale)
                 .filter(near)
                 .or_else(|| meet(&on, guess, &from(&first(guess)), self.scale).filter(near));
@@ -522,9 +520,9 @@ impl<'a, T: Real> Placing<'a, T> {
             let after = rough[(k + 1).min(m - 1)];
             let normal = (after - before).normalized();
             let normal = normal.ok_or(CombineError::Touching(rough[k]))?;
-            let plane =
-                Surface::Plane { at: Vec3::lifted(rough[k]), normal: Vec3::lifted(normal) };
-            points.push(solve(&plane, rough[k], &mut start)?.at);
+            let plane = Surface::Plane { at: Vec3::lifted(rough[k]), normal: Vec3::lifted(normal) };
+            let reach = 0.5 * (after.distance(rough[k]) + before.distance(rough[k]));
+            points.push(solve(&plane, rough[k], reach, &mut start)?.at);
         }
         // Nodes between neighbouring points.
         let round: Vec<usize> =
@@ -540,7 +538,7 @@ impl<'a, T: Real> Placing<'a, T> {
             for (x, w) in GAUSS {
                 let at = pair[0] + step * T::from(x);
                 let plane = Surface::Plane { at, normal: lifted };
-                let met = solve(&plane, at.re(), &mut start)?;
+                let met = solve(&plane, at.re(), 0.5 * step.re().norm(), &mut start)?;
                 let by = met.moved * (rate * w);
                 nodes.push((met.at, by));
                 for (r, &f) in round.iter().enumerate() {
@@ -576,8 +574,7 @@ impl<'a, T: Real> Placing<'a, T> {
         vertices: &[Vertex<T>],
     ) -> super::Facets<T> {
         let mut points: Vec<Vec3<T>> = vertices.iter().map(|v| v.at).collect();
-        let mut index: HashMap<u32, u32> =
-            number.iter().map(|(v, k)| (*v, *k as u32)).collect();
+        let mut index: HashMap<u32, u32> = number.iter().map(|(v, k)| (*v, *k as u32)).collect();
         let given: HashMap<u32, usize> = {
             let pairs = self.arranged.given.iter().enumerate().rev();
             pairs.map(|(k, v)| (*v, k)).collect()

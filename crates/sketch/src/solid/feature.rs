@@ -5,7 +5,7 @@ use super::place::Similarity;
 use super::turn::turned;
 use super::validity::{Flaw, valid};
 use super::{Solid, unchecked};
-use crate::solid::faces::Operation;
+use crate::solid::operation::Operation;
 use crate::{Axis, Estimate, Expr, Layout, Object, Planes, PointId, Variable, solve};
 use moldloft_num::{Real, Vec3};
 use std::collections::BTreeMap;
@@ -245,8 +245,7 @@ impl Placement {
 fn one_side<T: Real>(section: &Solid<T>, [p, q]: [Vec3; 2]) -> bool {
     let Some(direction) = (q - p).normalized() else { return false };
     let mesh = section.faceted();
-    let arms: Vec<Vec3> =
-        mesh.positions().iter().map(|x| (x.re() - p).cross(direction)).collect();
+    let arms: Vec<Vec3> = mesh.positions().iter().map(|x| (x.re() - p).cross(direction)).collect();
     let Some(farthest) = arms.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else {
         return false;
     };

@@ -42,7 +42,15 @@ pub(crate) struct Sums<T> {
 impl<T: Real> Sums<T> {
     pub fn new(origin: Vec3<T>) -> Sums<T> {
         let (t, v) = (T::zero(), Vec3::zero());
-        Sums { origin, area: t, area_moment: v, volume: t, moment: v, second: [t; 6], patch: (t, v) }
+        Sums {
+            origin,
+            area: t,
+            area_moment: v,
+            volume: t,
+            moment: v,
+            second: [t; 6],
+            patch: (t, v),
+        }
     }
 
     fn products(p: Vec3<T>) -> [T; 6] {

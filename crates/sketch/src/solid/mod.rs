@@ -13,6 +13,7 @@ pub mod feature;
 pub(crate) mod gradient;
 pub(crate) mod mass;
 pub mod merge;
+pub mod operation;
 mod outline;
 pub mod place;
 pub(crate) mod ruled_faces;
@@ -22,11 +23,11 @@ pub mod validity;
 
 use crate::solid::curve::{Curve, CurveFault, CurveKind, Piece, Traced, trace};
 use crate::solid::mass::{Mass, Side, Sums};
-use surface::Surface;
 use crate::{FaceId, Layout, Object, Planes, PointId};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use surface::Surface;
 
 /// A vertex of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]

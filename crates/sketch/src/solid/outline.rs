@@ -29,9 +29,7 @@ impl<T: Real> Solid<T> {
                 (vec![vec![a, b, c]], vec![vec![tag(a, b), tag(b, c), tag(c, a)]])
             };
             let strips = (self.faces.iter().zip(&facets.faces))
-                .map(|(f, t)| {
-                    if f.trim.is_some() { t.iter().map(strip).collect() } else { vec![] }
-                })
+                .map(|(f, t)| if f.trim.is_some() { t.iter().map(strip).collect() } else { vec![] })
                 .collect();
             return Outline {
                 points: facets.points.clone(),
@@ -194,7 +192,8 @@ impl Grid {
         let corner = |u: f64, v: f64| surface.jet(T::from(u), T::from(v))[0].re();
         // The corners of the square that the patch's own corners are nearest to.
         let (a, b, d) = (place(near[0]), place(near[near.len() - 1]), place(left[left.len() - 1]));
-        let mut best = (f64::INFINITY, Grid { corner: [0.0; 2], along: [1.0, 0.0], across: [0.0, 1.0] });
+        let mut best =
+            (f64::INFINITY, Grid { corner: [0.0; 2], along: [1.0, 0.0], across: [0.0, 1.0] });
         for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             let (du, dv) = (1.0 - 2.0 * u, 1.0 - 2.0 * v);
             for (along, across) in [([du, 0.0], [0.0, dv]), ([0.0, dv], [du, 0.0])] {

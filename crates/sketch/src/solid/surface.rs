@@ -47,9 +47,8 @@ impl<T: Real> Surface<T> {
             }
             Surface::Turned { centre, axis, profile, sweep } => {
                 let (c, s) = ((u * *sweep).cos(), (u * *sweep).sin());
-                let turned = |d: Vec3<T>| {
-                    d * c + axis.cross(d) * s + *axis * (axis.dot(d) * (-c + 1.0))
-                };
+                let turned =
+                    |d: Vec3<T>| d * c + axis.cross(d) * s + *axis * (axis.dot(d) * (-c + 1.0));
                 let arm = turned(profile.at(v) - *centre);
                 [*centre + arm, axis.cross(arm) * *sweep, turned(profile.velocity(v))]
             }

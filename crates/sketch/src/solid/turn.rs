@@ -71,7 +71,12 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
     let turned_piece = |piece: &Piece<T>, k: usize| match *piece {
         Piece::Conic { centre, a, b, sweep } => {
             let c = turn(k, centre);
-            Piece::Conic { centre: c, a: turn(k, centre + a) - c, b: turn(k, centre + b) - c, sweep }
+            Piece::Conic {
+                centre: c,
+                a: turn(k, centre + a) - c,
+                b: turn(k, centre + b) - c,
+                sweep,
+            }
         }
         Piece::Cubic(points) => Piece::Cubic(points.map(|p| turn(k, p))),
     };
@@ -100,8 +105,7 @@ pub fn turned<T: Real>(section: &Solid<T>, line: [Vec3<T>; 2], angle: T) -> Opti
             let centre = axis.foot(p);
             let a = from - centre;
             arc.insert((v, k), out.edges.len());
-            let piece =
-                Piece::Conic { centre, a, b: axis.direction.cross(a), sweep: step };
+            let piece = Piece::Conic { centre, a, b: axis.direction.cross(a), sweep: step };
             let piece = if step.re() < 0.0 {
                 Piece::Conic { centre, a, b: -axis.direction.cross(a), sweep: -step }
             } else {
@@ -189,13 +193,13 @@ fn caps<T: Real>(
         super::combine::newell(&all).norm()
     };
     cycles.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
-    let start = cycles.iter().map(|c| {
-        c.iter().rev().filter_map(|&s| Some((edge(s, 0)?, false))).collect::<Vec<_>>()
-    });
+    let start = cycles
+        .iter()
+        .map(|c| c.iter().rev().filter_map(|&s| Some((edge(s, 0)?, false))).collect::<Vec<_>>());
     let start: Vec<_> = start.collect();
-    let end = cycles.iter().map(|c| {
-        c.iter().filter_map(|&s| Some((edge(s, steps)?, true))).collect::<Vec<_>>()
-    });
+    let end = cycles
+        .iter()
+        .map(|c| c.iter().filter_map(|&s| Some((edge(s, steps)?, true))).collect::<Vec<_>>());
     let end: Vec<_> = end.collect();
     for loops in [start, end] {
         out.faces.push(SolidFace { id: None, ruled: false, loops, trim: None });

@@ -92,9 +92,10 @@ impl<T: Real> Solid<T> {
         let mut next = old.vertices.iter().map(|v| v.id.0).max().unwrap_or(0);
         let mut taken: Vec<PointId> = Vec::new();
         for v in &mut self.vertices {
-            let same = old.vertices.iter().find(|o| {
-                o.at.re().distance(v.at.re()) <= 1e-9 * size && !taken.contains(&o.id)
-            });
+            let same = old
+                .vertices
+                .iter()
+                .find(|o| o.at.re().distance(v.at.re()) <= 1e-9 * size && !taken.contains(&o.id));
             v.id = match same {
                 Some(o) => o.id,
                 None => {
@@ -374,8 +375,7 @@ fn crossed_cycle<T: Real>(body: &Solid<T>, between: bool) -> Option<Flaw> {
             let n = cycle.len();
             sides.extend((0..n).map(|i| (k, tags[i], [cycle[i], cycle[(i + 1) % n]])));
         }
-        let boxes: Vec<[Vec3; 2]> =
-            sides.iter().map(|s| bounds(s.2.map(at).into_iter())).collect();
+        let boxes: Vec<[Vec3; 2]> = sides.iter().map(|s| bounds(s.2.map(at).into_iter())).collect();
         let mut found = None;
         super::arrangement::overlapping(&boxes, 0.0, usize::MAX, |i, j| {
             let (s, t) = (&sides[i], &sides[j]);
@@ -393,9 +393,7 @@ fn crossed_cycle<T: Real>(body: &Solid<T>, between: bool) -> Option<Flaw> {
             let b = (r - p).cross(d).dot(normal) / det;
             let (ma, mb) = (tolerance / d.norm(), tolerance / w.norm());
             if a > ma && a < 1.0 - ma && b > mb && b < 1.0 - mb {
-                let name = |tag: u32| {
-                    body.edges[tag as usize].ends.map(|v| body.vertices[v].id)
-                };
+                let name = |tag: u32| body.edges[tag as usize].ends.map(|v| body.vertices[v].id);
                 found = Some((p + d * a, [name(s.1), name(t.1)]));
             }
         });

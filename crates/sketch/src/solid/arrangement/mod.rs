@@ -181,7 +181,8 @@ pub fn arrange(
                 }
                 let (a, b) = (cycle[k], cycle[(k + 1) % cycle.len()]);
                 for pair in chain_of(&chains, a, b).windows(2) {
-                    let list = edges.entry((pair[0].min(pair[1]), pair[0].max(pair[1]))).or_default();
+                    let list =
+                        edges.entry((pair[0].min(pair[1]), pair[0].max(pair[1]))).or_default();
                     if !list.contains(&(facet.operand, tags[k])) {
                         list.push((facet.operand, tags[k]));
                     }
@@ -189,9 +190,9 @@ pub fn arrange(
             }
         }
     }
-    let found = all_regions(&pool, &facets, &frames, &sheets, &members, &segments, &chains)?;
+    let (found, mut changed) =
+        all_regions(&pool, &facets, &frames, &sheets, &members, &segments, &chains)?;
     let turns = cells::windings(&pool, &facets, &frames, &sheets, &found)?;
-    let mut changed = false;
     let kept: Vec<(usize, bool)> = (turns.iter().enumerate())
         .filter_map(|(r, [front, back])| {
             changed |= front.iter().chain(back).any(|w| !(0..=1).contains(w));
@@ -234,12 +235,7 @@ type Cuts = BTreeMap<usize, Vec<[Vec3; 2]>>;
 
 /// Which facets lie in one plane and touch (by the lowest of them), and the segments in which others
 /// meet.
-fn meet(
-    pool: &Pool,
-    facets: &[Facet],
-    frames: &[Frame],
-    crossing: bool,
-) -> (Vec<usize>, Cuts) {
+fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec<usize>, Cuts) {
     let boxes: Vec<[Vec3; 2]> = facets.iter().map(|f| f.bounds).collect();
     let mut sheet: Vec<usize> = (0..facets.len()).collect();
     fn root(sheet: &mut [usize], mut k: usize) -> usize {
@@ -314,7 +310,9 @@ fn cross(pool: &mut Pool, set: &BTreeSet<(u32, u32)>) {
             found.push(x);
         }
     });
-    found.into_iter().for_each(|x| drop(pool.add(x)));
+    for x in found {
+        pool.add(x);
+    }
 }
 
 type Chains = HashMap<(u32, u32), Vec<u32>>;
@@ -322,9 +320,8 @@ type Chains = HashMap<(u32, u32), Vec<u32>>;
 /// Segments with other points on them, as chains of points.
 fn split(pool: &Pool, segments: impl Iterator<Item = (u32, u32)>) -> Chains {
     let [low, high] = bounds(pool.points.iter().copied());
-    let axis = (0..3)
-        .max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b])))
-        .unwrap_or(0);
+    let axis =
+        (0..3).max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b]))).unwrap_or(0);
     let mut order: Vec<u32> = (0..pool.points.len() as u32).collect();
     order.sort_by(|&a, &b| pool.at(a)[axis].total_cmp(&pool.at(b)[axis]).then(a.cmp(&b)));
     let keys: Vec<f64> = order.iter().map(|&v| pool.at(v)[axis]).collect();
@@ -372,6 +369,7 @@ fn chain_of(chains: &Chains, a: u32, b: u32) -> Vec<u32> {
     }
 }
 
+/// The regions of all sheets, and whether facets cancel each other anywhere.
 fn all_regions(
     pool: &Pool,
     facets: &[Facet],
@@ -380,8 +378,9 @@ fn all_regions(
     members: &[Vec<usize>],
     segments: &[BTreeSet<(u32, u32)>],
     chains: &Chains,
-) -> Result<Vec<Region>, ArrangeError> {
+) -> Result<(Vec<Region>, bool), ArrangeError> {
     let mut found = Vec::new();
+    let mut cancelled = false;
     for (s, own) in members.iter().enumerate() {
         let sheet = &sheets[s];
         let mut graph: BTreeSet<(u32, u32)> = BTreeSet::new();
@@ -404,7 +403,9 @@ fn all_regions(
                     covers.push(f);
                 }
             }
-            if turns != [0, 0] {
+            if turns == [0, 0] {
+                cancelled |= !covers.is_empty();
+            } else {
                 found.push(Region { sheet: s, loops, turns, inner, covers });
             }
         }
@@ -412,7 +413,7 @@ fn all_regions(
             return Err(ArrangeError::TooLarge);
         }
     }
-    Ok(found)
+    Ok((found, cancelled))
 }
 
 /// Joins kept regions of one surface to faces. `kept` are regions with whether their outward side is

@@ -99,8 +99,7 @@ fn intervals(
         }
         let middle = 0.5 * (pair[0].0 + pair[1].0);
         let on_edge = taken.iter().any(|i| i[0] <= middle && middle <= i[1]);
-        let inside =
-            on_edge || facet_winding(pool, facet, frame, origin + direction * middle) != 0;
+        let inside = on_edge || facet_winding(pool, facet, frame, origin + direction * middle) != 0;
         if !inside {
             continue;
         }

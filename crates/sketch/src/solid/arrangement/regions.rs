@@ -106,9 +106,8 @@ pub(super) fn inner_point(pool: &Pool, frame: &Frame, loops: &Loops) -> Option<[
     let sides: Vec<[[f64; 2]; 2]> = loops
         .iter()
         .flat_map(|c| {
-            (0..c.len()).map(|k| {
-                [frame.flat(pool.at(c[k])), frame.flat(pool.at(c[(k + 1) % c.len()]))]
-            })
+            (0..c.len())
+                .map(|k| [frame.flat(pool.at(c[k])), frame.flat(pool.at(c[(k + 1) % c.len()]))])
         })
         .collect();
     let long = |s: &[[f64; 2]; 2]| (s[1][0] - s[0][0]).powi(2) + (s[1][1] - s[0][1]).powi(2);

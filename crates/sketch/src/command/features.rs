@@ -3,12 +3,12 @@
 use super::CommandError;
 use super::args::Args;
 use super::session::{Reply, Session};
+use crate::Object;
 use crate::dimension::expr::Expr;
 use crate::solid::combine::CombineError;
-use crate::solid::faces::Operation;
 use crate::solid::feature::{Feature, FeatureKind, NoBody, Placement, body};
+use crate::solid::operation::Operation;
 use crate::solid::validity::Flaw;
-use crate::Object;
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
 
@@ -182,12 +182,14 @@ impl Session {
             let count = args.count("how many copies")?;
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
             let angle = args.value(None)?;
-            (Placement::Rotate { axis, through: self.through(args, units.as_deref())?, angle }, count)
+            (
+                Placement::Rotate { axis, through: self.through(args, units.as_deref())?, angle },
+                count,
+            )
         } else if args.take("MIRROR") {
             let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
             let given = args.len() > 0 && !args.tokens_at(0, "INTO");
-            let at =
-                if given { args.value(units.as_deref())? } else { Expr::number(0.0) };
+            let at = if given { args.value(units.as_deref())? } else { Expr::number(0.0) };
             (Placement::Mirror { axis, at }, 2)
         } else {
             return Err(args.wants("LINEAR, POLAR or MIRROR"));
@@ -242,11 +244,7 @@ impl Session {
                 let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
                 if verb == "MIRROR" {
                     let given = args.len() > 0 && !args.at("FEATURE") && !args.tokens_at(0, "INTO");
-                    let at = if given {
-                        args.value(units.as_deref())?
-                    } else {
-                        Expr::number(0.0)
-                    };
+                    let at = if given { args.value(units.as_deref())? } else { Expr::number(0.0) };
                     Placement::Mirror { axis, at }
                 } else {
                     let angle = args.value(None)?;
@@ -258,6 +256,13 @@ impl Session {
         args.take("FEATURE");
         let target = self.target(args, &name)?;
         args.end()?;
+        if object.drawing.section.is_some() {
+            return Err(CommandError::new(
+                114,
+                format!("{} is a cross section; only solids are placed anywhere", object.name),
+                "EXTRUDE it first, or turn it by 90, 180 or 270",
+            ));
+        }
         self.require_body(&object)?;
         let operands =
             vec![crate::solid::feature::Operand { object: object.into(), prefix: String::new() }];
@@ -270,8 +275,8 @@ fn place_text(p: Vec3) -> String {
     p.to_array().map(|x| plain(super::dims::rounded(x))).join(" ")
 }
 
-/// Why an object has no body, with the place and the next step.
-pub(super) fn no_body(object: &Object, why: &NoBody) -> CommandError {
+/// The reason why an object has no body, with the place and the next step.
+pub fn no_body(object: &Object, why: &NoBody) -> CommandError {
     let name = &object.name;
     match why {
         NoBody::Unfinished => CommandError::new(
@@ -284,7 +289,10 @@ pub(super) fn no_body(object: &Object, why: &NoBody) -> CommandError {
                 edges.iter().take(12).map(|[p, q]| format!("{p}-{q}")).collect();
             CommandError::new(
                 701,
-                format!("{name} is open, so it has no volume: lines {} have a face on one side only", list.join(", ")),
+                format!(
+                    "{name} is open, so it has no volume: lines {} have a face on one side only",
+                    list.join(", ")
+                ),
                 "GENERATE FACES finds all faces; or give the missing one with FACE",
             )
         }
@@ -294,7 +302,11 @@ pub(super) fn no_body(object: &Object, why: &NoBody) -> CommandError {
                 701,
                 format!(
                     "{name} crosses itself: in {face} the sides {}-{} and {}-{} cross at {}",
-                    a[0], a[1], b[0], b[1], place_text(*at)
+                    a[0],
+                    a[1],
+                    b[0],
+                    b[1],
+                    place_text(*at)
                 ),
                 "a dimension has moved lines past each other: UNDO, or change it",
             )
