@@ -234,6 +234,14 @@ impl Session {
         (p, q): (PointId, PointId),
     ) -> Result<(), CommandError> {
         let (view, layout) = self.laid_out(object);
+        let determined = Measure::Along { axis, p, q };
+        if let Some(x) = layout.measured(object, &view.planes, &determined) {
+            self.out.push(Reply::note(format!(
+                "{axis} from {p} to {q} is determined already: {}",
+                plain(x)
+            )));
+            return Ok(());
+        }
         let (Some(e), Some(a), Some(b)) =
             (view.estimate(), view.planes.plane(axis, p), view.planes.plane(axis, q))
         else {
@@ -370,12 +378,37 @@ impl Session {
         }
         if args.take("UNITS") {
             let unit = args.name("MM, CM, M, IN or FT")?.to_ascii_uppercase();
+            let convert = args.take("CONVERT");
             args.end()?;
             if !UNITS.iter().any(|u| u.0 == unit) {
                 return Err(CommandError::text(
                     format!("there is no unit {unit}"),
                     "units are MM, CM, M, IN, FT",
                 ));
+            }
+            let object = self.active()?;
+            let size = |name: &str| UNITS.iter().find(|u| u.0 == name).map(|u| u.1);
+            let old = object.units.clone().filter(|u| *u != unit);
+            let given = !object.dimensions.is_empty() || !object.variables.is_empty();
+            match old {
+                // Lengths are not relabelled: converted when that is said, else refused.
+                Some(old) if given && !convert => {
+                    return Err(CommandError::text(
+                        format!("the numbers of {} are in {old}", object.name),
+                        format!("SET UNITS {unit} CONVERT converts them"),
+                    ));
+                }
+                Some(old) if given => {
+                    if object.feature.is_some() {
+                        return Err(CommandError::text(
+                            format!("{} is made of others", object.name),
+                            "convert its parts before they are combined",
+                        ));
+                    }
+                    let factor = size(&old).zip(size(&unit)).map_or(1.0, |(a, b)| a / b);
+                    *self.active_mut()? = crate::merge::scaled(object, factor);
+                }
+                _ => {}
             }
             self.active_mut()?.units = Some(unit);
             return Ok(());

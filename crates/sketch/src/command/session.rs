@@ -187,6 +187,11 @@ pub struct Session {
     pub(crate) out: Vec<Reply>,
 }
 
+/// Commands that only look: an open question stays open.
+const LOOKS: [&str; 12] = [
+    "HELP", "LIST", "SHOW", "MEASURE", "CHECK", "WHY", "ESTIMATE", "EXTENSIONS", "HISTORY", "DUMP",
+    "END", "EXPORT",
+];
 /// Undo goes back this far.
 const MAX_UNDO: usize = 500;
 /// Points, lines and faces that all states of the way back hold together, at most.
@@ -303,7 +308,7 @@ impl Session {
                 let text = self.recorded.take().unwrap_or_else(|| command.text.clone());
                 let steps = matches!(verb, "UNDO" | "REDO");
                 // Questions and answers count too: an answer means nothing without its question.
-                let asked = self.question.is_some() && !matches!(verb, "HELP" | "LIST" | "SHOW");
+                let asked = self.question.is_some() && !LOOKS.contains(&verb);
                 let answered = matches!(verb, "ACCEPT" | "REJECT" | "REVERSE" | "YES" | "NO");
                 if !nested && (changed || steps || asked || answered) {
                     self.journal.push(text);
@@ -348,12 +353,15 @@ impl Session {
         let args = &mut Args::new(&command.tokens[1..], &usage);
         let answer = matches!(verb, "ACCEPT" | "REJECT" | "REPEAT" | "YES" | "NO")
             || (verb == "REVERSE" && args.len() == 0);
+        if verb == "ACCEPT" && args.take_short("ALL") {
+            args.end()?;
+            return self.accept_all();
+        }
         if answer {
             args.end()?;
             return self.answer(verb);
         }
-        self.question =
-            self.question.take().filter(|_| matches!(verb, "HELP" | "LIST" | "CHOOSE" | "SHOW"));
+        self.question = self.question.take().filter(|_| verb == "CHOOSE" || LOOKS.contains(&verb));
         match verb {
             "SKETCH" => self.sketch(args),
             "MODIFY" => self.using(args, false),

@@ -62,6 +62,8 @@ pub struct Fitted {
     pub dangling: Vec<[usize; 2]>,
     /// Edges that fewer than two candidates share: there the faces do not close.
     pub open: Vec<[usize; 2]>,
+    /// Those of them that had fewer than two before any candidate was dropped.
+    pub first_open: Vec<[usize; 2]>,
     /// Places where edges cross without a vertex.
     pub crossings: Vec<Vec3>,
     /// Whether it was given up as too large.
@@ -80,6 +82,12 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
         let mut regions: Vec<Region> = (sheets.iter().enumerate())
             .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
             .collect();
+        if fitted.first_open.is_empty() {
+            let mut wings = vec![0; wire.edges.len()];
+            regions.iter().flat_map(|r| r.loops.iter().flatten()).for_each(|h| wings[h.0] += 1);
+            let few = wire.edges.iter().zip(&wings).filter(|(e, n)| !e.cut && **n < 2);
+            fitted.first_open = few.map(|(e, _)| e.ends).collect();
+        }
         regions::drop_unshared(&wire, &mut regions);
         let cuts = regions::cuts(&wire, &sheets, &regions);
         let before = wire.edges.len();
