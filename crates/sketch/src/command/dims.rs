@@ -304,7 +304,8 @@ impl Session {
                 "use a letter, then letters, digits, `_` and `.`",
             ));
         }
-        if crate::FUNCTIONS.contains(&name.to_ascii_lowercase().as_str())
+        // Other functions are known by their brackets.
+        if crate::FUNCTIONS[..10].contains(&name.to_ascii_lowercase().as_str())
             || name.eq_ignore_ascii_case("pi")
         {
             return Err(CommandError::text(

@@ -244,7 +244,11 @@ impl Session {
                 welded.push(format!("{gone} to {kept}"));
             }
             let gone = object.drop_dangling();
-            let text = if welded.is_empty() { "no two points are that close".to_owned() } else { format!("welded {}", welded.join(", ")) };
+            let text = if welded.is_empty() {
+                "no two points are that close".to_owned()
+            } else {
+                format!("welded {}", welded.join(", "))
+            };
             self.out.push(Reply::note(text));
             self.report_gone(gone);
             return Ok(());

@@ -17,6 +17,6 @@ pub mod words;
 
 pub use error::CommandError;
 pub use features::no_body;
-pub(crate) use session::Picture;
 pub use info::Suggestion;
+pub(crate) use session::Picture;
 pub use session::{Files, NoFiles, OutFile, Reply, Session};

@@ -189,8 +189,18 @@ pub struct Session {
 
 /// Commands that only look: an open question stays open.
 const LOOKS: [&str; 12] = [
-    "HELP", "LIST", "SHOW", "MEASURE", "CHECK", "WHY", "ESTIMATE", "EXTENSIONS", "HISTORY", "DUMP",
-    "END", "EXPORT",
+    "HELP",
+    "LIST",
+    "SHOW",
+    "MEASURE",
+    "CHECK",
+    "WHY",
+    "ESTIMATE",
+    "EXTENSIONS",
+    "HISTORY",
+    "DUMP",
+    "END",
+    "EXPORT",
 ];
 /// Undo goes back this far.
 const MAX_UNDO: usize = 500;

@@ -337,7 +337,10 @@ impl Session {
     /// The body of an object as far as the picture and its dimensions say: missing dimensions are those
     /// that the picture suggests, missing faces those of the likeliest solid. With it the dimensions
     /// that were guessed.
-    pub fn preview(&mut self, name: &str) -> Option<(crate::Solid<f64>, Vec<(String, Suggestion)>)> {
+    pub fn preview(
+        &mut self,
+        name: &str,
+    ) -> Option<(crate::Solid<f64>, Vec<(String, Suggestion)>)> {
         let object = self.object(name)?.clone();
         let (mut guessed, taken) = self.completed(&object);
         if guessed.faces.is_empty() && guessed.feature.is_none() {
@@ -735,12 +738,7 @@ fn oriented(loops: Vec<Vec<PointId>>, taken: &[Face]) -> Face {
 
 /// Where faces fail to close: points with two lines, loops that are nearly plane, the lines that had
 /// fewer than two candidates before others fell with them.
-fn open_text(
-    positions: &[Vec3],
-    edges: &[[usize; 2]],
-    ids: &[PointId],
-    fitted: &Fitted,
-) -> String {
+fn open_text(positions: &[Vec3], edges: &[[usize; 2]], ids: &[PointId], fitted: &Fitted) -> String {
     let mut next: Vec<Vec<usize>> = vec![Vec::new(); positions.len()];
     for &[a, b] in edges {
         next[a].push(b);
@@ -767,7 +765,10 @@ fn open_text(
                         let loop_text = [a, b, c, d].map(|k| ids[k].to_string()).join(" ");
                         warped.push((
                             off,
-                            format!("{loop_text} is out of plane by {}", plain(super::dims::rounded(off))),
+                            format!(
+                                "{loop_text} is out of plane by {}",
+                                plain(super::dims::rounded(off))
+                            ),
                         ));
                     }
                 }

@@ -7,8 +7,8 @@ use std::fmt;
 
 /// The functions an expression may call. The last ones, from [`FIRST_OF_TWO`] on, take two arguments.
 pub const FUNCTIONS: [&str; 17] = [
-    "sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln", "floor", "ceil", "round",
-    "min", "max", "atan2", "mod",
+    "sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln", "floor", "ceil",
+    "round", "min", "max", "atan2", "mod",
 ];
 
 /// The index of the first function of two arguments.

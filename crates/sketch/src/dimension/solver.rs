@@ -85,6 +85,9 @@ pub(crate) fn solve_derived<T: Real>(
     let guess = if floating.is_empty() { None } else { estimate() };
     let scale = guess.as_ref().map_or(1.0, |e| scale(object, planes, layout, e));
     let mut left: Vec<&Dimension> = dimensions.to_vec();
+    // All together first: a part that is solved alone no longer knows on which side of the others it was
+    // drawn.
+    let mut together = true;
     loop {
         // The floating parts that each equation reads.
         let reads = |d: &Dimension| {
@@ -107,7 +110,15 @@ pub(crate) fn solve_derived<T: Real>(
             faults.extend(check(object, planes, layout, d));
             continue;
         }
-        let Some((equations, unknowns)) = block(&table) else { break };
+        let whole = Some(&table).filter(|_| std::mem::take(&mut together)).and_then(|t| {
+            let mut all: Vec<usize> = t.iter().flatten().copied().collect();
+            all.sort_unstable();
+            all.dedup();
+            (all.len() == t.len() && t.len() <= MOST_TOGETHER)
+                .then(|| ((0..t.len()).collect(), all))
+        });
+        let tried_whole = whole.is_some();
+        let Some((equations, unknowns)) = whole.or_else(|| block(&table)) else { break };
         let chosen: Vec<&Dimension> = equations.iter().map(|&k| left[k]).collect();
         let start = |part: &(Axis, Vec<(usize, T)>)| {
             let (axis, nodes) = part;
@@ -132,6 +143,10 @@ pub(crate) fn solve_derived<T: Real>(
             turns: Vec::new(),
         };
         system.turns = system.drawn_turns(&x);
+        if tried_whole && equations.len() > 1 && !system.regular(&x) {
+            // Some of them determine others: one after the other.
+            continue;
+        }
         match system.solve(x) {
             Ok(solution) => {
                 for (&u, x) in unknowns.iter().zip(solution) {
@@ -235,6 +250,9 @@ fn check<T: Real>(
     })
 }
 
+/// More equations than this are solved in parts.
+const MOST_TOGETHER: usize = 60;
+
 /// A square system of derived dimensions.
 struct System<'a, T> {
     object: &'a Object,
@@ -284,6 +302,17 @@ impl<T: Real> System<'_, T> {
         let common = [la.p, la.q].into_iter().find(|p| [lb.p, lb.q].contains(p));
         let arms = [vector(self.object, a, common, at)?, vector(self.object, b, common, at)?];
         Some((arms, self.object.drawing.section))
+    }
+
+    /// Whether the drawing determines all unknowns.
+    fn regular(&self, x: &[f64]) -> bool {
+        let jacobian = self.measured(x).and_then(|drawn| self.jacobian(x, &drawn));
+        let n = x.len();
+        jacobian.is_some_and(|j| {
+            let row = |r: usize| j[r * n..(r + 1) * n].iter().map(|a| a * a).sum::<f64>().sqrt();
+            let size: f64 = (0..n).map(row).product();
+            determinant(&j, n).abs() > 1e-9 * size
+        })
     }
 
     /// To which side each angle of a section was drawn.

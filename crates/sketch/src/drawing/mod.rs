@@ -3,6 +3,7 @@
 pub(crate) mod axis;
 pub(crate) mod estimate;
 pub(crate) mod line_types;
+mod noise;
 pub(crate) mod planes;
 pub(crate) mod projection;
 
@@ -187,8 +188,8 @@ impl Drawing {
         self.lines.values().flat_map(|l| [l.p, l.q]).for_each(|p| *uses.entry(p).or_default() += 1);
         let far = |f: &dyn Fn(&Point) -> f64| {
             let all = self.points.values().map(f);
-            let (low, high) = all
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            let (low, high) =
+                all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             (high - low).max(0.0)
         };
         let given = reach.is_some();
@@ -198,9 +199,8 @@ impl Drawing {
         let mut pairs = Vec::new();
         for (k, &(a, p)) in order.iter().enumerate() {
             for &(b, q) in order[k + 1..].iter().take_while(|x| x.1.u - p.u <= reach) {
-                let distance = moldloft_num::Real::sqrt(
-                    (p.u - q.u) * (p.u - q.u) + (p.v - q.v) * (p.v - q.v),
-                );
+                let distance =
+                    moldloft_num::Real::sqrt((p.u - q.u) * (p.u - q.u) + (p.v - q.v) * (p.v - q.v));
                 let single = [a, b].iter().any(|p| uses.get(p).copied().unwrap_or(0) == 1);
                 if distance <= reach && (given || single) && self.line_between(a, b).is_none() {
                     pairs.push((a.min(b), a.max(b), distance));

@@ -391,7 +391,31 @@ impl<'a, T: Real> Placing<'a, T> {
         let mut solid = Solid { vertices, edges, faces: out, flat, ..Solid::default() };
         solid.trims = trims;
         solid.facets = facets;
+        self.agrees(&solid)?;
         Ok(solid)
+    }
+
+    /// Exact faces and facets must tell of one body: that they differ by more than chords do means that
+    /// an edge was followed to a wrong place.
+    fn agrees(&self, solid: &Solid<T>) -> Result<(), CombineError> {
+        let Some(facets) = &solid.facets else { return Ok(()) };
+        let origin = facets.points.first().map_or(Vec3::zero(), |p| p.re());
+        let (mut volume, mut area) = (0.0, 0.0);
+        for t in facets.faces.iter().flatten() {
+            let [a, b, c] = t.map(|k| facets.points[k as usize].re() - origin);
+            volume += a.dot(b.cross(c)) / 6.0;
+            area += (b - a).cross(c - a).norm() / 2.0;
+        }
+        let mass = solid.mass();
+        let far = facets.points.iter().map(|p| p.re().distance(origin)).fold(0.0, f64::max);
+        let off = (mass.volume.re() - volume).abs() > 2e-3 * area * far
+            || (mass.area.re() - area).abs() > 0.02 * area;
+        if off {
+            let place = solid.trims.first().and_then(|t| solid.faces[t.face].loops[0].first());
+            let place = place.map_or(origin, |h| solid.vertices[solid.edges[h.0].ends[0]].at.re());
+            return Err(CombineError::Touching(place));
+        }
+        Ok(())
     }
 
     /// The place of a corner; `None` when the points of its closed edge say.
@@ -496,7 +520,10 @@ impl<'a, T: Real> Placing<'a, T> {
                 s.push([0.0; 2]);
                 s
             };
-            let near = |m: &Met<T>| m.at.re().distance(guess) <= reach;
+            // Parameters may not leave the patch: a turned surface comes round again.
+            let own = |p: &[T; 2]| p.iter().all(|x| (-0.3..=1.3).contains(&x.re()));
+            let near =
+                |m: &Met<T>| m.at.re().distance(guess) <= reach && m.parameters.iter().all(own);
             let met = meet(&on, guess, &from(start), self.scale)
                 .filter(near)
                 .or_else(|| meet(&on, guess, &from(&first(guess)), self.scale).filter(near));

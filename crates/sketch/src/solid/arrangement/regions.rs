@@ -128,10 +128,17 @@ pub(super) fn inner_point(pool: &Pool, frame: &Frame, loops: &Loops) -> Option<[
             [d[0] * left[1] - d[1] * left[0], d[0] * left[0] + d[1] * left[1]]
         };
         let (p, q) = (local(p), local(q));
-        if (p[0] > 0.0) == (q[0] > 0.0) {
+        // Sides that the way only touches count too: half the way to them is inside for certain.
+        let margin = pool.tolerance;
+        if p[0].min(q[0]) > margin || p[0].max(q[0]) < -margin {
             continue;
         }
-        let t = p[1] + (q[1] - p[1]) * (p[0] / (p[0] - q[0]));
+        let t = if (p[0] - q[0]).abs() <= 2.0 * margin {
+            p[1].min(q[1])
+        } else {
+            let part = (p[0] / (p[0] - q[0])).clamp(0.0, 1.0);
+            p[1] + (q[1] - p[1]) * part
+        };
         if t > pool.tolerance && t < nearest {
             nearest = t;
         }
