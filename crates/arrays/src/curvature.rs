@@ -4,23 +4,23 @@ use crate::grids::jets;
 use crate::value::{GridArg, Points, farray, numbers, vectors};
 use moldloft_grid::SurfaceGrid;
 use moldloft_num::{Real, SurfJet, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 
 fn root<T: Real>(square: T) -> T {
     if square.re() > 0.0 { square.sqrt() } else { T::zero() }
 }
 
-fn enough<T>(points: &[T], least: usize) -> Result<(), Fault> {
+fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), CallError> {
     if points.len() >= least {
         return Ok(());
     }
-    Err(Fault::new(
+    Err(CallError::new(
         "too-few-items",
-        format!("{} points do not tell how a curve bends", points.len()),
+        format!("{} points do not determine a curvature", points.len()),
     )
     .expected(format!("at least {least} points"))
     .found(points.len().to_string())
-    .in_field(0))
+    .in_field(field))
 }
 
 /// The curvatures of a curve of points: 4 A / (a b c) of the triangle of a point and its neighbours,
@@ -43,19 +43,20 @@ pub struct Curvatures<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Curvatures<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
-        enough(&points, 3)?;
+        enough(&points, 3, Self::CURVE)?;
         let mut all = Vec::with_capacity(points.len());
         for (k, w) in points.windows(3).enumerate() {
             let (a, b, c) = (w[1] - w[0], w[2] - w[1], w[2] - w[0]);
             let product = a.norm_sq() * b.norm_sq() * c.norm_sq();
             if product.re() == 0.0 {
-                let message = format!("points {}, {} and {} are no circle", k + 1, k + 2, k + 3);
-                return Err(Fault::new("coincident-points", message)
+                let message =
+                    format!("points {}, {} and {} do not define a circle", k + 1, k + 2, k + 3);
+                return Err(CallError::new("coincident-points", message)
                     .expected("three different points")
                     .in_item(k + 1)
-                    .in_field(0));
+                    .in_field(Self::CURVE));
             }
             all.push(root(a.cross(b).norm_sq() * 4.0 / product));
         }
@@ -84,9 +85,9 @@ pub struct Torsions<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Torsions<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
-        enough(&points, 4)?;
+        enough(&points, 4, Self::CURVE)?;
         // The binormals of two neighbouring triangles turn by torsion times the step between them.
         let turn = |w: &[Vec3<T>]| {
             let (a, b, c) = (w[1] - w[0], w[2] - w[1], w[3] - w[2]);
@@ -128,10 +129,11 @@ fn forms<T: Real>(jet: &SurfJet<T>) -> Option<(Vec3<T>, [T; 6])> {
 /// A number at each point of a grid; at singular ones (poles) the mean of the next line's.
 fn at_points<T: Real>(
     grid: &SurfaceGrid<T>,
+    field: FieldId,
     f: impl Fn(&SurfJet<T>) -> Option<Vec3<T>>,
-) -> Result<Vec<Vec3<T>>, Fault> {
+) -> Result<Vec<Vec3<T>>, CallError> {
     let (m, n) = (grid.m, grid.n);
-    let all: Vec<Option<Vec3<T>>> = jets(grid)?.iter().map(f).collect();
+    let all: Vec<Option<Vec3<T>>> = jets(grid, field)?.iter().map(f).collect();
     let mut known = Vec::with_capacity(m * n);
     for k in 0..m * n {
         let (i, j) = (k / n, k % n);
@@ -149,9 +151,9 @@ fn at_points<T: Real>(
             })
         });
         known.push(value.ok_or_else(|| {
-            Fault::new("no-direction", format!("there is no normal at point [{},{}]", i + 1, j + 1))
+            CallError::new("no-direction", format!("no normal at point [{},{}]", i + 1, j + 1))
                 .expected("a surface with a tangent plane at every inner point")
-                .in_field(0)
+                .in_field(field)
         })?);
     }
     Ok(known)
@@ -180,12 +182,12 @@ pub struct Gauss<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Gauss<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let k = |jet: &SurfJet<T>| {
             let (_, [e, f, g, l, m, n]) = forms(jet)?;
             Some(Vec3::new((l * n - m * m) / (e * g - f * f), T::zero(), T::zero()))
         };
-        let values = at_points(&self.s.0, k)?;
+        let values = at_points(&self.s.0, Self::S, k)?;
         Ok(grid_of(&self.s.0, values))
     }
 }
@@ -207,13 +209,13 @@ pub struct Mean<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Mean<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let h = |jet: &SurfJet<T>| {
             let (_, [e, f, g, l, m, n]) = forms(jet)?;
             let h = (e * n - f * m * 2.0 + g * l) / ((e * g - f * f) * 2.0);
             Some(Vec3::new(h, T::zero(), T::zero()))
         };
-        let values = at_points(&self.s.0, h)?;
+        let values = at_points(&self.s.0, Self::S, h)?;
         Ok(grid_of(&self.s.0, values))
     }
 }
@@ -234,8 +236,8 @@ pub struct Normals<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Normals<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let all = at_points(&self.s.0, |jet| forms(jet).map(|(normal, _)| normal))?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let all = at_points(&self.s.0, Self::S, |jet| forms(jet).map(|(normal, _)| normal))?;
         let unit = |v: Vec3<T>| v.normalized().unwrap_or(v);
         let all = all.into_iter().map(unit).collect();
         Ok(vectors(ArrayShape::Grid(self.s.0.m, self.s.0.n), all))

@@ -2,15 +2,24 @@
 
 use crate::value::{Farray, farray};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Scalar, Value};
 use moldloft_spline::distribution::{self, DistributionError};
 
 /// The longest row.
 pub const MOST_NUMBERS: u32 = 1_000_000;
 
-/// The fault of a distribution whose arguments are `start, end, [spacings,] n`.
-pub fn fault(error: DistributionError) -> Fault {
-    let fault = Fault::new("no-distribution", error.to_string());
+/// The arguments that limits and spacings of a distribution come from.
+#[derive(Clone, Copy)]
+pub struct Arguments {
+    /// The first limit, or the length.
+    pub limits: FieldId,
+    /// The first spacing; of a distribution without spacings, which cannot be wrong in them, as `limits`.
+    pub spacings: FieldId,
+}
+
+/// The fault of a distribution made of these arguments.
+pub fn fault(error: DistributionError, of: Arguments) -> CallError {
+    let fault = CallError::new("no-distribution", error.to_string());
     match error {
         DistributionError::TooFew { expected, actual } => {
             fault.expected(format!("at least {expected} numbers")).found(actual.to_string())
@@ -18,28 +27,31 @@ pub fn fault(error: DistributionError) -> Fault {
         DistributionError::Limits { start, end } => fault
             .expected("two different finite limits")
             .found(format!("{start} and {end}"))
-            .in_field(0),
+            .in_field(of.limits),
         DistributionError::Spacing { spacing } => fault
             .expected("a positive spacing")
             .found(spacing.to_string())
-            .help("spacings are lengths: positive whatever the direction")
-            .in_field(2),
-        DistributionError::TwoSided { .. } => {
-            fault.help("d_tanh, d_tanhx and geometric2 take a spacing at both ends").in_field(2)
-        }
+            .help("a spacing is a length: positive in either direction")
+            .in_field(of.spacings),
+        DistributionError::TwoSided { .. } => fault
+            .help("d_tanh, d_tanhx and geometric2 take a spacing at both ends")
+            .in_field(of.spacings),
         DistributionError::Unreachable { spacings: [a, b], length, cells } => {
             let mean = length / cells as f64;
             fault
                 .expected(format!("spacings nearer to the mean, {mean}"))
                 .found(format!("{a} and {b}"))
-                .help("ask for another number of points: count_for(length, ds1, ds2, growth)")
-                .in_field(2)
+                .help("use another number of points: count_for(length, ds1, ds2, growth)")
+                .in_field(of.spacings)
         }
     }
 }
 
-fn row<T: Real>(row: Result<Vec<T>, DistributionError>) -> Result<Value<T>, Fault> {
-    row.map(farray).map_err(fault)
+fn row<T: Real>(
+    row: Result<Vec<T>, DistributionError>,
+    [limits, spacings]: [FieldId; 2],
+) -> Result<Value<T>, CallError> {
+    row.map(farray).map_err(|error| fault(error, Arguments { limits, spacings }))
 }
 
 /// `n` numbers in equal steps from `start` to `end`, both included.
@@ -50,14 +62,17 @@ pub struct Uniform<T: Real> {
     start: T,
     /// Last number.
     end: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Uniform<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        row(distribution::uniform(self.start, self.end, self.n as usize))
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        row(
+            distribution::uniform(self.start, self.end, self.n as usize),
+            [Self::START, Self::START],
+        )
     }
 }
 
@@ -70,14 +85,14 @@ pub struct Cosine<T: Real> {
     start: T,
     /// Last number.
     end: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Cosine<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        row(distribution::cosine(self.start, self.end, self.n as usize))
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        row(distribution::cosine(self.start, self.end, self.n as usize), [Self::START, Self::START])
     }
 }
 
@@ -99,14 +114,17 @@ pub struct Geometric<T: Real> {
     end: T,
     /// First step, a positive length.
     ds1: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Geometric<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        row(distribution::geometric(self.start, self.end, self.ds1, self.n as usize))
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        row(
+            distribution::geometric(self.start, self.end, self.ds1, self.n as usize),
+            [Self::START, Self::DS1],
+        )
     }
 }
 
@@ -131,15 +149,15 @@ pub struct Geometric2<T: Real> {
     ds1: T,
     /// Last step, a positive length.
     ds2: T,
-    /// How many numbers, at least 4.
+    /// Number of values, at least 4.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Geometric2<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::geometric2(start, end, ds1, ds2, n as usize))
+        row(distribution::geometric2(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -166,15 +184,15 @@ pub struct DSinh<T: Real> {
     /// Slope at the end, per index; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for DSinh<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::d_sinh(start, end, ds1, ds2, n as usize))
+        row(distribution::d_sinh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -201,15 +219,15 @@ pub struct DTanh<T: Real> {
     /// Slope at the end, per index; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for DTanh<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::d_tanh(start, end, ds1, ds2, n as usize))
+        row(distribution::d_tanh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -236,15 +254,15 @@ pub struct DTanhX<T: Real> {
     /// Last step; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers, at least 4.
+    /// Number of values, at least 4.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for DTanhX<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::d_tanhx(start, end, ds1, ds2, n as usize))
+        row(distribution::d_tanhx(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -259,16 +277,16 @@ impl<T: Real> Build<T> for DTanhX<T> {
 pub struct Redist<T: Scalar> {
     /// The row.
     given: Farray<T>,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Scalar> Build<T> for Redist<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let given = self.given.row().map_err(|fault| fault.in_field(0))?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let given = self.given.row().map_err(|fault| fault.in_field(Self::GIVEN))?;
         distribution::redist(&given, self.n as usize)
             .map(farray)
-            .map_err(|error| fault(error).in_field(0))
+            .map_err(|error| fault(error, Arguments { limits: Self::GIVEN, spacings: Self::GIVEN }))
     }
 }

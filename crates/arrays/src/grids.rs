@@ -8,15 +8,15 @@ use moldloft_grid::{
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, Context, Fault, FromValue, Kind, Scalar, SurfaceRef, Value,
+    ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::{End, Ends, GridSpline};
 use std::sync::Arc;
 
 /// The fault of a grid, about field 0.
-pub fn fault(error: GridError) -> Fault {
+pub fn fault(error: GridError, field: FieldId) -> CallError {
     let message = error.to_string();
-    let with = |id: &'static str| Fault::new(id, message.clone());
+    let with = |id: &'static str| CallError::new(id, message.clone());
     match error {
         GridError::TooFew { expected, actual: [m, n] } => with("too-few-items")
             .expected(format!("at least {expected} points each way"))
@@ -37,25 +37,25 @@ pub fn fault(error: GridError) -> Fault {
             .expected(format!("[{a},{b}]"))
             .found(format!("[{m},{n}]"))
             .in_item(face - 1),
-        GridError::Folded { count, .. } => with("folded-grid")
-            .expected("cells that are not turned over")
-            .found(format!("{count} folded cells")),
+        GridError::Folded { count, .. } => {
+            with("folded-grid").expected("unfolded cells").found(format!("{count} folded cells"))
+        }
         GridError::Diverged { .. } => with("diverged")
-            .expected("a grid that settles")
-            .help("over-relax less (omega), or ask for less at the walls"),
+            .expected("a converging iteration")
+            .help("reduce omega, or relax the spacing and angle at the walls"),
         GridError::Cancelled => return with("cancelled"),
         GridError::Heights { value, .. } => {
-            with("not-monotone").expected("heights that ascend from 0").found(value.to_string())
+            with("not-monotone").expected("heights that increase from 0").found(value.to_string())
         }
         GridError::NoNormal { .. } => {
             with("no-direction").expected("a surface with a normal at every point")
         }
     }
-    .in_field(0)
+    .in_field(field)
 }
 
-fn unknown(word: &str, what: &str, expected: String, field: usize) -> Fault {
-    Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
+fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallError {
+    CallError::new("unknown-word", format!("unknown {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
         .in_field(field)
@@ -88,7 +88,7 @@ pub struct Tfi<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Tfi<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let blend = match &*self.kind {
             "arc" => Blend::Arc,
             "linear" => Blend::Linear,
@@ -96,14 +96,15 @@ impl<T: Scalar> Build<T> for Tfi<T> {
             "soni2" => Blend::Soni2,
             word => {
                 let expected = "\"arc\", \"linear\", \"hermite\" or \"soni2\"".to_string();
-                return Err(unknown(word, "kind of interpolation", expected, 1));
+                return Err(unknown(word, "kind of interpolation", expected, Self::KIND));
             }
         };
         let Value::List(items) = &self.s else {
-            let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
-            return transfinite(&grid, blend).map(surface).map_err(fault);
+            let GridArg(grid) =
+                GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+            return transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S));
         };
-        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(0);
+        let place = |k: usize| move |fault: CallError| fault.in_item(k).in_field(Self::S);
         match items.len() {
             4 => {
                 let mut edges: [Vec<Vec3<T>>; 4] = Default::default();
@@ -114,35 +115,35 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                     if edges[a].len() != edges[b].len() {
                         let (m, n) = (edges[a].len(), edges[b].len());
                         let message = format!("opposite edges have {m} and {n} points");
-                        return Err(Fault::new("shapes-differ", message)
+                        return Err(CallError::new("shapes-differ", message)
                             .expected(format!("{m} points"))
                             .found(format!("{n} points"))
                             .in_item(b)
-                            .in_field(0));
+                            .in_field(Self::S));
                     }
                 }
-                let grid = framed(&edges).map_err(fault)?;
-                transfinite(&grid, blend).map(surface).map_err(fault)
+                let grid = framed(&edges).map_err(|error| fault(error, Self::S))?;
+                transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S))
             }
             6 => {
                 let mut faces: Vec<SurfaceGrid<T>> = Vec::with_capacity(6);
                 for (k, item) in items.iter().enumerate() {
                     faces.push(GridArg::from_value(item).map_err(place(k))?.0);
                 }
-                let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6))?;
-                let layers = transfinite_block(&faces).map_err(fault)?;
+                let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6, Self::S))?;
+                let layers = transfinite_block(&faces).map_err(|error| fault(error, Self::S))?;
                 Ok(Value::list(layers.into_iter().map(surface)))
             }
-            n => Err(fault_of_count(n)),
+            n => Err(fault_of_count(n, Self::S)),
         }
     }
 }
 
-fn fault_of_count(n: usize) -> Fault {
-    Fault::new("wrong-shape", format!("nothing is bounded by {n} edges or faces"))
+fn fault_of_count(n: usize, field: FieldId) -> CallError {
+    CallError::new("wrong-shape", format!("{n} edges or faces do not bound a grid"))
         .expected("a surface, a list of four curves or a list of six surfaces")
         .found(format!("a list of {n}"))
-        .in_field(0)
+        .in_field(field)
 }
 
 /// The edges by the names of the language.
@@ -199,14 +200,14 @@ pub struct EllipticGrid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for EllipticGrid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let method = match &*self.method {
             "laplace" => Method::Laplace,
             "middlecoff" => Method::Middlecoff,
             "sorenson" => Method::Sorenson,
             word => {
                 let expected = "\"laplace\", \"middlecoff\" or \"sorenson\"".to_string();
-                return Err(unknown(word, "method", expected, 3));
+                return Err(unknown(word, "method", expected, Self::METHOD));
             }
         };
         let allowed = match &*self.folded {
@@ -214,14 +215,16 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             "allow" => true,
             word => {
                 let expected = "\"refuse\" or \"allow\"".to_string();
-                return Err(unknown(word, "answer to folded cells", expected, 9));
+                return Err(unknown(word, "treatment of folded cells", expected, Self::FOLDED));
             }
         };
         let walls = match (method, &self.walls, self.spacing) {
-            (Method::Sorenson, Some(words), Some(spacing)) => walls(words, spacing, self.angle)?,
+            (Method::Sorenson, Some(words), Some(spacing)) => {
+                walls::<T>(words, spacing, self.angle)?
+            }
             (Method::Sorenson, ..) => {
-                let field = if self.walls.is_none() { 5 } else { 6 };
-                return Err(Fault::new(
+                let field = if self.walls.is_none() { Self::WALLS } else { Self::SPACING };
+                return Err(CallError::new(
                     "missing-argument",
                     "\"sorenson\" needs walls and a spacing",
                 )
@@ -230,20 +233,23 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             }
             (_, None, None) => Vec::new(),
             _ => {
-                return Err(Fault::new("unused-argument", "walls are for the method \"sorenson\"")
-                    .expected("\"sorenson\"")
-                    .found(format!("\"{}\"", self.method))
-                    .in_field(3));
+                return Err(CallError::new(
+                    "unused-argument",
+                    "walls are for the method \"sorenson\"",
+                )
+                .expected("\"sorenson\"")
+                .found(format!("\"{}\"", self.method))
+                .in_field(Self::METHOD));
             }
         };
         let grid = self.s.0;
-        grid.re().check_edges().map_err(fault)?;
+        grid.re().check_edges().map_err(|error| fault(error, Self::S))?;
         let own;
         let on: Option<(&dyn Surface<T>, [Vec<T>; 2])> = match &self.on {
             Some(surface) => Some((&**surface, on_surface(&grid, surface)?)),
             None if plane(&grid) => None,
             None => {
-                own = through(&grid)?;
+                own = through(&grid, Self::S)?;
                 let (m, n) = (grid.m, grid.n);
                 let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
                 let u = (0..m * n).map(|k| even(k / n, m)).collect();
@@ -259,11 +265,13 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             walls,
             on,
         };
-        let smoothed = elliptic_until(&grid, &options, &context.cancel).map_err(fault)?.grid;
+        let smoothed = elliptic_until(&grid, &options, &context.cancel)
+            .map_err(|error| fault(error, Self::S))?
+            .grid;
         let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
         if let Some(&[i, j]) = folded.first() {
             let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };
-            return Err(fault(error).help(
+            return Err(fault(error, Self::S).help(
                 "allow more sweeps, or look at it with folded = \"allow\" and quality(s, \"sj\")",
             ));
         }
@@ -271,20 +279,20 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
     }
 }
 
-fn walls<T: Real>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fault> {
+fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, CallError> {
     let mut walls = Vec::new();
     for word in words.split([' ', ',']).filter(|word| !word.is_empty()) {
         let Some((_, edge)) = EDGES.iter().find(|(name, _)| *name == word) else {
             let expected = "\"i1\", \"im\", \"j1\" or \"jn\"".to_string();
-            return Err(unknown(word, "edge", expected, 5));
+            return Err(unknown(word, "edge", expected, EllipticGrid::<T>::WALLS));
         };
         walls.push(Wall { edge: *edge, spacing: vec![spacing], angle });
     }
     if spacing.re() <= 0.0 {
-        return Err(Fault::new("out-of-range", "the spacing off a wall is a positive length")
+        return Err(CallError::new("out-of-range", "the spacing off a wall is a positive length")
             .expected("a positive number")
             .found(spacing.re().to_string())
-            .in_field(6));
+            .in_field(EllipticGrid::<T>::SPACING));
     }
     Ok(walls)
 }
@@ -315,15 +323,18 @@ fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
 }
 
 /// The spline surface through the points, even in the indices.
-fn through<T: Real>(grid: &SurfaceGrid<T>) -> Result<GridSpline<T>, Fault> {
+fn through<T: Real>(grid: &SurfaceGrid<T>, field: FieldId) -> Result<GridSpline<T>, CallError> {
     let knots = |n: usize| (0..n).map(|k| T::from(k as f64 / (n - 1) as f64)).collect();
     let ends = Ends::Open(End::NotAKnot, End::NotAKnot);
     GridSpline::bicubic(knots(grid.m), knots(grid.n), grid.points().collect(), ends)
-        .map_err(|error| crate::spline::fault(error, "point"))
+        .map_err(|error| crate::spline::fault(error, "point", [field, field]))
 }
 
 /// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
-fn on_surface<T: Real>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
+fn on_surface<T: Scalar>(
+    grid: &SurfaceGrid<T>,
+    on: &SurfaceRef<T>,
+) -> Result<[Vec<T>; 2], CallError> {
     let points: Vec<Vec3<T>> = grid.points().collect();
     let (uv, off) = crate::locate::nearest_parameters(on, &points);
     let size = grid.size();
@@ -331,11 +342,11 @@ fn on_surface<T: Real>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec
     if off[worst] > 1e-6 * size {
         let (i, j) = (worst / grid.n + 1, worst % grid.n + 1);
         let message = format!("point [{i},{j}] of the grid is {} off the surface", off[worst]);
-        return Err(Fault::new("off-surface", message)
-            .expected("a grid whose points lie on the surface")
+        return Err(CallError::new("off-surface", message)
+            .expected("a grid with all points on the surface")
             .found(format!("a distance of {}", off[worst]))
-            .help("project(s, surface) brings them there")
-            .in_field(4));
+            .help("project(s, surface) moves them onto it")
+            .in_field(EllipticGrid::<T>::ON));
     }
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
 }
@@ -363,7 +374,7 @@ pub struct HyperbolicGrid<T: Scalar> {
     s: Value<T>,
     /// The distances of the layers, the first 0; kept on plane surfaces, less where they are convex.
     heights: crate::value::Farray<T>,
-    /// What happens at edges.
+    /// Conditions at the edges.
     #[field(default = "")]
     sides: Arc<str>,
     /// Smoothing: 0 for none, 1 for as much as keeps most concave surfaces from folding.
@@ -374,18 +385,18 @@ pub struct HyperbolicGrid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let heights = self.heights.row().map_err(|fault| fault.in_field(1))?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let heights = self.heights.row().map_err(|fault| fault.in_field(Self::HEIGHTS))?;
         let is_curve =
             matches!(&self.s, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
-        let sides = sides(&self.sides, is_curve)?;
+        let sides = sides(&self.sides, is_curve, Self::SIDES)?;
         let smoothing = self.smoothing.re();
         let place = |error: GridError| {
             let heights = matches!(error, GridError::Heights { .. });
             let folded = matches!(error, GridError::Folded { .. });
-            let fault = fault(error);
+            let fault = fault(error, Self::S);
             if heights {
-                crate::spline::moved(fault, 1)
+                crate::spline::moved(fault, Self::HEIGHTS)
             } else if folded {
                 fault.help("more smoothing, smaller heights, or sides at the edges keep cells from folding")
             } else {
@@ -393,26 +404,28 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             }
         };
         if is_curve {
-            let Points(curve) = Points::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+            let Points(curve) =
+                Points::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             let normal = self.normal.unwrap_or_else(|| Vec3::of(0.0, 0.0, 1.0));
             let ends = [sides[0], sides[1]];
             let grid = hyperbolic_curve(&curve, normal, &heights, ends, smoothing);
             return grid.map(surface).map_err(place);
         }
-        let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+        let GridArg(grid) =
+            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
         let layers = hyperbolic(&grid, &Hyperbolic { heights, sides, smoothing }).map_err(place)?;
         Ok(Value::list(layers.into_iter().map(surface)))
     }
 }
 
-fn sides(text: &str, is_curve: bool) -> Result<[Side; 4], Fault> {
+fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], CallError> {
     let mut sides = [Side::Free; 4];
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let words: Vec<&str> = part.split_whitespace().collect();
         let bad = || {
             let expected =
                 "\"i1 pole\", \"j1 symmetry z\", \"im periodic\" and the like".to_string();
-            unknown(part, "side", expected, 2)
+            unknown(part, "side", expected, field)
         };
         let at = EDGES.iter().position(|(name, _)| Some(name) == words.first());
         let at = at.filter(|at| !is_curve || *at < 2).ok_or_else(bad)?;
@@ -435,15 +448,15 @@ fn sides(text: &str, is_curve: bool) -> Result<[Side; 4], Fault> {
     Ok(sides)
 }
 
-fn metric(word: &str) -> Result<Metric, Fault> {
+fn metric(word: &str, field: FieldId) -> Result<Metric, CallError> {
     let known = Metric::ALL.iter().find(|metric| metric.word() == word);
     known.copied().ok_or_else(|| {
         let words: Vec<String> = Metric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
-        unknown(word, "metric", words.join(", "), 1)
+        unknown(word, "metric", words.join(", "), field)
     })
 }
 
-/// How well shaped the cells of a grid [m,n] are: numbers [m-1,n-1].
+/// The quality of the cells of a grid [m,n]: numbers [m-1,n-1].
 ///
 /// "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
 /// turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
@@ -461,17 +474,20 @@ fn metric(word: &str) -> Result<Metric, Fault> {
 pub struct QualityOf<T: Scalar> {
     /// The grid.
     s: GridArg<T>,
-    /// What is measured.
+    /// The metric.
     #[field(default = "sj")]
     metric: Arc<str>,
 }
 
 impl<T: Scalar> Build<T> for QualityOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let metric = metric(&self.metric)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let metric = metric(&self.metric, Self::METRIC)?;
         let grid = self.s.0;
         if grid.m.min(grid.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [grid.m, grid.n] }));
+            return Err(fault(
+                GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },
+                Self::S,
+            ));
         }
         let values = quality(&grid, metric);
         Ok(crate::value::numbers(ArrayShape::Grid(grid.m - 1, grid.n - 1), values))
@@ -493,7 +509,7 @@ pub struct Folds<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(T::from(folded_cells(&self.s.0).len() as f64)))
     }
 }
@@ -514,11 +530,14 @@ pub struct Report<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         use std::fmt::Write;
         let grid = self.s.0.re();
         if grid.m.min(grid.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [grid.m, grid.n] }));
+            return Err(fault(
+                GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },
+                Self::S,
+            ));
         }
         let n = grid.n - 1;
         let folded = folded_cells(&grid).len();
@@ -543,11 +562,14 @@ impl<T: Scalar> Build<T> for Report<T> {
 }
 
 /// Jets of the spline through a grid's own points, at its points.
-pub fn jets<T: Real>(grid: &SurfaceGrid<T>) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
+pub fn jets<T: Real>(
+    grid: &SurfaceGrid<T>,
+    field: FieldId,
+) -> Result<Vec<moldloft_num::SurfJet<T>>, CallError> {
     if grid.m.min(grid.n) < 3 {
-        return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }));
+        return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }, field));
     }
-    let spline = through(grid)?;
+    let spline = through(grid, field)?;
     let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
     let (m, n) = (grid.m, grid.n);
     Ok((0..m * n).map(|k| spline.jet(even(k / n, m), even(k % n, n), Order::Second)).collect())

@@ -7,7 +7,7 @@ use moldloft_locate::{
 };
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FromValue, Kind, Scalar, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
 };
 
 fn dots<T: Real>(v: Vec3<T>, a: Vec3<f64>) -> T {
@@ -101,7 +101,7 @@ pub struct Closest<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Closest<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { p, curve } = self;
         let plain = PlainCurve(&*curve);
         let search = NearestCurve::new(&plain);
@@ -139,7 +139,7 @@ pub struct Project<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Project<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { o, surface, dir } = self;
         let (shape, points) = match &o {
             Shaped::One(p) => (None, vec![*p]),
@@ -151,16 +151,16 @@ impl<T: Scalar> Build<T> for Project<T> {
                 uv.into_iter().map(|[u, v]| surface.jet(u, v, Order::Zero).p).collect()
             }
             Value::Text(word) => {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "unknown-word",
-                    format!("there is no direction \"{word}\""),
+                    format!("unknown direction \"{word}\""),
                 )
                 .expected("\"closest\", or a vector")
                 .found(format!("\"{word}\""))
-                .in_field(2));
+                .in_field(Self::DIR));
             }
             other => {
-                let d = <Vec3<T>>::from_value(other).map_err(|fault| fault.in_field(2))?;
+                let d = <Vec3<T>>::from_value(other).map_err(|fault| fault.in_field(Self::DIR))?;
                 along(&surface, &points, d)?
             }
         };
@@ -171,27 +171,27 @@ impl<T: Scalar> Build<T> for Project<T> {
     }
 }
 
-fn along<T: Real>(
+fn along<T: Scalar>(
     surface: &SurfaceRef<T>,
     points: &[Vec3<T>],
     d: Vec3<T>,
-) -> Result<Vec<Vec3<T>>, Fault> {
+) -> Result<Vec<Vec3<T>>, CallError> {
     if d.re().norm() == 0.0 {
-        return Err(Fault::new("no-direction", "the direction is zero")
-            .expected("a vector other than zero")
-            .in_field(2));
+        return Err(CallError::new("no-direction", "the direction is zero")
+            .expected("a non-zero vector")
+            .in_field(Project::<T>::DIR));
     }
     let plain = PlainSurface(&**surface);
     let mut moved = Vec::with_capacity(points.len());
     for (k, p) in points.iter().enumerate() {
         let found = roots::line_surface(&plain, p.re(), d.re(), None).map_err(|report| {
             let message = format!("the line through point {} misses the surface", k + 1);
-            Fault::new("no-solution", message)
+            CallError::new("no-solution", message)
                 .expected("a line that meets the surface")
                 .found(format!("a gap of {}", report.residual))
                 .help("\"closest\" finds a point for every one")
                 .in_item(k)
-                .in_field(0)
+                .in_field(Project::<T>::O)
         })?;
         let [_, _, s] = found.at;
         if T::PARTS == 1 {
@@ -211,18 +211,18 @@ fn along<T: Real>(
     Ok(moved)
 }
 
-fn none(what: &str, residual: f64) -> Fault {
-    Fault::new("no-solution", format!("{what} do not meet"))
+fn none(what: &str, residual: f64, field: FieldId) -> CallError {
+    CallError::new("no-solution", format!("{what} do not meet"))
         .expected("shapes that meet")
         .found(format!("a gap of {residual}"))
-        .in_field(1)
+        .in_field(field)
 }
 
-fn nothing<const N: usize>(roots: &Roots<N>, what: &str) -> Fault {
-    none(what, roots.closest.map_or(f64::INFINITY, |(_, residual)| residual))
+fn nothing<const N: usize>(roots: &Roots<N>, what: &str, field: FieldId) -> CallError {
+    none(what, roots.closest.map_or(f64::INFINITY, |(_, residual)| residual), field)
 }
 
-/// Where two shapes with parameters meet: of two curves, or a curve and a surface, the points, in
+/// The intersection of two shapes with parameters: of two curves, or a curve and a surface, the points, in
 /// the order of the first curve's parameter; of two surfaces a branch of their intersection, as a
 /// curve of points: the longest, or another by its number.
 ///
@@ -241,20 +241,22 @@ pub struct Intersect<T: Scalar> {
     a: Value<T>,
     /// A curve or a surface.
     b: Value<T>,
-    /// Which branch, the longest first; of anything but two surfaces there is one.
+    /// The number of the branch, longest first; shapes other than two surfaces have one.
     #[field(default = 1, min = 1)]
     branch: usize,
 }
 
 impl<T: Scalar> Build<T> for Intersect<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (count, found) = meetings(&self.a, &self.b, Some(self.branch - 1))?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let (count, found) = meetings(&self.a, &self.b, Some(self.branch - 1), [Self::A, Self::B])?;
         match found.into_iter().next() {
             Some(points) => Ok(crate::value::curve(points)),
-            None => Err(Fault::new("no-solution", format!("there is no branch {}", self.branch))
-                .expected(format!("a branch from 1 to {count}"))
-                .found(self.branch.to_string())
-                .in_field(2)),
+            None => {
+                Err(CallError::new("no-solution", format!("there is no branch {}", self.branch))
+                    .expected(format!("a branch from 1 to {count}"))
+                    .found(self.branch.to_string())
+                    .in_field(Self::BRANCH))
+            }
         }
     }
 }
@@ -281,8 +283,8 @@ pub struct Intersections<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Intersections<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (_, found) = meetings(&self.a, &self.b, None)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let (_, found) = meetings(&self.a, &self.b, None, [Self::A, Self::B])?;
         Ok(Value::list(found.into_iter().map(crate::value::curve)))
     }
 }
@@ -292,41 +294,46 @@ fn meetings<T: Real>(
     a: &Value<T>,
     b: &Value<T>,
     only: Option<usize>,
-) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
+    fields: [FieldId; 2],
+) -> Result<(usize, Vec<Vec<Vec3<T>>>), CallError> {
     let points = match (a, b) {
-        (Value::Curve(a), Value::Curve(b)) => curves(a, b)?,
+        (Value::Curve(a), Value::Curve(b)) => curves(a, b, fields[1])?,
         (Value::Curve(a), Value::Surface(b)) | (Value::Surface(b), Value::Curve(a)) => {
-            curve_surface(a, b)?
+            curve_surface(a, b, fields[1])?
         }
-        (Value::Surface(a), Value::Surface(b)) => return surfaces(a, b, only),
+        (Value::Surface(a), Value::Surface(b)) => return surfaces(a, b, only, fields[1]),
         (a, b) => {
-            let field = usize::from(matches!(a, Value::Curve(_) | Value::Surface(_)));
-            let other = [a, b][field];
-            let found = other.class().a();
-            let fault = Fault::new(
+            let second = usize::from(matches!(a, Value::Curve(_) | Value::Surface(_)));
+            let other = [a, b][second];
+            let found = other.class().with_article();
+            let fault = CallError::new(
                 "wrong-class",
                 format!("expected a pcurve or a psurface, found {found}"),
             )
             .expected("a curve or a surface with parameters")
             .found(found);
             return Err(match other {
-                Value::Vectors(_) => fault.help("makecc(c) or makecs(s) makes one of points"),
+                Value::Vectors(_) => fault.help("makecc(c) or makecs(s) interpolates points"),
                 _ => fault,
             }
-            .in_field(field));
+            .in_field(fields[second]));
         }
     };
     Ok((1, if only.unwrap_or(0) == 0 { vec![points] } else { Vec::new() }))
 }
 
-fn curves<T: Real>(a: &CurveRef<T>, b: &CurveRef<T>) -> Result<Vec<Vec3<T>>, Fault> {
+fn curves<T: Real>(
+    a: &CurveRef<T>,
+    b: &CurveRef<T>,
+    field: FieldId,
+) -> Result<Vec<Vec3<T>>, CallError> {
     let found = roots::all_curve_curve(&PlainCurve(&**a), &PlainCurve(&**b));
     let size = a.end(0.0).re().distance(a.end(1.0).re()).max(f64::MIN_POSITIVE);
     let meets: Vec<_> = found.roots.iter().filter(|r| r.residual <= 1e-9 * size).collect();
     if meets.is_empty() {
         let nearest = found.roots.first().map(|r| r.residual);
         let gap = nearest.or(found.closest.map(|(_, r)| r)).unwrap_or(f64::INFINITY);
-        return Err(none("the two curves", gap));
+        return Err(none("the two curves", gap, field));
     }
     Ok(meets
         .into_iter()
@@ -354,10 +361,11 @@ fn curves<T: Real>(a: &CurveRef<T>, b: &CurveRef<T>) -> Result<Vec<Vec3<T>>, Fau
 fn curve_surface<T: Real>(
     curve: &CurveRef<T>,
     surface: &SurfaceRef<T>,
-) -> Result<Vec<Vec3<T>>, Fault> {
+    field: FieldId,
+) -> Result<Vec<Vec3<T>>, CallError> {
     let found = roots::all_curve_surface(&PlainCurve(&**curve), &PlainSurface(&**surface));
     if found.roots.is_empty() {
-        return Err(nothing(&found, "the curve and the surface"));
+        return Err(nothing(&found, "the curve and the surface", field));
     }
     Ok(found
         .roots
@@ -382,14 +390,15 @@ fn surfaces<T: Real>(
     a: &SurfaceRef<T>,
     b: &SurfaceRef<T>,
     only: Option<usize>,
-) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
+    field: FieldId,
+) -> Result<(usize, Vec<Vec<Vec3<T>>>), CallError> {
     let (p, q) = (PlainSurface(&**a), PlainSurface(&**b));
     let mut branches = Crossing::with_surface(&p, &q).branches().branches;
     let length = |branch: &Branch| -> f64 {
         branch.stations.windows(2).map(|w| w[0].x.distance(w[1].x)).sum()
     };
     if branches.is_empty() {
-        return Err(none("the two surfaces", f64::INFINITY));
+        return Err(none("the two surfaces", f64::INFINITY, field));
     }
     // Stable: branches of one length stay in the order in which they were found.
     branches.sort_by(|x, y| length(y).total_cmp(&length(x)));

@@ -2,12 +2,12 @@
 
 use crate::value::{Points, Shaped, vectors};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 
-fn direction<T: Real>(v: Vec3<T>, field: usize) -> Result<Vec3<T>, Fault> {
+fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     v.normalized().ok_or_else(|| {
-        Fault::new("no-direction", "the vector has no direction: it is zero")
-            .expected("a vector other than zero")
+        CallError::new("no-direction", "the vector has no direction: it is zero")
+            .expected("a non-zero vector")
             .in_field(field)
     })
 }
@@ -21,14 +21,14 @@ fn direction<T: Real>(v: Vec3<T>, field: usize) -> Result<Vec3<T>, Fault> {
     example = "vector p = translate({1, 0, 0}, {0, 2, 0}); assert p.y == 2;"
 )]
 pub struct Translate<T: Scalar> {
-    /// What is moved.
+    /// The field or set to move.
     o: Shaped<T>,
     /// By how much.
     v: Vec3<T>,
 }
 
 impl<T: Scalar> Build<T> for Translate<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(self.o.mapped(|p| p + self.v))
     }
 }
@@ -43,18 +43,18 @@ impl<T: Scalar> Build<T> for Translate<T> {
     example = "vector p = scale({1, 2, 3}, {1, 1, 2}); assert p.z == 6;"
 )]
 pub struct Scale<T: Scalar> {
-    /// What is scaled, about the origin.
+    /// The points to scale, about the origin.
     o: Shaped<T>,
     /// The three factors, or one.
     by: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Scale<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let by = match &self.by {
             Value::Number(x) => Vec3::new(*x, *x, *x),
             other => <Vec3<T> as moldloft_registry::FromValue<T>>::from_value(other)
-                .map_err(|fault| fault.in_field(1))?,
+                .map_err(|fault| fault.in_field(Self::BY))?,
         };
         Ok(self.o.mapped(|p| Vec3::new(p.x * by.x, p.y * by.y, p.z * by.z)))
     }
@@ -69,7 +69,7 @@ impl<T: Scalar> Build<T> for Scale<T> {
     example = "vector p = mirror({1, 2, 3}, {0, 0, 0}, {0, 1, 0}); assert p.y == -2;"
 )]
 pub struct Mirror<T: Scalar> {
-    /// What is mirrored.
+    /// The field or set to mirror.
     o: Shaped<T>,
     /// A point of the plane.
     p: Vec3<T>,
@@ -78,9 +78,9 @@ pub struct Mirror<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Mirror<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { o, p, n } = self;
-        let square = direction(n, 2).map(|_| n.norm_sq())?;
+        let square = direction(n, Self::N).map(|_| n.norm_sq())?;
         // 2 (r - p) . n / n^2 without a root: planes of whole normals mirror exactly.
         Ok(o.mapped(|r| r - n * ((r - p).dot(n) * 2.0 / square)))
     }
@@ -99,7 +99,7 @@ impl<T: Scalar> Build<T> for Mirror<T> {
                assert |q - {1, 1, 0}| < 1e-15;"
 )]
 pub struct Rotate<T: Scalar> {
-    /// What is turned.
+    /// The field or set to turn.
     o: Shaped<T>,
     /// A point of the axis, if an angle is the fourth argument; else the direction of the axis.
     p: Vec3<T>,
@@ -111,17 +111,17 @@ pub struct Rotate<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Rotate<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (p, axis, angle, field) = match (&self.axis, self.angle) {
-            (Value::Number(angle), None) => (Vec3::zero(), self.p, *angle, 1),
+            (Value::Number(angle), None) => (Vec3::zero(), self.p, *angle, Self::P),
             (axis, Some(angle)) => {
                 let axis = <Vec3<T> as moldloft_registry::FromValue<T>>::from_value(axis);
-                (self.p, axis.map_err(|fault| fault.in_field(2))?, angle, 2)
+                (self.p, axis.map_err(|fault| fault.in_field(Self::AXIS))?, angle, Self::AXIS)
             }
             (_, None) => {
-                return Err(Fault::new("missing-argument", "the angle is missing")
+                return Err(CallError::new("missing-argument", "the angle is missing")
                     .expected("rotate(o, axis, angle) or rotate(o, p, axis, angle)")
-                    .in_field(3));
+                    .in_field(Self::ANGLE));
             }
         };
         let k = direction(axis, field)?;
@@ -155,13 +155,13 @@ pub struct Revolve<T: Scalar> {
     /// Last angle.
     #[field(angle)]
     a1: T,
-    /// How many lines.
+    /// Number of lines.
     #[field(min = 2, max = 1e6)]
     n: usize,
 }
 
 impl<T: Scalar> Build<T> for Revolve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (points, n) = (self.curve.0, self.n);
         let angles: Vec<[T; 2]> = (0..n)
             .map(|j| {
@@ -180,23 +180,23 @@ impl<T: Scalar> Build<T> for Revolve<T> {
 }
 
 /// Unit tangents of a curve of points: those of the circle through a point and its neighbours.
-fn tangents<T: Real>(points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, Fault> {
+fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>, CallError> {
     let n = points.len();
     if n < 2 {
-        return Err(Fault::new("too-few-items", "one point has no tangent")
+        return Err(CallError::new("too-few-items", "one point has no tangent")
             .expected("at least two points")
             .found(n.to_string())
-            .in_field(0));
+            .in_field(field));
     }
     let mut chords = Vec::with_capacity(n - 1);
     for k in 1..n {
         let d = points[k] - points[k - 1];
         if d.norm_sq().re() == 0.0 {
             let message = format!("points {k} and {} coincide", k + 1);
-            return Err(Fault::new("coincident-points", message)
-                .expected("neighbours at different places")
+            return Err(CallError::new("coincident-points", message)
+                .expected("distinct neighbouring points")
                 .in_item(k)
-                .in_field(0));
+                .in_field(field));
         }
         chords.push((d, d.norm()));
     }
@@ -215,9 +215,9 @@ fn tangents<T: Real>(points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, Fault> {
             k => inner(k),
         };
         all.push(raw.normalized().ok_or_else(|| {
-            Fault::new("no-direction", format!("the curve turns back at point {}", k + 1))
+            CallError::new("no-direction", format!("the curve turns back at point {}", k + 1))
                 .in_item(k)
-                .in_field(0)
+                .in_field(field)
         })?);
     }
     Ok(all)
@@ -240,8 +240,8 @@ pub struct Tangents<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Tangents<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let all = tangents(&self.curve.0)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let all = tangents(&self.curve.0, Self::CURVE)?;
         Ok(vectors(ArrayShape::Row(all.len()), all))
     }
 }
@@ -268,12 +268,12 @@ pub struct FrameOf<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for FrameOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
-        let tangents = tangents(&points)?;
+        let tangents = tangents(&points, Self::CURVE)?;
         let t = tangents[0];
         let start = match self.n0 {
-            Some(n0) => direction(n0 - t * t.dot(n0), 1)?,
+            Some(n0) => direction(n0 - t * t.dot(n0), Self::N0)?,
             None => t.perpendicular(),
         };
         let mut all = vec![start];

@@ -4,14 +4,15 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, Program};
-use moldloft_lang::source::env::{Binding, Evaluation, Param, Seed};
+use moldloft_lang::source::env::{Evaluation, Param, Seed};
 use moldloft_lang::source::module::Modules;
+use moldloft_lang::source::scope::Binding;
 use moldloft_lang::source::sketch_file::{self, SketchFile};
-use moldloft_lang::value::number_path::NumberPath;
 use moldloft_mesh::Mesh;
-use moldloft_model::{Applied, Extent, Graph, Nominal, Panelling};
+use moldloft_model::{Applied, Extent, Graph};
 use moldloft_num::Dual4;
-use moldloft_registry::{Class, Kept, Registry, Row, Scalar, Value};
+use moldloft_panel::{Nominal, Panelling};
+use moldloft_registry::{Kept, Registry, Row, Scalar, Value};
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -81,7 +82,7 @@ impl Document {
         document
     }
 
-    /// A model from a text; the ending of `name` tells a model file (`.ms2`) from a program, and
+    /// A model from a text; the ending of `name` distinguishes a model file (`.ms2`) from a program;
     /// without one the first word does.
     pub fn from_text(registry: Registry, world: Box<dyn World>, name: &str, text: &str) -> Self {
         let mut document = Self::empty(registry, world);
@@ -198,7 +199,7 @@ impl Document {
         report: bool,
     ) -> Applied {
         let mut found = Vec::new();
-        evaluation.graph.obey(self.cancelled.clone());
+        evaluation.graph.set_cancel_flag(self.cancelled.clone());
         evaluation.graph.keep_in(self.kept.clone());
         let inputs = Inputs {
             overrides: &self.overrides,
@@ -232,7 +233,7 @@ impl Document {
         applied
     }
 
-    /// The diagnostics of failed objects; what they block is told with them, once.
+    /// The diagnostics of failed objects; what they block is reported with them, once.
     pub(crate) fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.failed() == 0 {
             return Vec::new();
@@ -366,7 +367,7 @@ impl Document {
         Ok(remarks.iter().map(|remark| self.told(remark)).collect())
     }
 
-    fn told(&self, remark: &moldloft_model::Remark) -> Diagnostic {
+    fn told(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
         let mut diagnostic =
             Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
         let object =
@@ -417,14 +418,14 @@ impl Document {
         self.run()
     }
 
-    /// Halves the intervals of all numbers that the program declares by `refined` so often, and
+    /// Sets the refinement level: each level halves the spacing of sizes declared by `refined`, and
     /// runs it.
     ///
     /// # Errors
     /// When that is more than [`moldloft_lang::MOST_REFINED`] times.
     pub fn refine(&mut self, times: u32) -> Result<Applied, Diagnostic> {
         if times > moldloft_lang::MOST_REFINED {
-            return Err(Diagnostic::error("out-of-range", "this is too fine")
+            return Err(Diagnostic::error("out-of-range", "the refinement is too fine")
                 .expected(format!("a whole number from 0 to {}", moldloft_lang::MOST_REFINED))
                 .found(times.to_string()));
         }
@@ -456,7 +457,9 @@ impl Document {
         let names = (0..self.modules.name_count() as u32).map(moldloft_lang::source::module::Name);
         let mut found = Vec::new();
         for name in names {
-            let Some(Some(bound)) = self.plain.env.globals.get(name.0 as usize) else { continue };
+            let Some(Some(bound)) = self.plain.env.scope.globals.get(name.0 as usize) else {
+                continue;
+            };
             let Binding::Variable { value, .. } = &bound.what else { continue };
             let modules = (0..self.modules.len()).map(|k| self.modules.get(k));
             let of_library =
@@ -512,7 +515,7 @@ impl Document {
             return Ok(panelled.clone());
         }
         let unplaced =
-            |f: moldloft_registry::Fault| moldloft_lang::source::fault_location::unplaced(&f);
+            |f: moldloft_registry::CallError| moldloft_lang::source::fault_location::unplaced(&f);
         let before = self.panelled.as_ref().map(|(_, p)| p.clone());
         let before = before.as_ref().map(|p| &p.panelling);
         let mut panelling =

@@ -4,7 +4,8 @@ use moldloft_num::trace::Key;
 use moldloft_num::{Dual4, Jet, Order, Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{
-    Build, Class, Context, CurveRef, Fault, Given, Kind, Point, Registry, Scalar, Value, arrange,
+    Build, CallError, Class, Context, CurveRef, Given, Kind, Point, Registry, Scalar, Value,
+    bind_arguments,
 };
 
 /// A straight line: C(t) = (1-t) P1 + t P2.
@@ -31,7 +32,7 @@ impl<T: Real> moldloft_num::CurveFormula for Straight<T> {
 }
 
 impl<T: Real> Build<T> for Segment<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let end = self.p1.xyz + (self.p2.xyz - self.p1.xyz) * self.stretch;
         Ok(Value::Curve(CurveRef::new(Straight([self.p1.xyz, end]), 0)))
     }
@@ -61,7 +62,7 @@ fn a_struct_becomes_a_documented_row() {
 fn calls_for_both_scalars() {
     let row = Segment::<f64>::row();
     let args = given(vec![vector(0.0, 0.0, 0.0), vector(2.0, 0.0, 0.0)], vec![]);
-    let (args, _) = arrange(&row, args, |_| Class::Any).unwrap();
+    let (args, _) = bind_arguments(&row, args, |_| Class::Any).unwrap();
     let Value::Curve(c) = f64::call(&row, &args, &Context::default()).unwrap() else { panic!() };
     assert_eq!(
         c.jet(0.5, Order::First),
@@ -73,7 +74,7 @@ fn calls_for_both_scalars() {
         vec![vector(0.0, 0.0, 0.0), vector(2.0, 0.0, 0.0)],
         vec![("stretch", stretch), ("divisions", Value::Number(7.0.into()))],
     );
-    let (args, head) = arrange(&row, args, |_| Class::Any).unwrap();
+    let (args, head) = bind_arguments(&row, args, |_| Class::Any).unwrap();
     assert_eq!(head.divisions[0], 7);
     let Value::Curve(c) = Dual4::call(&row, &args, &Context::default()).unwrap() else { panic!() };
     assert_eq!(c.end(1.0).x.eps, [0.0, 0.0, 2.0, 0.0]);
@@ -83,11 +84,11 @@ fn calls_for_both_scalars() {
 fn says_what_is_wrong_and_where() {
     let row = Segment::<f64>::row();
     let fault = |positional, named| {
-        arrange(&row, given(positional, named), |_| Class::Surface).unwrap_err()
+        bind_arguments(&row, given(positional, named), |_| Class::Surface).unwrap_err()
     };
     let p = || vector(0.0, 0.0, 0.0);
     let f = fault(vec![p()], vec![]);
-    assert_eq!((f.id, f.place.unwrap().field), ("missing-argument", 1));
+    assert_eq!((f.id, f.field().unwrap()), ("missing-argument", 1));
     let f = fault(vec![p(), Value::Object(Key(3))], vec![]);
     assert_eq!((f.id, f.message.as_str()), ("wrong-class", "expected a point, found a surface"));
     let f = fault(vec![p(), p(), Value::Number(11.0)], vec![]);
@@ -106,4 +107,40 @@ fn says_what_is_wrong_and_where() {
 fn a_registry_finds_rows_by_name() {
     let registry = Registry::new([Segment::<f64>::row()]);
     assert!(registry.get("Segment").is_some() && registry.get("segment").is_none());
+}
+
+/// Fails for its radius.
+macro_rules! fails_for_its_radius {
+    ($name:ident { $($field:ident),* }) => {
+        /// A kind that refuses its radius.
+        #[derive(Kind)]
+        #[kind(class = Number, function, name = "refuses", example = "")]
+        struct $name<T: Real> {
+            $(
+                /// An argument.
+                $field: T,
+            )*
+        }
+
+        impl<T: Real> Build<T> for $name<T> {
+            fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+                let _ = ($(self.$field),*);
+                Err(CallError::new("out-of-range", "the radius").in_field(Self::RADIUS))
+            }
+        }
+    };
+}
+fails_for_its_radius!(Before { radius, height });
+fails_for_its_radius!(After { height, radius });
+
+#[test]
+fn a_field_that_moves_takes_its_faults_along() {
+    let call = |row: moldloft_registry::Row| {
+        let args = [Value::Number(1.0), Value::Number(2.0)];
+        let fault = f64::call(&row, &args, &Context::default()).unwrap_err();
+        let field = fault.field().expect("an argument is named");
+        (field, row.fields[field].name)
+    };
+    assert_eq!(call(<Before<f64> as StaticRow>::row()), (0, "radius"));
+    assert_eq!(call(<After<f64> as StaticRow>::row()), (1, "radius"));
 }

@@ -42,13 +42,17 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="files to write: " + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
     )
     parser.add_argument(
-        "-o", "--output", metavar="DIR", default=".", help="folder for the files, by default here"
+        "-o",
+        "--output",
+        metavar="DIR",
+        default=".",
+        help="folder for the files; default: the current one",
     )
     parser.add_argument(
         "--level", metavar="Z", type=float, default=0.0, help="height of the water, by default 0"
     )
     parser.add_argument(
-        "--density", type=float, default=1.0, help="mass per volume of the water, by default 1"
+        "--density", type=float, default=1.0, help="density of the water; default: 1"
     )
     parser.add_argument(
         "--sides",
@@ -56,11 +60,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         default="both",
         help="count a mirrored model with its image (the default), or one side alone",
     )
-    parser.add_argument("--lids", action="store_true", help="lids too in the files of panel codes")
+    parser.add_argument(
+        "--lids", action="store_true", help="include lids in the files of panel codes"
+    )
     parser.add_argument(
         "--immersed",
         action="store_true",
-        help="only what is below z = 0 in the files of panel codes, cut there",
+        help="cut at z = 0 and write only the part below, in the files of panel codes",
     )
     parser.add_argument(
         "--tag",
@@ -71,11 +77,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="only patches with one of these tags, in the table and in the files",
     )
     parser.add_argument(
-        "--quality", action="store_true", help="the worst panels of each patch, by their place"
+        "--quality", action="store_true", help="the worst panels of each patch, with their indices"
     )
     parser.add_argument("--json", action="store_true", help="one object instead of the table")
     parser.add_argument(
-        "--watch", action="store_true", help="again at every save, with a picture; ends by Ctrl-C"
+        "--watch", action="store_true", help="rebuild on save, with a picture; Ctrl-C ends"
     )
 
 
@@ -85,7 +91,7 @@ def _format(name: str) -> str:
     try:
         return format_named(name)
     except Error as error:
-        raise argparse.ArgumentTypeError(str(error).removeprefix("error: ")) from error
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def run(options: argparse.Namespace) -> int:
@@ -98,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             sources = _build_watched(options)
         except Error as error:
-            print(str(error).rstrip(), file=sys.stderr)
+            print(error.rendered, file=sys.stderr)
             sources = [options.model]
         print(f"watching {', '.join(sources)}", file=sys.stderr)
         _wait_for_change(sources)
@@ -125,14 +131,15 @@ def _stamp(path: str) -> tuple[int, int]:
 
 
 def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int:
-    from moldloft.files import SOLVERS, Output, commit, file_name, produce
+    from moldloft.files import Output, commit, file_name, produce
+    from moldloft.formats import formats
 
     with Progress() as progress:
         progress.stage(f"running {options.model}")
         model = open_model(options)
         if sources is not None:
-            sources.extend(model._document.files())
-        if model._document.has_errors():
+            sources.extend(model.sources)
+        if model.has_errors:
             progress.stage("reporting")
             return _report_errors(model, options)
         progress.stage("making panels")
@@ -150,9 +157,9 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
         for name in dict.fromkeys(options.to):
             progress.stage(f"writing {name}")
             path = folder / file_name(stem, name)
-            solver = name in SOLVERS
-            lids = options.lids and (solver or name == "gdf-high")
-            immersed = options.immersed and solver
+            row = formats()[name]
+            lids = options.lids and row.lids
+            immersed = options.immersed and row.immersed
             outputs += produce(model, name, path, lids=lids, immersed=immersed, tags=options.tag)
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
@@ -193,7 +200,7 @@ def _report_errors(model: Model, options: argparse.Namespace) -> int:
 
 def _objects(model: Model) -> list[dict[str, Any]]:
     keys = ("name", "kind", "class", "ok", "parents")
-    facts = (model._document.object(name) for name in model.objects)
+    facts = (model.facts(name) for name in model.objects)
     return [{key: fact[key] for key in keys} for fact in facts]
 
 
@@ -310,7 +317,9 @@ def _floating(floating: Hydrostatics) -> str:
     width = max(map(len, figures))
     lines += [f"  {name.ljust(width)}  {_number(value)}" for name, value in figures.items()]
     if floating.open_edges:
-        lines.append(f"  {floating.open_edges} open panel edges below the water: it would leak")
+        lines.append(
+            f"  {floating.open_edges} open panel edges below the waterline: results are unreliable"
+        )
     return "\n".join(lines)
 
 

@@ -15,7 +15,7 @@ from moldloft.cli.console import (
 )
 
 if TYPE_CHECKING:
-    from moldloft._core import Diagnostic
+    from moldloft import Diagnostic
 
 __all__ = ["add", "run"]
 
@@ -26,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quality",
         action="store_true",
-        help="corners that miss their neighbours, what is open, and the worst panels of each patch",
+        help="also report unjoined corners, open edges and the worst panels of each patch",
     )
     parser.add_argument("--json", action="store_true", help="diagnostics as data")
 

@@ -13,7 +13,7 @@ __all__ = ["add", "run"]
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="by default MODEL.graph.svg here")
+    parser.add_argument("-o", "--output", metavar="FILE", help="default: MODEL.graph.svg")
     parser.add_argument("--json", action="store_true", help="nodes and edges as data, no picture")
 
 
@@ -24,8 +24,8 @@ def run(options: argparse.Namespace) -> int:
 
     model = open_model(options)
     report(model.diagnostics)
-    facts = [model._document.object(name) for name in model.objects]
-    status = 1 if model._document.has_errors() else 0
+    facts = [model.facts(name) for name in model.objects]
+    status = 1 if model.has_errors else 0
     if options.json:
         keys = ("name", "kind", "class", "ok")
         edges = [[parent, fact["name"]] for fact in facts for parent in fact["parents"]]

@@ -1,4 +1,4 @@
-"""``moldloft sketch``: run a sketch file, or talk to it line by line."""
+"""``moldloft sketch``: run a sketch file, or open a prompt."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "completion on a terminal. HELP lists the commands, HELP VERB explains one."
     )
     parser.add_argument(
-        "file", metavar="FILE", nargs="?", help="a file of commands (.skt), or its JSON twin"
+        "file", metavar="FILE", nargs="?", help="a file of commands (.skt), or a sketch as JSON"
     )
     parser.add_argument(
         "--set",
@@ -39,21 +39,21 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="a dimension or variable of the last object, after FILE was run; may be repeated",
     )
     parser.add_argument("--json", action="store_true", help="the objects as data, and the replies")
+    parser.add_argument("--edit", action="store_true", help="open the prompt after running FILE")
     parser.add_argument(
-        "--edit", action="store_true", help="go on at the prompt after FILE was run"
-    )
-    parser.add_argument(
-        "-o", "--output", metavar="DIR", default=".", help="folder for SAVE and EXPORT, here"
+        "-o",
+        "--output",
+        metavar="DIR",
+        default=".",
+        help="folder for SAVE and EXPORT; default: the current one",
     )
     parser.add_argument(
         "-q", "--quiet", action="store_true", help="only warnings and errors of the commands"
     )
     restore = parser.add_mutually_exclusive_group()
+    restore.add_argument("--recover", action="store_true", help="resume an unsaved session")
     restore.add_argument(
-        "--recover", action="store_true", help="go on with a session that ended unsaved"
-    )
-    restore.add_argument(
-        "--discard", action="store_true", help="forget sessions that ended unsaved, then go on"
+        "--discard", action="store_true", help="delete unsaved sessions, then start"
     )
 
 
@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
     if options.edit or not options.file:
         host.prompt()
     if options.json:
-        data = json.loads(sketch._session.objects_json())
+        data = json.loads(sketch.session.objects_json())
         data["ok"] = not host.refused
         data["replies"] = [reply.to_dict() for reply in host.replies]
         print_json(data)
@@ -85,7 +85,7 @@ class Host:
 
     def __init__(self, sketch: Sketch, options: argparse.Namespace) -> None:
         self.sketch = sketch
-        self.session = sketch._session
+        self.session = sketch.session
         self.options = options
         self.refused = False
         self.replies: list[Reply] = []
@@ -104,9 +104,9 @@ class Host:
             text = path.read_text(encoding="utf-8")
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
-            raise FileError(f"error: cannot read `{path}`: {reason}") from error
+            raise FileError(f"cannot read `{path}`: {reason}") from error
         except UnicodeDecodeError as error:
-            raise FileError(f"error: cannot read `{path}`: it is no text in UTF-8") from error
+            raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
         if text.lstrip().startswith(("[", "{")):
             self.run_line(f'INPUT "{path.name}"', where=str(path))
         else:
@@ -145,7 +145,7 @@ class Host:
         try:
             commit(path.parent, [Output(path.name, file[1])])
         except Error as error:
-            text = str(error).removeprefix("error: ")
+            text = str(error)
             return Reply("error", text, "choose another name or folder", 600)
         whole = path.suffix.lower() == ".json" or file[1] == self.session.text(None).encode()
         if path.suffix.lower() in (".skt", ".json") and whole:
@@ -186,7 +186,7 @@ class Host:
         self.journal.close(keep=unsaved)
         if unsaved and not self.options.json:
             print(
-                "not saved: `moldloft sketch --recover` goes on with it; SAVE writes a file",
+                "not saved: `moldloft sketch --recover` resumes it; SAVE writes a file",
                 file=sys.stderr,
             )
 
@@ -220,7 +220,7 @@ class Host:
         elif left:
             print(_offer(left[0], self.options.file), file=sys.stderr)
         elif self.options.recover:
-            raise Error("error: there is no unsaved session to go on with")
+            raise Error("no unsaved session to resume")
         if taken is not None:
             commands = taken.commands
             before = self.refused
@@ -239,7 +239,7 @@ class Host:
         except OSError as error:
             where = own or folder
             reason = (error.strerror or str(error)).lower()
-            raise FileError(f"error: cannot keep a journal in `{where}`: {reason}") from error
+            raise FileError(f"cannot keep a journal in `{where}`: {reason}") from error
         if taken is not None and taken.path != self.journal.path:
             taken.path.unlink(missing_ok=True)
 
@@ -255,7 +255,7 @@ def _offer(left: Left, file: str | None) -> str:
     forget = again.replace("--recover", "--discard")
     return (
         f"an unsaved session of {left.when} with {len(left.commands)} commands was found: "
-        f"`{again}` goes on with it, `{forget}` forgets it"
+        f"`{again}` resumes it, `{forget}` deletes it"
     )
 
 
@@ -276,7 +276,7 @@ def _line_editor(sketch: Sketch) -> Iterator[None]:
 
     def complete(_: str, number: int) -> str | None:
         line = readline.get_line_buffer()[: readline.get_endidx()]
-        found = sketch._session.complete(line)
+        found = sketch.session.complete(line)
         return found[number] + " " if number < len(found) else None
 
     readline.set_completer_delims(" ,=;")

@@ -44,7 +44,7 @@ class PatchesFairing:
     as_: str
     """What the points were: ``"control"`` or ``"fit"``."""
     measure: str
-    """What there was to be little of."""
+    """The measure that was minimised."""
     measure_before: float
     """The measure over all curves of the nets before."""
     measure_after: float
@@ -106,7 +106,7 @@ class PatchesFairing:
             ),
             (
                 "certificate",
-                f"{self.value:.9e}, at most {self.gap_relative:.1e} of it left to gain",
+                f"{self.value:.9e}, relative optimality gap <= {self.gap_relative:.1e}",
             ),
             ("time", f"{1e3 * self.seconds:.3g} ms"),
         ]
@@ -164,11 +164,11 @@ def patches(
     True
     """
     if as_ not in ("control", "fit"):
-        raise FairingError(f"error: points of a surface are `control` or `fit`, not `{as_}`")
+        raise FairingError(f"points of a surface are `control` or `fit`, not `{as_}`")
     if seams not in ("position", "tangent", "curvature"):
-        raise FairingError(f"error: seams keep position, tangent or curvature, not `{seams}`")
+        raise FairingError(f"seams keep position, tangent or curvature, not `{seams}`")
     if not surfaces:
-        raise FairingError("error: expected surfaces, found none")
+        raise FairingError("expected surfaces, found none")
     started = time.perf_counter()
     before: list[SplineSurface] = []
     at: list[tuple[Floats, Floats] | None] = []

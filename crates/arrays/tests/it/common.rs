@@ -2,7 +2,9 @@
 #![allow(dead_code)]
 
 use moldloft_num::{Dual4, Real, Vec3};
-use moldloft_registry::{Array, Context, Fault, Given, Row, Scalar, Value, Vectors, arrange};
+use moldloft_registry::{
+    Array, CallError, Context, Given, Row, Scalar, Value, Vectors, bind_arguments,
+};
 use std::sync::Arc;
 
 pub fn row(name: &str) -> Row {
@@ -13,10 +15,10 @@ pub fn row(name: &str) -> Row {
 }
 
 /// Calls an intrinsic.
-pub fn call<T: Scalar>(name: &str, args: &[Value<T>]) -> Result<Value<T>, Fault> {
+pub fn call<T: Scalar>(name: &str, args: &[Value<T>]) -> Result<Value<T>, CallError> {
     let row = row(name);
     let given = Given { positional: args.to_vec(), named: vec![] };
-    let (args, _) = arrange(&row, given, |_| unreachable!("no objects here"))?;
+    let (args, _) = bind_arguments(&row, given, |_| unreachable!("no objects here"))?;
     T::call(&row, &args, &Context::default())
 }
 
@@ -71,7 +73,7 @@ pub fn close(a: f64, b: f64, accuracy: f64) {
 pub fn refused(name: &str, args: &[Value<f64>]) -> (&'static str, Option<usize>, Option<usize>) {
     let fault = call(name, args).err().unwrap_or_else(|| panic!("{name} did not refuse"));
     assert!(!fault.message.is_empty());
-    (fault.id, fault.place.map(|p| p.field), fault.place.and_then(|p| p.item))
+    (fault.id, fault.field(), fault.item())
 }
 
 /// Every number in `value` becomes x + h * its share of a direction that depends on `seed`.

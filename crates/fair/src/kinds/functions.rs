@@ -3,7 +3,7 @@
 use super::{Intent, Places, Role, faithful, fault, measure};
 use crate::{FairError, Space};
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value, Vectors};
+use moldloft_registry::{Array, Build, CallError, Context, CurveRef, Kind, Value, Vectors};
 use std::sync::Arc;
 
 /// A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
@@ -22,10 +22,10 @@ pub struct Fair<T: Real> {
     /// Points, five or more (closed: eight or more).
     #[field(min_items = 5)]
     points: Vec<Vec3<T>>,
-    /// How far each point may move.
+    /// Largest move of each point.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
     /// "optimum" or "faithful".
@@ -37,26 +37,31 @@ pub struct Fair<T: Real> {
 }
 
 impl<T: Real> Build<T> for Fair<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let intent = Intent {
             tolerance: self.tolerance,
             degree: 3,
             closed: self.closed == 1,
             role: Role::Control,
-            measure: measure(&self.measure, 2)?,
-            faithful: faithful(&self.mode, 3)?,
+            measure: measure(&self.measure, Self::MEASURE)?,
+            faithful: faithful(&self.mode, Self::MODE)?,
             end: crate::End::Points(2),
             breaks: Vec::new(),
             joins: [None; 2],
             own: super::Own::default(),
         };
-        let places = Places { points: 0, tolerance: 1, degree: 0, breaks: 0 };
+        let places = Places {
+            points: Self::POINTS,
+            tolerance: Self::TOLERANCE,
+            degree: Self::POINTS,
+            breaks: Self::POINTS,
+        };
         let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
         Ok(Value::Vectors(Arc::new(Vectors::row(faired))))
     }
 }
 
-/// How unfair a row of points is: the length of the jump of the third derivative at each knot of
+/// The unfairness of a row of points: the length of the jump of the third derivative at each knot of
 /// the uniform cubic with these control points, `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|`.
 ///
 /// An open row has four fewer jumps than points.
@@ -78,14 +83,19 @@ pub struct Jumps<T: Real> {
 }
 
 impl<T: Real> Build<T> for Jumps<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let n = self.points.len();
         let space = match (self.closed, n) {
             (1, _) => Space::closed(3, n),
             (_, ..5) => Err(FairError::TooFew { expected: 5, actual: n }),
             _ => Space::floating(3, n),
         };
-        let places = Places { points: 0, tolerance: 0, degree: 0, breaks: 0 };
+        let places = Places {
+            points: Self::POINTS,
+            tolerance: Self::POINTS,
+            degree: Self::POINTS,
+            breaks: Self::POINTS,
+        };
         let jumps = crate::Jumps::of(&space.map_err(|e| fault(e, &places))?);
         let length = |k: usize| {
             let (columns, factors) = jumps.rows.row(k);
@@ -117,17 +127,17 @@ pub struct Curvature<T: Real> {
 }
 
 impl<T: Real> Build<T> for Curvature<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let at = |t: T| {
             let [_, d1, d2] = self.curve.jet(t, Order::Second);
             let speed = d1.norm();
             if speed.re() == 0.0 {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "stands-still",
-                    format!("the curve stands still at t = {}", t.re()),
+                    format!("zero tangent at t = {}", t.re()),
                 )
-                .expected("a parameter at which the curve moves on")
-                .in_field(1));
+                .expected("a parameter with a non-zero tangent")
+                .in_field(Self::T));
             }
             let cross = d1.cross(d2);
             // A straight stretch: the root of zero has no derivative.
@@ -140,9 +150,9 @@ impl<T: Real> Build<T> for Curvature<T> {
                 let items: Result<_, _> = a.items.iter().map(|&t| at(t)).collect();
                 Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: items? })))
             }
-            other => Err(Fault::wrong_class(moldloft_registry::Class::Number, other.class())
+            other => Err(CallError::wrong_class(moldloft_registry::Class::Number, other.class())
                 .expected("a number or an farray")
-                .in_field(1)),
+                .in_field(Self::T)),
         }
     }
 }

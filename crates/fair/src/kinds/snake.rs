@@ -4,7 +4,7 @@ use super::shapes::{self, OnSurface};
 use super::{Intent, Places, Role, end, faithful, fault, measure};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Build, Class, Context, CurveRef, Fault, FromValue, Kind, Point, SurfaceRef, Value,
+    Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, SurfaceRef, Value,
 };
 use std::sync::Arc;
 
@@ -17,13 +17,13 @@ struct Magnet<T: Real> {
 
 impl<T: Real> FromValue<T> for Magnet<T> {
     const CLASS: Class = Class::Magnet;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         if let Value::Point(p) = value
             && let Some(place) = &p.on_surface
         {
             return Ok(Self { point: (**p).clone(), surface: place.0.clone(), uv: place.1 });
         }
-        Err(Fault::wrong_class(Class::Magnet, value.class()))
+        Err(CallError::wrong_class(Class::Magnet, value.class()))
     }
 }
 
@@ -43,13 +43,13 @@ pub struct FairSnake<T: Real> {
     /// Magnets of one surface, at least degree + 2 of them.
     #[field(min_items = 3)]
     magnets: Vec<Magnet<T>>,
-    /// How far the path may be from the one through the magnets, in u and v.
+    /// Largest distance from the path through the magnets, in u and v.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the ends keep: "position", "tangent" or "curvature".
+    /// Kept at the ends: "position", "tangent" or "curvature".
     #[field(default = "tangent")]
     ends: Arc<str>,
     /// "optimum" or "faithful".
@@ -61,9 +61,11 @@ pub struct FairSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for FairSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let [first, .., last] = self.magnets.as_slice() else {
-            return Err(Fault::new("too-few-items", "a snake needs magnets").in_field(0));
+            return Err(
+                CallError::new("too-few-items", "a snake needs magnets").in_field(Self::MAGNETS)
+            );
         };
         let surface = first.surface.clone();
         for (k, magnet) in self.magnets.iter().enumerate() {
@@ -74,16 +76,16 @@ impl<T: Real> Build<T> for FairSnake<T> {
                 surface.same(&magnet.surface)
             };
             if !same {
-                let message = format!("magnet {} lies on another surface than magnet 1", k + 1);
-                return Err(Fault::new("wrong-surface", message)
+                let message = format!("magnet {} is on another surface than magnet 1", k + 1);
+                return Err(CallError::new("wrong-surface", message)
                     .expected("magnets of one surface")
                     .found("two different surfaces")
-                    .related(magnet.point.key, "lies on another surface")
+                    .related(magnet.point.key, "is on another surface")
                     .in_item(k)
-                    .in_field(0));
+                    .in_field(Self::MAGNETS));
             }
         }
-        let end = match end(&self.ends, 3)? {
+        let end = match end(&self.ends, Self::ENDS)? {
             crate::End::Free => crate::End::Position,
             kept => kept,
         };
@@ -92,19 +94,24 @@ impl<T: Real> Build<T> for FairSnake<T> {
             degree: self.degree,
             closed: false,
             role: Role::Fit,
-            measure: measure(&self.measure, 2)?,
-            faithful: faithful(&self.mode, 4)?,
+            measure: measure(&self.measure, Self::MEASURE)?,
+            faithful: faithful(&self.mode, Self::MODE)?,
             end,
             breaks: Vec::new(),
             joins: [None; 2],
             own: super::Own::default(),
         };
-        let places = Places { points: 0, tolerance: 1, degree: 5, breaks: 0 };
+        let places = Places {
+            points: Self::MAGNETS,
+            tolerance: Self::TOLERANCE,
+            degree: Self::DEGREE,
+            breaks: Self::MAGNETS,
+        };
         let path: Vec<_> =
             self.magnets.iter().map(|m| Vec3::new(m.uv[0], m.uv[1], T::zero())).collect();
         let (space, control) = intent.spline(&path).map_err(|e| fault(e, &places))?;
         let path = shapes::curve(&space, &control)
-            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+            .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::MAGNETS))?;
         let ends = [first.point.key, last.point.key];
         let shape = OnSurface { surface: surface.clone(), path, ends };
         Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)))

@@ -5,7 +5,9 @@ use moldloft_fair::{
     Bound, Edge, End, FairError, Limit, Measure, Network, PatchNet, Seam, Space, rows,
 };
 use moldloft_num::{Dual4, Order, Real, Surface, Vec3};
-use moldloft_registry::{Class, Context, Fault, Given, Registry, Scalar, Value, Vectors, arrange};
+use moldloft_registry::{
+    CallError, Class, Context, Given, Registry, Scalar, Value, Vectors, bind_arguments,
+};
 use std::sync::Arc;
 
 /// A bent hull side, cut at `cut` along u: the nets of both parts, with noise of up to `noise`.
@@ -186,13 +188,13 @@ fn call<T: Scalar>(
     grids: [Vec<Vec3<T>>; 2],
     tolerance: T,
     named: Vec<(&str, Value<T>)>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let registry = Registry::new(rows());
     let row = registry.get("FairPatches").unwrap();
     let grid =
         |points: Vec<Vec3<T>>| Value::Vectors(Arc::new(Vectors::grid(points.len() / 8, 8, points)));
     let positional = vec![Value::list(grids.map(grid)), Value::Number(tolerance)];
-    let (args, _) = arrange(row, Given { positional, named }, |_| Class::Any)?;
+    let (args, _) = bind_arguments(row, Given { positional, named }, |_| Class::Any)?;
     T::call(row, &args, &Context::default())
 }
 
@@ -246,15 +248,15 @@ fn patches_have_exact_derivatives() {
 fn patches_say_what_is_wrong() {
     let fault = |named| call::<f64>(halves(4e-3), 2e-2, named).unwrap_err();
     let wrong = fault(vec![("seams", Value::text("smooth"))]);
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("unknown-name", Some(5)));
+    assert_eq!((wrong.id, wrong.field()), ("unknown-name", Some(5)));
     let wrong = fault(vec![("as", Value::text("points"))]);
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("unknown-name", Some(3)));
+    assert_eq!((wrong.id, wrong.field()), ("unknown-name", Some(3)));
     let wrong = fault(vec![("degree", Value::Number(7.0))]);
     assert_eq!(wrong.id, "too-few-items");
     let mut bent = halves(0.0);
     bent[1].iter_mut().skip(8).for_each(|p| p.y += 0.5 * p.x);
     let wrong = call::<f64>(bent, 1e-3, vec![]).unwrap_err();
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("contradiction", Some(5)));
+    assert_eq!((wrong.id, wrong.field()), ("contradiction", Some(5)));
     // A tolerance of zero leaves all as it is.
     let still = call::<f64>(halves(4e-3), 0.0, vec![("as", Value::text("control"))]).unwrap();
     assert!(place(&still, 0, 1.0, 0.0).bits_eq(halves(4e-3)[0][72]));

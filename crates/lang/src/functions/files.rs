@@ -12,6 +12,7 @@ use std::sync::Arc;
 /// The units of the terminal.
 const STANDARD_ERROR: u32 = 0;
 const STANDARD_INPUT: u32 = 5;
+/// Unit 6, FORTRAN's standard output.
 pub const STANDARD_OUTPUT: u32 = 6;
 
 /// Units that `open` gives out begin here.
@@ -50,18 +51,22 @@ enum Open {
 /// How a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
+    /// An existing file, read from its beginning.
     Read,
+    /// A new file, or an existing one emptied.
     Write,
+    /// An existing file, written at its end.
     Append,
 }
 
 impl Mode {
+    /// The mode of the word `read`, `write` or `append`.
     pub fn parse(word: &str) -> Result<Self, Diagnostic> {
         match word {
             "r" => Ok(Mode::Read),
             "w" => Ok(Mode::Write),
             "a" => Ok(Mode::Append),
-            _ => Err(Diagnostic::error("unknown-mode", format!("there is no mode \"{word}\""))
+            _ => Err(Diagnostic::error("unknown-mode", format!("unknown mode \"{word}\""))
                 .expected("\"r\" to read, \"w\" to write or \"a\" to append")
                 .found(format!("\"{word}\""))),
         }
@@ -87,7 +92,7 @@ fn inside(path: &str) -> Result<String, Diagnostic> {
             "" | "." => {}
             ".." => return Err(outside("it leaves the folder")),
             part if part.contains(|c: char| c.is_control()) => {
-                return Err(outside("it has characters that no name has"));
+                return Err(outside("it contains invalid characters"));
             }
             part => parts.push(part),
         }
@@ -197,6 +202,7 @@ impl Files {
         self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks.as_slice()))
     }
 
+    /// Closes a unit; a unit that is not open is an error.
     pub fn close(&mut self, unit: u32) -> Result<(), Diagnostic> {
         self.open.remove(&unit).map(drop).ok_or_else(|| not_open(unit))
     }
@@ -246,7 +252,7 @@ impl Files {
         let word = &text[start..end];
         if word.is_empty() {
             return Err(Diagnostic::error("end-of-file", format!("`{name}` has no more numbers"))
-                .help("more(f) tells whether there is more to read"));
+                .help("more(f) reports whether there is more to read"));
         }
         // FORTRAN writes exponents with d as well.
         let spelled = word.replace(['d', 'D'], "e");
@@ -263,7 +269,7 @@ impl Files {
         let (name, text, at) = self.reading(unit)?;
         if *at >= text.len() {
             return Err(Diagnostic::error("end-of-file", format!("`{name}` has no more lines"))
-                .help("more(f) tells whether there is more to read"));
+                .help("more(f) reports whether there is more to read"));
         }
         let rest = &text[*at..];
         let end = rest.find('\n').unwrap_or(rest.len());

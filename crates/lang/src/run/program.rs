@@ -3,36 +3,49 @@
 use crate::model_file::names::plain_name;
 use crate::run::interpreter::{Inputs, Interpreter, STACK_BYTES};
 use crate::run::sketches::Site;
-use crate::source::env::{Binding, Bound, Environment, Evaluation};
+use crate::source::env::{Environment, Evaluation};
 use crate::source::fault_location;
 use crate::source::module::{Convert, Loader, Module, Modules};
+use crate::source::scope::{Binding, Bound};
 use crate::source::sketch_file::SketchFile;
 use crate::source::world::World;
 use crate::value::number_path::NumberPath;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_model::{Applied, Extent, Graph, Object};
-use moldloft_registry::{Fault, Registry, Scalar, Value};
+use moldloft_registry::{CallError, Registry, Scalar, Value};
 use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
 use std::sync::Arc;
 
 /// What running a program needs.
 pub struct Program<'a> {
+    /// The modules parsed up to now.
     pub modules: &'a mut Modules,
+    /// The files that may be read.
     pub world: &'a dyn World,
+    /// The rows of everything that can be called.
     pub registry: &'a Registry,
+    /// The source texts, for places in diagnostics.
     pub sources: &'a mut Sources,
-    /// The sketch that is the model, when it is no program.
+    /// The sketch that is the model, when it is not a program.
     pub sketch: Option<Arc<SketchFile>>,
     /// The program of a model file that is loaded.
     pub converted: Convert,
 }
 
-/// Why a number of an object is no literal of the text.
+/// Why a number of an object is not a literal of the text.
 pub enum NotLiteral {
     /// It is computed from these names.
-    Expression { span: Span, names: Vec<String> },
+    Expression {
+        /// The place of the expression.
+        span: Span,
+        /// The names that it reads.
+        names: Vec<String>,
+    },
     /// Several objects are made by the statement it stands in.
-    Shared { span: Span },
+    Shared {
+        /// The place of the statement.
+        span: Span,
+    },
     /// It is a default.
     Default,
 }
@@ -149,7 +162,7 @@ pub fn fault_span<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
     object: &Object<T>,
-    fault: &Fault,
+    fault: &CallError,
 ) -> Option<Span> {
     let origin = env.origins.get(object.origin as usize)?;
     let m = modules.get(origin.module as usize);
@@ -226,10 +239,10 @@ fn bind_objects<T: Scalar>(
     graph: &Graph<T>,
     env: &mut Environment<T>,
 ) {
-    env.globals.resize_with(modules.name_count(), || None);
+    env.scope.make_room(modules.name_count());
     for &name in &expression.names {
         let text = modules.text(name);
-        let known = &mut env.globals[name.0 as usize];
+        let known = &mut env.scope.globals[name.0 as usize];
         if known.is_none()
             && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
         {

@@ -1,15 +1,16 @@
 //! Runs a program: the objects of loaded sketches.
 
 use crate::run::interpreter::Interpreter;
-use crate::source::env::{Binding, Bound, Origin, Param};
+use crate::source::env::{Origin, Param};
 use crate::source::module::Module;
+use crate::source::scope::{Binding, Bound};
 use crate::source::sketch_file::{Drawn, SketchFile};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Given, Scalar, Value, arrange};
+use moldloft_registry::{Given, Scalar, Value, bind_arguments};
 use moldloft_sketch::curve::{Piece, Traced};
 use moldloft_sketch::{Axis, DimensionFault, NoBody, PointId, RoundFace, Solid, solve};
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
@@ -28,10 +29,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn load_sketch(&mut self, path: &str, id: StmtId, span: Span) -> Result<(), Diagnostic> {
         let file = self.modules.load_sketch(self.current, path, span, &mut self.loader)?;
         // The parser has told that it stands in a loop or subroutine.
-        if !self.frame().global || !self.frame().loops.is_empty() {
+        if !self.env.scope.frame().global || !self.env.scope.frame().loops.is_empty() {
             return Ok(());
         }
-        if !self.sketches_done.insert(file.path.clone()) {
+        if !self.env.scope.sketches_done.insert(file.path.clone()) {
             return Ok(());
         }
         let origin = self.sketch_origin(id);
@@ -66,10 +67,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let own = crate::model_file::names::identifier(&drawn.object.name);
             for alias in [&prefix, &prefix.to_ascii_lowercase(), &own] {
                 let name = self.modules.name(alias);
-                self.env.globals.resize_with(self.modules.name_count(), || None);
-                if self.lookup(name).is_none() {
+                self.env.scope.make_room(self.modules.name_count());
+                if self.env.scope.lookup(name).is_none() {
                     let what = Binding::Instance(prefix.as_str().into());
-                    self.env.globals[name.0 as usize] = Some(Bound { span: site.span, what });
+                    self.env.scope.globals[name.0 as usize] = Some(Bound { span: site.span, what });
                 }
             }
         }
@@ -140,7 +141,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let [drawn] = &file.objects[..] else {
             file.faults.iter().for_each(|fault| self.report(fault.clone()));
             let found = format!("{} objects in `{path}`", file.objects.len());
-            return Err(Diagnostic::error("wrong-count", "a sketch under a name is one object")
+            return Err(Diagnostic::error("wrong-count", "a named sketch must have one object")
                 .at(span)
                 .expected("a file with one object")
                 .found(found)
@@ -322,16 +323,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let row = self.loader.registry.get(kind)?.clone();
         let full = format!("{}.{name}", names.prefix);
         let given = Given { positional: args, named: Vec::new() };
-        let declared = arrange(&row, given, |key| self.run.class_of(key)).and_then(|filled| {
-            let (args, mut head) = filled;
-            head.visible = i32::from(shown);
-            if !shown {
-                // One panel: its corners are the face's.
-                (head.divisions, head.divided) = ([1, 1], true);
-            }
-            let origin = names.site.origin;
-            self.run.declare(Declaration { name: &full, row: &row, args, head, origin })
-        });
+        let declared =
+            bind_arguments(&row, given, |key| self.run.class_of(key)).and_then(|filled| {
+                let (args, mut head) = filled;
+                head.visible = i32::from(shown);
+                if !shown {
+                    // One panel: its corners are the face's.
+                    (head.divisions, head.divided) = ([1, 1], true);
+                }
+                let origin = names.site.origin;
+                self.run.declare(Declaration { name: &full, row: &row, args, head, origin })
+            });
         match declared {
             Ok(key) => {
                 names.members.push((name.to_owned(), Value::Object(key)));
@@ -425,7 +427,7 @@ fn fault_text(fault: &DimensionFault) -> Option<String> {
     Some(match fault {
         DimensionFault::Redundant { .. } => return None,
         DimensionFault::Contradictory { name, asked, measured, .. } => {
-            format!("{name} asks {asked}, but the others make it {measured}")
+            format!("{name} requires {asked}, but the others give {measured}")
         }
         DimensionFault::NoValue { name, reads } => {
             format!("{name} reads {reads}, which has no value")

@@ -1,29 +1,37 @@
+//! Arcs, interpolating splines, NURBS and conics in the parameter plane of a surface.
+
 use super::through::{flat, snake};
 use crate::arguments::{EndRule, Magnet, Snake, common_surface};
 use crate::curve::{Moved, Oblique, clamped_ends, spline};
 use crate::faults;
 use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::InterpolatingSpline;
 
-/// The places of magnets, and the surface that they all lie on; they are the list in field 0.
-fn places<T: Real>(magnets: &[Magnet<T>]) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), Fault> {
+/// The places of magnets, and the surface that they all lie on; they are the list in `field`.
+fn places<T: Real>(
+    magnets: &[Magnet<T>],
+    field: FieldId,
+) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), CallError> {
     if magnets.len() < 2 {
-        return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
+        return Err(CallError::new("too-few-items", "a snake needs at least 2 magnets")
             .expected("at least 2 magnets")
             .found(magnets.len().to_string())
-            .in_field(0));
+            .in_field(field));
     }
     let items: Vec<_> = magnets.iter().map(|m| (m.key, &m.surface)).collect();
-    let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(0))?;
+    let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(field))?;
     Ok((surface, magnets.iter().map(|m| flat(m.uv)).collect()))
 }
 
-/// The three places of fields 0, 1 and 2.
-fn three<T: Real>(m: [&Magnet<T>; 3]) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), Fault> {
+/// The three places of these fields.
+fn three<T: Real>(
+    m: [&Magnet<T>; 3],
+    fields: [FieldId; 3],
+) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), CallError> {
     let items = m.map(|m| (m.key, &m.surface));
-    let surface = common_surface(&items, |fault, k| fault.in_field(k))?;
+    let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
     Ok((surface, m.map(|m| flat(m.uv))))
 }
 
@@ -44,20 +52,20 @@ pub struct ArcSnake<T: Real> {
     m2: Magnet<T>,
     /// Third magnet, on the same surface.
     m3: Magnet<T>,
-    /// Which of the six types.
+    /// One of the six types.
     #[field(default = 1, min = 1, max = 6)]
     r#type: u32,
 }
 
 impl<T: Real> Build<T> for ArcSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, m3, r#type } = self;
-        let (surface, places) = three([&m1, &m2, &m3])?;
+        let (surface, places) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let Some(arc) = moldloft_spline::Arc::of_type(r#type, places) else {
-            return Err(Fault::new("out-of-range", format!("there is no arc of type {}", r#type))
+            return Err(CallError::new("out-of-range", format!("unknown arc type {}", r#type))
                 .expected("a type from 1 to 6")
                 .found(r#type.to_string())
-                .in_field(3));
+                .in_field(Self::TYPE));
         };
         let end = match r#type {
             2 => None,
@@ -65,7 +73,7 @@ impl<T: Real> Build<T> for ArcSnake<T> {
             6 => m1.key,
             _ => m3.key,
         };
-        snake(surface, arc.map_err(faults::of_arc)?, [m1.key, end], 0)
+        snake(surface, arc.map_err(|error| faults::of_arc(error, Self::M1))?, [m1.key, end], 0)
     }
 }
 
@@ -97,16 +105,19 @@ pub struct CSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for CSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (surface, places) = places(&self.magnets)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let level = |slope: Option<Vec3<T>>| slope.map(|d| Vec3::new(d.x, d.y, T::zero()));
-        let ends = clamped_ends(self.ends, level(self.start), level(self.end))?;
+        let ends =
+            clamped_ends(self.ends, level(self.start), level(self.end), [Self::START, Self::END])?;
         let path = match self.degree {
             1 => InterpolatingSpline::polyline(&places),
             2 if places.len() > 3 => InterpolatingSpline::of_type(2, &places),
             _ => InterpolatingSpline::with_ends(&places, ends),
         }
-        .map_err(|error| faults::of_interpolation(error, "magnet", [0, 1, 2]))?;
+        .map_err(|error| {
+            faults::of_interpolation(error, "magnet", [Self::MAGNETS, Self::DEGREE, Self::ENDS])
+        })?;
         let names = [0, places.len() - 1].map(|k| self.magnets[k].key);
         snake(surface, path, names, 0)
     }
@@ -136,10 +147,11 @@ pub struct NURBSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for NURBSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (surface, places) = places(&self.magnets)?;
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let names = [0, places.len() - 1].map(|k| self.magnets[k].key);
-        let path = spline(places, self.degree, self.knots, self.weights)?;
+        let fields = [Self::MAGNETS, Self::DEGREE, Self::KNOTS, Self::WEIGHTS];
+        let path = spline(places, self.degree, self.knots, self.weights, fields)?;
         let clamped = path.clamped_ends();
         let ends = [0, 1].map(|k| if clamped[k] { names[k] } else { None });
         snake(surface, path, ends, 0)
@@ -159,14 +171,14 @@ impl<T: Real> Build<T> for NURBSnake<T> {
 pub struct ConicSnake<T: Real> {
     /// Centre, or vertex of a parabola.
     m1: Magnet<T>,
-    /// Where the angle is 0 on an ellipse or hyperbola, on the same surface.
+    /// The point of angle 0 on an ellipse or hyperbola, on the same surface.
     m2: Magnet<T>,
     /// The end of the conjugate half diameter, on the same surface.
     m3: Magnet<T>,
-    /// Where the snake begins.
+    /// Start of the snake.
     #[field(angle, default = 0)]
     a1: T,
-    /// Where it ends; a full turn when not given.
+    /// End; a full turn when not given.
     #[field(angle, default = std::f64::consts::TAU)]
     a2: T,
     /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.
@@ -175,9 +187,9 @@ pub struct ConicSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for ConicSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, m3, a1, a2, r#type } = self;
-        let (surface, [centre, p, q]) = three([&m1, &m2, &m3])?;
+        let (surface, [centre, p, q]) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let path = Oblique { centre, first: p - centre, second: q - centre, a1, a2, kind: r#type };
         snake(surface, path, [None, None], 0)
     }
@@ -197,17 +209,18 @@ impl<T: Real> Build<T> for ConicSnake<T> {
 pub struct RelSnake<T: Real> {
     /// The snake it is relative to.
     snake: Snake<T>,
-    /// Where it begins, on the same surface.
+    /// Start, on the same surface.
     m1: Magnet<T>,
-    /// Where it ends, on the same surface.
+    /// End, on the same surface.
     m2: Magnet<T>,
 }
 
 impl<T: Real> Build<T> for RelSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { snake: Snake { curve, surface }, m1, m2 } = self;
         let items = [(curve.key, &surface), (m1.key, &m1.surface), (m2.key, &m2.surface)];
-        common_surface(&items, |fault, k| fault.in_field(k))?;
+        let fields = [Self::SNAKE, Self::M1, Self::M2];
+        common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
         let nesting = curve.depth;
         let path = Moved::path(curve, flat(m1.uv), flat(m2.uv));
         snake(surface, path, [m1.key, m2.key], nesting)
@@ -225,14 +238,14 @@ impl<T: Real> Build<T> for RelSnake<T> {
                LineSnake s(p, q); CopySnake t(s, T);"
 )]
 pub struct CopySnake<T: Real> {
-    /// The snake whose path is taken.
+    /// The snake whose path is copied.
     snake: Snake<T>,
-    /// The surface it is taken to.
+    /// The target surface.
     surface: SurfaceRef<T>,
 }
 
 impl<T: Real> Build<T> for CopySnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Snake { curve, .. } = self.snake;
         let nesting = curve.depth;
         snake(self.surface, Path(curve), [None, None], nesting)
@@ -255,7 +268,7 @@ impl<T: Real> Curve<T> for Path<T> {
         Trace::own()
     }
 
-    fn law(&self) -> Option<std::sync::Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<std::sync::Arc<dyn Reparametrization<T>>> {
         self.0.law()
     }
 }

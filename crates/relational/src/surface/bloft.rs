@@ -1,8 +1,10 @@
+//! B-spline lofts: attracted by their master curves.
+
 use super::linear::Blend;
 use super::masters::Masters;
 use crate::faults;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::KnotVector;
 
 /// A surface attracted by its master curves: S(u, v) = sum N_i(v) C_i(u), with N_i the B-splines
@@ -28,12 +30,12 @@ pub struct BLoftSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for BLoftSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { curves, degree } = self;
         let count = curves.len();
-        let masters = Masters::new(curves, 0)?;
+        let masters = Masters::new(curves, Self::CURVES)?;
         let knots = KnotVector::clamped_uniform(degree.min(count - 1), count)
-            .map_err(|error| faults::of_spline(error.into(), 0, 1))?;
+            .map_err(|error| faults::of_spline(error.into(), Self::CURVES, Self::DEGREE))?;
         Ok(Value::Surface(SurfaceRef::new(Blend { masters, knots }, context.nesting)))
     }
 }

@@ -1,10 +1,14 @@
+//! The surface that a curve describes while the bead it depends on runs along its curve.
+
 use super::column::{Column, Columns};
 use crate::arguments::Bead;
 use crate::chebyshev::{NODES, Piece, Way, nodes};
 use crate::curve::swept::{ACCURACY, halved, no_locus, stretches};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingCurve, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, Kind, MovingCurve, SurfaceRef, Value,
+};
 
 /// The surface that a curve describes when a bead that it depends on sweeps its curve: S(u, v) is the
 /// place u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
@@ -15,7 +19,7 @@ use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingCurve, Surf
 #[derive(Kind)]
 #[kind(
     class = Surface,
-    sweep = [0, 1],
+    sweep = [bead, curve],
     columns = "relabel bead curve",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
                AbsBead b(c, 0.5); AbsPoint D(0, 0, 3); AbsPoint E(3, 0, 3); Line l(D, E); \
@@ -27,10 +31,10 @@ pub struct ProcSurf<T: Real> {
     bead: Bead<T>,
     /// The curve that follows.
     curve: MovingCurve<T>,
-    /// Where the bead begins.
+    /// Start of the bead.
     #[field(default = 0)]
     t1: T,
-    /// Where it ends.
+    /// End.
     #[field(default = 1)]
     t2: T,
 }
@@ -39,11 +43,11 @@ pub struct ProcSurf<T: Real> {
 const PROBES: [f64; 6] = [0.0, 0.17, 0.39, 0.61, 0.83, 1.0];
 
 impl<T: Real> Build<T> for ProcSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { bead, curve, t1, t2 } = self;
         let at = |t: f64| {
             let place = t1 * (1.0 - t) + t2 * t;
-            curve.at(place).map_err(|fault| no_locus("curve", place.re(), &fault))
+            curve.at(place).map_err(|fault| no_locus("curve", place.re(), &fault, Self::CURVE))
         };
         let mut size = 0.0f64;
         let pieces = halved(&stretches(&bead, [t1, t2]), |from, to| {

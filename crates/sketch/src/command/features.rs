@@ -136,7 +136,7 @@ impl Session {
         if object.drawing.section.is_none() {
             return Err(CommandError::new(
                 113,
-                format!("{} is no cross section", object.name),
+                format!("{} is not a cross section", object.name),
                 "SKETCH name 2D starts one",
             ));
         }

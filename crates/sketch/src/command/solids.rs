@@ -114,7 +114,7 @@ impl Session {
             return Err(CommandError::new(
                 701,
                 format!("two lines cross at {at} without a point"),
-                "SPLIT both and WELD the points, or mend the dimensions",
+                "SPLIT both and WELD the points, or correct the dimensions",
             ));
         }
         if !fitted.open.is_empty() {
@@ -185,8 +185,10 @@ impl Session {
             for inner in &fit.internal {
                 let text: Vec<String> =
                     inner.iter().filter_map(|k| ids.get(*k)).map(ToString::to_string).collect();
-                self.out
-                    .push(Reply::note(format!("internal polygon {} is no face", text.join(" "))));
+                self.out.push(Reply::note(format!(
+                    "internal polygon {} is not a face",
+                    text.join(" ")
+                )));
             }
             if !fit.branching.is_empty() {
                 self.out.push(Reply::warning(format!(
@@ -234,7 +236,7 @@ impl Session {
         let Some(Question::Solid { object, faces }) = &self.question else {
             return Err(CommandError::new(
                 702,
-                "there is nothing to choose",
+                "nothing to choose",
                 "GENERATE FACES offers what fits",
             ));
         };
@@ -464,7 +466,7 @@ impl Session {
         let Some(normal) = object.drawing.section else {
             return Err(CommandError::new(
                 113,
-                format!("{} is no cross section", object.name),
+                format!("{} is not a cross section", object.name),
                 "SKETCH name 2D starts one",
             ));
         };
@@ -488,7 +490,7 @@ impl Session {
         if number.as_ref().is_ok_and(|x| *x == 0.0 || !x.is_finite()) {
             return Err(CommandError::new(
                 300,
-                "an extrusion by nothing has no volume",
+                "an extrusion of length 0 has no volume",
                 "give a length",
             ));
         }
@@ -539,7 +541,7 @@ impl Session {
         let wrong = || {
             CommandError::new(
                 191,
-                "MERGE wants: MERGE A [B] [INTO] C",
+                "usage: MERGE A [B] [INTO] C",
                 "name the objects to unite, then the one to make",
             )
         };

@@ -405,7 +405,7 @@ fn errors_say_what_where_and_next() {
         ("DIM pi X 1 2 3", "means something"),
         ("DIM X 1 2 3ft", "the object has none"),
         ("DIM X 1 2 \"2*\"", "in `2*`"),
-        ("SET nothing 3", "no dimension or variable"),
+        ("SET nothing 3", "unknown dimension or variable"),
         ("WHY nothing", "no dimension"),
         ("UNDO 5 6", "expected the end"),
         ("VARIABLE v 3 IN 5 1", "empty"),

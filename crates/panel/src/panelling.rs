@@ -1,0 +1,333 @@
+//! From surfaces to panels: patches from their own parameters and divisions, joined by identity.
+//!
+//! `surfaces -> drafts -> roots cut into intervals -> counts -> structure -> joined vertices -> panels`
+//!
+//! A patch of nu x nv divisions has a grid of vertices. Its edges run along stretches of roots (see
+//! `moldloft_num::trace` and [`crate::roots`]); counts flow from patch to patch along these
+//! ([`crate::counts`]), and where an edge has several stretches their ends fall on divisions
+//! ([`crate::edges`]). Vertices of different patches become one when they are the same division of the
+//! same stretch, or lie at the same point object ([`crate::join`]); never because they look close. The
+//! position of a shared vertex is computed once, by the first patch in the order of declaration.
+
+use crate::draft::{drafts, indices};
+use crate::edges::{self, EdgePlan, along_edge};
+use crate::joined_patches::JoinedPatches;
+use crate::notes::PanelNote;
+use crate::patch_values::{PatchValues, evaluated_all, names};
+use crate::roots::Roots;
+use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
+use crate::triangle_bodies::{self, MeshedBody};
+use moldloft_mesh::{Mesh, Topology};
+use moldloft_model::{Graph, Object};
+use moldloft_num::trace::Key;
+use moldloft_num::{Box3, Real, Vec3};
+use moldloft_registry::{CallError, Scalar, SurfaceRef};
+use std::cell::LazyCell;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The most panels of a model.
+pub const MOST_PANELS: u64 = 20_000_000;
+
+/// The fault of `count` panels.
+pub fn too_many_panels(count: u64) -> CallError {
+    CallError::new("too-many-panels", format!("{count} panels are too many"))
+        .expected(format!("at most {MOST_PANELS}"))
+        .found(count.to_string())
+        .help("lower the divisions of the surfaces")
+}
+
+/// An edge, or a whole patch, within this share of the model's size from a coordinate plane lies in
+/// it: rounding of a sine must not open a seam or leave slivers at a plane of symmetry.
+const IN_PLANE: f64 = 1e-12;
+
+/// Which vertices there are and who computes them; independent of the scalar.
+#[derive(Clone, Debug)]
+pub struct Panelling {
+    pub(crate) structure: Arc<PanelTopology>,
+    pub(crate) joined: Arc<JoinedPatches>,
+    /// Bodies of triangles; their vertices come after all others.
+    bodies: Arc<Vec<MeshedBody>>,
+    /// The joint's topology and that of the bodies.
+    topology: Arc<Topology>,
+    /// The points of each patch by itself, in the order of the skeleton, at the state that this was
+    /// made of: as they were evaluated, and with exact zeros.
+    raw: Vec<Arc<Vec<Vec3>>>,
+    pub(crate) points: Vec<Arc<Vec<Vec3>>>,
+    /// Parts of patches whose coordinate is exactly zero: patch, edge (4 for all of it), axis.
+    zeros: Vec<(u32, u8, u8)>,
+    /// Point objects whose parameters divide edges, by their identity where this was made.
+    pub(crate) names: Arc<HashMap<Key, Arc<str>>>,
+    remarks: Vec<PanelNote>,
+    measured: bool,
+    /// What the graph called its last change then.
+    clock: u64,
+}
+
+impl Panelling {
+    /// The panelling of all shown surfaces that have a value.
+    ///
+    /// # Errors
+    /// A [`CallError`] when there would be too many panels.
+    pub fn new(graph: &Graph<f64>) -> Result<Self, CallError> {
+        Self::renewed(graph, None, None)
+    }
+
+    /// The same with the counts of `nominal` wherever nothing else determines them. Of `before`, a
+    /// panelling of the same graph at an earlier state, what has not changed is taken over; the
+    /// result is the same without it.
+    ///
+    /// # Errors
+    /// A [`CallError`] when there would be too many panels.
+    pub fn renewed(
+        graph: &Graph<f64>,
+        nominal: Option<&Nominal>,
+        before: Option<&Panelling>,
+    ) -> Result<Self, CallError> {
+        let drafts = drafts(graph);
+        let made = topology::solve(graph, Roots::new(graph, &drafts), &drafts, nominal);
+        let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
+        let mut bodies = triangle_bodies::bodies(graph);
+        let total = made.structure.patches.iter().map(count).sum::<u64>()
+            + bodies.iter().map(MeshedBody::panels).sum::<u64>();
+        if total > MOST_PANELS {
+            return Err(too_many_panels(total));
+        }
+        let before = before.filter(|b| *b.structure == made.structure);
+        let structure = before.map_or_else(|| Arc::new(made.structure), |b| b.structure.clone());
+        let names = match before {
+            Some(before) => before.names.clone(),
+            None => Arc::new(names(graph, &structure)),
+        };
+        // Divisions that hang on marks of other objects move with these.
+        let hangs = |frame: &PatchTopology| {
+            frame.plans.iter().any(|p| matches!(p, EdgePlan::Segments(_) | EdgePlan::Like(_)))
+        };
+        let kept = |patch: usize| {
+            let before = before?;
+            let unchanged = drafts[patch].object.changed_at <= before.clock;
+            (unchanged && !hangs(&structure.patches[patch])).then(|| before.raw[patch].clone())
+        };
+        let evaluated = evaluated_all(&structure, &names, graph, kept);
+        // Every draft has a value in its own graph.
+        let raw: Vec<_> = evaluated.into_iter().flatten().collect();
+        let mut points = raw.clone();
+        let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));
+        let zeros = zeros(&structure, &points, size.diagonal());
+        set_zeros(&structure, &zeros, &mut points);
+        let fixed = fixed(&structure, &points);
+        let joined = match before.filter(|b| b.joined.fixed == fixed) {
+            Some(before)
+                if before.joined.turned == before.joined.orientation(&structure, &points) =>
+            {
+                before.joined.clone()
+            }
+            _ => {
+                let joined = JoinedPatches::new(&structure, &points, fixed);
+                Arc::new(joined.map_err(|e| CallError::new("too-many-panels", e.to_string()))?)
+            }
+        };
+        let mut remarks = made.remarks;
+        remarks.extend(joined.apart(&structure, &points, size.diagonal()));
+        {
+            let known = if bodies.iter().any(MeshedBody::has_border) {
+                PatchValues::new(graph, &structure, &names)
+            } else {
+                PatchValues::empty(graph, &structure, &names)
+            };
+            let clock = before.map_or(0, |b| b.clock);
+            let unchanged = |object: &Object<f64>| object.changed_at <= clock;
+            let earlier = before.map(|b| (b.bodies.as_slice(), &unchanged as _));
+            remarks.extend(triangle_bodies::sewn(&mut bodies, &known, &joined, earlier));
+        }
+        let whole = before.filter(|b| {
+            let alike = b.bodies.len() == bodies.len()
+                && b.bodies.iter().zip(&bodies).all(|(a, b)| a.is_like(b));
+            alike && Arc::ptr_eq(&b.joined, &joined)
+        });
+        let topology = match whole {
+            Some(before) => before.topology.clone(),
+            None if bodies.is_empty() => joined.topology.clone(),
+            None => triangle_bodies::with_bodies(&joined.topology, &bodies)
+                .map_err(|e| CallError::new("too-many-panels", e.to_string()))?,
+        };
+        Ok(Self {
+            structure,
+            joined,
+            bodies: Arc::new(bodies),
+            topology,
+            raw,
+            points,
+            zeros,
+            names,
+            remarks,
+            measured: made.measured,
+            clock: graph.last_change(),
+        })
+    }
+
+    /// The connectivity.
+    pub fn topology(&self) -> &Arc<Topology> {
+        &self.topology
+    }
+
+    /// What was noticed at the joins.
+    pub fn remarks(&self) -> &[PanelNote] {
+        &self.remarks
+    }
+
+    /// True when some count follows from lengths, so that it may change with the shape.
+    pub fn is_measured(&self) -> bool {
+        self.measured
+    }
+
+    /// Its counts, for [`Self::like`].
+    pub fn nominal(&self) -> Nominal {
+        let counts = self.structure.patches.iter().map(|frame| {
+            let edges = std::array::from_fn(|k| match &frame.runs[k] {
+                EdgeRun::Along(spans) => {
+                    spans.iter().filter(|(s, _)| s.interval.is_some()).map(|(_, n)| *n).collect()
+                }
+                _ => Vec::new(),
+            });
+            ((frame.name.clone(), frame.border_curve), Counts { divisions: frame.divisions, edges })
+        });
+        Nominal(counts.collect())
+    }
+
+    /// The names of the patches' surfaces, in the order of the topology's patches; bodies of
+    /// triangles come after them.
+    pub fn surfaces(&self) -> impl Iterator<Item = &Arc<str>> {
+        self.structure.patches.iter().filter(|f| f.meshed).map(|f| &f.name)
+    }
+
+    /// The positions of all vertices, evaluated with the scalar of `graph`; `None` when a surface
+    /// has no value there.
+    pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
+        let points = evaluated_all(&self.structure, &self.names, graph, |_| None);
+        let mut points = points.into_iter().collect::<Option<Vec<_>>>()?;
+        set_zeros(&self.structure, &self.zeros, &mut points);
+        Some(self.gathered(&points, &self.body_points(graph, &points)?))
+    }
+
+    /// Of each structured patch, in the order of the topology's: its surface, and (u, v) of each
+    /// vertex of its block; `None` when a surface has no value.
+    pub fn parameters(&self, graph: &Graph<f64>) -> Option<Vec<(SurfaceRef<f64>, Vec<[f64; 2]>)>> {
+        let known = PatchValues::new(graph, &self.structure, &self.names);
+        let meshed =
+            (0..self.structure.patches.len()).filter(|&k| self.structure.patches[k].meshed);
+        meshed
+            .map(|patch| {
+                let edge = |k: usize| along_edge(k, patch as u32, &known);
+                let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
+                Some((known.surfaces[patch].clone()?, edges::parameters(&edges)))
+            })
+            .collect()
+    }
+
+    /// The mesh, evaluated with the scalar of `graph`.
+    pub fn mesh<T: Scalar>(&self, graph: &Graph<T>) -> Option<Mesh<T>> {
+        Mesh::new(self.topology().clone(), self.positions(graph)?).ok()
+    }
+
+    /// The mesh at the state that the panelling was made of.
+    pub fn own_mesh(&self) -> Option<Mesh<f64>> {
+        Mesh::new(self.topology().clone(), self.gathered(&self.points, &self.own_body_points()))
+            .ok()
+    }
+
+    /// The vertices of the bodies' own, evaluated with the scalar of `graph`; `None` when one has no
+    /// value there, or other triangles. `patches` are the points of the patches.
+    fn body_points<T: Scalar>(
+        &self,
+        graph: &Graph<T>,
+        patches: &[Arc<Vec<Vec3<T>>>],
+    ) -> Option<Vec<Vec3<T>>> {
+        if self.bodies.is_empty() {
+            return Some(Vec::new());
+        }
+        let known = LazyCell::new(|| PatchValues::new(graph, &self.structure, &self.names));
+        let mut points = Vec::new();
+        for body in self.bodies.iter() {
+            let facets = body.facets_in(graph, || &*known)?;
+            points.extend(body.own_points(&facets, patches));
+        }
+        Some(points)
+    }
+
+    /// The same at the state that the panelling was made of.
+    fn own_body_points(&self) -> Vec<Vec3> {
+        self.bodies.iter().flat_map(|b| b.own_points(&b.facets, &self.points)).collect()
+    }
+
+    /// The vertices' positions from those of the patches by themselves, and those of the bodies.
+    fn gathered<T: Real>(&self, points: &[Arc<Vec<Vec3<T>>>], bodies: &[Vec3<T>]) -> Vec<Vec3<T>> {
+        let mut positions = vec![Vec3::zero(); self.topology().vertex_count()];
+        let last = positions.len() - bodies.len();
+        positions[last..].copy_from_slice(bodies);
+        let patches = self.structure.patches.iter().zip(points).zip(&self.joined.vertices);
+        // Backwards, so that the first patch has the last word.
+        for ((_, points), vertices) in patches.rev().filter(|((f, _), _)| f.meshed) {
+            for (&vertex, &p) in vertices.iter().zip(points.iter()) {
+                positions[vertex as usize] = p;
+            }
+        }
+        positions
+    }
+}
+
+/// The parts of patches that lie in a coordinate plane but for rounding.
+fn zeros(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32, u8, u8)> {
+    let near = IN_PLANE * size;
+    let mut found = Vec::new();
+    for (patch, (frame, points)) in structure.patches.iter().zip(points).enumerate() {
+        for axis in 0..3u8 {
+            let at = |k: usize| points[k][usize::from(axis)];
+            let inside = |part| indices(frame.divisions, part).all(|k| at(k).abs() <= near);
+            let edges: Vec<u8> = (0..4).filter(|&k| inside(k)).collect();
+            let whole = edges.len() == 4 && inside(4);
+            let parts = if whole { vec![4] } else { edges };
+            for part in parts {
+                found.push((patch as u32, part, axis));
+            }
+        }
+    }
+    found
+}
+
+/// Makes the coordinates zero; their derivatives stay.
+fn set_zeros<T: Real>(
+    structure: &PanelTopology,
+    zeros: &[(u32, u8, u8)],
+    points: &mut [Arc<Vec<Vec3<T>>>],
+) {
+    for &(patch, part, axis) in zeros {
+        let divisions = structure.patches[patch as usize].divisions;
+        let points = &mut points[patch as usize];
+        let zero = |k: usize| points[k][usize::from(axis)].re().to_bits() == 0;
+        if indices(divisions, part).all(zero) {
+            continue;
+        }
+        let points = Arc::make_mut(points);
+        for k in indices(divisions, part) {
+            let mut p = points[k].to_array();
+            let x = &mut p[usize::from(axis)];
+            *x = T::from_parts(|part| if part == 0 { 0.0 } else { x.part(part) });
+            points[k] = p.into();
+        }
+    }
+}
+
+/// For each patch that is an image, which points of its boundary are those of its original.
+fn fixed(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>]) -> Vec<Vec<bool>> {
+    let of_patch = |(patch, frame): (usize, &PatchTopology)| {
+        let Some((original, _)) = frame.image else { return Vec::new() };
+        if structure.patches[original].divisions != frame.divisions {
+            return Vec::new();
+        }
+        let boundary = (0..4).flat_map(|k| indices(frame.divisions, k));
+        // -0 and 0 are one place.
+        boundary.map(|k| points[patch][k] == points[original][k]).collect()
+    };
+    structure.patches.iter().enumerate().map(of_patch).collect()
+}
