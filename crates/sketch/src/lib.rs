@@ -67,7 +67,7 @@ mod format;
 mod object;
 pub mod solid;
 
-pub use command::{CommandError, Files, NoFiles, OutFile, Reply, Session};
+pub use command::{CommandError, Files, NoFiles, OutFile, Reply, Session, Suggestion};
 pub use dimension::expr::{Expr, FUNCTIONS, NoValue};
 pub use dimension::layout::{
     Count, DimensionFault, Layout, Loose, agree, chain, chain_text, solve,
@@ -79,11 +79,12 @@ pub use drawing::estimate::{Estimate, FreeDepth, MAX_PLANES};
 pub use drawing::line_types::{DOUBTFUL, NAMING_TOLERANCE};
 pub use drawing::planes::{Planes, Reason, TypeFault, why};
 pub use drawing::projection::Projection;
-pub use drawing::{Align, Drawing, FaceId, Line, LineId, Point, PointId, Source};
+pub use drawing::{Align, Drawing, FaceId, Hit, Line, LineId, Point, PointId, Snap, Source};
 pub use format::script::script;
 pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
 pub use object::{Face, Object, Reference};
+pub use solid::feature::{Feature, FeatureKind, NoBody, Operand, Placement, body};
 pub use solid::gradient::{Gradient, Swept, gradient};
 pub use solid::mass::Mass;
 pub use solid::ruled_faces::RoundFace;

@@ -1,6 +1,7 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
 use crate::solid::curve::Curve;
+use crate::solid::feature::Feature;
 use crate::{Axis, Dimension, Drawing, FaceId, LineId, Measure, PointId, Variable};
 use indexmap::IndexMap;
 use std::collections::BTreeMap;
@@ -63,6 +64,8 @@ pub struct Object {
     pub faces: BTreeMap<FaceId, Face>,
     /// Curves by folded name, in order of entry.
     pub curves: IndexMap<String, Curve>,
+    /// What it is made of, when it is no drawing.
+    pub feature: Option<Arc<Feature>>,
 }
 
 impl Object {

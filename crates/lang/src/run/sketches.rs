@@ -12,7 +12,7 @@ use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Given, Scalar, Value, bind_arguments};
 use moldloft_sketch::curve::{Piece, Traced};
-use moldloft_sketch::{Axis, DimensionFault, PointId, RoundFace, Solid, solid, solve};
+use moldloft_sketch::{Axis, DimensionFault, NoBody, PointId, RoundFace, Solid, solve};
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -202,7 +202,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 self.sketch_point(&mut names, id, at);
             }
         }
-        let body = solid(object, &drawn.planes, &layout);
+        let body = match moldloft_sketch::body(object, &drawn.planes, &layout) {
+            Ok(body) => Some(body),
+            Err(NoBody::Unfinished) => None,
+            Err(why) => {
+                let fault = moldloft_sketch::command::no_body(object, &why);
+                let text = format!("`{prefix}` has no body: {}", fault.text);
+                let diagnostic = Diagnostic::error("sketch-invalid", text).at(site.span);
+                self.report(diagnostic.help(fault.next));
+                None
+            }
+        };
         for v in body.iter().flat_map(|b| &b.vertices) {
             if !names.points.contains_key(&v.id) {
                 self.sketch_point(&mut names, v.id, v.at);
@@ -287,7 +297,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Value::Vector(mass.centroid),
         ];
         let key = self.part(names, "solid", "MeshBody", args, true);
-        if let Some(key) = key.filter(|_| !body.flat && mesh.report().closed) {
+        // A set of faces knows cylinders and cones by their straight borders only, so a body with
+        // round faces that others have cut has none.
+        let plain = !body.flat && body.trims.is_empty() && mesh.report().closed;
+        if let Some(key) = key.filter(|_| plain) {
             let args = face_arguments(body, &mesh, key);
             self.part(names, "body", "FaceSet", args, false);
         }
@@ -423,6 +436,9 @@ fn fault_text(fault: &DimensionFault) -> Option<String> {
             format!("{} depend on each other in a circle", names.join(", "))
         }
         DimensionFault::NotFinite { name } => format!("{name} is not a finite number"),
+        DimensionFault::OutOfRange { name, value, range: [low, high] } => {
+            format!("{name} = {value} is outside its range, {low} to {high}")
+        }
         DimensionFault::Unsolved { name, residual } => {
             format!("{name} cannot be satisfied; it is missed by {residual}")
         }

@@ -87,6 +87,14 @@ impl<'a> Args<'a> {
         matches!(self.tokens.get(k).map(|t| &t.kind), Some(Kind::Number(..)))
     }
 
+    /// The plain number after `k` others.
+    pub fn number_of(&self, k: usize) -> Option<f64> {
+        match self.tokens.get(k).map(|t| &t.kind) {
+            Some(Kind::Number(x, None)) => Some(*x),
+            _ => None,
+        }
+    }
+
     /// A name in letters or quotes.
     pub fn name(&mut self, what: &str) -> Result<String, CommandError> {
         match self.peek() {

@@ -55,23 +55,22 @@ impl Session {
                 "draw lines first",
             ));
         }
-        let forward = self.drawn_forward(&object, axis, p, q);
         let at_value = args.len() > 0
             && !args.at("REVERSED")
             && !args.at("FORWARD")
             && !args.tokens_at(0, "IN");
         if !at_value {
             args.end()?;
-            return self.suggest(&object, name, axis, if forward { (p, q) } else { (q, p) });
+            return self.suggest(&object, name, axis, (p, q));
         }
         let value = args.value(object.units.as_deref())?;
-        let negative = value.literal().is_some_and(|x| x < 0.0);
-        let ahead = args.take("FORWARD");
+        // What is typed holds: FORWARD says so, REVERSED the contrary.
+        args.take("FORWARD");
         let turned = args.take("REVERSED");
         let range = args.range()?;
         args.end()?;
-        let swap = (!ahead && !negative && !forward) != turned;
-        let (p, q) = if swap { (q, p) } else { (p, q) };
+        let (p, q) = if turned { (q, p) } else { (p, q) };
+        self.warn_of_picture(&object, &name, axis, (p, q), &value);
         self.add_along(name, axis, p, q, value, range)
     }
 
@@ -237,6 +236,14 @@ impl Session {
         (p, q): (PointId, PointId),
     ) -> Result<(), CommandError> {
         let (view, layout) = self.laid_out(object);
+        let determined = Measure::Along { axis, p, q };
+        if let Some(x) = layout.measured(object, &view.planes, &determined) {
+            self.out.push(Reply::note(format!(
+                "{axis} from {p} to {q} is determined already: {}",
+                plain(x)
+            )));
+            return Ok(());
+        }
         let (Some(e), Some(a), Some(b)) =
             (view.estimate(), view.planes.plane(axis, p), view.planes.plane(axis, q))
         else {
@@ -244,7 +251,10 @@ impl Session {
         };
         let scale = crate::scale(object, &view.planes, &layout, e);
         let value = rounded((e.plane(axis, b) - e.plane(axis, a)) * scale);
-        let text = format!("{name}: {axis} from {p} to {q} is about {}", plain(value));
+        let mut text = format!("{name}: {axis} from {p} to {q} is about {}", plain(value));
+        if !e.determines(axis, a, b) {
+            text.push_str("; the picture leaves this depth open");
+        }
         let mut reply = Reply::note(text);
         reply.next = Some("YES takes it; or give the value".to_owned());
         self.out.push(reply);
@@ -252,22 +262,34 @@ impl Session {
         Ok(())
     }
 
-    /// Whether `q` was drawn on the positive side of `p`; true when the drawing does not say.
-    pub(super) fn drawn_forward(
+    /// Says when the picture shows the points of a dimension the other way about. A depth that the
+    /// picture leaves open says nothing.
+    fn warn_of_picture(
         &mut self,
         object: &Object,
+        name: &str,
         axis: Axis,
-        p: PointId,
-        q: PointId,
-    ) -> bool {
+        (p, q): (PointId, PointId),
+        value: &Expr,
+    ) {
         /// Smaller gaps, as a part of the drawing, say nothing.
         const CLEAR: f64 = 0.02;
-        let view = self.view(object);
-        let gap = view.estimate().and_then(|e| {
-            let (a, b) = (view.planes.plane(axis, p)?, view.planes.plane(axis, q)?);
-            Some((e.plane(axis, b) - e.plane(axis, a), e.extent()))
-        });
-        gap.is_none_or(|(gap, extent)| gap >= -CLEAR * extent)
+        let (view, layout) = self.laid_out(object);
+        let Ok(asked) = value.eval(&|n| layout.values.get(n).copied()) else { return };
+        let planes = &view.planes;
+        let (Some(e), Some(a), Some(b)) =
+            (view.estimate(), planes.plane(axis, p), planes.plane(axis, q))
+        else {
+            return;
+        };
+        let gap = e.plane(axis, b) - e.plane(axis, a);
+        if e.determines(axis, a, b) && gap.abs() > CLEAR * e.extent() && gap * asked < 0.0 {
+            let mut reply = Reply::warning(format!(
+                "{name}: the picture shows {q} on the other side of {p} along {axis}; it is taken as typed"
+            ));
+            reply.next = Some(format!("REVERSE {name} if the picture is right"));
+            self.out.push(reply);
+        }
     }
 
     /// A name that is free for a dimension, variable or curve.
@@ -284,7 +306,8 @@ impl Session {
                 "use a letter, then letters, digits, `_` and `.`",
             ));
         }
-        if crate::FUNCTIONS.contains(&name.to_ascii_lowercase().as_str())
+        // Other functions are known by their brackets.
+        if crate::FUNCTIONS[..10].contains(&name.to_ascii_lowercase().as_str())
             || name.eq_ignore_ascii_case("pi")
         {
             return Err(CommandError::text(
@@ -358,12 +381,37 @@ impl Session {
         }
         if args.take("UNITS") {
             let unit = args.name("MM, CM, M, IN or FT")?.to_ascii_uppercase();
+            let convert = args.take("CONVERT");
             args.end()?;
             if !UNITS.iter().any(|u| u.0 == unit) {
                 return Err(CommandError::text(
                     format!("there is no unit {unit}"),
                     "units are MM, CM, M, IN, FT",
                 ));
+            }
+            let object = self.active()?;
+            let size = |name: &str| UNITS.iter().find(|u| u.0 == name).map(|u| u.1);
+            let old = object.units.clone().filter(|u| *u != unit);
+            let given = !object.dimensions.is_empty() || !object.variables.is_empty();
+            match old {
+                // Lengths are not relabelled: converted when that is said, else refused.
+                Some(old) if given && !convert => {
+                    return Err(CommandError::text(
+                        format!("the numbers of {} are in {old}", object.name),
+                        format!("SET UNITS {unit} CONVERT converts them"),
+                    ));
+                }
+                Some(old) if given => {
+                    if object.feature.is_some() {
+                        return Err(CommandError::text(
+                            format!("{} is made of others", object.name),
+                            "convert its parts before they are combined",
+                        ));
+                    }
+                    let factor = size(&old).zip(size(&unit)).map_or(1.0, |(a, b)| a / b);
+                    *self.active_mut()? = crate::merge::scaled(object, factor);
+                }
+                _ => {}
             }
             self.active_mut()?.units = Some(unit);
             return Ok(());
@@ -632,10 +680,19 @@ pub(super) fn dimension_fault(fault: &DimensionFault) -> CommandError {
             format!("the value of {name} is not a finite number"),
             "look for a division by zero",
         ),
+        DimensionFault::OutOfRange { name, value, range: [low, high] } => CommandError::text(
+            format!(
+                "{name} = {} is outside its range, {} to {}",
+                plain(*value),
+                plain(*low),
+                plain(*high)
+            ),
+            format!("give a number in it, or another range: SET {name} {} IN lo hi", plain(*value)),
+        ),
         DimensionFault::Unsolved { name, residual } => CommandError::new(
             411,
             format!(
-                "{name} cannot be satisfied near the drawing; it is missed by {}",
+                "{name} cannot be satisfied on the side that is drawn; the drawing misses it by {}",
                 plain(rounded(*residual))
             ),
             "change it or the dimensions around it",

@@ -232,7 +232,27 @@ impl Session {
         Ok(())
     }
 
+    /// `WELD p q`, or `WELD TOL t` for all points within a distance on the page.
     pub(super) fn weld(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        if args.take_short("TOL") {
+            let reach = args.number("a distance on the page")?;
+            args.end()?;
+            let object = self.active_mut()?;
+            let mut welded = Vec::new();
+            while let Some((kept, gone, _)) = object.drawing.gaps(Some(reach)).first().copied() {
+                object.draw().weld(kept, gone);
+                welded.push(format!("{gone} to {kept}"));
+            }
+            let gone = object.drop_dangling();
+            let text = if welded.is_empty() {
+                "no two points are that close".to_owned()
+            } else {
+                format!("welded {}", welded.join(", "))
+            };
+            self.out.push(Reply::note(text));
+            self.report_gone(gone);
+            return Ok(());
+        }
         let (p, q) = (args.point()?, args.point()?);
         args.end()?;
         let object = self.active_mut()?;
@@ -378,6 +398,19 @@ impl Session {
                 405,
                 "a scale is not positive, or an angle is out of bounds",
                 "give positive scales and degrees",
+            ));
+        }
+        let shown: Vec<Axis> =
+            Axis::ALL.into_iter().filter(|a| object.drawing.section != Some(*a)).collect();
+        let apart = |a: &Axis, b: &Axis| {
+            let (p, q) = (projection.unit(*a), projection.unit(*b));
+            (p[0] * q[1] - p[1] * q[0]).abs() > 1e-9
+        };
+        if !shown.iter().any(|a| shown.iter().any(|b| apart(a, b))) {
+            return Err(CommandError::new(
+                405,
+                "all axes run in one direction, so the picture shows no plane",
+                "give different angles, such as AXES 345 40 90",
             ));
         }
         let drawing = object.draw();

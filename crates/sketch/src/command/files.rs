@@ -227,7 +227,18 @@ impl Session {
 
     /// `DECLARE name value`: a variable whose value may read names that come later, for files.
     pub(super) fn declare(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        let name = self.new_name(args)?;
+        // The numbers of a feature are those of its parts until they are given.
+        let known = args.peek().and_then(|t| {
+            let object = self.active_object().filter(|o| o.feature.is_some())?;
+            object.variables.get(&t.text.to_ascii_lowercase()).map(|v| v.name.clone())
+        });
+        let name = match known {
+            Some(name) => {
+                args.skip();
+                name
+            }
+            None => self.new_name(args)?,
+        };
         let units = self.active()?.units.clone();
         let value = args.value(units.as_deref())?;
         let range = args.range()?;
@@ -295,13 +306,8 @@ impl Session {
                 crate::format::svg::svg(&pairs, &self.state.picture, self.page()).into_bytes()
             }
             _ => {
-                let Some(solid) = &data.solid else {
-                    return Err(CommandError::new(
-                        404,
-                        format!("{} has no faces yet, or misses dimensions", object.name),
-                        "CONVERT, then GENERATE FACES",
-                    ));
-                };
+                let worked = self.worked(&object);
+                let solid = worked.body().map_err(|why| super::features::no_body(&object, why))?;
                 let size = solid.vertices.iter().map(|v| v.at.norm()).fold(0.0, f64::max);
                 let mesh = export::Facets::of(&solid.mesh(1e-3 * size));
                 match format.as_str() {

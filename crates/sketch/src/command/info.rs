@@ -6,7 +6,8 @@ use super::draw::require_point;
 use super::session::{Reply, Session, View};
 use super::{CommandError, words::Kind};
 use crate::{
-    Axis, DOUBTFUL, Layout, Measure, Object, Planes, Projection, Role, TypeFault, chain, chain_text,
+    Axis, DOUBTFUL, Layout, Measure, Object, Planes, PointId, Projection, Role, TypeFault, chain,
+    chain_text,
 };
 use moldloft_syntax::number::plain;
 
@@ -47,16 +48,17 @@ impl Session {
         };
         match fault {
             TypeFault::Contradiction { line, axis, path } => {
-                // The line of the path that is least sure is the likeliest to be wrong.
-                let suspect = (path.iter())
-                    .filter_map(|r| match r {
-                        crate::Reason::Line(id) => Some(*id),
-                        _ => None,
-                    })
-                    .min_by(|a, b| {
-                        let sure = |id| drawing.lines.get(id).map_or(1.0, |l| l.confidence);
-                        sure(a).total_cmp(&sure(b))
-                    });
+                // The line that was drawn worst for its type is the likeliest to be wrong.
+                let lines = path.iter().filter_map(|r| match r {
+                    crate::Reason::Line(id) => Some(*id),
+                    _ => None,
+                });
+                let misfit = |id: &crate::LineId| {
+                    let own = drawing.lines.get(id);
+                    let own = own.and_then(|l| Some((l, l.free?.single()?)));
+                    own.map_or(0.0, |(l, axis)| drawing.projection.lean(drawing.stroke(l), axis))
+                };
+                let suspect = lines.max_by(|a, b| misfit(a).total_cmp(&misfit(b)));
                 let next = match suspect {
                     Some(id) => {
                         format!("retype the wrong one, perhaps line {id}: TYPE {id} AS {axis}")
@@ -101,18 +103,15 @@ impl Session {
         }
     }
 
-    /// What is not connected to the reference, with suggestions.
+    /// Reports what is not connected to the reference, with suggestions.
     pub(super) fn loose_lines(
         &self,
         object: &Object,
         view: &View,
         layout: &Layout<f64>,
     ) -> Vec<String> {
-        let planes = &view.planes;
-        let estimate = view.estimate();
-        let scale = estimate.map(|e| crate::scale(object, planes, layout, e));
-        (layout.loose.iter())
-            .map(|loose| {
+        (layout.loose.iter().zip(suggestions(object, view, layout)))
+            .map(|(loose, suggested)| {
                 let axis = loose.axis;
                 let points: Vec<String> = loose.points.iter().map(ToString::to_string).collect();
                 let mut text = format!(
@@ -121,21 +120,15 @@ impl Session {
                     layout.counts[axis.index()].required,
                     points.join(",")
                 );
-                let own = loose.planes[0];
-                if let (Some(e), Some(scale)) = (estimate, scale) {
-                    let known = (0..planes.counts()[axis.index()])
-                        .filter(|&k| layout.coordinates[axis.index()][k].is_some());
-                    let gap = |k: usize| (e.plane(axis, own) - e.plane(axis, k)) * scale;
-                    let near = known.min_by(|&a, &b| gap(a).abs().total_cmp(&gap(b).abs()));
-                    if let Some(k) = near
-                        && let (Some(p), Some(q)) =
-                            (planes.members(axis, k).first(), planes.members(axis, own).first())
-                    {
-                        let (p, q) = if gap(k) < 0.0 { (q, p) } else { (p, q) };
-                        text.push_str(&format!(
-                            "; from the sketch DIMENSION {axis} {p} {q} = {}",
-                            plain(rounded(gap(k).abs()))
-                        ));
+                if let Some(s) = suggested {
+                    text.push_str(&format!(
+                        "; from the sketch DIMENSION {axis} {} {} = {}",
+                        s.p,
+                        s.q,
+                        plain(s.value)
+                    ));
+                    if s.open {
+                        text.push_str(" (the picture leaves this depth open)");
                     }
                 }
                 text
@@ -163,6 +156,12 @@ impl Session {
                 );
                 self.out.push(Reply::warning(text));
             }
+        }
+        for (kept, gone, distance) in object.drawing.gaps(None) {
+            let text = format!("{gone} is {} from {kept} on the page", plain(rounded(distance)));
+            let mut reply = Reply::warning(text);
+            reply.next = Some(format!("WELD {kept} {gone} if they are one point"));
+            self.out.push(reply);
         }
         for fault in &layout.faults {
             self.out.push(Reply::warning(dimension_fault(fault).text));
@@ -198,6 +197,15 @@ impl Session {
                     }
                 }
             }
+        }
+        let finished = object.feature.is_some() || (layout.complete() && !object.faces.is_empty());
+        if let Err(why) = worked.body()
+            && finished
+        {
+            let fault = super::features::no_body(&object, why);
+            let mut reply = Reply::warning(fault.text);
+            (reply.code, reply.next) = (Some(fault.code).filter(|c| *c > 0), Some(fault.next));
+            self.out.push(reply);
         }
         if let Some(solid) = worked.solid() {
             for (id, face) in &object.faces {
@@ -400,7 +408,13 @@ impl Session {
             for p in object.drawing.points.keys() {
                 let at = Axis::ALL
                     .map(|a| layout.coordinate(&view.planes, a, *p).map_or("?".to_owned(), plain));
-                rows.push(format!("point {p}: {}", at.join(" ")));
+                let drawn = object.drawing.points[p];
+                rows.push(format!(
+                    "point {p}: {} (page {} {})",
+                    at.join(" "),
+                    plain(drawn.u),
+                    plain(drawn.v)
+                ));
             }
         }
         if on("LINES") {
@@ -448,6 +462,10 @@ impl Session {
                 rows.push(format!("{}: {} = {number}", v.name, v.value));
             }
         }
+        if rows.is_empty() && what != Some("PLANES") {
+            let what = what.unwrap_or("PARTS").to_lowercase();
+            rows.push(format!("{} has no {what}", object.name));
+        }
         self.out.extend(rows.into_iter().map(Reply::note));
         if what == Some("PLANES") {
             return self.extensions(&mut Args::new(&[], ""));
@@ -469,14 +487,9 @@ impl Session {
             args.skip();
         }
         args.end()?;
-        let object = self.active()?.clone();
-        let Some(solid) = self.solid_of(&object) else {
-            return Err(CommandError::new(
-                404,
-                format!("{} has no faces or is not fully dimensioned", object.name),
-                "CONVERT says what is missing; then GENERATE FACES",
-            ));
-        };
+        let object = self.active_arc()?;
+        let worked = self.worked(&object);
+        let solid = worked.body().map_err(|why| super::features::no_body(&object, why))?;
         let mass = solid.mass();
         let c = mass.centroid.to_array().map(plain).join(" ");
         let rows = [
@@ -626,4 +639,43 @@ impl Session {
         self.state.picture.view = name;
         Ok(())
     }
+}
+
+/// A dimension that the picture suggests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Suggestion {
+    /// Its axis.
+    pub axis: Axis,
+    /// From.
+    pub p: PointId,
+    /// To, on the positive side.
+    pub q: PointId,
+    /// The distance, to three digits.
+    pub value: f64,
+    /// Whether the picture leaves the depth open, so that the value is a guess.
+    pub open: bool,
+}
+
+/// For each part that is not connected to the reference, the dimension to the nearest known plane.
+pub(super) fn suggestions(
+    object: &Object,
+    view: &View,
+    layout: &Layout<f64>,
+) -> Vec<Option<Suggestion>> {
+    let planes = &view.planes;
+    let estimate = view.estimate();
+    let scale = estimate.map(|e| crate::scale(object, planes, layout, e));
+    let one = |loose: &crate::Loose| {
+        let (axis, own) = (loose.axis, loose.planes[0]);
+        let (e, scale) = (estimate?, scale?);
+        let known = (0..planes.counts()[axis.index()])
+            .filter(|&k| layout.coordinates[axis.index()][k].is_some());
+        let gap = |k: usize| (e.plane(axis, own) - e.plane(axis, k)) * scale;
+        let k = known.min_by(|&a, &b| gap(a).abs().total_cmp(&gap(b).abs()))?;
+        let (p, q) = (*planes.members(axis, k).first()?, *planes.members(axis, own).first()?);
+        let (p, q) = if gap(k) < 0.0 { (q, p) } else { (p, q) };
+        let open = !e.determines(axis, k, own);
+        Some(Suggestion { axis, p, q, value: rounded(gap(k).abs()), open })
+    };
+    layout.loose.iter().map(one).collect()
 }

@@ -1,11 +1,11 @@
 //! The command language: lines in, replies out.
 
 mod args;
-mod boolean;
 mod curves;
 mod dims;
 mod draw;
 mod error;
+mod features;
 mod files;
 mod info;
 mod objects;
@@ -16,5 +16,7 @@ pub mod verbs;
 pub mod words;
 
 pub use error::CommandError;
+pub use features::no_body;
+pub use info::Suggestion;
 pub(crate) use session::Picture;
 pub use session::{Files, NoFiles, OutFile, Reply, Session};

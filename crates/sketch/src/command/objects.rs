@@ -67,6 +67,34 @@ impl Session {
         Ok(())
     }
 
+    /// `WITHIN name`: objects until LEAVE are the parts of that feature, for files.
+    pub(super) fn within(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        let name = args.name("the name of a feature")?;
+        args.end()?;
+        if self.state.outside.len() >= 32 {
+            return Err(CommandError::text(
+                "features are nested too deeply",
+                "make fewer of each other",
+            ));
+        }
+        let objects = std::mem::take(&mut self.state.objects);
+        self.state.outside.push((objects, self.state.active.take(), name));
+        Ok(())
+    }
+
+    /// `LEAVE`: the feature joins the objects outside.
+    pub(super) fn leave(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        args.end()?;
+        let Some((objects, _, name)) = self.state.outside.last().cloned() else {
+            return Err(CommandError::text("no feature is open", "WITHIN name opens one"));
+        };
+        let object = self.known(&name)?.clone();
+        self.state.outside.pop();
+        self.state.objects = objects;
+        self.insert(object);
+        Ok(())
+    }
+
     pub(super) fn dump(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if let Some(token) = args.peek() {
             self.known(&token.text)?;

@@ -1,7 +1,7 @@
 //! Derivatives and sweeps of the objects of a session.
 
 use super::Session;
-use crate::{Estimate, Gradient, Planes, Swept, gradient, solid, solve};
+use crate::{DimensionFault, Estimate, Gradient, Planes, Swept, gradient, solid, solve};
 use std::collections::BTreeMap;
 
 impl Session {
@@ -25,7 +25,10 @@ impl Session {
         let at = |&value: &f64| {
             let given = BTreeMap::from([(key.clone(), value)]);
             let layout = solve(&object, &planes, &given, &estimate);
-            let mass = solid(&object, &planes, &layout).map(|s| s.mass());
+            let refused =
+                layout.faults.iter().any(|f| !matches!(f, DimensionFault::Redundant { .. }));
+            let body = solid(&object, &planes, &layout).filter(|_| !refused);
+            let mass = body.map(|s| s.mass());
             Swept { value, mass: mass.filter(|m| m.volume.is_finite() && m.area.is_finite()) }
         };
         Ok(values.iter().map(at).collect())

@@ -4,6 +4,7 @@ use super::args::Args;
 use super::solids::Question;
 use super::words::{self, Command};
 use super::{CommandError, verbs};
+use crate::solid::feature::{NoBody, body};
 use crate::solid::{Solid, solid};
 use crate::{Estimate, Layout, Object, Planes, PointId, solve};
 use indexmap::IndexMap;
@@ -107,9 +108,14 @@ pub(crate) struct State {
     pub objects: IndexMap<String, Arc<Object>>,
     pub active: Option<String>,
     pub picture: Picture,
+    /// Objects outside of the feature that is being read, with the active one and the feature's name.
+    pub outside: Vec<Outside>,
     /// Words are cut at 32 characters, as in 1983.
     pub sketch83: bool,
 }
+
+/// The objects around a feature: all, the active one, and the name of the feature.
+pub(crate) type Outside = (IndexMap<String, Arc<Object>>, Option<String>, String);
 
 /// What follows from a drawing, kept while it is the same.
 pub(crate) struct View {
@@ -131,14 +137,19 @@ pub(crate) struct Worked {
     pub object: Arc<Object>,
     pub view: Arc<View>,
     pub layout: Layout<f64>,
-    solid: std::sync::OnceLock<Option<Solid<f64>>>,
+    body: std::sync::OnceLock<Result<Solid<f64>, NoBody>>,
 }
 
 impl Worked {
-    /// The body, once there are faces and all dimensions.
+    /// The valid body, or why there is none.
+    pub fn body(&self) -> Result<&Solid<f64>, &NoBody> {
+        let make = || body(&self.object, &self.view.planes, &self.layout);
+        self.body.get_or_init(make).as_ref()
+    }
+
+    /// The body, once there are faces and all dimensions and it is valid.
     pub fn solid(&self) -> Option<&Solid<f64>> {
-        let make = || solid(&self.object, &self.view.planes, &self.layout);
-        self.solid.get_or_init(make).as_ref()
+        self.body().ok()
     }
 }
 
@@ -176,6 +187,21 @@ pub struct Session {
     pub(crate) out: Vec<Reply>,
 }
 
+/// Commands that only look: an open question stays open.
+const LOOKS: [&str; 12] = [
+    "HELP",
+    "LIST",
+    "SHOW",
+    "MEASURE",
+    "CHECK",
+    "WHY",
+    "ESTIMATE",
+    "EXTENSIONS",
+    "HISTORY",
+    "DUMP",
+    "END",
+    "EXPORT",
+];
 /// Undo goes back this far.
 const MAX_UNDO: usize = 500;
 /// Points, lines and faces that all states of the way back hold together, at most.
@@ -210,7 +236,13 @@ impl Session {
             window: None,
         };
         Session {
-            state: State { objects: IndexMap::new(), active: None, picture, sketch83: false },
+            state: State {
+                objects: IndexMap::new(),
+                active: None,
+                picture,
+                outside: vec![],
+                sketch83: false,
+            },
             undo: Vec::new(),
             forgotten: 0,
             redo: Vec::new(),
@@ -286,7 +318,7 @@ impl Session {
                 let text = self.recorded.take().unwrap_or_else(|| command.text.clone());
                 let steps = matches!(verb, "UNDO" | "REDO");
                 // Questions and answers count too: an answer means nothing without its question.
-                let asked = self.question.is_some() && !matches!(verb, "HELP" | "LIST" | "SHOW");
+                let asked = self.question.is_some() && !LOOKS.contains(&verb);
                 let answered = matches!(verb, "ACCEPT" | "REJECT" | "REVERSE" | "YES" | "NO");
                 if !nested && (changed || steps || asked || answered) {
                     self.journal.push(text);
@@ -331,12 +363,15 @@ impl Session {
         let args = &mut Args::new(&command.tokens[1..], &usage);
         let answer = matches!(verb, "ACCEPT" | "REJECT" | "REPEAT" | "YES" | "NO")
             || (verb == "REVERSE" && args.len() == 0);
+        if verb == "ACCEPT" && args.take_short("ALL") {
+            args.end()?;
+            return self.accept_all();
+        }
         if answer {
             args.end()?;
             return self.answer(verb);
         }
-        self.question =
-            self.question.take().filter(|_| matches!(verb, "HELP" | "LIST" | "CHOOSE" | "SHOW"));
+        self.question = self.question.take().filter(|_| verb == "CHOOSE" || LOOKS.contains(&verb));
         match verb {
             "SKETCH" => self.sketch(args),
             "MODIFY" => self.using(args, false),
@@ -369,6 +404,9 @@ impl Session {
             "CLEAN" => self.clean(args),
             "MERGE" => self.merge(args),
             "UNION" | "CUT" | "COMMON" => self.combine(args, verb),
+            "PATTERN" => self.pattern(args),
+            "WITHIN" => self.within(args),
+            "LEAVE" => self.leave(args),
             "MEASURE" => self.measure(args),
             "ARC" | "CIRCLE" | "ELLIPSE" => self.corner_curve(args, verb),
             "QUADRATIC" | "PARABOLA" => self.chain_curve(args, 3),
@@ -592,8 +630,8 @@ impl Session {
             return Arc::clone(known);
         }
         let (view, layout) = self.laid_out(object);
-        let solid = std::sync::OnceLock::new();
-        let worked = Arc::new(Worked { object: Arc::clone(object), view, layout, solid });
+        let body = std::sync::OnceLock::new();
+        let worked = Arc::new(Worked { object: Arc::clone(object), view, layout, body });
         if self.worked.len() >= 4 {
             self.worked.remove(0);
         }
@@ -700,6 +738,7 @@ fn same(a: &State, b: &State) -> bool {
     a.active == b.active
         && a.sketch83 == b.sketch83
         && a.picture == b.picture
+        && a.outside.len() == b.outside.len()
         && a.objects.len() == b.objects.len()
         && a.objects
             .iter()

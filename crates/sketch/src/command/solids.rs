@@ -2,7 +2,8 @@
 
 use super::CommandError;
 use super::args::Args;
-use super::draw::{require_line, require_point};
+use super::draw::require_point;
+use super::info::{Suggestion, suggestions};
 use super::session::{MAX_POINTS, Reply, Session};
 use crate::solid::faces::{Fit, Fitted, Polygon, fit, fit_plane};
 use crate::solid::merge::{self, Placed};
@@ -119,7 +120,7 @@ impl Session {
         if !fitted.open.is_empty() {
             return Err(CommandError::new(
                 701,
-                format!("faces do not close: lines {} have fewer than two", pairs(&fitted.open)),
+                format!("faces do not close: {}", open_text(&positions, &edges, &ids, &fitted)),
                 "add the missing lines, or CHECK types and dimensions",
             ));
         }
@@ -296,6 +297,66 @@ impl Session {
         }
     }
 
+    /// `ACCEPT ALL`: every missing dimension as the picture suggests it.
+    pub(super) fn accept_all(&mut self) -> Result<(), CommandError> {
+        let (object, taken) = self.completed(&self.active()?.clone());
+        if taken.is_empty() {
+            return Err(CommandError::text(
+                "no dimension is missing, or the picture suggests none",
+                "CHECK lists what is missing",
+            ));
+        }
+        let text: Vec<String> = taken
+            .iter()
+            .map(|(name, s)| format!("{name} {} {} TO {} = {}", s.axis, s.p, s.q, plain(s.value)))
+            .collect();
+        *self.active_mut()? = object;
+        self.out.push(Reply::note(format!("taken from the picture: {}", text.join(", "))));
+        self.report_counts()
+    }
+
+    /// An object with its missing dimensions as the picture suggests them, and those.
+    pub(super) fn completed(&mut self, object: &Object) -> (Object, Vec<(String, Suggestion)>) {
+        let mut out = object.clone();
+        let mut taken = Vec::new();
+        loop {
+            let (view, layout) = self.laid_out(&out);
+            let Some(s) = suggestions(&out, &view, &layout).into_iter().flatten().next() else {
+                return (out, taken);
+            };
+            let name = out.fresh_name("E");
+            out.add_dimension(crate::Dimension {
+                name: name.clone(),
+                measure: crate::Measure::Along { axis: s.axis, p: s.p, q: s.q },
+                value: Some(Expr::number(s.value)),
+                role: crate::Role::Driving,
+                range: None,
+            });
+            taken.push((name, s));
+        }
+    }
+
+    /// The body of an object as far as the picture and its dimensions say: missing dimensions are those
+    /// that the picture suggests, missing faces those of the likeliest solid. With it the dimensions
+    /// that were guessed.
+    pub fn preview(
+        &mut self,
+        name: &str,
+    ) -> Option<(crate::Solid<f64>, Vec<(String, Suggestion)>)> {
+        let object = self.object(name)?.clone();
+        let (mut guessed, taken) = self.completed(&object);
+        if guessed.faces.is_empty() && guessed.feature.is_none() {
+            let outer = std::mem::take(&mut self.out);
+            let found = self.wireframe(&guessed);
+            self.out = outer;
+            let (ids, fitted) = found.ok()?;
+            let faces = fitted.fits.first()?.faces.iter().map(|p| face_of(p, &ids));
+            guessed.faces = (1..).map(FaceId).zip(faces).collect();
+        }
+        let (view, layout) = self.laid_out(&guessed);
+        crate::solid(&guessed, &view.planes, &layout).map(|solid| (solid, taken))
+    }
+
     pub(super) fn answer(&mut self, verb: &str) -> Result<(), CommandError> {
         match (self.question.take(), verb) {
             (Some(Question::Dimension { name, axis, p, q, value }), "YES" | "ACCEPT") => {
@@ -455,62 +516,6 @@ impl Session {
         }
     }
 
-    pub(super) fn revolve(&mut self, args: &mut Args) -> Result<(), CommandError> {
-        if !args.at_number() {
-            if let Some(token) = args.peek() {
-                self.known(&token.text)?;
-            }
-            self.take_object(args)?;
-        }
-        let line = args.line()?;
-        let angle = if args.at_number() { args.number("an angle in degrees")? } else { 360.0 };
-        args.end()?;
-        let mut object = self.active()?.clone();
-        let line = require_line(&object, line)?;
-        if object.drawing.section.is_none() {
-            return Err(CommandError::new(
-                113,
-                format!("{} is not a cross section", object.name),
-                "SKETCH name 2D starts one",
-            ));
-        }
-        if angle == 0.0 || object.drawing.points.len() > 200 {
-            return Err(CommandError::new(
-                300,
-                "nothing to revolve, or more than 200 points",
-                "give an angle and a smaller section",
-            ));
-        }
-        let at = self.placed(&object)?;
-        if object.faces.is_empty() {
-            self.generate(&mut Args::new(&[faces_word()], ""))?;
-            object = self.active()?.clone();
-        }
-        let axis = [at[&line.p], at[&line.q]];
-        let direction = (axis[1] - axis[0]).normalized().unwrap_or_default();
-        let sides = at.values().map(|p| {
-            let off = (*p - axis[0]).cross(direction);
-            off.x + off.y + off.z
-        });
-        let (low, high) = sides.fold((0.0f64, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
-        let size = at.values().map(|p| p.distance(axis[0])).fold(0.0, f64::max);
-        if low < -1e-9 * size && high > 1e-9 * size {
-            return Err(CommandError::new(
-                701,
-                "the section is on both sides of the line",
-                "revolve about a line on its border",
-            ));
-        }
-        let Some(solid) = merge::revolved(&object, &at, axis, angle) else {
-            return Err(CommandError::new(300, "the line has no length", "choose another"));
-        };
-        *self.active_mut()? = solid;
-        self.out.push(Reply::note(
-            "every coordinate is given outright now; edit the section to change it",
-        ));
-        self.report_validity()
-    }
-
     pub(super) fn clean(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if let Some(token) = args.peek() {
             self.known(&token.text)?;
@@ -647,9 +652,25 @@ impl Session {
     }
 
     pub(super) fn transform(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
-        let name = args.name("the name of an object")?;
+        let Some(name) = args.peek().map(|t| t.text.clone()) else {
+            return Err(args.wants("the name of an object"));
+        };
         let object = self.known(&name)?.clone();
         let key = name.to_lowercase();
+        // By expressions, by other angles than quarter turns, about other places than the origin, and
+        // for what has no drawing: a feature.
+        let quarters = |k: usize| args.number_of(k).is_some_and(|a| (a / 90.0).fract() == 0.0);
+        let drawn = object.feature.is_none()
+            && match verb {
+                "MOVE" => (1..4).all(|k| args.number_of(k).is_some()),
+                "SCALE" => args.number_of(1).is_some(),
+                "MIRROR" => args.len() == 2,
+                _ => args.len() == 3 && quarters(2),
+            };
+        if !drawn && args.len() > 1 {
+            return self.place(args, verb);
+        }
+        args.skip();
         let new = match verb {
             "MOVE" => {
                 let by =
@@ -673,14 +694,6 @@ impl Session {
                 } else {
                     let angle = args.number("an angle in degrees")?;
                     let quarters = angle / 90.0;
-                    if quarters.fract() != 0.0 || quarters.abs() > 1e6 {
-                        return Err(CommandError::text(
-                            format!(
-                                "{angle} degrees is not a multiple of 90: line types would be lost"
-                            ),
-                            "turn by 90, 180 or 270",
-                        ));
-                    }
                     let n = (quarters as i64).rem_euclid(4);
                     (0..n).fold(object.clone(), |o, _| merge::quarter_turned(&o, axis))
                 };
@@ -694,7 +707,7 @@ impl Session {
     }
 }
 
-fn faces_word() -> super::words::Token {
+pub(super) fn faces_word() -> super::words::Token {
     super::words::Token { kind: super::words::Kind::Word, text: "FACES".to_owned() }
 }
 
@@ -723,4 +736,54 @@ fn oriented(loops: Vec<Vec<PointId>>, taken: &[Face]) -> Face {
     let mut cycles = loops.into_iter();
     let face = Face { outer: cycles.next().unwrap_or_default(), holes: cycles.collect() };
     if clash { face.reversed() } else { face }
+}
+
+/// Where faces fail to close: points with two lines, loops that are nearly plane, the lines that had
+/// fewer than two candidates before others fell with them.
+fn open_text(positions: &[Vec3], edges: &[[usize; 2]], ids: &[PointId], fitted: &Fitted) -> String {
+    let mut next: Vec<Vec<usize>> = vec![Vec::new(); positions.len()];
+    for &[a, b] in edges {
+        next[a].push(b);
+        next[b].push(a);
+    }
+    let mut parts: Vec<String> = Vec::new();
+    let few: Vec<String> = (0..positions.len())
+        .filter(|&k| next[k].len() < 3 && !next[k].is_empty())
+        .take(8)
+        .map(|k| ids[k].to_string())
+        .collect();
+    if !few.is_empty() {
+        parts.push(format!("fewer than three lines meet at points {}", few.join(", ")));
+    }
+    // Quadrilaterals that miss being plane by a little.
+    let size = positions.iter().map(|p| p.distance(positions[0])).fold(0.0, f64::max);
+    let mut warped: Vec<(f64, String)> = Vec::new();
+    for &[a, b] in edges {
+        for &c in next[b].iter().filter(|&&c| c != a) {
+            for &d in next[c].iter().filter(|&&d| d != b && d != a) {
+                if a < b.min(c).min(d) && b < d && next[d].contains(&a) {
+                    let off = crate::faces::flatness(&[a, b, c, d].map(|k| positions[k]));
+                    if off > 1e-7 * size && off < 0.1 * size {
+                        let loop_text = [a, b, c, d].map(|k| ids[k].to_string()).join(" ");
+                        warped.push((
+                            off,
+                            format!(
+                                "{loop_text} is out of plane by {}",
+                                plain(super::dims::rounded(off))
+                            ),
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    warped.sort_by(|a, b| a.0.total_cmp(&b.0));
+    parts.extend(warped.into_iter().take(4).map(|w| w.1));
+    let list: Vec<String> = (fitted.first_open.iter())
+        .filter(|e| e.iter().all(|v| *v < ids.len()))
+        .take(8)
+        .map(|[a, b]| format!("{}-{}", ids[*a], ids[*b]))
+        .collect();
+    parts.push(format!("lines {} have fewer than two faces", list.join(", ")));
+    parts.join("; ")
 }

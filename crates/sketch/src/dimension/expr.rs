@@ -5,9 +5,14 @@ use moldloft_num::Real;
 use moldloft_syntax::sdl::{self, BinaryOp, ExprId, ExprKind, Grouping, Program, Step, UnaryOp};
 use std::fmt;
 
-/// The functions an expression may call, of one argument.
-pub const FUNCTIONS: [&str; 10] =
-    ["sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln"];
+/// The functions an expression may call. The last ones, from [`FIRST_OF_TWO`] on, take two arguments.
+pub const FUNCTIONS: [&str; 17] = [
+    "sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "ln", "floor", "ceil",
+    "round", "min", "max", "atan2", "mod",
+];
+
+/// The index of the first function of two arguments.
+const FIRST_OF_TWO: usize = 13;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Op {
@@ -131,6 +136,15 @@ impl Expr {
                         _ => power(left, right),
                     }
                 }
+                Op::Call(k) if *k >= FIRST_OF_TWO => {
+                    let (y, x) = (pop(&mut stack), pop(&mut stack));
+                    match FUNCTIONS[*k] {
+                        "min" => x.min(y),
+                        "max" => x.max(y),
+                        "atan2" => x.atan2(y) * (180.0 / std::f64::consts::PI),
+                        _ => x - y * (x.re() / y.re()).floor(),
+                    }
+                }
                 Op::Call(k) => {
                     let x = pop(&mut stack);
                     let degree = std::f64::consts::PI / 180.0;
@@ -144,6 +158,9 @@ impl Expr {
                         "acos" => x.acos() / degree,
                         "atan" => x.atan() / degree,
                         "exp" => x.exp(),
+                        "floor" => T::from(x.re().floor()),
+                        "ceil" => T::from(x.re().ceil()),
+                        "round" => T::from(x.re().round()),
                         _ => x.ln(),
                     }
                 }
@@ -214,8 +231,14 @@ fn compile(program: &Program, id: ExprId, ops: &mut Vec<Op>) -> Result<(), Strin
                 ));
             };
             let args = &program[args];
-            let [arg] = args else { return Err(format!("`{name}` takes one argument")) };
-            compile(program, arg.value, ops)?;
+            let wanted = if k >= FIRST_OF_TWO { 2 } else { 1 };
+            if args.len() != wanted {
+                let many = if wanted == 2 { "two arguments" } else { "one argument" };
+                return Err(format!("`{name}` takes {many}"));
+            }
+            for arg in args {
+                compile(program, arg.value, ops)?;
+            }
             ops.push(Op::Call(k));
         }
         _ => return refused(),
@@ -269,6 +292,9 @@ mod tests {
             ("atan(1)", 45.0),
             ("(-A)^3", -8.0),
             ("pi/PI", 1.0),
+            ("min(A, 3) + max(1, B.w)", 7.0),
+            ("atan2(1, -1)", 135.0),
+            ("mod(-1, 3) + floor(2.7)", 4.0),
         ] {
             let got = value(text).unwrap().unwrap();
             assert!((got - expected).abs() < 1e-14, "{text}: {got}");

@@ -52,6 +52,15 @@ pub enum DimensionFault {
         /// Its name.
         name: String,
     },
+    /// Its value is outside its range.
+    OutOfRange {
+        /// Its name.
+        name: String,
+        /// Its value.
+        value: f64,
+        /// The range.
+        range: [f64; 2],
+    },
     /// A derived dimension (length, slope, angle, equal) has no solution near the drawing.
     Unsolved {
         /// Its name.
@@ -400,7 +409,14 @@ fn evaluate<T: Real>(
     object: &Object,
     overrides: &BTreeMap<String, T>,
 ) -> (BTreeMap<String, T>, Vec<DimensionFault>) {
-    let mut values: BTreeMap<String, T> = BTreeMap::new();
+    // Names of other objects come with the overrides.
+    let outside = |key: &&String| {
+        !object.variables.contains_key(*key) && !object.dimensions.contains_key(*key)
+    };
+    let mut values: BTreeMap<String, T> = (overrides.iter())
+        .filter(|(key, _)| outside(key))
+        .map(|(key, value)| (key.clone(), *value))
+        .collect();
     let mut faults = Vec::new();
     let mut waiting = Vec::new();
     let variables = object.variables.iter().map(|(k, v)| (k, Some(&v.value)));
@@ -476,6 +492,21 @@ fn evaluate<T: Real>(
         }
         fine
     });
+    // Ranges bind numbers however they come about.
+    let variables = object.variables.iter().map(|(k, v)| (k, &v.name, v.range));
+    let dimensions = object.dimensions.iter().map(|(k, d)| (k, &d.name, d.range));
+    for (key, name, range) in variables.chain(dimensions) {
+        if let (Some([low, high]), Some(value)) = (range, values.get(key).map(|v| v.re())) {
+            let slack = 1e-12 * low.abs().max(high.abs());
+            if !(low - slack..=high + slack).contains(&value) {
+                faults.push(DimensionFault::OutOfRange {
+                    name: name.clone(),
+                    value,
+                    range: [low, high],
+                });
+            }
+        }
+    }
     (values, faults)
 }
 

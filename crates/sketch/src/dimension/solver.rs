@@ -1,9 +1,11 @@
 //! Dimensions that are not along an axis: length, slope, angle, equal length.
 //!
 //! They act only on what the axis dimensions leave open. Equations with one unknown are solved first,
-//! then the rest together, by Newton's method from the estimate of the drawing, so of several
-//! solutions the one near the drawing is taken. Derivatives come from one more step in the scalar
-//! itself (implicit function theorem).
+//! then the rest together. Of several solutions the one is taken that the drawing leads to: its own
+//! lengths and angles are changed into those asked for in steps that Newton's method follows, and the
+//! sign of the determinant of the equations, which tells a solution from its mirror image, must stay.
+//! So the same text gives the same branch, whatever values were set before. Derivatives come from one
+//! more step in the scalar itself (implicit function theorem).
 
 use crate::dimension::layout::{DimensionFault, Layout};
 use crate::dimension::{Dimension, Measure};
@@ -83,6 +85,9 @@ pub(crate) fn solve_derived<T: Real>(
     let guess = if floating.is_empty() { None } else { estimate() };
     let scale = guess.as_ref().map_or(1.0, |e| scale(object, planes, layout, e));
     let mut left: Vec<&Dimension> = dimensions.to_vec();
+    // All together first: a part that is solved alone no longer knows on which side of the others it was
+    // drawn.
+    let mut together = true;
     loop {
         // The floating parts that each equation reads.
         let reads = |d: &Dimension| {
@@ -105,7 +110,15 @@ pub(crate) fn solve_derived<T: Real>(
             faults.extend(check(object, planes, layout, d));
             continue;
         }
-        let Some((equations, unknowns)) = block(&table) else { break };
+        let whole = Some(&table).filter(|_| std::mem::take(&mut together)).and_then(|t| {
+            let mut all: Vec<usize> = t.iter().flatten().copied().collect();
+            all.sort_unstable();
+            all.dedup();
+            (all.len() == t.len() && t.len() <= MOST_TOGETHER)
+                .then(|| ((0..t.len()).collect(), all))
+        });
+        let tried_whole = whole.is_some();
+        let Some((equations, unknowns)) = whole.or_else(|| block(&table)) else { break };
         let chosen: Vec<&Dimension> = equations.iter().map(|&k| left[k]).collect();
         let start = |part: &(Axis, Vec<(usize, T)>)| {
             let (axis, nodes) = part;
@@ -120,8 +133,20 @@ pub(crate) fn solve_derived<T: Real>(
             at + origin
         };
         let x: Vec<f64> = unknowns.iter().map(|&u| start(&floating[u])).collect();
-        let system =
-            System { object, planes, layout, floating, unknowns: &unknowns, dimensions: &chosen };
+        let mut system = System {
+            object,
+            planes,
+            layout,
+            floating,
+            unknowns: &unknowns,
+            dimensions: &chosen,
+            turns: Vec::new(),
+        };
+        system.turns = system.drawn_turns(&x);
+        if tried_whole && equations.len() > 1 && !system.regular(&x) {
+            // Some of them determine others: one after the other.
+            continue;
+        }
         match system.solve(x) {
             Ok(solution) => {
                 for (&u, x) in unknowns.iter().zip(solution) {
@@ -190,6 +215,20 @@ pub fn scale<T: Real>(
             square += gap * gap;
         }
     }
+    if square > 0.0 && product > 0.0 {
+        return product / square;
+    }
+    // No dimension along an axis: from the lengths.
+    for (key, d) in &object.dimensions {
+        if let Measure::Length(l) = d.measure
+            && let (Some(line), Some(value)) =
+                (object.drawing.lines.get(&l), layout.values.get(key))
+        {
+            let [p, q] = [line.p, line.q].map(|p| estimate.point(planes, p));
+            product += value.re() * p.distance(q);
+            square += p.distance(q) * p.distance(q);
+        }
+    }
     if square > 0.0 && product > 0.0 { product / square } else { 1.0 }
 }
 
@@ -211,6 +250,9 @@ fn check<T: Real>(
     })
 }
 
+/// More equations than this are solved in parts.
+const MOST_TOGETHER: usize = 60;
+
 /// A square system of derived dimensions.
 struct System<'a, T> {
     object: &'a Object,
@@ -219,12 +261,21 @@ struct System<'a, T> {
     floating: &'a Floating<T>,
     unknowns: &'a [usize],
     dimensions: &'a [&'a Dimension],
+    /// By dimension, of an angle in a section: the side to which it was drawn, 1 or -1; else 0.
+    turns: Vec<f64>,
+}
+
+/// A point on the way from the drawing to the values asked for.
+struct Step {
+    x: Vec<f64>,
+    /// The sign of the determinant there.
+    sign: f64,
 }
 
 impl<T: Real> System<'_, T> {
-    /// The residuals at `x` over the scalar `S`, into which `lift` takes the known numbers.
-    fn residuals<S: Real>(&self, x: &[S], lift: &dyn Fn(T) -> S) -> Option<Vec<S>> {
-        let coordinate = |axis: Axis, p: PointId| -> Option<S> {
+    /// The points of the lines at `x` over the scalar `S`, into which `lift` takes the known numbers.
+    fn at<S: Real>(&self, x: &[S], lift: &dyn Fn(T) -> S, p: PointId) -> Option<Vec3<S>> {
+        let coordinate = |axis: Axis| -> Option<S> {
             let plane = self.planes.plane(axis, p)?;
             if let Some(known) = self.layout.coordinates[axis.index()][plane] {
                 return Some(lift(known));
@@ -235,38 +286,241 @@ impl<T: Real> System<'_, T> {
                 Some(lift(node.1) + x)
             })
         };
-        let at = |p: PointId| {
-            let [x, y, z] = Axis::ALL.map(|a| coordinate(a, p));
-            // An undetermined coordinate that the measure does not depend on counts as zero.
-            Some(Vec3::new(x.unwrap_or_default(), y.unwrap_or_default(), z.unwrap_or_default()))
+        // An undetermined coordinate that the measure does not depend on counts as zero.
+        let [x, y, z] = Axis::ALL.map(|a| coordinate(a).unwrap_or_default());
+        Some(Vec3::new(x, y, z))
+    }
+
+    /// The arms of an angle and the normal of the section, if it is in one.
+    fn arms<S: Real>(
+        &self,
+        [a, b]: [LineId; 2],
+        at: &dyn Fn(PointId) -> Option<Vec3<S>>,
+    ) -> Option<([Vec3<S>; 2], Option<Axis>)> {
+        let lines = &self.object.drawing.lines;
+        let (la, lb) = (lines.get(&a)?, lines.get(&b)?);
+        let common = [la.p, la.q].into_iter().find(|p| [lb.p, lb.q].contains(p));
+        let arms = [vector(self.object, a, common, at)?, vector(self.object, b, common, at)?];
+        Some((arms, self.object.drawing.section))
+    }
+
+    /// Whether the drawing determines all unknowns.
+    fn regular(&self, x: &[f64]) -> bool {
+        let jacobian = self.measured(x).and_then(|drawn| self.jacobian(x, &drawn));
+        let n = x.len();
+        jacobian.is_some_and(|j| {
+            let row = |r: usize| j[r * n..(r + 1) * n].iter().map(|a| a * a).sum::<f64>().sqrt();
+            let size: f64 = (0..n).map(row).product();
+            determinant(&j, n).abs() > 1e-9 * size
+        })
+    }
+
+    /// To which side each angle of a section was drawn.
+    fn drawn_turns(&self, x: &[f64]) -> Vec<f64> {
+        let at = |p: PointId| self.at::<f64>(x, &|t: T| t.re(), p);
+        let turn = |d: &&Dimension| match d.measure {
+            Measure::Angle(a, b) => match self.arms([a, b], &at) {
+                Some(([a, b], Some(normal))) => {
+                    let side = a.cross(b)[normal.index()];
+                    if side < 0.0 { -1.0 } else { 1.0 }
+                }
+                _ => 0.0,
+            },
+            _ => 0.0,
         };
-        self.dimensions
-            .iter()
-            .map(|d| {
-                let asked = *self.layout.values.get(&d.name.to_ascii_lowercase())?;
-                Some(value(self.object, &d.measure, &at)? - lift(asked))
-            })
-            .collect()
+        self.dimensions.iter().map(turn).collect()
+    }
+
+    /// The values that are measured at `x`.
+    fn measured(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let at = |p: PointId| self.at::<f64>(x, &|t: T| t.re(), p);
+        let one = |(d, turn): (&&Dimension, &f64)| match d.measure {
+            Measure::Angle(a, b) if *turn != 0.0 => {
+                let ([a, b], normal) = self.arms([a, b], &at)?;
+                let side = a.cross(b)[normal?.index()] * *turn;
+                Some(Real::atan2(side, a.dot(b)) * (180.0 / std::f64::consts::PI))
+            }
+            _ => value(self.object, &d.measure, &at),
+        };
+        self.dimensions.iter().zip(&self.turns).map(one).collect()
+    }
+
+    /// The residuals at `x` for the values `asked`. Lengths enter by their squares and angles by both
+    /// sine and cosine: these forms have no solutions of their own.
+    fn residuals<S: Real>(&self, x: &[S], asked: &[S], lift: &dyn Fn(T) -> S) -> Option<Vec<S>> {
+        let at = |p: PointId| self.at(x, lift, p);
+        let one = |((d, &asked), &turn): ((&&Dimension, &S), &f64)| -> Option<S> {
+            match d.measure {
+                Measure::Length(l) => {
+                    let square = vector(self.object, l, None, &at)?.norm_sq();
+                    let half = if asked.re().abs() > 0.0 { asked * 2.0 } else { S::one() };
+                    Some((square - asked * asked) / half)
+                }
+                Measure::Equal(a, b) => {
+                    let first = vector(self.object, a, None, &at)?.norm_sq();
+                    let second = vector(self.object, b, None, &at)?.norm_sq();
+                    let size = first.re().max(second.re()).sqrt().max(f64::MIN_POSITIVE);
+                    Some((second - first * asked * asked) / (2.0 * size))
+                }
+                Measure::Angle(a, b) if turn != 0.0 => {
+                    let ([a, b], normal) = self.arms([a, b], &at)?;
+                    let side = a.cross(b)[normal?.index()] * turn;
+                    let degrees = side.atan2(a.dot(b)) * (180.0 / std::f64::consts::PI);
+                    let off = degrees - asked;
+                    Some(off - 360.0 * (off.re() / 360.0).round())
+                }
+                _ => Some(value(self.object, &d.measure, &at)? - asked),
+            }
+        };
+        self.dimensions.iter().zip(asked).zip(&self.turns).map(one).collect()
     }
 
     /// The Jacobian at `x`, row by row.
-    fn jacobian(&self, x: &[f64]) -> Option<Vec<f64>> {
+    fn jacobian(&self, x: &[f64], asked: &[f64]) -> Option<Vec<f64>> {
         let n = x.len();
         let mut jacobian = vec![0.0; n * n];
+        let asked: Vec<Dual<1>> = asked.iter().map(|&a| Dual::from(a)).collect();
         for c in 0..n {
             let seeded: Vec<Dual<1>> = (0..n)
                 .map(|k| if k == c { Dual::seeded(x[k], 0) } else { Dual::from(x[k]) })
                 .collect();
-            for (r, f) in self.residuals(&seeded, &|t| Dual::from(t.re()))?.iter().enumerate() {
+            let rows = self.residuals(&seeded, &asked, &|t| Dual::from(t.re()))?;
+            for (r, f) in rows.iter().enumerate() {
                 jacobian[r * n + c] = f.eps[0];
             }
         }
         Some(jacobian)
     }
 
-    fn solve(&self, mut x: Vec<f64>) -> Result<Vec<T>, f64> {
+    /// Newton's method from `x`; `None` when it does not converge at once and near.
+    fn correct(&self, mut x: Vec<f64>, asked: &[f64], reach: f64) -> Option<Step> {
+        let start = x.clone();
+        let mut last = f64::INFINITY;
+        for _ in 0..8 {
+            let mut f = self.residuals(&x, asked, &|t: T| t.re())?;
+            let mut jacobian = self.jacobian(&x, asked)?;
+            let sign = determinant(&jacobian, x.len()).signum();
+            solve_dense(&mut jacobian, &mut f).ok()?;
+            let size = f.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+            x.iter_mut().zip(&f).for_each(|(a, s)| *a -= s);
+            let far = x.iter().zip(&start).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+            if !size.is_finite() || far > reach || size > 0.7 * last.max(1e-9 * reach) {
+                return None;
+            }
+            if size <= 1e-13 * (1.0 + x.iter().fold(0.0f64, |m, a| m.max(a.abs()))) {
+                return Some(Step { x, sign });
+            }
+            last = size;
+        }
+        (last <= 1e-9 * reach).then(|| {
+            let sign = self.jacobian(&x, asked).map_or(0.0, |j| determinant(&j, x.len()).signum());
+            Step { x, sign }
+        })
+    }
+
+    /// Follows the solution from values `from`, which hold at `x`, to `to`. `None` where it turns back.
+    fn follow(&self, x: Vec<f64>, from: &[f64], to: &[f64]) -> Option<Step> {
+        const SHORTEST: f64 = 1e-5;
+        const MOST: usize = 3000;
+        let sign = determinant(&self.jacobian(&x, from)?, x.len()).signum();
+        let mut here = Step { x, sign };
+        let (mut s, mut step) = (0.0, 0.125);
+        for _ in 0..MOST {
+            if s >= 1.0 {
+                return Some(here);
+            }
+            let next: f64 = (s + step).min(1.0);
+            let asked: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + (b - a) * next).collect();
+            // No step farther than a part of the figure.
+            let size = self.size(&here.x);
+            match self.correct(here.x.clone(), &asked, 0.2 * size) {
+                Some(found) if found.sign == here.sign => {
+                    here = found;
+                    s = next;
+                    step *= 1.6;
+                }
+                _ => step *= 0.5,
+            }
+            if step < SHORTEST {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// The shortest line of the dimensions, as a measure of steps.
+    fn size(&self, x: &[f64]) -> f64 {
+        let at = |p: PointId| self.at::<f64>(x, &|t: T| t.re(), p);
+        let lines = self.dimensions.iter().flat_map(|d| match d.measure {
+            Measure::Length(l) | Measure::Slope(l) => vec![l],
+            Measure::Angle(a, b) | Measure::Equal(a, b) => vec![a, b],
+            _ => vec![],
+        });
+        let lengths = lines.filter_map(|l| Some(vector(self.object, l, None, &at)?.norm()));
+        let shortest = lengths.filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+        if shortest.is_finite() { shortest } else { 1.0 }
+    }
+
+    fn solve(&self, x: Vec<f64>) -> Result<Vec<T>, f64> {
+        let asked: Option<Vec<T>> = (self.dimensions.iter())
+            .map(|d| self.layout.values.get(&d.name.to_ascii_lowercase()).copied())
+            .collect();
+        let asked = asked.ok_or(f64::INFINITY)?;
+        let plain: Vec<f64> = asked.iter().map(|a| a.re()).collect();
+        let drawn = self.measured(&x);
+        let along = drawn.as_ref().and_then(|from| {
+            self.follow(x.clone(), from, &plain).or_else(|| {
+                // Another way: first the lengths, then the angles, or the other way about.
+                let mixed = |angles: bool| -> Vec<f64> {
+                    let kind = |d: &&&Dimension| matches!(d.measure, Measure::Angle(..));
+                    let pick = |(k, d): (usize, &&Dimension)| {
+                        if kind(&d) == angles { plain[k] } else { from[k] }
+                    };
+                    self.dimensions.iter().enumerate().map(pick).collect()
+                };
+                [false, true].into_iter().find_map(|first| {
+                    let middle = mixed(first);
+                    let there = self.follow(x.clone(), from, &middle)?;
+                    self.follow(there.x, &middle, &plain)
+                })
+            })
+        });
+        let flat = || {
+            let start = drawn.as_ref().and_then(|d| self.jacobian(&x, d));
+            let sign = start.map_or(0.0, |j| determinant(&j, x.len()));
+            if sign.is_finite() { sign.signum() * f64::from(u8::from(sign != 0.0)) } else { 0.0 }
+        };
+        let x = match along {
+            Some(step) => step.x,
+            // The drawing itself is a turning point, or no way leads along: the nearest solution, if it
+            // is no mirror image of the drawing.
+            None => {
+                let sign = flat();
+                let found = self.nearest(x.clone(), &plain)?;
+                let own =
+                    self.jacobian(&found, &plain).map_or(0.0, |j| determinant(&j, found.len()));
+                if sign != 0.0 && own.signum() != sign {
+                    let f = self.residuals(&x, &plain, &|t: T| t.re()).unwrap_or_default();
+                    return Err(f.iter().fold(0.0f64, |m, r| m.max(r.abs())));
+                }
+                found
+            }
+        };
+        // One step over the scalar: x - J⁻¹ F(x) carries the derivatives.
+        let lifted: Vec<T> = x.iter().map(|&a| T::from(a)).collect();
+        let mut step = self.residuals(&lifted, &asked, &|t| t).ok_or(f64::INFINITY)?;
+        let jacobian = self.jacobian(&x, &plain).ok_or(f64::INFINITY)?;
+        let mut jacobian: Vec<T> = jacobian.into_iter().map(T::from).collect();
+        if solve_dense(&mut jacobian, &mut step).is_err() {
+            return Err(f64::INFINITY);
+        }
+        Ok(lifted.into_iter().zip(step).map(|(x, s)| x - s).collect())
+    }
+
+    /// The solution that damped Newton steps lead to.
+    fn nearest(&self, mut x: Vec<f64>, asked: &[f64]) -> Result<Vec<f64>, f64> {
         const STEPS: usize = 60;
-        let plain = |x: &[f64]| self.residuals(x, &|t: T| t.re());
+        let plain = |x: &[f64]| self.residuals(x, asked, &|t: T| t.re());
         let size = |f: &[f64]| f.iter().map(|a| a * a).sum::<f64>();
         let mut f = plain(&x).ok_or(f64::INFINITY)?;
         let scale = 1.0 + f.iter().map(|a| a.abs()).fold(0.0, f64::max);
@@ -275,7 +529,7 @@ impl<T: Real> System<'_, T> {
             if !worst.is_finite() || worst == 0.0 {
                 break;
             }
-            let mut jacobian = self.jacobian(&x).ok_or(worst)?;
+            let mut jacobian = self.jacobian(&x, asked).ok_or(worst)?;
             let mut step = f.clone();
             if solve_dense(&mut jacobian, &mut step).is_err() {
                 // A flat start (an unknown exactly at its mirror plane): a nudge leaves it.
@@ -301,14 +555,27 @@ impl<T: Real> System<'_, T> {
         if !residual.is_finite() || residual > 1e-9 * scale {
             return Err(residual);
         }
-        // One step over the scalar: x - J⁻¹ F(x) carries the derivatives.
-        let lifted: Vec<T> = x.iter().map(|&a| T::from(a)).collect();
-        let mut step = self.residuals(&lifted, &|t| t).ok_or(residual)?;
-        let mut jacobian: Vec<T> =
-            self.jacobian(&x).ok_or(residual)?.into_iter().map(T::from).collect();
-        if solve_dense(&mut jacobian, &mut step).is_err() {
-            return Err(residual);
-        }
-        Ok(lifted.into_iter().zip(step).map(|(x, s)| x - s).collect())
+        Ok(x)
     }
+}
+
+/// The determinant of a square matrix, by elimination with row pivots.
+fn determinant(matrix: &[f64], n: usize) -> f64 {
+    let mut a = matrix.to_vec();
+    let mut product = 1.0;
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()));
+        let Some(pivot) = pivot.filter(|&r| a[r * n + k] != 0.0) else { return 0.0 };
+        if pivot != k {
+            (0..n).for_each(|c| a.swap(k * n + c, pivot * n + c));
+            product = -product;
+        }
+        let own = a[k * n + k];
+        product *= own;
+        for r in k + 1..n {
+            let part = a[r * n + k] / own;
+            (k..n).for_each(|c| a[r * n + c] -= part * a[k * n + c]);
+        }
+    }
+    product
 }

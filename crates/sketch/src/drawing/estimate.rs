@@ -98,6 +98,15 @@ impl Estimate {
         self.coordinates[axis.index()].get(plane).copied().unwrap_or(0.0)
     }
 
+    /// Whether the picture shows the distance between two planes of an axis: no open depth changes it.
+    pub fn determines(&self, axis: Axis, a: usize, b: usize) -> bool {
+        let motion = |depth: &FreeDepth, plane: usize| {
+            let own = depth.planes.iter().find(|m| m.0 == axis && m.1 == plane);
+            own.map_or(0.0, |m| m.2)
+        };
+        self.depths.iter().all(|d| (motion(d, a) - motion(d, b)).abs() <= 1e-7)
+    }
+
     /// The estimated position of a point.
     pub fn point(&self, planes: &Planes, point: PointId) -> Vec3 {
         let at = |axis| planes.plane(axis, point).map_or(0.0, |p| self.plane(axis, p));

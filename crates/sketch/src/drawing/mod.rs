@@ -3,6 +3,7 @@
 pub(crate) mod axis;
 pub(crate) mod estimate;
 pub(crate) mod line_types;
+mod noise;
 pub(crate) mod planes;
 pub(crate) mod projection;
 
@@ -94,6 +95,31 @@ pub struct Align {
     pub q: PointId,
 }
 
+/// A part of a drawing near a place on the page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hit {
+    /// A point.
+    Point(PointId),
+    /// A line, at a part of its length.
+    Line {
+        /// The line.
+        line: LineId,
+        /// 0 at its start, 1 at its end.
+        part: f64,
+    },
+}
+
+/// A place on the page that a pointer snaps to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Snap {
+    /// The place.
+    pub at: [f64; 2],
+    /// What is there, or the point whose extension it is on.
+    pub hit: Option<Hit>,
+    /// The axis of the extension.
+    pub axis: Option<Axis>,
+}
+
 /// The flat picture of one object.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
@@ -153,6 +179,105 @@ impl Drawing {
         self.points.remove(&id);
         self.lines.retain(|_, l| l.p != id && l.q != id);
         self.aligns.retain(|a| a.p != id && a.q != id);
+    }
+
+    /// Pairs of points that lie closer than `reach` with no line between them, one of them the end of a
+    /// single line: kept, gone and their distance. Without a reach, half a hundredth of the drawing.
+    pub fn gaps(&self, reach: Option<f64>) -> Vec<(PointId, PointId, f64)> {
+        let mut uses: BTreeMap<PointId, usize> = BTreeMap::new();
+        self.lines.values().flat_map(|l| [l.p, l.q]).for_each(|p| *uses.entry(p).or_default() += 1);
+        let far = |f: &dyn Fn(&Point) -> f64| {
+            let all = self.points.values().map(f);
+            let (low, high) =
+                all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            (high - low).max(0.0)
+        };
+        let given = reach.is_some();
+        let reach = reach.unwrap_or(0.005 * far(&|p| p.u).max(far(&|p| p.v)));
+        let mut order: Vec<(PointId, Point)> = self.points.iter().map(|(k, p)| (*k, *p)).collect();
+        order.sort_by(|a, b| a.1.u.total_cmp(&b.1.u).then(a.0.cmp(&b.0)));
+        let mut pairs = Vec::new();
+        for (k, &(a, p)) in order.iter().enumerate() {
+            for &(b, q) in order[k + 1..].iter().take_while(|x| x.1.u - p.u <= reach) {
+                let distance =
+                    moldloft_num::Real::sqrt((p.u - q.u) * (p.u - q.u) + (p.v - q.v) * (p.v - q.v));
+                let single = [a, b].iter().any(|p| uses.get(p).copied().unwrap_or(0) == 1);
+                if distance <= reach && (given || single) && self.line_between(a, b).is_none() {
+                    pairs.push((a.min(b), a.max(b), distance));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| a.2.total_cmp(&b.2).then((a.0, a.1).cmp(&(b.0, b.1))));
+        pairs
+    }
+
+    /// The nearest point within `reach` of a place on the page, else the nearest line and the part of
+    /// its length.
+    pub fn hit(&self, [u, v]: [f64; 2], reach: f64) -> Option<Hit> {
+        let square = reach * reach;
+        let mut best: Option<(f64, Hit)> = None;
+        for (&id, p) in &self.points {
+            let d = (p.u - u) * (p.u - u) + (p.v - v) * (p.v - v);
+            if d <= square && best.as_ref().is_none_or(|b| d < b.0) {
+                best = Some((d, Hit::Point(id)));
+            }
+        }
+        if let Some((_, hit)) = best {
+            return Some(hit);
+        }
+        for (&id, line) in &self.lines {
+            let (Some(a), Some(b)) = (self.points.get(&line.p), self.points.get(&line.q)) else {
+                continue;
+            };
+            let (du, dv) = (b.u - a.u, b.v - a.v);
+            let length = du * du + dv * dv;
+            if length == 0.0 {
+                continue;
+            }
+            let part = (((u - a.u) * du + (v - a.v) * dv) / length).clamp(0.0, 1.0);
+            let (x, y) = (a.u + du * part - u, a.v + dv * part - v);
+            let d = x * x + y * y;
+            if d <= square && best.as_ref().is_none_or(|b| d < b.0) {
+                best = Some((d, Hit::Line { line: id, part }));
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// Where a place on the page snaps to within `reach`: a point, a place on a line, or the extension
+    /// of an axis through a point.
+    pub fn snap(&self, at: [f64; 2], reach: f64) -> Option<Snap> {
+        match self.hit(at, reach) {
+            Some(Hit::Point(point)) => {
+                let p = self.points[&point];
+                return Some(Snap { at: [p.u, p.v], hit: Some(Hit::Point(point)), axis: None });
+            }
+            Some(Hit::Line { line, part }) => {
+                let l = self.lines[&line];
+                let (a, b) = (self.points[&l.p], self.points[&l.q]);
+                let at = [a.u + (b.u - a.u) * part, a.v + (b.v - a.v) * part];
+                return Some(Snap { at, hit: Some(Hit::Line { line, part }), axis: None });
+            }
+            None => {}
+        }
+        let mut best: Option<(f64, Snap)> = None;
+        for (&id, p) in &self.points {
+            for axis in Axis::ALL.into_iter().filter(|a| self.section != Some(*a)) {
+                let [c, s] = self.projection.unit(axis);
+                let length = c * c + s * s;
+                if length == 0.0 {
+                    continue;
+                }
+                let along = ((at[0] - p.u) * c + (at[1] - p.v) * s) / length;
+                let foot = [p.u + c * along, p.v + s * along];
+                let d = (foot[0] - at[0]).powi(2) + (foot[1] - at[1]).powi(2);
+                if d <= reach * reach && best.as_ref().is_none_or(|b| d < b.0) {
+                    let snap = Snap { at: foot, hit: Some(Hit::Point(id)), axis: Some(axis) };
+                    best = Some((d, snap));
+                }
+            }
+        }
+        best.map(|b| b.1)
     }
 
     /// Makes `gone` the same point as `kept`: its lines are moved, doubled ones dropped.

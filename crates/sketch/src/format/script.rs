@@ -1,7 +1,8 @@
 //! An object as the commands that make it: the file format.
 
 use crate::solid::curve::{Curve, CurveKind};
-use crate::{Axis, Measure, Object, Role, Source};
+use crate::solid::feature::{Feature, FeatureKind, Placement};
+use crate::{Axis, Expr, Measure, Object, Role, Source};
 use moldloft_syntax::number::plain;
 use std::fmt::Write;
 
@@ -42,7 +43,76 @@ pub fn script(object: &Object) -> String {
     out
 }
 
+/// A feature: its parts, the command that makes it of them, and its numbers.
+fn write_feature(object: &Object, feature: &Feature, out: &mut String) -> std::fmt::Result {
+    let name = quoted(&object.name);
+    writeln!(out, "WITHIN {name}")?;
+    for operand in &feature.operands {
+        write(&operand.object, out)?;
+    }
+    let parts: Vec<String> = feature.operands.iter().map(|o| quoted(&o.object.name)).collect();
+    let parts = parts.join(" ");
+    let value = |e: &Expr| quoted(e.text());
+    let vector = |v: &[Expr; 3]| v.each_ref().map(value).join(" ");
+    let place = |p: &Placement| match p {
+        Placement::Move(by) => vector(by),
+        Placement::Rotate { axis, through, angle } => {
+            format!("{axis} {} THROUGH {}", value(angle), vector(through))
+        }
+        Placement::Mirror { axis, at } => format!("{axis} {}", value(at)),
+        Placement::Scale(factor) => value(factor),
+    };
+    // Numbers of the feature itself may stand in its command.
+    let own: Vec<&crate::Variable> = object.variables.values().collect();
+    let command = match &feature.kind {
+        FeatureKind::Boolean(operation) => format!("{} {parts} INTO {name}", operation.word()),
+        FeatureKind::Revolve { line: [p, q], angle } => {
+            let section = &feature.operands[0].object.drawing;
+            let line = section.line_between(*p, *q).map_or(0, |l| l.0);
+            format!("REVOLVE {parts} {line} {} INTO {name}", value(angle))
+        }
+        FeatureKind::Place(p) => {
+            let word = match p {
+                Placement::Move(_) => "MOVE",
+                Placement::Rotate { .. } => "ROTATE",
+                Placement::Mirror { .. } => "MIRROR",
+                Placement::Scale(_) => "SCALE",
+            };
+            format!("{word} {parts} {} FEATURE INTO {name}", place(p))
+        }
+        FeatureKind::Pattern { step, count } => {
+            let word = match step {
+                Placement::Move(_) => format!("LINEAR {count}"),
+                Placement::Rotate { axis, .. } => format!("POLAR {count} {axis}"),
+                Placement::Mirror { .. } => "MIRROR".to_owned(),
+                Placement::Scale(_) => "LINEAR".to_owned(),
+            };
+            let rest = place(step);
+            let rest = match step {
+                Placement::Rotate { .. } => rest.get(2..).unwrap_or_default().to_owned(),
+                _ => rest,
+            };
+            format!("PATTERN {parts} {word} {rest} INTO {name}")
+        }
+    };
+    writeln!(out, "{command}")?;
+    for v in own {
+        writeln!(out, "DECLARE {} {}{}", v.name, quoted(v.value.text()), range_text(v.range))?;
+    }
+    if let Some(units) = &object.units {
+        writeln!(out, "SET UNITS {units}")?;
+    }
+    writeln!(out, "LEAVE")?;
+    if !object.display {
+        writeln!(out, "ERASE {name}")?;
+    }
+    writeln!(out, "END")
+}
+
 fn write(object: &Object, out: &mut String) -> std::fmt::Result {
+    if let Some(feature) = &object.feature {
+        return write_feature(object, feature, out);
+    }
     let drawing = &object.drawing;
     let section = match drawing.section {
         Some(Axis::X) => " 2D YZ",

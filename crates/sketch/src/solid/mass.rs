@@ -17,6 +17,14 @@ pub struct Mass<T> {
     pub inertia: [T; 6],
 }
 
+/// A directed edge of a plane face, between its ends.
+pub(crate) enum Side<T> {
+    Straight,
+    Piece(Piece<T>),
+    /// Points along it with the weighted way along it.
+    Nodes(Vec<(Vec3<T>, Vec3<T>)>),
+}
+
 /// Surface integrals, taken from an origin near the body.
 #[derive(Clone, Debug)]
 pub(crate) struct Sums<T> {
@@ -27,12 +35,22 @@ pub(crate) struct Sums<T> {
     moment: Vec3<T>,
     /// ∫ xx, yy, zz, yz, zx, xy dV.
     second: [T; 6],
+    /// Area and moment of the patch under way, whose sign is that of its border's direction.
+    patch: (T, Vec3<T>),
 }
 
 impl<T: Real> Sums<T> {
     pub fn new(origin: Vec3<T>) -> Sums<T> {
         let (t, v) = (T::zero(), Vec3::zero());
-        Sums { origin, area: t, area_moment: v, volume: t, moment: v, second: [t; 6] }
+        Sums {
+            origin,
+            area: t,
+            area_moment: v,
+            volume: t,
+            moment: v,
+            second: [t; 6],
+            patch: (t, v),
+        }
     }
 
     fn products(p: Vec3<T>) -> [T; 6] {
@@ -66,31 +84,35 @@ impl<T: Real> Sums<T> {
     }
 
     /// Adds a plane face. `edges` are its directed edges; straight ones have no piece.
-    pub fn plane(&mut self, edges: &[(Vec3<T>, Vec3<T>, Option<Piece<T>>)]) {
+    pub fn plane(&mut self, edges: &[(Vec3<T>, Vec3<T>, Side<T>)]) {
         let Some(&(apex, ..)) = edges.first() else { return };
         let mut vector = Vec3::zero();
         let mut moments: Vec<(Vec3<T>, Vec3<T>)> = Vec::new();
-        for &(p, q, piece) in edges {
-            match piece {
-                None => {
+        for (p, q, side) in edges {
+            let (p, q) = (*p, *q);
+            let nodes = match side {
+                Side::Straight => {
                     self.triangle(apex, p, q);
                     let da = (p - apex).cross(q - apex) * T::from(0.5);
                     vector += da;
                     moments.push(((apex + p + q) / T::from(3.0) - self.origin, da));
+                    continue;
                 }
-                Some(piece) => {
-                    // The sector from the apex to the curve: apex + r (c(s) - apex).
-                    for (s, w) in along() {
-                        let arm = piece.at(T::from(s)) - apex;
-                        let normal = arm.cross(piece.velocity(T::from(s))) * T::from(w);
-                        for (r, wr) in GAUSS {
-                            let p = apex + arm * T::from(r) - self.origin;
-                            let da = normal * T::from(r * wr);
-                            self.element(p, da);
-                            vector += da;
-                            moments.push((p, da));
-                        }
-                    }
+                Side::Piece(piece) => along()
+                    .map(|(s, w)| (piece.at(T::from(s)), piece.velocity(T::from(s)) * T::from(w)))
+                    .collect(),
+                Side::Nodes(nodes) => nodes.clone(),
+            };
+            // The sector from the apex to the curve: apex + r (c(s) - apex).
+            for (at, by) in nodes {
+                let arm = at - apex;
+                let normal = arm.cross(by);
+                for (r, wr) in GAUSS {
+                    let p = apex + arm * T::from(r) - self.origin;
+                    let da = normal * T::from(r * wr);
+                    self.element(p, da);
+                    vector += da;
+                    moments.push((p, da));
                 }
             }
         }
@@ -101,6 +123,28 @@ impl<T: Real> Sums<T> {
                 self.area_moment += p * da.dot(n);
             }
         }
+    }
+
+    /// A patch of elements whose areas may all have the wrong sign.
+    pub fn begin_patch(&mut self) {
+        self.patch = (T::zero(), Vec3::zero());
+    }
+
+    /// An element of it.
+    pub fn patch_element(&mut self, p: Vec3<T>, da: Vec3<T>, sign: T) {
+        let p = p - self.origin;
+        self.element(p, da);
+        let area = da.norm() * sign;
+        self.patch.0 += area;
+        self.patch.1 += p * area;
+    }
+
+    /// Its end.
+    pub fn end_patch(&mut self) {
+        let (area, moment) = self.patch;
+        let turn = T::from(if area.re() < 0.0 { -1.0 } else { 1.0 });
+        self.area += area * turn;
+        self.area_moment += moment * turn;
     }
 
     /// Adds a ruled patch: straight lines from `near(s)` to `far(s)`; its outward side is that of
@@ -145,6 +189,6 @@ impl<T: Real> Sums<T> {
 }
 
 /// Gauss's nodes on four parts of [0, 1]: arcs up to a half turn come out to rounding.
-fn along() -> impl Iterator<Item = (f64, f64)> {
+pub(crate) fn along() -> impl Iterator<Item = (f64, f64)> {
     (0..4).flat_map(|k| GAUSS.map(|(x, w)| ((f64::from(k) + x) / 4.0, w / 4.0)))
 }

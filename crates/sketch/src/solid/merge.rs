@@ -2,8 +2,8 @@
 
 use crate::dimension::layout::chain_expression;
 use crate::{
-    Align, Axis, Dimension, DimensionFault, Drawing, Expr, Face, Layout, Line, Measure, Object,
-    Planes, Point, PointId, Projection, Reference, Role, Variable,
+    Align, Axis, Dimension, DimensionFault, Drawing, Expr, Layout, Line, Measure, Object, Planes,
+    Point, PointId, Projection, Reference, Role, Variable,
 };
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
@@ -165,7 +165,7 @@ pub(crate) fn settle(
 }
 
 /// A name as it can stand in an expression.
-fn identifier(name: &str) -> String {
+pub(crate) fn identifier(name: &str) -> String {
     let fine = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' };
     let text: String = name.chars().map(fine).collect();
     if text.starts_with(|c: char| c.is_ascii_alphabetic()) { text } else { format!("o{text}") }
@@ -305,8 +305,12 @@ pub fn extrude(section: &Object, name: &str, value: Expr) -> Option<Object> {
     let first = *flat.points.keys().next()?;
     for &id in flat.points.keys().skip(1) {
         let planes = Planes::of(drawing);
+        // Figures that no line joins lie in the same two planes all the same.
         if !planes.same(normal, first, id) {
             drawing.aligns.push(Align { axis: normal, p: first, q: id });
+        }
+        if !planes.same(normal, up(first), up(id)) {
+            drawing.aligns.push(Align { axis: normal, p: up(first), q: up(id) });
         }
     }
     for c in section.curves.values() {
@@ -444,118 +448,4 @@ pub fn redrawn(object: &Object, at: &BTreeMap<PointId, Vec3>) -> Object {
         }
     }
     out
-}
-
-/// A cross section turned about a line in it, in chords of at most 10°. Every coordinate of the
-/// result is given outright: it has no dimensions of its own.
-pub fn revolved(
-    section: &Object,
-    at: &BTreeMap<PointId, Vec3>,
-    axis: [Vec3; 2],
-    angle_deg: f64,
-) -> Option<Object> {
-    const CHORD: f64 = 10.0;
-    let turn = moldloft_num::Axis::through(axis[0], axis[1])?;
-    let full = angle_deg.abs() >= 360.0;
-    let steps =
-        (angle_deg.abs().min(360.0) / CHORD).ceil().max(if full { 3.0 } else { 1.0 }) as usize;
-    let size = at.values().map(|p| p.distance(axis[0])).fold(0.0, f64::max);
-    let on_axis = |p: Vec3| turn.foot(p).distance(p) <= 1e-9 * size;
-    let mut out = Object::new(&section.name, None);
-    out.units.clone_from(&section.units);
-    out.draw().letters = section.drawing.letters;
-    let rings = if full { steps } else { steps + 1 };
-    let mut number: BTreeMap<(PointId, usize), PointId> = BTreeMap::new();
-    let mut places: Vec<(PointId, Vec3)> = Vec::new();
-    for k in 0..rings {
-        let angle = (angle_deg.clamp(-360.0, 360.0) * k as f64 / steps as f64).to_radians();
-        for (&id, &p) in at {
-            let new = match number.get(&(id, 0)).filter(|_| on_axis(p)) {
-                Some(&first) => first,
-                None => {
-                    let new = PointId(places.len() as u32 + 1);
-                    places.push((new, turn.rotated(p, angle)));
-                    new
-                }
-            };
-            number.insert((id, k), new);
-        }
-    }
-    let projection = out.drawing.projection;
-    let drawing = out.draw();
-    for &(id, p) in &places {
-        let [u, v] = projection.project(p);
-        drawing.points.insert(id, Point { u, v });
-    }
-    let mut faces: Vec<Face> = Vec::new();
-    for f in section.faces.values() {
-        for k in 0..steps {
-            let next = (k + 1) % rings;
-            for cycle in f.loops() {
-                for i in 0..cycle.len() {
-                    let (p, q) = (cycle[i], cycle[(i + 1) % cycle.len()]);
-                    let mut outer = vec![
-                        number[&(p, k)],
-                        number[&(q, k)],
-                        number[&(q, next)],
-                        number[&(p, next)],
-                    ];
-                    outer.dedup();
-                    if outer.first() == outer.last() {
-                        outer.pop();
-                    }
-                    if outer.len() >= 3 {
-                        faces.push(Face { outer, holes: vec![] });
-                    }
-                }
-            }
-        }
-        if !full {
-            let cap = |k: usize| {
-                let ring = |c: &[PointId]| c.iter().map(|p| number[&(*p, k)]).collect::<Vec<_>>();
-                Face { outer: ring(&f.outer), holes: f.holes.iter().map(|h| ring(h)).collect() }
-            };
-            faces.push(cap(0).reversed());
-            faces.push(cap(rings - 1));
-        }
-    }
-    let place: BTreeMap<PointId, Vec3> = places.iter().copied().collect();
-    let volume: f64 = (faces.iter().flat_map(Face::loops))
-        .flat_map(|c| (1..c.len().saturating_sub(1)).map(move |k| [c[0], c[k], c[k + 1]]))
-        .map(|t| t.map(|p| place[&p] - axis[0]))
-        .map(|[a, b, c]| a.dot(b.cross(c)))
-        .sum();
-    for face in faces {
-        let face = if volume < 0.0 { face.reversed() } else { face };
-        for cycle in face.loops() {
-            for k in 0..cycle.len() {
-                let (p, q) = (cycle[k], cycle[(k + 1) % cycle.len()]);
-                let drawing = out.draw();
-                if drawing.line_between(p, q).is_none() {
-                    let id = drawing.next_line();
-                    let free = Some(crate::Free::OBLIQUE);
-                    drawing.lines.insert(
-                        id,
-                        Line { p, q, free, source: crate::Source::User, confidence: 1.0 },
-                    );
-                }
-            }
-        }
-        let id = out.next_face();
-        out.faces.insert(id, face);
-    }
-    let (first, origin) = *places.first()?;
-    out.reference = Some(Reference { point: first, at: origin.to_array() });
-    for (id, p) in places.iter().skip(1) {
-        for axis in Axis::ALL {
-            out.add_dimension(Dimension {
-                name: format!("P{id}.{}", axis.letter().to_ascii_lowercase()),
-                measure: Measure::Datum { axis, point: *id },
-                value: Some(Expr::number(p[axis.index()])),
-                role: Role::Driving,
-                range: None,
-            });
-        }
-    }
-    Some(out)
 }

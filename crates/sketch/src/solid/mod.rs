@@ -5,19 +5,29 @@
 //! arc; the third line at the corner becomes two, with a ruled patch between them (a cylinder when
 //! its other end has the same arc, a cone when it has none).
 
+pub mod arrangement;
+pub mod combine;
 pub mod curve;
 pub mod faces;
+pub mod feature;
 pub(crate) mod gradient;
 pub(crate) mod mass;
 pub mod merge;
+pub mod operation;
+mod outline;
+pub mod place;
 pub(crate) mod ruled_faces;
+pub mod surface;
+mod turn;
+pub mod validity;
 
 use crate::solid::curve::{Curve, CurveFault, CurveKind, Piece, Traced, trace};
-use crate::solid::mass::{Mass, Sums};
+use crate::solid::mass::{Mass, Side, Sums};
 use crate::{FaceId, Layout, Object, Planes, PointId};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
 use moldloft_num::{Real, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use surface::Surface;
 
 /// A vertex of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +47,39 @@ pub struct SolidEdge<T> {
     pub piece: Option<Piece<T>>,
     /// The curve's index in the object.
     pub curve: Option<usize>,
+    /// Its points, where it has no closed form: the edge of a body that was combined.
+    pub trace: Option<Trace<T>>,
+}
+
+/// An edge that two surfaces make.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace<T> {
+    /// Points along it, its ends included.
+    pub points: Vec<Vec3<T>>,
+    /// Gauss's nodes along it: points, and the way along it with the weight.
+    pub(crate) nodes: Vec<(Vec3<T>, Vec3<T>)>,
+    /// By round face beside it, u, v and the weighted change of u at the nodes.
+    pub(crate) places: Vec<(usize, Vec<[T; 3]>)>,
+}
+
+/// A round face that is not bounded by its own parameter lines alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trim<T> {
+    /// Its surface.
+    pub surface: Surface<T>,
+    /// The face.
+    pub(crate) face: usize,
+}
+
+/// The mesh of a body that was combined: its parts do not follow from edges alone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Facets<T> {
+    /// The vertices of the body, then points on edges and faces.
+    pub points: Vec<Vec3<T>>,
+    /// Triangles by face.
+    pub faces: Vec<Vec<[u32; 3]>>,
+    /// The points along each edge.
+    pub chains: Vec<Vec<u32>>,
 }
 
 /// A face of a solid.
@@ -48,6 +91,8 @@ pub struct SolidFace {
     pub ruled: bool,
     /// Directed edges, counter-clockwise from outside: outer cycle, then holes.
     pub loops: Vec<Vec<(usize, bool)>>,
+    /// For a round face that is no ruled patch between its edges, its index in [`Solid::trims`].
+    pub trim: Option<usize>,
 }
 
 /// A curve that could not be built in.
@@ -77,7 +122,7 @@ pub enum UnbuiltReason {
 }
 
 /// A body bounded by faces, or the faces of a flat figure.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid<T> {
     /// Its vertices; those without edges are left out.
     pub vertices: Vec<Vertex<T>>,
@@ -91,6 +136,9 @@ pub struct Solid<T> {
     pub curves: BTreeMap<usize, Traced<T>>,
     /// Curves that could not be built in.
     pub unbuilt: Vec<UnbuiltCurve>,
+    /// Round faces with borders of any kind.
+    pub trims: Vec<Trim<T>>,
+    pub(crate) facets: Option<Facets<T>>,
     steps: BTreeMap<usize, u32>,
 }
 
@@ -105,8 +153,18 @@ struct Corner<T> {
     ids: [PointId; 2],
 }
 
-/// Builds the solid of an object. `None` while positions are undetermined or there are no faces.
+/// The valid body of an object; `None` while positions are undetermined, there are no faces, or it is
+/// not valid ([`feature::body`] says why).
 pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> Option<Solid<T>> {
+    feature::body(object, planes, layout).ok()
+}
+
+/// Builds the body of an object, valid or not.
+pub(crate) fn unchecked<T: Real>(
+    object: &Object,
+    planes: &Planes,
+    layout: &Layout<T>,
+) -> Option<Solid<T>> {
     if object.faces.is_empty() {
         return None;
     }
@@ -405,7 +463,8 @@ impl<T: Real> Builder<'_, T> {
                         }
                     }
                 }
-                faces.push(SolidFace { id: Some(id), ruled: ruled == Some(true), loops });
+                let ruled = ruled == Some(true);
+                faces.push(SolidFace { id: Some(id), ruled, loops, trim: None });
             }
         }
         faces.extend(self.patches(&mut out, &seams));
@@ -420,6 +479,8 @@ impl<T: Real> Builder<'_, T> {
             curves: self.curves,
             unbuilt: self.unbuilt,
             steps,
+            trims: Vec::new(),
+            facets: None,
         }
     }
 
@@ -564,7 +625,7 @@ impl<T: Real> Builder<'_, T> {
             cycle.push(run(b, far_b));
             cycle.extend(far);
             cycle.push(run(far_a, a));
-            faces.push(SolidFace { id: None, ruled: true, loops: vec![cycle] });
+            faces.push(SolidFace { id: None, ruled: true, loops: vec![cycle], trim: None });
         }
         faces
     }
@@ -635,7 +696,7 @@ impl<T: Real> Assembly<T> {
         let key = (ends[0].min(ends[1]), ends[0].max(ends[1]), bent.is_some());
         *self.known.entry(key).or_insert_with(|| {
             let (curve, piece) = bent.unzip();
-            self.edges.push(SolidEdge { ends, piece, curve });
+            self.edges.push(SolidEdge { ends, piece, curve, trace: None });
             self.edges.len() - 1
         })
     }
@@ -653,6 +714,9 @@ impl<T: Real> Solid<T> {
     /// Length of an edge.
     pub fn length(&self, edge: usize) -> T {
         let e = &self.edges[edge];
+        if let Some(trace) = &e.trace {
+            return trace.nodes.iter().fold(T::zero(), |s, n| s + n.1.norm());
+        }
         match e.piece {
             Some(piece) => piece.length(),
             None => self.vertices[e.ends[0]].at.distance(self.vertices[e.ends[1]].at),
@@ -662,6 +726,9 @@ impl<T: Real> Solid<T> {
     /// Points along an edge: its ends, and of a curve also `chords - 1` between them.
     pub fn polyline(&self, edge: usize, chords: usize) -> Vec<Vec3<T>> {
         let e = &self.edges[edge];
+        if let Some(trace) = &e.trace {
+            return trace.points.clone();
+        }
         let n = if e.piece.is_some() { chords.max(1) } else { 1 };
         let piece = self.piece((edge, true));
         let inner = (1..n).map(|k| piece.at(T::from(k as f64 / n as f64)));
@@ -674,9 +741,18 @@ impl<T: Real> Solid<T> {
         let n = self.vertices.len().max(1) as f64;
         let centre = self.vertices.iter().fold(Vec3::<f64>::zero(), |s, v| s + v.at.re()) / n;
         let mut sums = Sums::new(Vec3::lifted(centre));
-        for face in &self.faces {
+        for (f, face) in self.faces.iter().enumerate() {
             if face.ruled {
                 self.ruled_sums(face, &mut sums);
+                continue;
+            }
+            if let Some(trim) = face.trim {
+                let nodes: Vec<[T; 3]> =
+                    face.loops.iter().flatten().flat_map(|&h| self.places(f, h)).collect();
+                sums.begin_patch();
+                let surface = &self.trims[trim].surface;
+                surface.sweep(&nodes, |p, area, sign| sums.patch_element(p, area, sign));
+                sums.end_patch();
                 continue;
             }
             let edges: Vec<_> = (face.loops.iter().flatten())
@@ -684,12 +760,62 @@ impl<T: Real> Solid<T> {
                     let edge = &self.edges[e];
                     let [p, q] = edge.ends.map(|v| self.vertices[v].at);
                     let (p, q) = if forward { (p, q) } else { (q, p) };
-                    (p, q, edge.piece.map(|_| self.piece((e, forward))))
+                    let side = match (&edge.trace, edge.piece) {
+                        (Some(trace), _) => {
+                            let sign = T::from(if forward { 1.0 } else { -1.0 });
+                            let turned = trace.nodes.iter().map(|n| (n.0, n.1 * sign));
+                            Side::Nodes(turned.collect())
+                        }
+                        (None, Some(_)) => Side::Piece(self.piece((e, forward))),
+                        (None, None) => Side::Straight,
+                    };
+                    (p, q, side)
                 })
                 .collect();
             sums.plane(&edges);
         }
         sums.finish(self.flat)
+    }
+
+    /// Gauss's nodes of an edge on the surface of a round face: u, v and the weighted change of u.
+    fn places(&self, face: usize, (e, forward): (usize, bool)) -> Vec<[T; 3]> {
+        let edge = &self.edges[e];
+        let sign = T::from(if forward { 1.0 } else { -1.0 });
+        if let Some(trace) = &edge.trace {
+            let own = trace.places.iter().find(|p| p.0 == face);
+            let turned = |p: &[T; 3]| [p[0], p[1], p[2] * sign];
+            return own.map(|p| p.1.iter().map(turned).collect()).unwrap_or_default();
+        }
+        let Some(surface) = self.surface(face) else { return vec![] };
+        let piece = self.piece((e, true));
+        let mut at = None;
+        let mut nodes = Vec::new();
+        for (s, w) in mass::along() {
+            let (p, by) = (piece.at(T::from(s)), piece.velocity(T::from(s)) * (sign * w));
+            let Some(place) = combine::located(&surface, p, by, at) else { continue };
+            at = Some([place[0].re(), place[1].re()]);
+            nodes.push(place);
+        }
+        nodes
+    }
+
+    /// The surface of a round face.
+    pub(crate) fn surface(&self, face: usize) -> Option<Surface<T>> {
+        let f = &self.faces[face];
+        if let Some(trim) = f.trim {
+            return Some(self.trims[trim].surface);
+        }
+        let cycle = f.loops.first().filter(|_| f.ruled)?;
+        let near = self.piece(cycle[0]);
+        let far = match cycle[..] {
+            [_, _, far, _] => self.piece(far).reversed(),
+            [_, out, _] => {
+                let apex = self.vertices[self.edges[out.0].ends[usize::from(out.1)]].at;
+                Piece::straight(apex, apex)
+            }
+            _ => return None,
+        };
+        Some(Surface::Ruled { near, far })
     }
 
     fn ruled_sums(&self, face: &SolidFace, sums: &mut Sums<T>) {
@@ -720,7 +846,8 @@ impl<T: Real> Solid<T> {
             .collect();
         loop {
             let mut changed = false;
-            for face in self.faces.iter().filter(|f| f.ruled && f.loops[0].len() == 4) {
+            let patch = |f: &&SolidFace| (f.ruled || f.trim.is_some()) && f.loops[0].len() == 4;
+            for face in self.faces.iter().filter(patch) {
                 for [a, b] in [[0, 2], [1, 3]].map(|p| p.map(|k: usize| face.loops[0][k].0)) {
                     let most = chords[a].max(chords[b]);
                     changed |= chords[a] != chords[b];
@@ -741,17 +868,22 @@ impl<T: Real> Solid<T> {
     /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so that
     /// there are as many triangles whatever the sizes are.
     pub fn faceted(&self) -> Mesh<T> {
-        let by_angle = |piece: &Piece<T>| match piece {
-            Piece::Conic { sweep, .. } => {
-                let n = (sweep.re().abs().to_degrees() / 5.0 - 1e-9).ceil();
-                if n.is_finite() { (n as usize).clamp(1, 720) } else { 1 }
-            }
-            Piece::Cubic(_) => 20,
-        };
         self.mesh_of(self.chords(&by_angle))
     }
 
+    /// Chords per edge, one for each 5° of a round curve.
+    pub(super) fn angular_chords(&self) -> Vec<usize> {
+        self.chords(&by_angle)
+    }
+
     fn mesh_of(&self, chords: Vec<usize>) -> Mesh<T> {
+        if let Some(facets) = &self.facets {
+            let named = facets.faces.iter().enumerate().map(|(k, triangles)| {
+                let corners = triangles.iter().map(|&[a, b, c]| [a, b, c, c]).collect();
+                (self.face_name(k), corners)
+            });
+            return mesh_from(facets.points.clone(), named.collect());
+        }
         let mut places: Vec<Vec3<T>> = self.vertices.iter().map(|v| v.at).collect();
         let mut inner: Vec<Vec<u32>> = Vec::new();
         for (e, &n) in chords.iter().enumerate() {
@@ -771,22 +903,15 @@ impl<T: Real> Solid<T> {
             }
             way
         };
-        let mut topology = TopologyBuilder::new();
         let mut parts: Vec<(String, Vec<[u32; 4]>)> = Vec::new();
         for (k, face) in self.faces.iter().enumerate() {
-            let name = face.id.map_or_else(|| format!("patch {}", k + 1), |f| format!("face {f}"));
-            parts.push((name, self.facets(face, &run, &mut places)));
+            parts.push((self.face_name(k), self.facets(face, &run, &mut places)));
         }
-        // Both fit: the counts are those of the builder itself.
-        let _ = topology.add_vertices(places.len());
-        for (name, facets) in parts {
-            let _ = topology.add_faces(PatchInfo::new(name), facets);
-        }
-        let empty = || Mesh::new(TopologyBuilder::new().build().into(), vec![]);
-        match Mesh::new(topology.build().into(), places).or_else(|_| empty()) {
-            Ok(mesh) => mesh,
-            Err(_) => unreachable!("an empty mesh fits its topology"),
-        }
+        mesh_from(places, parts)
+    }
+
+    fn face_name(&self, k: usize) -> String {
+        self.faces[k].id.map_or_else(|| format!("patch {}", k + 1), |f| format!("face {f}"))
     }
 
     fn facets(
@@ -795,6 +920,9 @@ impl<T: Real> Solid<T> {
         run: &dyn Fn((usize, bool)) -> Vec<u32>,
         places: &mut Vec<Vec3<T>>,
     ) -> Vec<[u32; 4]> {
+        if let Some(trim) = face.trim {
+            return outline::patch(&self.trims[trim].surface, &face.loops[0], run, places);
+        }
         if face.ruled {
             let cycle = &face.loops[0];
             let near = run(cycle[0]);
@@ -877,5 +1005,31 @@ impl<T: Real> Solid<T> {
             }
         }
         quads
+    }
+}
+
+/// A mesh of named parts.
+fn mesh_from<T: Real>(places: Vec<Vec3<T>>, parts: Vec<(String, Vec<[u32; 4]>)>) -> Mesh<T> {
+    let mut topology = TopologyBuilder::new();
+    // Both fit: the counts are those of the builder itself.
+    let _ = topology.add_vertices(places.len());
+    for (name, facets) in parts {
+        let _ = topology.add_faces(PatchInfo::new(name), facets);
+    }
+    let empty = || Mesh::new(TopologyBuilder::new().build().into(), vec![]);
+    match Mesh::new(topology.build().into(), places).or_else(|_| empty()) {
+        Ok(mesh) => mesh,
+        Err(_) => unreachable!("an empty mesh fits its topology"),
+    }
+}
+
+/// A chord for each 5° of a round curve, 20 for a cubic that is not straight.
+fn by_angle<T: Real>(piece: &Piece<T>) -> usize {
+    match piece {
+        Piece::Conic { sweep, .. } => {
+            let n = (sweep.re().abs().to_degrees() / 5.0 - 1e-9).ceil();
+            if n.is_finite() { (n as usize).clamp(1, 720) } else { 1 }
+        }
+        Piece::Cubic(_) => 20,
     }
 }

@@ -39,18 +39,8 @@ fn every_case_types_itself() {
         for (id, truth) in &case.object.drawing.lines {
             let line = drawing.lines[id];
             let truth = truth.free.unwrap();
-            if case.id.starts_with("T5") && truth == Free::OBLIQUE {
-                // Two oblique lines lie by accident within 5 % of Z, which changes what others share.
-                let pair = format!("{}-{}", line.p, line.q);
-                let expected = match pair.as_str() {
-                    "4-8" | "8-12" => "Z",
-                    "1-5" | "5-9" => "YZ",
-                    "3-7" | "7-11" => "XZ",
-                    _ => "O",
-                };
-                assert_eq!(line.free.unwrap().spelling(), expected, "{pair}");
-            } else if case.id.starts_with("T11") && truth == Free::across(Axis::X) {
-                assert!(proposed.contains(id) && line.confidence == 0.5);
+            if case.id.starts_with("T11") && truth == Free::across(Axis::X) {
+                assert!(proposed.contains(id) && line.confidence <= 0.5);
             } else {
                 assert_eq!(line.free, Some(truth), "{} {}", case.id, drawing.line_text(*id));
                 assert_eq!(proposed.contains(id), truth == Free::OBLIQUE);
@@ -204,7 +194,8 @@ fn a_cross_section_types_itself() {
         .map(|l| drawing.letters.letter(l.free.unwrap(), drawing.section))
         .collect();
     assert_eq!(letters, "XZXZXZFZXZ");
-    let lean = 1.0 - drawing.lines[&LineId(3)].confidence;
+    // By its slope alone: 1 less the part of 5 % that it leans.
+    let lean = 1.0 - drawing.slope_type(&drawing.lines[&LineId(3)]).unwrap().1;
     assert!((lean * NAMING_TOLERANCE - 0.0435).abs() < 5e-5);
     assert_eq!(Planes::of(drawing).counts(), [5, 1, 6]);
     for d in [

@@ -5,6 +5,7 @@ mod common;
 mod dimensions;
 mod errors;
 mod faces;
+mod generators;
 mod session;
 mod solids;
 mod work;

@@ -195,13 +195,12 @@ fn a_section_is_revolved() {
         "SKETCH ROD 2D XZ; POINT 1 0 0; POINT 2 30 0; POINT 3 30 50; POINT 4 0 50; POLYLINE 1 2 3 4 CLOSE",
     );
     run(&mut s, "DIM X 1 2 3; DIM Z 1 4 5; REVOLVE 4 360");
-    // 36 triangles of sin(10°)/2.
-    close(volume(&mut s, "ROD"), 5.0 * 9.0 * 18.0 * 10f64.to_radians().sin());
+    close(volume(&mut s, "ROD"), 45.0 * std::f64::consts::PI);
     let mesh = s.objects()[0].solid.as_ref().unwrap().mesh(1.0).report();
     assert!(mesh.closed && mesh.manifold && mesh.outward == Some(true));
     run(&mut s, "UNDO; REVOLVE 4 90");
-    close(volume(&mut s, "ROD"), 5.0 * 9.0 * 4.5 * 10f64.to_radians().sin());
-    code(&mut s, "REVOLVE 1 90", 113);
+    close(volume(&mut s, "ROD"), 45.0 * std::f64::consts::FRAC_PI_4);
+    code(&mut s, "REVOLVE 1 90", 102);
 }
 
 /// T7, by commands.
@@ -412,7 +411,7 @@ fn errors_say_what_where_and_next() {
         ("VARIABLE v 3 IN 5 1", "empty"),
         ("FACE 1 2 77", "no point 77"),
         ("FACE 1 2", "expected"),
-        ("ROTATE FLAT X 45", "not a multiple of 90"),
+        ("ROTATE FLAT X 45", "cross section"),
         ("COPY FLAT FLAT", "exists already"),
         ("RENAME FLAT TO WALL", "exists already"),
         ("ZOOM -1", "positive"),
@@ -506,12 +505,14 @@ fn a_dimension_without_value_asks() {
     assert!(
         s.object("A").unwrap().dimensions["new"].value.as_ref().unwrap().literal().unwrap() > 0.0
     );
-    // Right to left: the value is a distance, the drawing gives its sign.
-    run(&mut s, "DIM BACK X 2 1 = 6");
+    // Against the picture: it holds as typed, with a warning.
+    let replies = run(&mut s, "DIM BACK X 2 1 = 6");
+    assert!(replies.iter().any(|r| r.text.contains("as typed")), "{replies:?}");
     let d = &s.object("A").unwrap().dimensions["back"];
-    assert_eq!(d.measure, Measure::Along { axis: Axis::X, p: PointId(1), q: PointId(2) });
-    run(&mut s, "REVERSE BACK");
+    assert_eq!(d.measure, Measure::Along { axis: Axis::X, p: PointId(2), q: PointId(1) });
     assert_eq!(s.objects()[0].points[1].1[0], Some(-6.0));
+    run(&mut s, "REVERSE BACK");
+    assert_eq!(s.objects()[0].points[1].1[0], Some(6.0));
 }
 
 #[test]

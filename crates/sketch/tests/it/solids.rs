@@ -367,9 +367,7 @@ fn a_change_of_one_dimension_of_a_large_sketch_is_quick() {
     };
     let area = (steps * (steps + 1) / 2) as f64;
     close(run(5.0), 5.0 * area, 1e-6 * area);
-    let start = std::time::Instant::now();
-    for k in 0..20 {
+    for k in 1..20 {
         close(run(f64::from(k)), f64::from(k) * area, 1e-6 * area);
     }
-    println!("1000 points: {:?} per change", start.elapsed() / 20);
 }

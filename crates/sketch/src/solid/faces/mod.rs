@@ -8,13 +8,11 @@
 //!
 //! `edges -> sheets -> regions (cut where they cross) -> cells -> labels -> faces`
 
-mod boolean;
 mod cells;
 mod label;
 mod regions;
 mod wire;
 
-pub use boolean::{Operation, Walls, combine};
 use cells::{Cells, Forest};
 use moldloft_num::Vec3;
 use regions::{Half, Region, Sheet};
@@ -64,6 +62,8 @@ pub struct Fitted {
     pub dangling: Vec<[usize; 2]>,
     /// Edges that fewer than two candidates share: there the faces do not close.
     pub open: Vec<[usize; 2]>,
+    /// Those of them that had fewer than two before any candidate was dropped.
+    pub first_open: Vec<[usize; 2]>,
     /// Places where edges cross without a vertex.
     pub crossings: Vec<Vec3>,
     /// Whether it was given up as too large.
@@ -82,6 +82,12 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
         let mut regions: Vec<Region> = (sheets.iter().enumerate())
             .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
             .collect();
+        if fitted.first_open.is_empty() {
+            let mut wings = vec![0; wire.edges.len()];
+            regions.iter().flat_map(|r| r.loops.iter().flatten()).for_each(|h| wings[h.0] += 1);
+            let few = wire.edges.iter().zip(&wings).filter(|(e, n)| !e.cut && **n < 2);
+            fitted.first_open = few.map(|(e, _)| e.ends).collect();
+        }
         regions::drop_unshared(&wire, &mut regions);
         let cuts = regions::cuts(&wire, &sheets, &regions);
         let before = wire.edges.len();
@@ -116,15 +122,28 @@ pub fn fit(positions: &[Vec3], edges: &[[usize; 2]]) -> Fitted {
 }
 
 /// The regions of a wireframe that lies in one plane, counter-clockwise against `normal`: the faces of
-/// a cross section. Edges with a loose end are left out.
+/// a cross section. A closed figure inside another is a hole, one inside a hole is material again.
+/// Edges with a loose end are left out.
 pub fn fit_plane(positions: &[Vec3], edges: &[[usize; 2]], normal: Vec3) -> Vec<Polygon> {
     let mut wire = Wire::new(positions, edges);
     wire.prune();
     let drawn = wire.vertices.len();
     let sheets = regions::sheets(&wire);
-    let regions: Vec<Region> = (sheets.iter().enumerate())
+    let mut regions: Vec<Region> = (sheets.iter().enumerate())
         .flat_map(|(k, sheet)| regions::regions(&wire, k, sheet))
         .collect();
+    let mut figure = Forest::new(wire.vertices.len());
+    wire.edges.iter().for_each(|e| figure.join(e.ends[0], e.ends[1]));
+    let own: Vec<usize> = regions.iter().map(|r| figure.root(wire.tail(r.loops[0][0]))).collect();
+    let around = |k: usize| {
+        let sheet = &sheets[regions[k].sheet];
+        let p = sheet.flat(wire.vertices[wire.tail(regions[k].loops[0][0])]);
+        let encloses = |j: &usize| regions::encloses(&wire, sheet, &regions[*j].loops[0], p);
+        (0..regions.len()).filter(|&j| own[j] != own[k]).filter(encloses).count()
+    };
+    let material: Vec<bool> = (0..regions.len()).map(|k| around(k) % 2 == 0).collect();
+    let mut keep = material.iter();
+    regions.retain(|_| *keep.next().unwrap_or(&true));
     let cells = Cells { side: vec![], volume: vec![], wings: vec![] };
     let build = Build { wire: &wire, sheets: &sheets, regions: &regions, cells: &cells, drawn };
     let up = |r: &Region| sheets[r.sheet].normal.dot(normal) > 0.0;

@@ -1,0 +1,357 @@
+//! UNION, CUT, COMMON, REVOLVE, PATTERN and changes of place: objects that are made of others.
+
+use super::CommandError;
+use super::args::Args;
+use super::session::{Reply, Session};
+use crate::Object;
+use crate::dimension::expr::Expr;
+use crate::solid::combine::CombineError;
+use crate::solid::feature::{Feature, FeatureKind, NoBody, Placement, body};
+use crate::solid::operation::Operation;
+use crate::solid::validity::Flaw;
+use moldloft_num::Vec3;
+use moldloft_syntax::number::plain;
+
+/// More copies than this are refused.
+const MAX_COPIES: u32 = 400;
+
+impl Session {
+    /// Combines two bodies. The result is made of both and computed again with every change of theirs.
+    pub(super) fn combine(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
+        let operation = match verb {
+            "UNION" => Operation::Union,
+            "CUT" => Operation::Cut,
+            _ => Operation::Common,
+        };
+        let names =
+            [args.name("the name of an object")?, args.name("the name of a second object")?];
+        let target = self.target(args, &names[0])?;
+        args.end()?;
+        let mut parts: Vec<Object> = Vec::new();
+        for name in &names {
+            let object = self.known(name)?.clone();
+            if object.drawing.section.is_some() {
+                return Err(CommandError::new(
+                    114,
+                    format!("{} is a cross section; only solids are combined", object.name),
+                    "EXTRUDE it first",
+                ));
+            }
+            self.require_body(&object)?;
+            parts.push(object);
+        }
+        if parts[0].name.eq_ignore_ascii_case(&parts[1].name) {
+            return Err(CommandError::text(
+                format!("{verb} wants two objects, not {} twice", parts[0].name),
+                "COPY makes another",
+            ));
+        }
+        let operands = Feature::operands(&[&parts[0], &parts[1]]);
+        let feature = Feature { kind: FeatureKind::Boolean(operation), operands };
+        self.make(feature, &target, |why| match why {
+            NoBody::Combine(CombineError::Empty) => Some(CommandError::new(
+                701,
+                format!("{verb} of {} and {} leaves nothing", parts[0].name, parts[1].name),
+                "MOVE one of them, or CHECK the dimensions",
+            )),
+            _ => None,
+        })
+    }
+
+    /// `INTO name`, or the name itself.
+    fn target(&self, args: &mut Args, default: &str) -> Result<String, CommandError> {
+        let target = if args.take_short("INTO") {
+            args.name("a name")?
+        } else {
+            self.known(default)?.name.clone()
+        };
+        if target.is_empty() || target.chars().count() > 32 {
+            return Err(args.wants("a name of 1 to 32 characters"));
+        }
+        Ok(target)
+    }
+
+    /// Refuses an object without a body, with the reason.
+    pub(super) fn require_body(&mut self, object: &Object) -> Result<(), CommandError> {
+        if object.feature.is_none() {
+            self.placed(object)?;
+            if object.faces.is_empty() {
+                return Err(CommandError::new(
+                    701,
+                    format!("{} has no faces yet", object.name),
+                    format!("GENERATE FACES {}", object.name),
+                ));
+            }
+        }
+        let (view, layout) = self.laid_out(object);
+        match body(object, &view.planes, &layout) {
+            Ok(_) => Ok(()),
+            Err(why) => Err(no_body(object, &why)),
+        }
+    }
+
+    /// Puts an object of a feature in the place of `target`.
+    fn make(
+        &mut self,
+        feature: Feature,
+        target: &str,
+        refused: impl Fn(&NoBody) -> Option<CommandError>,
+    ) -> Result<(), CommandError> {
+        let made = feature.object(target);
+        let (view, layout) = self.laid_out(&made);
+        let solid = match body(&made, &view.planes, &layout) {
+            Ok(solid) => solid,
+            Err(why) => return Err(refused(&why).unwrap_or_else(|| no_body(&made, &why))),
+        };
+        let text = format!(
+            "{target}: {} vertices, {} edges, {} faces, volume {}",
+            solid.vertices.len(),
+            solid.edges.len(),
+            solid.faces.len(),
+            plain(solid.mass().volume)
+        );
+        self.out.push(Reply::note(text));
+        self.insert(made);
+        Ok(())
+    }
+
+    /// `REVOLVE [name] line [angle] [INTO name]`.
+    pub(super) fn revolve(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        if !args.at_number() {
+            if let Some(token) = args.peek() {
+                self.known(&token.text)?;
+            }
+            self.take_object(args)?;
+        }
+        let line = args.line()?;
+        let mut object = self.active()?.clone();
+        let angle = if args.len() > 0 && !args.tokens_at(0, "INTO") {
+            args.value(None)?
+        } else {
+            Expr::number(360.0)
+        };
+        let target = self.target(args, &object.name)?;
+        args.end()?;
+        let line = super::draw::require_line(&object, line)?;
+        if object.drawing.section.is_none() {
+            return Err(CommandError::new(
+                113,
+                format!("{} is not a cross section", object.name),
+                "SKETCH name 2D starts one",
+            ));
+        }
+        if angle.literal().is_some_and(|a| a == 0.0 || !a.is_finite()) {
+            return Err(CommandError::new(
+                300,
+                "a turn by nothing has no volume",
+                "give an angle in degrees",
+            ));
+        }
+        self.placed(&object)?;
+        if object.faces.is_empty() {
+            self.generate(&mut Args::new(&[super::solids::faces_word()], ""))?;
+            object = self.active()?.clone();
+        }
+        self.require_body(&object)?;
+        // Its numbers keep their names.
+        let operands =
+            vec![crate::solid::feature::Operand { object: object.into(), prefix: String::new() }];
+        let kind = FeatureKind::Revolve { line: [line.p, line.q], angle };
+        self.make(Feature { kind, operands }, &target, |why| match why {
+            NoBody::Axis => Some(CommandError::new(
+                701,
+                "the section lies on both sides of the line, or the line has no length",
+                "revolve about a line on its border or beside it",
+            )),
+            _ => None,
+        })
+    }
+
+    /// `PATTERN name LINEAR n dx dy dz | POLAR n axis angle [THROUGH x y z] | MIRROR axis [at]
+    /// [INTO name]`.
+    pub(super) fn pattern(&mut self, args: &mut Args) -> Result<(), CommandError> {
+        let name = args.name("the name of an object")?;
+        let object = self.known(&name)?.clone();
+        let units = object.units.clone();
+        let (step, count) = if args.take("LINEAR") {
+            let count = args.count("how many copies")?;
+            let by = [args.value(units.as_deref())?, args.value(units.as_deref())?];
+            let [x, y] = by;
+            (Placement::Move([x, y, args.value(units.as_deref())?]), count)
+        } else if args.take("POLAR") {
+            let count = args.count("how many copies")?;
+            let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+            let angle = args.value(None)?;
+            (
+                Placement::Rotate { axis, through: self.through(args, units.as_deref())?, angle },
+                count,
+            )
+        } else if args.take("MIRROR") {
+            let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+            let given = args.len() > 0 && !args.tokens_at(0, "INTO");
+            let at = if given { args.value(units.as_deref())? } else { Expr::number(0.0) };
+            (Placement::Mirror { axis, at }, 2)
+        } else {
+            return Err(args.wants("LINEAR, POLAR or MIRROR"));
+        };
+        let target = self.target(args, &name)?;
+        args.end()?;
+        if count > MAX_COPIES {
+            return Err(CommandError::new(
+                200,
+                format!("{count} copies are too many"),
+                format!("at most {MAX_COPIES}"),
+            ));
+        }
+        self.require_body(&object)?;
+        let operands =
+            vec![crate::solid::feature::Operand { object: object.into(), prefix: String::new() }];
+        self.make(Feature { kind: FeatureKind::Pattern { step, count }, operands }, &target, |_| {
+            None
+        })
+    }
+
+    /// `THROUGH x y z`, the origin when it is not there.
+    fn through(&self, args: &mut Args, units: Option<&str>) -> Result<[Expr; 3], CommandError> {
+        if !args.take("THROUGH") {
+            return Ok([0.0; 3].map(Expr::number));
+        }
+        Ok([args.value(units)?, args.value(units)?, args.value(units)?])
+    }
+
+    /// MOVE, ROTATE, MIRROR, SCALE of what has no drawing to change, or by any angle.
+    pub(super) fn place(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
+        let name = args.name("the name of an object")?;
+        let object = self.known(&name)?.clone();
+        let units = object.units.clone();
+        let place = match verb {
+            "MOVE" => Placement::Move([
+                args.value(units.as_deref())?,
+                args.value(units.as_deref())?,
+                args.value(units.as_deref())?,
+            ]),
+            "SCALE" => {
+                let factor = args.value(None)?;
+                if factor.literal().is_some_and(|f| !(f > 0.0 && f < 1e9)) {
+                    return Err(CommandError::text(
+                        format!("the factor {factor} is not positive"),
+                        "MIRROR turns objects over",
+                    ));
+                }
+                Placement::Scale(factor)
+            }
+            _ => {
+                let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
+                if verb == "MIRROR" {
+                    let given = args.len() > 0 && !args.at("FEATURE") && !args.tokens_at(0, "INTO");
+                    let at = if given { args.value(units.as_deref())? } else { Expr::number(0.0) };
+                    Placement::Mirror { axis, at }
+                } else {
+                    let angle = args.value(None)?;
+                    let through = self.through(args, units.as_deref())?;
+                    Placement::Rotate { axis, through, angle }
+                }
+            }
+        };
+        args.take("FEATURE");
+        let target = self.target(args, &name)?;
+        args.end()?;
+        if object.drawing.section.is_some() {
+            return Err(CommandError::new(
+                114,
+                format!("{} is a cross section; only solids are placed anywhere", object.name),
+                "EXTRUDE it first, or turn it by 90, 180 or 270",
+            ));
+        }
+        self.require_body(&object)?;
+        let operands =
+            vec![crate::solid::feature::Operand { object: object.into(), prefix: String::new() }];
+        self.make(Feature { kind: FeatureKind::Place(place), operands }, &target, |_| None)
+    }
+}
+
+/// A place in words.
+fn place_text(p: Vec3) -> String {
+    p.to_array().map(|x| plain(super::dims::rounded(x))).join(" ")
+}
+
+/// The reason why an object has no body, with the place and the next step.
+pub fn no_body(object: &Object, why: &NoBody) -> CommandError {
+    let name = &object.name;
+    match why {
+        NoBody::Unfinished => CommandError::new(
+            404,
+            format!("{name} has no faces or is not fully dimensioned"),
+            "CONVERT says what is missing; then GENERATE FACES",
+        ),
+        NoBody::Flaw(Flaw::Open(edges)) => {
+            let list: Vec<String> =
+                edges.iter().take(12).map(|[p, q]| format!("{p}-{q}")).collect();
+            CommandError::new(
+                701,
+                format!(
+                    "{name} is open, so it has no volume: lines {} have a face on one side only",
+                    list.join(", ")
+                ),
+                "GENERATE FACES finds all faces; or give the missing one with FACE",
+            )
+        }
+        NoBody::Flaw(Flaw::Crossed { face, sides: [a, b], at }) => {
+            let face = face.map_or_else(|| "a face".to_owned(), |f| format!("face {f}"));
+            CommandError::new(
+                701,
+                format!(
+                    "{name} crosses itself: in {face} the sides {}-{} and {}-{} cross at {}",
+                    a[0],
+                    a[1],
+                    b[0],
+                    b[1],
+                    place_text(*at)
+                ),
+                "a dimension has moved lines past each other: UNDO, or change it",
+            )
+        }
+        NoBody::Flaw(Flaw::Unresolved(e)) | NoBody::Combine(e) => combine_error(name, e),
+        NoBody::Flaw(Flaw::NotFinite) => CommandError::new(
+            300,
+            format!("{name} has coordinates that are not finite"),
+            "CHECK the dimensions",
+        ),
+        NoBody::Operand { name: inner, why } => {
+            let inner = no_body(&Object::new(inner, None), why);
+            CommandError::new(inner.code, format!("{name}: {}", inner.text), inner.next)
+        }
+        NoBody::NoValue(reads) => CommandError::text(
+            format!("{name} reads {reads}, which has no value"),
+            format!("VARIABLE {reads} defines it"),
+        ),
+        NoBody::Axis => CommandError::new(
+            701,
+            format!("{name}: the section lies on both sides of the line it is turned about"),
+            "change the dimension that moved it",
+        ),
+    }
+}
+
+fn combine_error(name: &str, e: &CombineError) -> CommandError {
+    match e {
+        CombineError::Open(p) => CommandError::new(
+            701,
+            format!("{name}: surfaces do not close, or nearly coincide, at {}", place_text(*p)),
+            "CHECK the bodies, or move one of them a little",
+        ),
+        CombineError::Touching(p) => CommandError::new(
+            701,
+            format!("{name}: round surfaces touch, or nearly so, at {}", place_text(*p)),
+            "let them cross clearly or stay apart",
+        ),
+        CombineError::TooLarge => CommandError::new(
+            200,
+            format!("{name}: there are too many pieces"),
+            "combine smaller objects",
+        ),
+        CombineError::Empty => {
+            CommandError::new(701, format!("{name}: nothing is left"), "CHECK the dimensions")
+        }
+    }
+}

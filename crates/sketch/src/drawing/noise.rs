@@ -1,0 +1,171 @@
+//! Types of lines from what the pen can tell: how likely each axis is, given the noise of the ends.
+//!
+//! An end that is off by σ in each coordinate lets a line of an axis miss it by √2 σ at right angles,
+//! whatever its length, so short lines tell little and long ones much. Lines that are parallel in space,
+//! because two lines of one axis join their ends, are judged together: m of them tell √m times as much.
+
+use crate::{Axis, Drawing, LineId, PointId};
+use moldloft_num::Real;
+use std::collections::BTreeMap;
+
+/// How much of all lines run along an axis, before they are looked at.
+const PRINCIPAL: f64 = 0.85;
+
+/// From here on a line counts as surely typed.
+const SURE: f64 = 0.9;
+
+/// Directions at which an inclined line is tried.
+const DIRECTIONS: usize = 720;
+
+/// What the strokes say about a line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Verdict {
+    /// The likeliest axis, `None` when it is likelier inclined.
+    pub axis: Option<Axis>,
+    /// The share of that answer.
+    pub share: f64,
+}
+
+/// A line as it is judged.
+struct Stroke {
+    id: LineId,
+    ends: [PointId; 2],
+    d: [f64; 2],
+    length: f64,
+}
+
+impl Drawing {
+    /// The likeliest type of every line by its stroke and those that are parallel to it in space.
+    pub(crate) fn verdicts(&self) -> BTreeMap<LineId, Verdict> {
+        let strokes: Vec<Stroke> = (self.lines.iter())
+            .map(|(&id, line)| {
+                let d = self.stroke(line);
+                let length = Real::sqrt(d[0] * d[0] + d[1] * d[1]);
+                Stroke { id, ends: [line.p, line.q], d, length }
+            })
+            .filter(|s| s.length > 0.0)
+            .collect();
+        let axes: Vec<(Axis, [f64; 2])> = (Axis::ALL.into_iter())
+            .filter(|a| self.section != Some(*a))
+            .filter_map(|a| {
+                let [x, y] = self.projection.unit(a);
+                let length = Real::sqrt(x * x + y * y);
+                (length > 0.0).then(|| (a, [x / length, y / length]))
+            })
+            .collect();
+        let sigma = self.pen_noise(&strokes, &axes);
+        let alone: Vec<Verdict> = strokes.iter().map(|s| judge(&[s], &axes, sigma)).collect();
+        // The lines beside each point, with their verdicts.
+        let mut at: BTreeMap<PointId, Vec<usize>> = BTreeMap::new();
+        for (k, s) in strokes.iter().enumerate() {
+            s.ends.iter().for_each(|&p| at.entry(p).or_default().push(k));
+        }
+        // The end of a sure line from a point, by axis and sense.
+        let leads = |p: PointId| -> Vec<(Axis, bool, PointId, usize)> {
+            (at.get(&p).into_iter().flatten())
+                .filter_map(|&k| {
+                    let axis = alone[k].axis.filter(|_| alone[k].share >= SURE)?;
+                    let s = &strokes[k];
+                    let forward = s.ends[0] == p;
+                    let unit = axes.iter().find(|a| a.0 == axis)?.1;
+                    let along = s.d[0] * unit[0] + s.d[1] * unit[1] > 0.0;
+                    Some((axis, along == forward, s.ends[usize::from(forward)], k))
+                })
+                .collect()
+        };
+        let mut group: Vec<usize> = (0..strokes.len()).collect();
+        fn root(group: &mut [usize], mut k: usize) -> usize {
+            while group[k] != k {
+                group[k] = group[group[k]];
+                k = group[k];
+            }
+            k
+        }
+        for (k, s) in strokes.iter().enumerate() {
+            for (axis, sense, far, own) in leads(s.ends[0]) {
+                if own == k {
+                    continue;
+                }
+                for (other, turn, end, second) in leads(s.ends[1]) {
+                    if second == k || other != axis || turn != sense {
+                        continue;
+                    }
+                    let parallel = at.get(&far).into_iter().flatten().copied().find(|&m| {
+                        m != k && strokes[m].ends.contains(&far) && strokes[m].ends.contains(&end)
+                    });
+                    if let Some(m) = parallel {
+                        let (a, b) = (root(&mut group, k), root(&mut group, m));
+                        group[a.max(b)] = a.min(b);
+                    }
+                }
+            }
+        }
+        let mut members: BTreeMap<usize, Vec<&Stroke>> = BTreeMap::new();
+        for (k, s) in strokes.iter().enumerate() {
+            members.entry(root(&mut group, k)).or_default().push(s);
+        }
+        let mut out = BTreeMap::new();
+        for own in members.values() {
+            let verdict = judge(own, &axes, sigma);
+            out.extend(own.iter().map(|s| (s.id, verdict)));
+        }
+        out
+    }
+
+    /// The standard deviation of a coordinate of an end, from how far lines near an axis miss it.
+    fn pen_noise(&self, strokes: &[Stroke], axes: &[(Axis, [f64; 2])]) -> f64 {
+        let size = strokes.iter().map(|s| s.length).fold(0.0, f64::max);
+        let mut off: Vec<f64> = (strokes.iter())
+            .filter_map(|s| {
+                let miss = |a: &[f64; 2]| (s.d[0] * a[1] - s.d[1] * a[0]).abs();
+                let least = axes.iter().map(|a| miss(&a.1)).fold(f64::INFINITY, f64::min);
+                (least <= 0.12 * s.length).then_some(least)
+            })
+            .collect();
+        off.sort_by(f64::total_cmp);
+        let median = off.get(off.len() / 2).copied().unwrap_or(0.0);
+        (median / 0.6745 / std::f64::consts::SQRT_2).clamp(1.2e-3 * size, 0.02 * size)
+    }
+}
+
+/// The likeliest direction of parallel strokes.
+fn judge(strokes: &[&Stroke], axes: &[(Axis, [f64; 2])], sigma: f64) -> Verdict {
+    let spread = 2.0 * 2.0 * sigma * sigma;
+    // The logarithm of the likelihood that all run in a direction.
+    let fits = |[x, y]: [f64; 2]| -> f64 {
+        -strokes.iter().map(|s| (s.d[0] * y - s.d[1] * x).powi(2) / spread).sum::<f64>()
+    };
+    let weight = PRINCIPAL / axes.len().max(1) as f64;
+    let principal: Vec<f64> = axes.iter().map(|a| weight * Real::exp(fits(a.1))).collect();
+    let step = std::f64::consts::PI / DIRECTIONS as f64;
+    // The mean over all directions, by the strokes' own one where they leave a narrow peak.
+    let own = {
+        let sum = strokes.iter().fold([0.0; 2], |m, s| {
+            let turn =
+                if s.d[0] * strokes[0].d[0] + s.d[1] * strokes[0].d[1] < 0.0 { -1.0 } else { 1.0 };
+            [m[0] + turn * s.d[0], m[1] + turn * s.d[1]]
+        });
+        Real::atan2(sum[1], sum[0])
+    };
+    let square: f64 = strokes.iter().map(|s| s.length * s.length).sum();
+    let width = Real::sqrt(spread / 2.0 / square.max(f64::MIN_POSITIVE));
+    let mean = if width > 3.0 * step {
+        let at = |k: usize| k as f64 * step;
+        let sum: f64 =
+            (0..DIRECTIONS).map(|k| Real::exp(fits([Real::cos(at(k)), Real::sin(at(k))]))).sum();
+        sum / DIRECTIONS as f64
+    } else {
+        let peak = Real::exp(fits([Real::cos(own), Real::sin(own)]));
+        peak * width * Real::sqrt(2.0 * std::f64::consts::PI) / std::f64::consts::PI
+    };
+    let free = (1.0 - PRINCIPAL) * mean;
+    let all = principal.iter().sum::<f64>() + free;
+    if all <= 0.0 {
+        return Verdict { axis: None, share: 1.0 };
+    }
+    let best = (0..axes.len()).max_by(|&a, &b| principal[a].total_cmp(&principal[b]));
+    match best.filter(|&k| principal[k] > free) {
+        Some(k) => Verdict { axis: Some(axes[k].0), share: principal[k] / all },
+        None => Verdict { axis: None, share: free / all },
+    }
+}

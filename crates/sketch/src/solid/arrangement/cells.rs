@@ -1,0 +1,157 @@
+//! How often each operand winds around the space between regions.
+
+use super::plane::{Frame, facet_winding};
+use super::pool::Pool;
+use super::{ArrangeError, Facet, Region};
+use moldloft_num::{Real, Vec3};
+use std::collections::BTreeMap;
+
+/// Numbers of windings, by operand.
+pub(super) type Turns = [i32; 2];
+
+struct Sets(Vec<u32>);
+
+impl Sets {
+    fn root(&mut self, mut k: u32) -> u32 {
+        while self.0[k as usize] != k {
+            self.0[k as usize] = self.0[self.0[k as usize] as usize];
+            k = self.0[k as usize];
+        }
+        k
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// The windings in front of and behind each region.
+pub(super) fn windings(
+    pool: &Pool,
+    facets: &[Facet],
+    frames: &[Frame],
+    sheets: &[Frame],
+    regions: &[Region],
+) -> Result<Vec<[Turns; 2]>, ArrangeError> {
+    let mut wings: BTreeMap<(u32, u32), Vec<(f64, usize, bool)>> = BTreeMap::new();
+    for (r, region) in regions.iter().enumerate() {
+        for cycle in &region.loops {
+            for k in 0..cycle.len() {
+                let (a, b) = (cycle[k], cycle[(k + 1) % cycle.len()]);
+                let (low, high) = (a.min(b), a.max(b));
+                let d = pool.at(high) - pool.at(low);
+                let x = d.perpendicular();
+                let y = d.cross(x).normalized().unwrap_or_default();
+                let x = x.normalized().unwrap_or_default();
+                let inward = sheets[region.sheet].normal.cross(pool.at(b) - pool.at(a));
+                let angle = Real::atan2(inward.dot(y), inward.dot(x));
+                wings.entry((low, high)).or_default().push((angle, r, a == low));
+            }
+        }
+    }
+    let mut sets = Sets((0..2 * regions.len() as u32).collect());
+    let mut parts = Sets((0..regions.len() as u32).collect());
+    for around in wings.values_mut() {
+        around.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let n = around.len();
+        for k in 0..n {
+            let (here, next) = (around[k], around[(k + 1) % n]);
+            let (front, back) = (2 * here.1 as u32, 2 * here.1 as u32 + 1);
+            let ahead = if here.2 { front } else { back };
+            let (front, back) = (2 * next.1 as u32, 2 * next.1 as u32 + 1);
+            let behind = if next.2 { back } else { front };
+            sets.join(ahead, behind);
+            parts.join(here.1 as u32, next.1 as u32);
+        }
+    }
+    let mut sides: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for s in 0..2 * regions.len() as u32 {
+        sides.entry(sets.root(s)).or_default().push(s);
+    }
+    let mut known: BTreeMap<u32, Turns> = BTreeMap::new();
+    for start in 0..regions.len() as u32 {
+        if parts.root(start) != start {
+            continue;
+        }
+        let root = sets.root(2 * start);
+        known.insert(root, in_front(pool, facets, frames, sheets, &regions[start as usize])?);
+        let mut waiting = vec![root];
+        while let Some(root) = waiting.pop() {
+            let here = known[&root];
+            for &s in &sides[&root] {
+                let region = &regions[s as usize / 2];
+                let sign = if s % 2 == 0 { 1 } else { -1 };
+                let there: Turns = [0, 1].map(|k| here[k] + sign * region.turns[k]);
+                let other = sets.root(s ^ 1);
+                match known.get(&other) {
+                    Some(found) if *found != there => {
+                        return Err(ArrangeError::Inconsistent(region.inner));
+                    }
+                    Some(_) => {}
+                    None => {
+                        known.insert(other, there);
+                        waiting.push(other);
+                    }
+                }
+            }
+        }
+    }
+    Ok((0..regions.len() as u32)
+        .map(|r| [2 * r, 2 * r + 1].map(|s| known[&sets.root(s)]))
+        .collect())
+}
+
+/// The windings just in front of a region: what a ray from it leaves, less what it enters.
+fn in_front(
+    pool: &Pool,
+    facets: &[Facet],
+    frames: &[Frame],
+    sheets: &[Frame],
+    region: &Region,
+) -> Result<Turns, ArrangeError> {
+    let from = region.inner;
+    let frame = &sheets[region.sheet];
+    let size = pool.tolerance * 1e9;
+    'directions: for turn in 0..24 {
+        // Directions in front of the region that no drawing prefers.
+        let angle = 0.7 + 2.399_963 * f64::from(turn);
+        let lean = 0.37 + 0.02 * f64::from(turn);
+        let side = frame.lift([Real::cos(angle), Real::sin(angle)]) - frame.origin;
+        let direction = frame.normal + side * lean;
+        let mut turns = [0; 2];
+        for (facet, own) in facets.iter().zip(frames) {
+            let rate = own.normal.dot(direction);
+            if rate.abs() < 1e-9 {
+                continue;
+            }
+            let t = -own.height(from) / rate;
+            if t <= pool.tolerance {
+                continue;
+            }
+            let hit = from + direction * t;
+            let low = facet.bounds[0];
+            let high = facet.bounds[1];
+            let margin = 1e-6 * size;
+            if (0..3).any(|k| hit[k] < low[k] - margin || hit[k] > high[k] + margin) {
+                continue;
+            }
+            if near_border(pool, facet, hit, 1e-7 * size) {
+                continue 'directions;
+            }
+            let count = facet_winding(pool, facet, own, hit);
+            turns[facet.operand] += if rate > 0.0 { count } else { -count };
+        }
+        return Ok(turns);
+    }
+    Err(ArrangeError::Inconsistent(from))
+}
+
+fn near_border(pool: &Pool, facet: &Facet, p: Vec3, margin: f64) -> bool {
+    super::edges_of(facet).any(|[a, b]| {
+        let (a, b) = (pool.at(a), pool.at(b));
+        let d = b - a;
+        let t = ((p - a).dot(d) / d.norm_sq()).clamp(0.0, 1.0);
+        (a + d * t).distance(p) <= margin
+    })
+}

@@ -1,0 +1,547 @@
+//! Bodies made valid and combined: the arrangement of oriented plane facets.
+//!
+//! Facets of one or two closed surfaces divide each other into regions; every cell of space between
+//! regions has a number of windings per operand, counted across the regions (a facet passed against
+//! its outward normal adds one). A rule on these numbers says what is solid: `a > 0 || b > 0` is the
+//! union, `a > 0` alone makes one body of a surface that crosses itself, where a hole that has left
+//! the body winds -1 and so encloses nothing.
+//!
+//! `facets -> sheets -> segments -> split edges -> regions -> windings -> faces`
+//!
+//! Nothing here depends on the order of facets, and neighbours share vertices by number.
+
+mod cells;
+mod plane;
+mod pool;
+mod regions;
+
+use moldloft_num::Vec3;
+use plane::{Frame, common_segments, facet_winding};
+pub(super) use pool::overlapping;
+use pool::{Pool, bounds};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// The tag of an edge that no edge of the body stands for.
+pub const INNER: u32 = u32::MAX;
+
+/// An oriented plane polygon of an operand.
+#[derive(Clone, Debug)]
+pub struct Facet {
+    /// Its body: 0 or 1.
+    pub operand: usize,
+    /// Its face in that body.
+    pub tag: u32,
+    /// Whether that face is plane, so that parts of it may join with others of the same plane.
+    pub plane: bool,
+    /// The outward unit normal.
+    pub normal: Vec3,
+    /// Cycles of points, counter-clockwise about the normal; holes clockwise.
+    pub loops: Vec<Vec<u32>>,
+    /// The edge of the body that each side is part of, or [`INNER`].
+    pub edges: Vec<Vec<u32>>,
+    bounds: [Vec3; 2],
+}
+
+impl Facet {
+    /// A facet of a face.
+    pub fn new(
+        operand: usize,
+        tag: u32,
+        plane: bool,
+        normal: Vec3,
+        loops: Vec<Vec<u32>>,
+        edges: Vec<Vec<u32>>,
+    ) -> Facet {
+        Facet { operand, tag, plane, normal, loops, edges, bounds: [Vec3::zero(); 2] }
+    }
+}
+
+fn edges_of(facet: &Facet) -> impl Iterator<Item = [u32; 2]> + '_ {
+    facet.loops.iter().flat_map(|c| (0..c.len()).map(|k| [c[k], c[(k + 1) % c.len()]]))
+}
+
+/// A face of the result.
+#[derive(Clone, Debug)]
+pub struct ArrangedFace {
+    /// The faces that cover it: operand and tag; the first one gives its surface.
+    pub sources: Vec<(usize, u32)>,
+    /// Whether its outward side is the inside of the first source.
+    pub reversed: bool,
+    /// Whether it is plane.
+    pub plane: bool,
+    /// The outward normal of a plane one.
+    pub normal: Vec3,
+    /// Cycles of points with the face to their left seen from outside; of a plane face the outer one
+    /// comes first.
+    pub loops: Vec<Vec<u32>>,
+    /// Its plane parts, oriented alike, each with its holes.
+    pub parts: Vec<Vec<Vec<u32>>>,
+}
+
+/// The body of a rule.
+#[derive(Clone, Debug)]
+pub struct Arrangement {
+    /// All points; the given ones come first.
+    pub points: Vec<Vec3>,
+    /// The number of each given point.
+    pub given: Vec<u32>,
+    /// Its faces.
+    pub faces: Vec<ArrangedFace>,
+    /// The edges of the operands that each side is part of: operand and tag, by points in order.
+    pub edges: HashMap<(u32, u32), Vec<(usize, u32)>>,
+    /// Whether facets are left out, or a place has windings other than 0 and 1.
+    pub changed: bool,
+}
+
+/// Why there is no body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ArrangeError {
+    /// Windings differ on different ways: a surface is open or lies nearly in another at this place.
+    Inconsistent(Vec3),
+    /// There are more pieces than can be handled.
+    TooLarge,
+}
+
+/// A region between segments.
+struct Region {
+    sheet: usize,
+    loops: regions::Loops,
+    /// By operand, how often facets cover it, signed by the side of their normal.
+    turns: cells::Turns,
+    inner: Vec3,
+    /// The facets that cover it.
+    covers: Vec<usize>,
+}
+
+/// More regions than this are refused.
+const MAX_REGIONS: usize = 400_000;
+
+/// Makes the body in which `solid` holds for the numbers of windings. Facets of one operand are taken
+/// not to cross each other unless `crossing`.
+///
+/// # Errors
+/// [`ArrangeError`], with the place.
+pub fn arrange(
+    points: &[Vec3],
+    mut facets: Vec<Facet>,
+    crossing: bool,
+    solid: &dyn Fn([i32; 2]) -> bool,
+) -> Result<Arrangement, ArrangeError> {
+    let [low, high] = bounds(points.iter().copied());
+    let size = (high - low).norm();
+    let mut pool = Pool::new((1e-9 * size).max(f64::MIN_POSITIVE));
+    let given: Vec<u32> = points.iter().map(|&p| pool.add(p)).collect();
+    for facet in &mut facets {
+        renumber(facet, &given);
+        facet.bounds = bounds(facet.loops.iter().flatten().map(|&v| pool.at(v)));
+    }
+    facets.retain(|f| !f.loops.is_empty());
+    let frames: Vec<Frame> =
+        facets.iter().map(|f| Frame::new(f.normal, pool.at(f.loops[0][0]))).collect();
+    let (sheet_of, cuts) = meet(&pool, &facets, &frames, crossing);
+    // Sheets: facets of one plane that touch.
+    let mut sheets: Vec<Frame> = Vec::new();
+    let mut members: Vec<Vec<usize>> = Vec::new();
+    let mut number: BTreeMap<usize, usize> = BTreeMap::new();
+    for (k, &root) in sheet_of.iter().enumerate() {
+        let s = *number.entry(root).or_insert_with(|| {
+            sheets.push(frames[k]);
+            members.push(Vec::new());
+            sheets.len() - 1
+        });
+        members[s].push(k);
+    }
+    // All segments of each sheet, with the places where they cross.
+    let mut segments: Vec<BTreeSet<(u32, u32)>> = Vec::with_capacity(sheets.len());
+    for own in &members {
+        let mut set: BTreeSet<(u32, u32)> = BTreeSet::new();
+        let mut alone = own.len() == 1 && !crossing;
+        for &f in own {
+            set.extend(edges_of(&facets[f]).map(|[a, b]| (a.min(b), a.max(b))));
+            for [p, q] in cuts.get(&f).into_iter().flatten() {
+                let (a, b) = (pool.add(*p), pool.add(*q));
+                if a != b {
+                    alone = false;
+                    set.insert((a.min(b), a.max(b)));
+                }
+            }
+        }
+        if !alone {
+            cross(&mut pool, &set);
+        }
+        segments.push(set);
+    }
+    let chains = split(&pool, segments.iter().flatten().copied());
+    let mut edges: HashMap<(u32, u32), Vec<(usize, u32)>> = HashMap::new();
+    for facet in &facets {
+        for (cycle, tags) in facet.loops.iter().zip(&facet.edges) {
+            for k in 0..cycle.len() {
+                if tags[k] == INNER {
+                    continue;
+                }
+                let (a, b) = (cycle[k], cycle[(k + 1) % cycle.len()]);
+                for pair in chain_of(&chains, a, b).windows(2) {
+                    let list =
+                        edges.entry((pair[0].min(pair[1]), pair[0].max(pair[1]))).or_default();
+                    if !list.contains(&(facet.operand, tags[k])) {
+                        list.push((facet.operand, tags[k]));
+                    }
+                }
+            }
+        }
+    }
+    let (found, mut changed) =
+        all_regions(&pool, &facets, &frames, &sheets, &members, &segments, &chains)?;
+    let turns = cells::windings(&pool, &facets, &frames, &sheets, &found)?;
+    let kept: Vec<(usize, bool)> = (turns.iter().enumerate())
+        .filter_map(|(r, [front, back])| {
+            changed |= front.iter().chain(back).any(|w| !(0..=1).contains(w));
+            match (solid(*front), solid(*back)) {
+                (false, true) => Some((r, true)),
+                (true, false) => Some((r, false)),
+                _ => {
+                    changed = true;
+                    None
+                }
+            }
+        })
+        .collect();
+    let faces = join(&pool, &facets, &frames, &sheets, &found, &kept);
+    Ok(Arrangement { points: pool.points, given, faces, edges, changed })
+}
+
+/// Numbers of the pool in place of those given; sides of no length are left out.
+fn renumber(facet: &mut Facet, given: &[u32]) {
+    for (cycle, tags) in facet.loops.iter_mut().zip(&mut facet.edges) {
+        cycle.iter_mut().for_each(|v| *v = given[*v as usize]);
+        let mut k = 0;
+        while k < cycle.len() && cycle.len() > 1 {
+            if cycle[k] == cycle[(k + 1) % cycle.len()] {
+                cycle.remove(k);
+                tags.remove(k);
+            } else {
+                k += 1;
+            }
+        }
+    }
+    let fine: Vec<bool> = facet.loops.iter().map(|c| c.len() >= 3).collect();
+    let mut keep = fine.iter();
+    facet.loops.retain(|_| *keep.next().unwrap_or(&false));
+    let mut keep = fine.iter();
+    facet.edges.retain(|_| *keep.next().unwrap_or(&false));
+}
+
+type Cuts = BTreeMap<usize, Vec<[Vec3; 2]>>;
+
+/// Which facets lie in one plane and touch (by the lowest of them), and the segments in which others
+/// meet.
+fn meet(pool: &Pool, facets: &[Facet], frames: &[Frame], crossing: bool) -> (Vec<usize>, Cuts) {
+    let boxes: Vec<[Vec3; 2]> = facets.iter().map(|f| f.bounds).collect();
+    let mut sheet: Vec<usize> = (0..facets.len()).collect();
+    fn root(sheet: &mut [usize], mut k: usize) -> usize {
+        while sheet[k] != k {
+            sheet[k] = sheet[sheet[k]];
+            k = sheet[k];
+        }
+        k
+    }
+    let mut cuts = Cuts::new();
+    let wide = 4.0 * pool.tolerance;
+    overlapping(&boxes, pool.tolerance, usize::MAX, |i, j| {
+        let (a, b) = (&facets[i], &facets[j]);
+        if a.operand == b.operand && !crossing {
+            return;
+        }
+        let flat = |f: &Facet, frame: &Frame| {
+            f.loops.iter().flatten().all(|&v| frame.height(pool.at(v)).abs() <= wide)
+        };
+        if flat(a, &frames[j]) && flat(b, &frames[i]) {
+            let (x, y) = (root(&mut sheet, i), root(&mut sheet, j));
+            sheet[x.max(y)] = x.min(y);
+            return;
+        }
+        // Two triangles or convex quads of one surface meet in the edge they share and nowhere else.
+        let side = |f: &Facet, frame: &Frame| {
+            let heights = f.loops.iter().flatten().map(|&v| frame.height(pool.at(v)));
+            let (low, high) = heights.fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
+            low >= -pool.tolerance || high <= pool.tolerance
+        };
+        if a.operand == b.operand && side(a, &frames[j]) && side(b, &frames[i]) && shares(a, b) {
+            return;
+        }
+        for [p, q] in common_segments(pool, [a, b], [&frames[i], &frames[j]]) {
+            cuts.entry(i).or_default().push([p, q]);
+            cuts.entry(j).or_default().push([p, q]);
+        }
+    });
+    let sheet = (0..facets.len()).map(|k| root(&mut sheet, k)).collect();
+    (sheet, cuts)
+}
+
+fn shares(a: &Facet, b: &Facet) -> bool {
+    edges_of(a).any(|[p, q]| edges_of(b).any(|e| e == [q, p]))
+}
+
+/// Adds the places where segments of a plane cross inside both.
+fn cross(pool: &mut Pool, set: &BTreeSet<(u32, u32)>) {
+    let list: Vec<(u32, u32)> = set.iter().copied().collect();
+    let boxes: Vec<[Vec3; 2]> =
+        list.iter().map(|&(a, b)| bounds([pool.at(a), pool.at(b)].into_iter())).collect();
+    let mut found = Vec::new();
+    overlapping(&boxes, pool.tolerance, usize::MAX, |i, j| {
+        let ((a, b), (c, d)) = (list[i], list[j]);
+        if a == c || a == d || b == c || b == d {
+            return;
+        }
+        let (p, r) = (pool.at(a), pool.at(c));
+        let (d, e, w) = (pool.at(b) - p, pool.at(d) - r, p - r);
+        let (dd, de, ee) = (d.norm_sq(), d.dot(e), e.norm_sq());
+        let det = dd * ee - de * de;
+        if det <= 1e-20 * dd * ee {
+            return;
+        }
+        let t = (de * e.dot(w) - ee * d.dot(w)) / det;
+        let u = (dd * e.dot(w) - de * d.dot(w)) / det;
+        let (x, y) = (p + d * t, r + e * u);
+        if (0.0..=1.0).contains(&t)
+            && (0.0..=1.0).contains(&u)
+            && x.distance(y) <= 4.0 * pool.tolerance
+        {
+            found.push(x);
+        }
+    });
+    for x in found {
+        pool.add(x);
+    }
+}
+
+type Chains = HashMap<(u32, u32), Vec<u32>>;
+
+/// Segments with other points on them, as chains of points.
+fn split(pool: &Pool, segments: impl Iterator<Item = (u32, u32)>) -> Chains {
+    let [low, high] = bounds(pool.points.iter().copied());
+    let axis =
+        (0..3).max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b]))).unwrap_or(0);
+    let mut order: Vec<u32> = (0..pool.points.len() as u32).collect();
+    order.sort_by(|&a, &b| pool.at(a)[axis].total_cmp(&pool.at(b)[axis]).then(a.cmp(&b)));
+    let keys: Vec<f64> = order.iter().map(|&v| pool.at(v)[axis]).collect();
+    let mut chains = Chains::new();
+    for (a, b) in segments {
+        if chains.contains_key(&(a, b)) {
+            continue;
+        }
+        let (p, q) = (pool.at(a), pool.at(b));
+        let [low, high] = bounds([p, q].into_iter());
+        let margin = 2.0 * pool.tolerance;
+        let from = keys.partition_point(|&x| x < low[axis] - margin);
+        let to = keys.partition_point(|&x| x <= high[axis] + margin);
+        let d = q - p;
+        let length = d.norm();
+        let mut inner: Vec<(f64, u32)> = Vec::new();
+        for &v in &order[from..to] {
+            if v == a || v == b {
+                continue;
+            }
+            let x = pool.at(v);
+            if (0..3).any(|k| x[k] < low[k] - margin || x[k] > high[k] + margin) {
+                continue;
+            }
+            let t = (x - p).dot(d) / length;
+            if t > 0.0 && t < length && (p + d * (t / length)).distance(x) <= margin {
+                inner.push((t, v));
+            }
+        }
+        if !inner.is_empty() {
+            inner.sort_by(|x, y| x.0.total_cmp(&y.0));
+            let chain = std::iter::once(a).chain(inner.into_iter().map(|i| i.1)).chain([b]);
+            chains.insert((a, b), chain.collect());
+        }
+    }
+    chains
+}
+
+/// The points from `a` to `b`.
+fn chain_of(chains: &Chains, a: u32, b: u32) -> Vec<u32> {
+    match chains.get(&(a.min(b), a.max(b))) {
+        None => vec![a, b],
+        Some(chain) if a < b => chain.clone(),
+        Some(chain) => chain.iter().rev().copied().collect(),
+    }
+}
+
+/// The regions of all sheets, and whether facets cancel each other anywhere.
+fn all_regions(
+    pool: &Pool,
+    facets: &[Facet],
+    frames: &[Frame],
+    sheets: &[Frame],
+    members: &[Vec<usize>],
+    segments: &[BTreeSet<(u32, u32)>],
+    chains: &Chains,
+) -> Result<(Vec<Region>, bool), ArrangeError> {
+    let mut found = Vec::new();
+    let mut cancelled = false;
+    for (s, own) in members.iter().enumerate() {
+        let sheet = &sheets[s];
+        let mut graph: BTreeSet<(u32, u32)> = BTreeSet::new();
+        for &(a, b) in &segments[s] {
+            for pair in chain_of(chains, a, b).windows(2) {
+                graph.insert((pair[0].min(pair[1]), pair[0].max(pair[1])));
+            }
+        }
+        for loops in regions::regions(pool, sheet, &graph) {
+            let Some(inner) = regions::inner_point(pool, sheet, &loops) else { continue };
+            let inner = sheet.lift(inner);
+            let mut turns = [0; 2];
+            let mut covers = Vec::new();
+            for &f in own {
+                let facet = &facets[f];
+                let count = facet_winding(pool, facet, &frames[f], inner);
+                if count != 0 {
+                    let along = frames[f].normal.dot(sheet.normal) > 0.0;
+                    turns[facet.operand] += if along { count } else { -count };
+                    covers.push(f);
+                }
+            }
+            if turns == [0, 0] {
+                cancelled |= !covers.is_empty();
+            } else {
+                found.push(Region { sheet: s, loops, turns, inner, covers });
+            }
+        }
+        if found.len() > MAX_REGIONS {
+            return Err(ArrangeError::TooLarge);
+        }
+    }
+    Ok((found, cancelled))
+}
+
+/// Joins kept regions of one surface to faces. `kept` are regions with whether their outward side is
+/// that of their sheet's normal.
+fn join(
+    pool: &Pool,
+    facets: &[Facet],
+    frames: &[Frame],
+    sheets: &[Frame],
+    regions: &[Region],
+    kept: &[(usize, bool)],
+) -> Vec<ArrangedFace> {
+    // Plane pieces join within their sheet, others within their face.
+    let mut groups: BTreeMap<(bool, usize, u32, bool), Vec<usize>> = BTreeMap::new();
+    for (k, &(r, up)) in kept.iter().enumerate() {
+        let leader = leader(facets, &regions[r]);
+        let facet = &facets[leader];
+        let key = if facet.plane {
+            (true, regions[r].sheet, 0, up)
+        } else {
+            let along = frames[leader].normal.dot(sheets[regions[r].sheet].normal) > 0.0;
+            (false, facet.operand, facet.tag, along == up)
+        };
+        groups.entry(key).or_default().push(k);
+    }
+    let mut faces = Vec::new();
+    for (key, own) in groups {
+        // Half-edges of all pieces, oriented outward.
+        let mut halves: Vec<(u32, u32, usize)> = Vec::new();
+        let mut next: Vec<usize> = Vec::new();
+        let mut pieces: Vec<Vec<Vec<u32>>> = Vec::new();
+        for (piece, &k) in own.iter().enumerate() {
+            let (r, up) = kept[k];
+            let mut loops = regions[r].loops.clone();
+            if !up {
+                loops.iter_mut().for_each(|c| c.reverse());
+            }
+            for cycle in &loops {
+                let (first, n) = (halves.len(), cycle.len());
+                for i in 0..n {
+                    halves.push((cycle[i], cycle[(i + 1) % n], piece));
+                    next.push(first + (i + 1) % n);
+                }
+            }
+            pieces.push(loops);
+        }
+        let mut at: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
+        halves.iter().enumerate().for_each(|(h, e)| at.entry((e.0, e.1)).or_default().push(h));
+        let twin: Vec<Option<usize>> = halves
+            .iter()
+            .map(|&(a, b, _)| match (at[&(a, b)].as_slice(), at.get(&(b, a)).map(Vec::as_slice)) {
+                ([_], Some([t])) => Some(*t),
+                _ => None,
+            })
+            .collect();
+        let mut part: Vec<usize> = (0..pieces.len()).collect();
+        fn root(part: &mut [usize], mut k: usize) -> usize {
+            while part[k] != k {
+                part[k] = part[part[k]];
+                k = part[k];
+            }
+            k
+        }
+        for (h, t) in twin.iter().enumerate() {
+            if let Some(t) = *t {
+                let (x, y) = (root(&mut part, halves[h].2), root(&mut part, halves[t].2));
+                part[x.max(y)] = x.min(y);
+            }
+        }
+        let mut loops: BTreeMap<usize, Vec<Vec<u32>>> = BTreeMap::new();
+        let mut used = vec![false; halves.len()];
+        for start in 0..halves.len() {
+            if used[start] || twin[start].is_some() {
+                continue;
+            }
+            let (mut cycle, mut h) = (Vec::new(), start);
+            while !used[h] {
+                used[h] = true;
+                cycle.push(halves[h].0);
+                h = next[h];
+                while let Some(t) = twin[h] {
+                    h = next[t];
+                }
+            }
+            loops.entry(root(&mut part, halves[start].2)).or_default().push(cycle);
+        }
+        for (top, mut cycles) in loops {
+            let members: Vec<usize> =
+                (0..pieces.len()).filter(|&p| root(&mut part, p) == top).collect();
+            let mut sources: Vec<(usize, u32)> = Vec::new();
+            for &p in &members {
+                let region = &regions[kept[own[p]].0];
+                let first = leader(facets, region);
+                for &f in std::iter::once(&first).chain(&region.covers) {
+                    let source = (facets[f].operand, facets[f].tag);
+                    if !sources.contains(&source) {
+                        sources.push(source);
+                    }
+                }
+            }
+            let (r, up) = kept[own[members[0]]];
+            let sheet = &sheets[regions[r].sheet];
+            let normal = if up { sheet.normal } else { -sheet.normal };
+            let first = leader(facets, &regions[r]);
+            let reversed = frames[first].normal.dot(normal) < 0.0;
+            if key.0 {
+                let frame = Frame::new(normal, sheet.origin);
+                let size = |c: &Vec<u32>| {
+                    regions::area(&c.iter().map(|&v| frame.flat(pool.at(v))).collect::<Vec<_>>())
+                };
+                cycles.sort_by(|a, b| size(b).total_cmp(&size(a)));
+            }
+            let parts = members.iter().map(|&p| pieces[p].clone()).collect();
+            faces.push(ArrangedFace {
+                sources,
+                reversed,
+                plane: key.0,
+                normal,
+                loops: cycles,
+                parts,
+            });
+        }
+    }
+    faces
+}
+
+/// The facet that gives a region its surface: of the first operand if there is one.
+fn leader(facets: &[Facet], region: &Region) -> usize {
+    let key = |f: &&usize| (facets[**f].operand, facets[**f].tag);
+    region.covers.iter().min_by_key(key).copied().unwrap_or(0)
+}

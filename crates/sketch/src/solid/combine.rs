@@ -1,0 +1,693 @@
+//! Bodies combined, and one made valid: from facets back to exact faces, edges and vertices.
+//!
+//! The arrangement works on facets, so it only says which surfaces meet where. Here every vertex, edge
+//! and face of its result is placed again by the surfaces themselves, over any scalar: vertices are
+//! points of three surfaces, or of an edge and a surface; edges between planes are straight, others
+//! carry points at Gauss's nodes found by Newton's method, for integrals to rounding. Derivatives come
+//! from one more step in the scalar (implicit function theorem).
+
+use super::arrangement::{self, ArrangeError, Arrangement, Facet, INNER};
+use super::curve::{GAUSS, Piece};
+use super::surface::{Met, On, Surface, meet};
+use super::{Solid, SolidEdge, SolidFace, Trace, Trim, Vertex};
+use crate::PointId;
+use crate::solid::operation::Operation;
+use moldloft_mesh::triangulate;
+use moldloft_num::{Real, Vec3};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Why bodies cannot be combined.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CombineError {
+    /// A body is open, or surfaces nearly coincide, at this place.
+    Open(Vec3),
+    /// Round surfaces touch without crossing, or nearly so, at this place.
+    Touching(Vec3),
+    /// There are too many pieces.
+    TooLarge,
+    /// Nothing is left.
+    Empty,
+}
+
+impl From<ArrangeError> for CombineError {
+    fn from(e: ArrangeError) -> CombineError {
+        match e {
+            ArrangeError::Inconsistent(p) => CombineError::Open(p),
+            ArrangeError::TooLarge => CombineError::TooLarge,
+        }
+    }
+}
+
+/// The body of two by an operation.
+///
+/// # Errors
+/// [`CombineError`], with the place.
+pub fn combined<T: Real>(
+    bodies: [&Solid<T>; 2],
+    operation: Operation,
+) -> Result<Solid<T>, CombineError> {
+    let rule = move |w: [i32; 2]| operation.holds(w[0] > 0, w[1] > 0);
+    build(&bodies, false, &rule).map(|b| b.0)
+}
+
+/// The body that a surface encloses where it winds around once or more: for one that crosses itself.
+/// The flag says whether that is another than the surface bounds.
+///
+/// # Errors
+/// [`CombineError`], with the place.
+pub fn resolved<T: Real>(body: &Solid<T>) -> Result<(Solid<T>, bool), CombineError> {
+    build(&[body], true, &|w| w[0] > 0)
+}
+
+/// The union of any number of bodies, in one step.
+///
+/// # Errors
+/// [`CombineError`], with the place.
+pub fn united<T: Real>(bodies: &[&Solid<T>]) -> Result<Solid<T>, CombineError> {
+    build(bodies, true, &|w| w[0] > 0).map(|b| b.0)
+}
+
+/// What facets of the bodies stand for.
+struct Source<T> {
+    surfaces: Vec<Surface<T>>,
+    /// By edge: its curve where it has a closed form, and the surfaces beside it.
+    edges: Vec<(Option<Piece<T>>, Vec<u32>)>,
+}
+
+/// The facets of bodies, and what they stand for.
+struct Facetted<T> {
+    points: Vec<Vec3<T>>,
+    facets: Vec<Facet>,
+    sources: Vec<Source<T>>,
+    /// By point: whether it is a vertex of its body.
+    vertex: Vec<bool>,
+}
+
+fn build<T: Real>(
+    bodies: &[&Solid<T>],
+    crossing: bool,
+    rule: &dyn Fn([i32; 2]) -> bool,
+) -> Result<(Solid<T>, bool), CombineError> {
+    let mut all = Facetted {
+        points: Vec::new(),
+        facets: Vec::new(),
+        sources: Vec::new(),
+        vertex: Vec::new(),
+    };
+    let mut operands: Vec<Source<T>> = Vec::new();
+    for (k, body) in bodies.iter().enumerate() {
+        // United bodies are one operand; their faces and edges are numbered on.
+        let operand = if crossing { 0 } else { k };
+        if operand >= operands.len() {
+            operands.push(Source { surfaces: Vec::new(), edges: Vec::new() });
+        }
+        add_facets(body, operand, &mut operands[operand], &mut all);
+    }
+    all.sources = operands;
+    let plain: Vec<Vec3> = all.points.iter().map(|p| p.re()).collect();
+    let arranged = arrangement::arrange(&plain, std::mem::take(&mut all.facets), crossing, rule)?;
+    if arranged.faces.is_empty() {
+        return Err(CombineError::Empty);
+    }
+    let scale = {
+        let far = plain.iter().map(|p| p.distance(plain[0]));
+        far.fold(0.0, f64::max).max(f64::MIN_POSITIVE)
+    };
+    let body = Placing::new(&all, &arranged, scale).finish(bodies[0].flat)?;
+    Ok((body, arranged.changed))
+}
+
+/// The facets of a body: plane faces whole, round ones in strips.
+fn add_facets<T: Real>(
+    body: &Solid<T>,
+    operand: usize,
+    source: &mut Source<T>,
+    all: &mut Facetted<T>,
+) {
+    let first_point = all.points.len() as u32;
+    let first_edge = source.edges.len() as u32;
+    let outline = body.outline();
+    all.points.extend_from_slice(&outline.points);
+    all.vertex.extend((0..outline.points.len()).map(|k| k < body.vertices.len()));
+    for k in 0..body.edges.len() {
+        let edge = &body.edges[k];
+        let piece = if edge.trace.is_some() { None } else { Some(body.piece((k, true))) };
+        source.edges.push((piece, Vec::new()));
+    }
+    let size = outline.points.iter().map(|p| p.re().distance(outline.points[0].re()));
+    let size = size.fold(0.0, f64::max);
+    let mut put = |source: &mut Source<T>, surface: Surface<T>, facets: Vec<LoopsAndTags>| {
+        let tag = source.surfaces.len() as u32;
+        let plane = matches!(surface, Surface::Plane { .. });
+        source.surfaces.push(surface);
+        for (loops, tags) in facets {
+            for t in tags.iter().flatten().filter(|t| **t != INNER) {
+                let beside = &mut source.edges[(first_edge + t) as usize].1;
+                if !beside.contains(&tag) {
+                    beside.push(tag);
+                }
+            }
+            let at = |v: &u32| outline.points[*v as usize].re();
+            let normal = if let Surface::Plane { normal, .. } = surface {
+                Some(normal.re())
+            } else {
+                newell(&loops[0].iter().map(at).collect::<Vec<_>>()).normalized()
+            };
+            let Some(normal) = normal else { continue };
+            let shift = |c: Vec<u32>| c.into_iter().map(|v| v + first_point).collect();
+            let mark = |t: u32| if t == INNER { INNER } else { t + first_edge };
+            let tags = tags.into_iter().map(|c| c.into_iter().map(mark).collect()).collect();
+            let loops = loops.into_iter().map(shift).collect();
+            all.facets.push(Facet::new(operand, tag, plane, normal, loops, tags));
+        }
+    };
+    for f in 0..body.faces.len() {
+        let at = |v: u32| outline.points[v as usize];
+        if let Some(surface) = body.surface(f) {
+            put(source, surface, outline.strips(body, f));
+            continue;
+        }
+        let (loops, tags) = outline.loops(body, f);
+        let ring: Vec<Vec3<T>> = loops[0].iter().map(|&v| at(v)).collect();
+        let Some(normal) = newell(&ring).normalized() else { continue };
+        let off = |v: &u32| normal.re().dot(at(*v).re() - ring[0].re()).abs();
+        let warped = loops.iter().flatten().map(off).fold(0.0, f64::max) > 1e-10 * size;
+        if !warped {
+            put(source, Surface::Plane { at: ring[0], normal }, vec![(loops, tags)]);
+            continue;
+        }
+        // A face that is not plane is its triangles, each with a plane of its own.
+        let side: HashMap<(u32, u32), u32> = loops
+            .iter()
+            .zip(&tags)
+            .flat_map(|(c, t)| (0..c.len()).map(|k| ((c[k], c[(k + 1) % c.len()]), t[k])))
+            .collect();
+        for [a, b, c] in triangles_of(&loops, &|v| at(v).re(), normal.re()) {
+            let ring = [at(a), at(b), at(c)];
+            let Some(normal) = newell(&ring).normalized() else { continue };
+            let tags = [(a, b), (b, c), (c, a)].map(|e| *side.get(&e).unwrap_or(&INNER));
+            let facet = (vec![vec![a, b, c]], vec![tags.to_vec()]);
+            put(source, Surface::Plane { at: ring[0], normal }, vec![facet]);
+        }
+    }
+}
+
+/// The loops of a facet, and the edge of the body for each side.
+pub(super) type LoopsAndTags = (Vec<Vec<u32>>, Vec<Vec<u32>>);
+
+/// Newell's normal: twice the vector area.
+pub(super) fn newell<T: Real>(ring: &[Vec3<T>]) -> Vec3<T> {
+    let first = ring[0];
+    (1..ring.len().saturating_sub(1))
+        .fold(Vec3::zero(), |s, k| s + (ring[k] - first).cross(ring[k + 1] - first))
+}
+
+/// The triangles of loops of numbered points.
+pub(super) fn triangles_of(
+    loops: &[Vec<u32>],
+    at: &dyn Fn(u32) -> Vec3,
+    normal: Vec3,
+) -> Vec<[u32; 3]> {
+    if let [ring] = loops
+        && let &[a, b, c] = &ring[..]
+    {
+        return vec![[a, b, c]];
+    }
+    let used: Vec<u32> = loops.iter().flatten().copied().collect();
+    let points: Vec<Vec3> = used.iter().map(|&v| at(v)).collect();
+    // A point that two cycles share has the first of its places in both, so that it stays one.
+    let mut first: HashMap<u32, usize> = HashMap::new();
+    for (k, &v) in used.iter().enumerate() {
+        first.entry(v).or_insert(k);
+    }
+    let cycles: Vec<Vec<usize>> =
+        loops.iter().map(|c| c.iter().map(|v| first[v]).collect()).collect();
+    triangulate(&points, &cycles, normal).into_iter().map(|t| t.map(|k| used[k])).collect()
+}
+
+/// Two faces beside a side, and the edge of a body that it is part of.
+type Kind = (usize, usize, Option<(usize, u32)>);
+
+/// Placing of the result of an arrangement.
+struct Placing<'a, T> {
+    all: &'a Facetted<T>,
+    arranged: &'a Arrangement,
+    scale: f64,
+    /// The number of the given point of a vertex of a body, by point of the arrangement.
+    original: HashMap<u32, u32>,
+    /// By point of the arrangement, where it is when it is on an edge.
+    placed: HashMap<u32, Vec3<T>>,
+}
+
+impl<'a, T: Real> Placing<'a, T> {
+    fn new(all: &'a Facetted<T>, arranged: &'a Arrangement, scale: f64) -> Self {
+        let mut original = HashMap::new();
+        for (k, &v) in arranged.given.iter().enumerate() {
+            if all.vertex[k] {
+                original.entry(v).or_insert(k as u32);
+            }
+        }
+        Placing { all, arranged, scale, original, placed: HashMap::new() }
+    }
+
+    fn surface(&self, face: usize) -> &'a Surface<T> {
+        let (operand, tag) = self.arranged.faces[face].sources[0];
+        &self.all.sources[operand].surfaces[tag as usize]
+    }
+
+    fn finish(mut self, flat: bool) -> Result<Solid<T>, CombineError> {
+        let faces = &self.arranged.faces;
+        // The face to the left of each directed side.
+        let mut left: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
+        for (f, face) in faces.iter().enumerate() {
+            for c in &face.loops {
+                for k in 0..c.len() {
+                    left.entry((c[k], c[(k + 1) % c.len()])).or_default().push(f);
+                }
+            }
+        }
+        let kind = |a: u32, b: u32, own: usize| -> Kind {
+            // Of several faces at an edge, those of the same place in both lists are neighbours.
+            let place = left[&(a, b)].iter().position(|f| *f == own).unwrap_or(0);
+            let other = left.get(&(b, a)).and_then(|l| l.get(place).or(l.last()));
+            let other = other.copied().unwrap_or(own);
+            let round = !faces[own].plane || !faces[other].plane;
+            let edge = (self.arranged.edges.get(&(a.min(b), a.max(b)))).filter(|_| round).and_then(
+                |list| {
+                    let known =
+                        |e: &&(usize, u32)| self.all.sources[e.0].edges[e.1 as usize].0.is_some();
+                    list.iter().find(known).copied()
+                },
+            );
+            (own.min(other), own.max(other), edge)
+        };
+        let mut corners: BTreeSet<u32> = BTreeSet::new();
+        for (f, face) in faces.iter().enumerate() {
+            for c in &face.loops {
+                let n = c.len();
+                let kinds: Vec<Kind> = (0..n).map(|k| kind(c[k], c[(k + 1) % n], f)).collect();
+                let mut any = false;
+                for k in 0..n {
+                    if kinds[k] != kinds[(k + n - 1) % n] {
+                        corners.insert(c[k]);
+                        any = true;
+                    }
+                }
+                if !any {
+                    // A closed edge: its lowest point is its vertex.
+                    corners.extend(c.iter().min());
+                }
+            }
+        }
+        // What meets at each corner.
+        let mut around: BTreeMap<u32, (BTreeSet<usize>, BTreeSet<(usize, u32)>)> = BTreeMap::new();
+        for (f, face) in faces.iter().enumerate() {
+            for c in &face.loops {
+                let n = c.len();
+                for k in 0..n {
+                    let (a, b) = (c[k], c[(k + 1) % n]);
+                    let edge = kind(a, b, f).2;
+                    for v in [a, b].into_iter().filter(|v| corners.contains(v)) {
+                        let entry = around.entry(v).or_default();
+                        entry.0.insert(f);
+                        entry.1.extend(edge);
+                    }
+                }
+            }
+        }
+        for (&v, (own, edges)) in &around {
+            let at = self.corner(v, own, edges)?;
+            if let Some(at) = at {
+                self.placed.insert(v, at);
+            }
+        }
+        let mut number: HashMap<u32, usize> = HashMap::new();
+        let mut vertices: Vec<Vertex<T>> = Vec::new();
+        let mut edges: Vec<SolidEdge<T>> = Vec::new();
+        let mut chains: Vec<Vec<u32>> = Vec::new();
+        let mut known: HashMap<(u32, u32), usize> = HashMap::new();
+        let mut out: Vec<SolidFace> = Vec::new();
+        let mut trims: Vec<Trim<T>> = Vec::new();
+        for (f, face) in faces.iter().enumerate() {
+            let mut loops = Vec::new();
+            for c in &face.loops {
+                let n = c.len();
+                let first = (0..n).find(|&k| corners.contains(&c[k])).unwrap_or(0);
+                let mut cycle = Vec::new();
+                let mut from = 0;
+                while from < n {
+                    let mut chain = vec![c[(first + from) % n]];
+                    loop {
+                        from += 1;
+                        let v = c[(first + from) % n];
+                        chain.push(v);
+                        if from >= n || corners.contains(&v) {
+                            break;
+                        }
+                    }
+                    let pair = |a: u32, b: u32| (a.min(b), a.max(b));
+                    let m = chain.len();
+                    let key = pair(chain[0], chain[1]).min(pair(chain[m - 2], chain[m - 1]));
+                    if let Some(&e) = known.get(&key) {
+                        let forward = chains[e][0] == chain[0] && chains[e][1] == chain[1];
+                        cycle.push((e, forward));
+                        continue;
+                    }
+                    let kind = kind(chain[0], chain[1], f);
+                    let mut ends = [0; 2];
+                    for (end, v) in [chain[0], chain[m - 1]].into_iter().enumerate() {
+                        ends[end] = *number.entry(v).or_insert_with(|| {
+                            let at = self.placed.get(&v).copied();
+                            let at = at.unwrap_or(Vec3::lifted(self.arranged.points[v as usize]));
+                            vertices.push(Vertex { id: PointId(vertices.len() as u32 + 1), at });
+                            vertices.len() - 1
+                        });
+                    }
+                    let straight = faces[kind.0].plane && faces[kind.1].plane;
+                    let trace = if straight { None } else { Some(self.trace(&chain, kind)?) };
+                    if let Some(trace) = &trace {
+                        for (&v, at) in chain.iter().zip(&trace.points) {
+                            self.placed.entry(v).or_insert(*at);
+                        }
+                        // A closed edge has found the place of its vertex itself.
+                        if ends[0] == ends[1] {
+                            vertices[ends[0]].at = trace.points[0];
+                        }
+                    }
+                    known.insert(key, edges.len());
+                    cycle.push((edges.len(), true));
+                    edges.push(SolidEdge { ends, piece: None, curve: None, trace });
+                    chains.push(chain);
+                }
+                loops.push(cycle);
+            }
+            let trim = (!face.plane).then(|| {
+                trims.push(Trim { surface: *self.surface(f), face: f });
+                trims.len() - 1
+            });
+            out.push(SolidFace { id: None, ruled: false, loops, trim });
+        }
+        let facets = (!trims.is_empty()).then(|| self.facets(&chains, &number, &vertices));
+        let mut solid = Solid { vertices, edges, faces: out, flat, ..Solid::default() };
+        solid.trims = trims;
+        solid.facets = facets;
+        self.agrees(&solid)?;
+        Ok(solid)
+    }
+
+    /// Exact faces and facets must tell of one body: that they differ by more than chords do means that
+    /// an edge was followed to a wrong place.
+    fn agrees(&self, solid: &Solid<T>) -> Result<(), CombineError> {
+        let Some(facets) = &solid.facets else { return Ok(()) };
+        let origin = facets.points.first().map_or(Vec3::zero(), |p| p.re());
+        let (mut volume, mut area) = (0.0, 0.0);
+        for t in facets.faces.iter().flatten() {
+            let [a, b, c] = t.map(|k| facets.points[k as usize].re() - origin);
+            volume += a.dot(b.cross(c)) / 6.0;
+            area += (b - a).cross(c - a).norm() / 2.0;
+        }
+        let mass = solid.mass();
+        let far = facets.points.iter().map(|p| p.re().distance(origin)).fold(0.0, f64::max);
+        let off = (mass.volume.re() - volume).abs() > 2e-3 * area * far
+            || (mass.area.re() - area).abs() > 0.02 * area;
+        if off {
+            let place = solid.trims.first().and_then(|t| solid.faces[t.face].loops[0].first());
+            let place = place.map_or(origin, |h| solid.vertices[solid.edges[h.0].ends[0]].at.re());
+            return Err(CombineError::Touching(place));
+        }
+        Ok(())
+    }
+
+    /// The place of a corner; `None` when the points of its closed edge say.
+    fn corner(
+        &self,
+        v: u32,
+        faces: &BTreeSet<usize>,
+        edges: &BTreeSet<(usize, u32)>,
+    ) -> Result<Option<Vec3<T>>, CombineError> {
+        if let Some(&k) = self.original.get(&v) {
+            return Ok(Some(self.all.points[k as usize]));
+        }
+        let guess = self.arranged.points[v as usize];
+        let parameters = |s: &Surface<T>| match s {
+            Surface::Plane { .. } => [0.0; 2],
+            _ => s.parameters(guess),
+        };
+        // Every surface at the corner, with its normal there; planes of one position count once.
+        let mut surfaces: Vec<(&Surface<T>, Vec3, [f64; 2])> = Vec::new();
+        for &f in faces {
+            let s = self.surface(f);
+            let start = parameters(s);
+            let normal = match s {
+                Surface::Plane { normal, .. } => normal.re(),
+                _ => {
+                    let [_, du, dv] = s.jet(T::from(start[0]), T::from(start[1]));
+                    du.re().cross(dv.re()).normalized().unwrap_or_default()
+                }
+            };
+            surfaces.push((s, normal, start));
+        }
+        let mut best: Option<(f64, Vec<On<'_, T>>, Vec<[f64; 2]>)> = None;
+        for &(operand, tag) in edges {
+            let (Some(piece), beside) = &self.all.sources[operand].edges[tag as usize] else {
+                continue;
+            };
+            let s = along(piece, guess);
+            let direction = piece.velocity(T::from(s)).re().normalized().unwrap_or_default();
+            for (k, &f) in faces.iter().enumerate() {
+                let source = self.arranged.faces[f].sources[0];
+                if source.0 == operand && beside.contains(&source.1) {
+                    continue;
+                }
+                let (surface, normal, start) = surfaces[k];
+                // A little preferred: it holds where the faces beside the edge are tangent.
+                let rate = 1.5 * direction.dot(normal).abs();
+                if best.as_ref().is_none_or(|b| rate > b.0) {
+                    let on = vec![On::Curve(piece), On::Surface(surface)];
+                    best = Some((rate, on, vec![[s, 0.0], start]));
+                }
+            }
+        }
+        for i in 0..surfaces.len() {
+            for j in i + 1..surfaces.len() {
+                for k in j + 1..surfaces.len() {
+                    let (a, b, c) = (&surfaces[i], &surfaces[j], &surfaces[k]);
+                    let rate = a.1.dot(b.1.cross(c.1)).abs();
+                    if best.as_ref().is_none_or(|b| rate > b.0) {
+                        let on = [a, b, c].map(|s| On::Surface(s.0)).to_vec();
+                        best = Some((rate, on, vec![a.2, b.2, c.2]));
+                    }
+                }
+            }
+        }
+        match best {
+            Some((rate, on, start)) if rate > 1e-9 => {
+                let met = meet(&on, guess, &start, self.scale);
+                met.map(|m| Some(m.at)).ok_or(CombineError::Touching(guess))
+            }
+            // The vertex of a closed edge.
+            _ if faces.len() == 2 => Ok(None),
+            _ => Err(CombineError::Touching(guess)),
+        }
+    }
+
+    /// The points of an edge that is not straight, with their places on the round faces beside it.
+    fn trace(&self, chain: &[u32], kind: Kind) -> Result<Trace<T>, CombineError> {
+        let rough: Vec<Vec3> = chain.iter().map(|&v| self.arranged.points[v as usize]).collect();
+        let curve = kind.2.and_then(|(o, t)| self.all.sources[o].edges[t as usize].0.as_ref());
+        let pair = [self.surface(kind.0), self.surface(kind.1)];
+        let fixed: Vec<On<'_, T>> = match curve {
+            Some(piece) => vec![On::Curve(piece)],
+            None => pair.iter().map(|s| On::Surface(*s)).collect(),
+        };
+        let first = |p: Vec3| -> Vec<[f64; 2]> {
+            fixed
+                .iter()
+                .map(|o| match o {
+                    On::Surface(Surface::Plane { .. }) => [0.0; 2],
+                    On::Surface(s) => s.parameters(p),
+                    On::Curve(c) => [along(c, p), 0.0],
+                })
+                .collect()
+        };
+        let mut start = first(rough[0]);
+        // A plane across an edge may meet its surfaces elsewhere too.
+        let solve = |plane: &Surface<T>, guess: Vec3, reach: f64, start: &mut Vec<[f64; 2]>| {
+            let mut on = fixed.clone();
+            on.push(On::Surface(plane));
+            let from = |s: &Vec<[f64; 2]>| {
+                let mut s = s.clone();
+                s.push([0.0; 2]);
+                s
+            };
+            // Parameters may not leave the patch: a turned surface comes round again.
+            let own = |p: &[T; 2]| p.iter().all(|x| (-0.3..=1.3).contains(&x.re()));
+            let near =
+                |m: &Met<T>| m.at.re().distance(guess) <= reach && m.parameters.iter().all(own);
+            let met = meet(&on, guess, &from(start), self.scale)
+                .filter(near)
+                .or_else(|| meet(&on, guess, &from(&first(guess)), self.scale).filter(near));
+            let met = met.ok_or(CombineError::Touching(guess))?;
+            *start = met.parameters[..fixed.len()].iter().map(|p| p.map(Real::re)).collect();
+            Ok::<Met<T>, CombineError>(met)
+        };
+        let m = chain.len();
+        let closed = chain[0] == chain[m - 1];
+        let mut points: Vec<Vec3<T>> = Vec::with_capacity(m);
+        for k in 0..m {
+            if closed && k == m - 1 {
+                points.push(points[0]);
+                continue;
+            }
+            if let Some(at) = self.placed.get(&chain[k]) {
+                points.push(*at);
+                continue;
+            }
+            let before = if k > 0 { rough[k - 1] } else { rough[m - 2] };
+            let after = rough[(k + 1).min(m - 1)];
+            let normal = (after - before).normalized();
+            let normal = normal.ok_or(CombineError::Touching(rough[k]))?;
+            let plane = Surface::Plane { at: Vec3::lifted(rough[k]), normal: Vec3::lifted(normal) };
+            let reach = 0.5 * (after.distance(rough[k]) + before.distance(rough[k]));
+            points.push(solve(&plane, rough[k], reach, &mut start)?.at);
+        }
+        // Nodes between neighbouring points.
+        let round: Vec<usize> =
+            [kind.0, kind.1].into_iter().filter(|&f| !self.arranged.faces[f].plane).collect();
+        let mut nodes = Vec::new();
+        let mut places: Vec<Vec<[T; 3]>> = vec![Vec::new(); round.len()];
+        let mut at_round: Vec<Option<[f64; 2]>> = vec![None; round.len()];
+        for pair in points.windows(2) {
+            let step = pair[1] - pair[0];
+            let Some(normal) = step.re().normalized() else { continue };
+            let lifted = Vec3::lifted(normal);
+            let rate = lifted.dot(step);
+            for (x, w) in GAUSS {
+                let at = pair[0] + step * T::from(x);
+                let plane = Surface::Plane { at, normal: lifted };
+                let met = solve(&plane, at.re(), 0.5 * step.re().norm(), &mut start)?;
+                let by = met.moved * (rate * w);
+                nodes.push((met.at, by));
+                for (r, &f) in round.iter().enumerate() {
+                    let surface = self.surface(f);
+                    let own = fixed.iter().position(
+                        |o| matches!(o, On::Surface(s) if std::ptr::eq::<Surface<T>>(*s, surface)),
+                    );
+                    let place = match own {
+                        Some(k) => {
+                            let [u, v] = met.parameters[k];
+                            [u, v, met.moved_parameters[k][0] * (rate * w)]
+                        }
+                        None => {
+                            let from = at_round[r];
+                            let place = located(surface, met.at, by, from);
+                            let place = place.ok_or(CombineError::Touching(met.at.re()))?;
+                            at_round[r] = Some([place[0].re(), place[1].re()]);
+                            place
+                        }
+                    };
+                    places[r].push(place);
+                }
+            }
+        }
+        Ok(Trace { points, nodes, places: round.into_iter().zip(places).collect() })
+    }
+
+    /// The mesh: parts of faces with their points where the exact edges run.
+    fn facets(
+        &self,
+        chains: &[Vec<u32>],
+        number: &HashMap<u32, usize>,
+        vertices: &[Vertex<T>],
+    ) -> super::Facets<T> {
+        let mut points: Vec<Vec3<T>> = vertices.iter().map(|v| v.at).collect();
+        let mut index: HashMap<u32, u32> = number.iter().map(|(v, k)| (*v, *k as u32)).collect();
+        let given: HashMap<u32, usize> = {
+            let pairs = self.arranged.given.iter().enumerate().rev();
+            pairs.map(|(k, v)| (*v, k)).collect()
+        };
+        let mut name = |v: u32| -> u32 {
+            *index.entry(v).or_insert_with(|| {
+                let at = match (self.placed.get(&v), given.get(&v)) {
+                    (Some(at), _) => *at,
+                    (None, Some(&k)) => self.all.points[k],
+                    _ => Vec3::lifted(self.arranged.points[v as usize]),
+                };
+                points.push(at);
+                points.len() as u32 - 1
+            })
+        };
+        let chains: Vec<Vec<u32>> =
+            chains.iter().map(|c| c.iter().map(|&v| name(v)).collect()).collect();
+        let mut faces: Vec<Vec<[u32; 3]>> = Vec::new();
+        for face in &self.arranged.faces {
+            let mut triangles = Vec::new();
+            for part in &face.parts {
+                let flat = |v: u32| self.arranged.points[v as usize];
+                let ring: Vec<Vec3> = part[0].iter().map(|&v| flat(v)).collect();
+                let normal = newell(&ring);
+                let own = triangles_of(part, &flat, normal);
+                triangles.extend(own.into_iter().map(|t| t.map(&mut name)));
+            }
+            faces.push(triangles);
+        }
+        super::Facets { points, faces, chains }
+    }
+}
+
+/// The parameter of the point of a piece nearest to `p`.
+fn along<T: Real>(piece: &Piece<T>, p: Vec3) -> f64 {
+    let at = |s: f64| piece.at(T::from(s)).re();
+    let mut s = (0..=16)
+        .map(|k| f64::from(k) / 16.0)
+        .min_by(|a, b| at(*a).distance(p).total_cmp(&at(*b).distance(p)))
+        .unwrap_or(0.5);
+    for _ in 0..12 {
+        let d = piece.velocity(T::from(s)).re();
+        let step = d.dot(p - at(s)) / d.norm_sq();
+        if !step.is_finite() {
+            break;
+        }
+        s = (s + step).clamp(-0.1, 1.1);
+    }
+    s
+}
+
+/// The place of a point on a surface: u, v, and the change of u as the point moves by `by`.
+pub(super) fn located<T: Real>(
+    surface: &Surface<T>,
+    p: Vec3<T>,
+    by: Vec3<T>,
+    from: Option<[f64; 2]>,
+) -> Option<[T; 3]> {
+    let mut at = from.unwrap_or_else(|| surface.parameters(p.re()));
+    for _ in 0..8 {
+        let [s, du, dv] = surface.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
+        let r = p.re() - s;
+        let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
+        let det = a * c - b * b;
+        if det <= 1e-20 * a * c {
+            break;
+        }
+        let (x, y) = (du.dot(r), dv.dot(r));
+        let step = [(c * x - b * y) / det, (a * y - b * x) / det];
+        at = [at[0] + step[0], at[1] + step[1]];
+        if step[0].abs().max(step[1].abs()) < 1e-15 {
+            break;
+        }
+    }
+    let lifted = at.map(T::from);
+    let [s, du, dv] = surface.jet(lifted[0], lifted[1]);
+    let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
+    let det = a * c - b * b;
+    if det.re() <= 0.0 {
+        // At a pole: the direction does not matter there.
+        return Some([lifted[0], lifted[1], T::zero()]);
+    }
+    let step = |r: Vec3<T>| {
+        let (x, y) = (du.dot(r), dv.dot(r));
+        [(c * x - b * y) / det, (a * y - b * x) / det]
+    };
+    let last = step(p - s);
+    Some([lifted[0] + last[0], lifted[1] + last[1], step(by)[0]])
+}

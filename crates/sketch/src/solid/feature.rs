@@ -1,0 +1,254 @@
+//! Features: objects that are made of others and computed again with every change.
+
+use super::combine::{CombineError, combined, united};
+use super::place::Similarity;
+use super::turn::turned;
+use super::validity::{Flaw, valid};
+use super::{Solid, unchecked};
+use crate::solid::operation::Operation;
+use crate::{Axis, Estimate, Expr, Layout, Object, Planes, PointId, Variable, solve};
+use moldloft_num::{Real, Vec3};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A change of place.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Placement {
+    /// By a vector.
+    Move([Expr; 3]),
+    /// About an axis through a point, right-handed, in degrees.
+    Rotate {
+        /// Direction of the axis.
+        axis: Axis,
+        /// A point of it.
+        through: [Expr; 3],
+        /// The angle.
+        angle: Expr,
+    },
+    /// In a plane perpendicular to an axis.
+    Mirror {
+        /// The axis.
+        axis: Axis,
+        /// The coordinate of the plane.
+        at: Expr,
+    },
+    /// About the origin.
+    Scale(Expr),
+}
+
+/// How a feature is made of its operands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FeatureKind {
+    /// Two bodies combined.
+    Boolean(Operation),
+    /// A section turned about the line between two of its points, by an angle in degrees.
+    Revolve {
+        /// The points.
+        line: [PointId; 2],
+        /// The angle.
+        angle: Expr,
+    },
+    /// One body in another place.
+    Place(Placement),
+    /// Copies, each placed as the next from the last, united.
+    Pattern {
+        /// From one copy to the next.
+        step: Placement,
+        /// How many there are.
+        count: u32,
+    },
+}
+
+/// An object that a feature is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Operand {
+    /// The object.
+    pub object: Arc<Object>,
+    /// What its names begin with in the feature.
+    pub prefix: String,
+}
+
+/// An object made of others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feature {
+    /// How.
+    pub kind: FeatureKind,
+    /// Of what.
+    pub operands: Vec<Operand>,
+}
+
+/// Why an object has no body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoBody {
+    /// It has no faces, or misses dimensions.
+    Unfinished,
+    /// It is not valid.
+    Flaw(Flaw),
+    /// The operands cannot be combined.
+    Combine(CombineError),
+    /// An operand has none.
+    Operand {
+        /// Its name.
+        name: String,
+        /// Why.
+        why: Box<NoBody>,
+    },
+    /// A number of the feature has no value.
+    NoValue(String),
+    /// The section lies on both sides of the line it is turned about, or the line has no length.
+    Axis,
+}
+
+/// The valid body of an object.
+///
+/// # Errors
+/// [`NoBody`], with the place.
+pub fn body<T: Real>(
+    object: &Object,
+    planes: &Planes,
+    layout: &Layout<T>,
+) -> Result<Solid<T>, NoBody> {
+    match &object.feature {
+        Some(feature) => feature.body(layout),
+        None => {
+            let body = unchecked(object, planes, layout).ok_or(NoBody::Unfinished)?;
+            valid(body).map_err(NoBody::Flaw)
+        }
+    }
+}
+
+impl Feature {
+    /// An object of this feature. The numbers of its operands become its variables.
+    pub fn object(self, name: &str) -> Object {
+        let mut out = Object::new(name, None);
+        if let Some(first) = self.operands.first() {
+            out.units.clone_from(&first.object.units);
+            let drawing = out.draw();
+            drawing.projection = first.object.drawing.projection;
+            drawing.letters = first.object.drawing.letters;
+            if first.object.drawing.section.is_some() {
+                drawing.projection = crate::Projection::default();
+            }
+        }
+        for operand in &self.operands {
+            let inner = &operand.object;
+            let named = |n: &str| inner.has_name(n).then(|| format!("{}{n}", operand.prefix));
+            let variables = inner.variables.values().map(|v| (&v.name, &v.value, v.range));
+            let dimensions = (inner.dimensions.values())
+                .filter(|d| d.role == crate::Role::Driving)
+                .filter_map(|d| Some((&d.name, d.value.as_ref()?, d.range)));
+            for (name, value, range) in variables.chain(dimensions) {
+                let name = format!("{}{name}", operand.prefix);
+                let value = value.renamed(&named);
+                let key = name.to_ascii_lowercase();
+                out.variables.insert(key, Variable { name, value, range });
+            }
+        }
+        out.feature = Some(Arc::new(self));
+        out
+    }
+
+    /// The operands of objects, with the prefixes that keep their names apart.
+    pub fn operands(objects: &[&Object]) -> Vec<Operand> {
+        let mut taken: Vec<String> = Vec::new();
+        objects
+            .iter()
+            .map(|&object| {
+                // The names of a feature are told apart already.
+                let names = || object.variables.keys().chain(object.dimensions.keys());
+                let plain = object.feature.is_some() && !names().any(|n| taken.contains(n));
+                let prefix = if plain {
+                    String::new()
+                } else {
+                    format!("{}.", crate::solid::merge::identifier(&object.name))
+                };
+                taken.extend(names().map(|n| format!("{}{n}", prefix.to_ascii_lowercase())));
+                Operand { object: Arc::new(object.clone()), prefix }
+            })
+            .collect()
+    }
+
+    fn body<T: Real>(&self, layout: &Layout<T>) -> Result<Solid<T>, NoBody> {
+        let value = |e: &Expr| {
+            let x = e.eval(&|n| layout.values.get(n).copied());
+            x.map_err(|no| NoBody::NoValue(no.name))
+        };
+        let mut bodies = Vec::new();
+        let mut laid = Vec::new();
+        for operand in &self.operands {
+            let inner = &operand.object;
+            let prefix = operand.prefix.to_ascii_lowercase();
+            let own: BTreeMap<String, T> = (layout.values.iter())
+                .filter_map(|(k, v)| Some((k.strip_prefix(&prefix)?.to_owned(), *v)))
+                .collect();
+            let planes = Planes::of(&inner.drawing);
+            let estimate =
+                || Estimate::of(&inner.drawing, &planes, inner.reference().map(|r| r.point)?);
+            let own = solve(inner, &planes, &own, &estimate);
+            let name = inner.name.clone();
+            let body = body(inner, &planes, &own)
+                .map_err(|why| NoBody::Operand { name, why: Box::new(why) })?;
+            bodies.push(body);
+            laid.push((planes, own));
+        }
+        match (&self.kind, &bodies[..]) {
+            (FeatureKind::Boolean(operation), [a, b]) => {
+                combined([a, b], *operation).map_err(NoBody::Combine)
+            }
+            (FeatureKind::Revolve { line, angle }, [section]) => {
+                let (planes, own) = &laid[0];
+                let ends = line.map(|p| own.point(planes, p));
+                let [Some(p), Some(q)] = ends else { return Err(NoBody::Unfinished) };
+                let angle = value(angle)? * (std::f64::consts::PI / 180.0);
+                one_side(section, [p.re(), q.re()]).then_some(()).ok_or(NoBody::Axis)?;
+                let body = turned(section, [p, q], angle).ok_or(NoBody::Axis)?;
+                valid(body).map_err(NoBody::Flaw)
+            }
+            (FeatureKind::Place(place), [body]) => Ok(body.placed(&place.similarity(&value)?)),
+            (FeatureKind::Pattern { step, count }, [body]) => {
+                let step = step.similarity(&value)?;
+                let mut place = Similarity::identity();
+                let mut copies = vec![body.clone()];
+                for _ in 1..*count {
+                    place = place.then(&step);
+                    copies.push(body.placed(&place));
+                }
+                let all: Vec<&Solid<T>> = copies.iter().collect();
+                united(&all).map_err(NoBody::Combine)
+            }
+            _ => Err(NoBody::Unfinished),
+        }
+    }
+}
+
+impl Placement {
+    fn similarity<T: Real>(
+        &self,
+        value: &dyn Fn(&Expr) -> Result<T, NoBody>,
+    ) -> Result<Similarity<T>, NoBody> {
+        let vector = |v: &[Expr; 3]| -> Result<Vec3<T>, NoBody> {
+            Ok(Vec3::new(value(&v[0])?, value(&v[1])?, value(&v[2])?))
+        };
+        Ok(match self {
+            Placement::Move(by) => Similarity::moved(vector(by)?),
+            Placement::Rotate { axis, through, angle } => {
+                let angle = value(angle)? * (std::f64::consts::PI / 180.0);
+                Similarity::turned(axis.index(), vector(through)?, angle)
+            }
+            Placement::Mirror { axis, at } => Similarity::mirrored(axis.index(), value(at)?),
+            Placement::Scale(factor) => Similarity::scaled(value(factor)?),
+        })
+    }
+}
+
+/// Whether a section lies on one side of a line.
+fn one_side<T: Real>(section: &Solid<T>, [p, q]: [Vec3; 2]) -> bool {
+    let Some(direction) = (q - p).normalized() else { return false };
+    let mesh = section.faceted();
+    let arms: Vec<Vec3> = mesh.positions().iter().map(|x| (x.re() - p).cross(direction)).collect();
+    let Some(farthest) = arms.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else {
+        return false;
+    };
+    let size = farthest.norm_sq();
+    size > 0.0 && arms.iter().all(|a| a.dot(*farthest) >= -1e-9 * size)
+}

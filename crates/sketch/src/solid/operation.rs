@@ -1,0 +1,31 @@
+//! Operations on two bodies.
+
+/// What to make of two bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// In one of them.
+    Union,
+    /// In the first and not in the second.
+    Cut,
+    /// In both.
+    Common,
+}
+
+impl Operation {
+    /// The command word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Operation::Union => "UNION",
+            Operation::Cut => "CUT",
+            Operation::Common => "COMMON",
+        }
+    }
+
+    pub(crate) fn holds(self, a: bool, b: bool) -> bool {
+        match self {
+            Operation::Union => a || b,
+            Operation::Cut => a && !b,
+            Operation::Common => a && b,
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Surfaces of faces, and points where surfaces and curves meet, with derivatives.
+
+use crate::solid::curve::{GAUSS, Piece};
+use moldloft_num::{Real, Vec3, solve_dense};
+
+/// The surface of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface<T> {
+    /// The plane through a point with a normal, outward where a face has it.
+    Plane {
+        /// A point of it.
+        at: Vec3<T>,
+        /// Unit normal.
+        normal: Vec3<T>,
+    },
+    /// Straight lines from `near(u)` to `far(u)`.
+    Ruled {
+        /// The curve v = 0.
+        near: Piece<T>,
+        /// The curve v = 1.
+        far: Piece<T>,
+    },
+    /// A profile turned about an axis, right-handed, by u `sweep`.
+    Turned {
+        /// A point of the axis.
+        centre: Vec3<T>,
+        /// Its unit direction.
+        axis: Vec3<T>,
+        /// The curve u = 0, over v.
+        profile: Piece<T>,
+        /// The angle from u = 0 to u = 1, in radians.
+        sweep: T,
+    },
+}
+
+/// A point of a surface with the derivatives by u and v.
+pub(crate) type Jet<T> = [Vec3<T>; 3];
+
+impl<T: Real> Surface<T> {
+    /// The point (u, v) with derivatives. Planes have no parameters.
+    pub(crate) fn jet(&self, u: T, v: T) -> Jet<T> {
+        match self {
+            Surface::Plane { at, .. } => [*at, Vec3::zero(), Vec3::zero()],
+            Surface::Ruled { near, far } => {
+                let (a, b) = (near.at(u), far.at(u));
+                [a.lerp(b, v), near.velocity(u).lerp(far.velocity(u), v), b - a]
+            }
+            Surface::Turned { centre, axis, profile, sweep } => {
+                let (c, s) = ((u * *sweep).cos(), (u * *sweep).sin());
+                let turned =
+                    |d: Vec3<T>| d * c + axis.cross(d) * s + *axis * (axis.dot(d) * (-c + 1.0));
+                let arm = turned(profile.at(v) - *centre);
+                [*centre + arm, axis.cross(arm) * *sweep, turned(profile.velocity(v))]
+            }
+        }
+    }
+
+    /// The parameters near a point, by a grid and Gauss-Newton steps. For points on the surface.
+    pub(crate) fn parameters(&self, p: Vec3) -> [f64; 2] {
+        let mut best = (f64::INFINITY, [0.5; 2]);
+        for i in 0..=8 {
+            for j in 0..=8 {
+                let (u, v) = (f64::from(i) / 8.0, f64::from(j) / 8.0);
+                let d = self.jet(T::from(u), T::from(v))[0].re().distance(p);
+                if d < best.0 {
+                    best = (d, [u, v]);
+                }
+            }
+        }
+        let mut at = best.1;
+        for _ in 0..12 {
+            let [s, du, dv] = self.jet(T::from(at[0]), T::from(at[1])).map(Vec3::re);
+            let r = p - s;
+            let (a, b, c) = (du.norm_sq(), du.dot(dv), dv.norm_sq());
+            let (x, y) = (du.dot(r), dv.dot(r));
+            let det = a * c - b * b;
+            if det <= 1e-14 * a * c || det == 0.0 {
+                break;
+            }
+            at[0] = (at[0] + (c * x - b * y) / det).clamp(-0.1, 1.1);
+            at[1] = (at[1] + (a * y - b * x) / det).clamp(-0.1, 1.1);
+        }
+        at
+    }
+
+    /// The end of v where the surface shrinks to a point, 0 if there is none: where integrals along v
+    /// start.
+    fn pole(&self) -> f64 {
+        let thin = |v: f64| {
+            let size = |u: f64| self.jet(T::from(u), T::from(v))[1].re().norm();
+            size(0.1) + size(0.6)
+        };
+        let (near, middle, far) = (thin(0.0), thin(0.5), thin(1.0));
+        if far <= 1e-9 * middle && far < near { 1.0 } else { 0.0 }
+    }
+
+    /// Calls `add` with points and vector areas so that their sums are the integrals over the part of
+    /// the surface inside a closed curve: `nodes` are its (u, v, du) with weights in du; the third
+    /// argument is the sign of the element. By Green's
+    /// theorem, with integrals along v by Gauss's rule.
+    pub(crate) fn sweep(&self, nodes: &[[T; 3]], mut add: impl FnMut(Vec3<T>, Vec3<T>, T)) {
+        let start = T::from(self.pole());
+        let parts = if matches!(self, Surface::Ruled { .. }) { 1 } else { 3 };
+        for &[u, v, du] in nodes {
+            let length = v - start;
+            for part in 0..parts {
+                for (x, w) in GAUSS {
+                    let x = (f64::from(part) + x) / f64::from(parts);
+                    let [p, a, b] = self.jet(u, start + length * x);
+                    let weight = -(length * du) * (w / f64::from(parts));
+                    let sign = T::from(if weight.re() < 0.0 { -1.0 } else { 1.0 });
+                    add(p, a.cross(b) * weight, sign);
+                }
+            }
+        }
+    }
+}
+
+/// Something that a point lies on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum On<'a, T> {
+    /// A surface.
+    Surface(&'a Surface<T>),
+    /// A curve.
+    Curve(&'a Piece<T>),
+}
+
+/// A point with its parameters on what it lies on.
+#[derive(Clone, Debug)]
+pub(crate) struct Met<T> {
+    pub at: Vec3<T>,
+    /// By constraint: u and v, or s and nothing.
+    pub parameters: Vec<[T; 2]>,
+    /// The derivatives of point and parameters as the last plane of the constraints moves along its
+    /// normal by one.
+    pub moved: Vec3<T>,
+    pub moved_parameters: Vec<[T; 2]>,
+}
+
+/// The point near `guess` that lies on all of `on`, which must leave it no freedom. `None` when Newton's
+/// method does not arrive, as where surfaces touch.
+pub(crate) fn meet<T: Real>(
+    on: &[On<'_, T>],
+    guess: Vec3,
+    start: &[[f64; 2]],
+    scale: f64,
+) -> Option<Met<T>> {
+    let unknowns = |o: &On<'_, T>| match o {
+        On::Surface(Surface::Plane { .. }) => 0,
+        On::Surface(_) => 2,
+        On::Curve(_) => 1,
+    };
+    let n = 3 + on.iter().map(unknowns).sum::<usize>();
+    let rows: usize = on.iter().map(|o| if unknowns(o) == 0 { 1 } else { 3 }).sum();
+    if n != rows {
+        return None;
+    }
+    let mut x: Vec<f64> = guess.to_array().to_vec();
+    for (o, s) in on.iter().zip(start) {
+        x.extend_from_slice(&s[..unknowns(o)]);
+    }
+    let system = |x: &[T]| -> (Vec<T>, Vec<T>) {
+        let (mut matrix, mut right) = (vec![T::zero(); n * n], vec![T::zero(); n]);
+        let p = Vec3::new(x[0], x[1], x[2]);
+        let (mut row, mut column) = (0, 3);
+        for o in on {
+            match o {
+                On::Surface(Surface::Plane { at, normal }) => {
+                    right[row] = normal.dot(p - *at);
+                    for k in 0..3 {
+                        matrix[row * n + k] = normal[k];
+                    }
+                    row += 1;
+                }
+                On::Surface(surface) => {
+                    let [s, du, dv] = surface.jet(x[column], x[column + 1]);
+                    for k in 0..3 {
+                        right[row] = p[k] - s[k];
+                        matrix[row * n + k] = T::one();
+                        matrix[row * n + column] = -du[k];
+                        matrix[row * n + column + 1] = -dv[k];
+                        row += 1;
+                    }
+                    column += 2;
+                }
+                On::Curve(piece) => {
+                    let (s, ds) = (piece.at(x[column]), piece.velocity(x[column]));
+                    for k in 0..3 {
+                        right[row] = p[k] - s[k];
+                        matrix[row * n + k] = T::one();
+                        matrix[row * n + column] = -ds[k];
+                        row += 1;
+                    }
+                    column += 1;
+                }
+            }
+        }
+        (matrix, right)
+    };
+    let plain = |x: &[f64]| -> (Vec<f64>, Vec<f64>) {
+        let lifted: Vec<T> = x.iter().map(|&a| T::from(a)).collect();
+        let (m, r) = system(&lifted);
+        (m.into_iter().map(Real::re).collect(), r.into_iter().map(Real::re).collect())
+    };
+    let mut last = f64::INFINITY;
+    for step in 0..30 {
+        let (mut matrix, mut right) = plain(&x);
+        let size = right.iter().fold(0.0f64, |m, r| m.max(r.abs()));
+        if !size.is_finite() {
+            return None;
+        }
+        if size <= 1e-15 * scale || (step > 3 && size >= 0.5 * last && size <= 1e-12 * scale) {
+            last = size;
+            break;
+        }
+        last = size;
+        solve_dense(&mut matrix, &mut right).ok()?;
+        x.iter_mut().zip(&right).for_each(|(a, d)| *a -= d.clamp(-scale, scale));
+    }
+    if last > 1e-11 * scale {
+        return None;
+    }
+    let lifted: Vec<T> = x.iter().map(|&a| T::from(a)).collect();
+    let (mut matrix, mut right) = system(&lifted);
+    solve_dense(&mut matrix, &mut right).ok()?;
+    let exact: Vec<T> = lifted.iter().zip(&right).map(|(a, d)| *a - *d).collect();
+    let (mut matrix, _) = system(&exact);
+    let mut rate = vec![T::zero(); n];
+    if unknowns(on.last()?) == 0 {
+        rate[n - 1] = T::one();
+        solve_dense(&mut matrix, &mut rate).ok()?;
+    }
+    let split = |x: &[T]| {
+        let mut column = 3;
+        let mut all = Vec::with_capacity(on.len());
+        for o in on {
+            let count = unknowns(o);
+            let at = |k: usize| if k < count { x[column + k] } else { T::zero() };
+            all.push([at(0), at(1)]);
+            column += count;
+        }
+        (Vec3::new(x[0], x[1], x[2]), all)
+    };
+    let (at, parameters) = split(&exact);
+    let (moved, moved_parameters) = split(&rate);
+    Some(Met { at, parameters, moved, moved_parameters })
+}

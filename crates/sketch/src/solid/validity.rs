@@ -1,0 +1,405 @@
+//! The gate: only a closed body that is outward and does not cross itself has a volume.
+//!
+//! Closedness and direction are counted; crossings are looked for between sides and facets whose boxes
+//! meet. What only looks crossed (a vertex on a face) and what is crossed is derived anew by the
+//! arrangement, which keeps what the surface winds around once or more: a hole that a dimension moves
+//! half out of the body becomes a notch, one that has left is gone.
+
+use super::combine::{CombineError, newell, resolved};
+use super::{Solid, SolidFace};
+use crate::FaceId;
+use crate::PointId;
+use moldloft_num::{Real, Vec3};
+use std::collections::BTreeMap;
+
+/// Why a body has no volume.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Flaw {
+    /// Its faces do not close: edges that have not one face on each side, by their ends.
+    Open(Vec<[PointId; 2]>),
+    /// The cycle of one face crosses itself there: lines have passed each other.
+    Crossed {
+        /// The face.
+        face: Option<FaceId>,
+        /// The vertices of the two sides that cross.
+        sides: [[PointId; 2]; 2],
+        /// Where.
+        at: Vec3,
+    },
+    /// It crosses itself and could not be derived anew.
+    Unresolved(CombineError),
+    /// A number is not finite.
+    NotFinite,
+}
+
+/// The body itself when it is valid, the one derived anew when it crosses itself.
+///
+/// # Errors
+/// [`Flaw`], with the place.
+pub fn valid<T: Real>(mut body: Solid<T>) -> Result<Solid<T>, Flaw> {
+    if body.vertices.iter().any(|v| !v.at.is_finite()) {
+        return Err(Flaw::NotFinite);
+    }
+    if body.flat {
+        return match crossed_cycle(&body, true) {
+            Some(flaw) => Err(flaw),
+            None => Ok(body),
+        };
+    }
+    let open = open_edges(&body);
+    if !open.is_empty() {
+        return Err(Flaw::Open(open));
+    }
+    let suspect = suspect(&body);
+    if !suspect && shells(&body) == Shells::Outward {
+        return Ok(body);
+    }
+    if let Some(flaw) = crossed_cycle(&body, false) {
+        return Err(flaw);
+    }
+    if !suspect && shells(&body) == Shells::Inward {
+        body.turn_over();
+        return Ok(body);
+    }
+    match resolved(&body) {
+        Ok((_, false)) => Ok(body),
+        Ok((new, true)) => Ok(new.named_after(&body)),
+        Err(e) => Err(Flaw::Unresolved(e)),
+    }
+}
+
+impl<T: Real> Solid<T> {
+    /// All faces seen from their other sides.
+    pub(super) fn turn_over(&mut self) {
+        for face in &mut self.faces {
+            for cycle in &mut face.loops {
+                cycle.reverse();
+                cycle.iter_mut().for_each(|h| h.1 = !h.1);
+                if face.ruled || face.trim.is_some() {
+                    // A patch starts with the edge it started with.
+                    cycle.rotate_right(1);
+                }
+            }
+        }
+        if let Some(facets) = &mut self.facets {
+            facets.faces.iter_mut().flatten().for_each(|t| t.swap(1, 2));
+        }
+    }
+
+    /// Labels of the old body for vertices at its places; the others go on counting.
+    fn named_after(mut self, old: &Solid<T>) -> Solid<T> {
+        let size = old.vertices.iter().map(|v| v.at.re().norm()).fold(0.0, f64::max);
+        let mut next = old.vertices.iter().map(|v| v.id.0).max().unwrap_or(0);
+        let mut taken: Vec<PointId> = Vec::new();
+        for v in &mut self.vertices {
+            let same = old
+                .vertices
+                .iter()
+                .find(|o| o.at.re().distance(v.at.re()) <= 1e-9 * size && !taken.contains(&o.id));
+            v.id = match same {
+                Some(o) => o.id,
+                None => {
+                    next = next.saturating_add(1);
+                    PointId(next)
+                }
+            };
+            taken.push(v.id);
+        }
+        self
+    }
+}
+
+fn open_edges<T>(body: &Solid<T>) -> Vec<[PointId; 2]> {
+    let mut count = vec![[0u32; 2]; body.edges.len()];
+    for &(e, forward) in body.faces.iter().flat_map(|f| f.loops.iter().flatten()) {
+        count[e][usize::from(forward)] += 1;
+    }
+    let open = count.iter().enumerate().filter(|(_, c)| c[0] != c[1]);
+    open.map(|(e, _)| body.edges[e].ends.map(|v| body.vertices[v].id)).collect()
+}
+
+/// A facet for the search of crossings.
+struct Wall {
+    normal: Vec3,
+    at: Vec3,
+    loops: Vec<Vec<u32>>,
+    low: Vec3,
+    high: Vec3,
+}
+
+/// Whether any side may cross a facet, or an edge has no length.
+fn suspect<T: Real>(body: &Solid<T>) -> bool {
+    let outline = body.outline();
+    let points: Vec<Vec3> = outline.points.iter().map(|p| p.re()).collect();
+    let [low, high] = bounds(points.iter().copied());
+    let size = (high - low).norm();
+    let tolerance = 1e-9 * size;
+    let at = |v: u32| points[v as usize];
+    let mut walls: Vec<Wall> = Vec::new();
+    let mut sides: Vec<(u32, u32)> = Vec::new();
+    let mut put = |loops: Vec<Vec<u32>>| -> bool {
+        let ring: Vec<Vec3> = loops[0].iter().map(|&v| at(v)).collect();
+        let Some(normal) = newell(&ring).normalized() else { return false };
+        for c in &loops {
+            sides.extend((0..c.len()).map(|k| {
+                let (a, b) = (c[k], c[(k + 1) % c.len()]);
+                (a.min(b), a.max(b))
+            }));
+        }
+        let [low, high] = bounds(loops.iter().flatten().map(|&v| at(v)));
+        walls.push(Wall { normal, at: ring[0], loops, low, high });
+        true
+    };
+    for (f, face) in body.faces.iter().enumerate() {
+        if face.ruled || face.trim.is_some() {
+            for (loops, _) in outline.strips(body, f) {
+                if !put(loops) {
+                    return true;
+                }
+            }
+        } else if !put(outline.loops(body, f).0) {
+            return true;
+        }
+    }
+    sides.sort_unstable();
+    sides.dedup();
+    if sides.iter().any(|&(a, b)| at(a).distance(at(b)) <= tolerance) {
+        return true;
+    }
+    // Walls first, then sides, swept together.
+    let mut boxes: Vec<[Vec3; 2]> = walls.iter().map(|w| [w.low, w.high]).collect();
+    boxes.extend(sides.iter().map(|&(a, b)| bounds([at(a), at(b)].into_iter())));
+    let mut found = false;
+    super::arrangement::overlapping(&boxes, tolerance, walls.len(), |w, s| {
+        if found {
+            return;
+        }
+        let (wall, (a, b)) = (&walls[w], sides[s - walls.len()]);
+        let (p, q) = (at(a), at(b));
+        let (hp, hq) = ((p - wall.at).dot(wall.normal), (q - wall.at).dot(wall.normal));
+        let near = [hp, hq].map(|h| h.abs() <= tolerance);
+        if !near[0] && !near[1] && (hp > 0.0) == (hq > 0.0) {
+            return;
+        }
+        let corner = |v: u32| wall.loops.iter().any(|c| c.contains(&v));
+        let hit = match near {
+            [true, true] => !own_side(wall, a, b) && overlaps(wall, &at, [p, q], tolerance),
+            [true, false] => !corner(a) && covers(wall, &at, p, tolerance),
+            [false, true] => !corner(b) && covers(wall, &at, q, tolerance),
+            _ => covers(wall, &at, p + (q - p) * (hp / (hp - hq)), tolerance),
+        };
+        found |= hit;
+    });
+    found
+}
+
+fn own_side(wall: &Wall, a: u32, b: u32) -> bool {
+    wall.loops.iter().any(|c| {
+        (0..c.len()).any(|k| {
+            let pair = (c[k], c[(k + 1) % c.len()]);
+            pair == (a, b) || pair == (b, a)
+        })
+    })
+}
+
+/// Coordinates in the plane of a wall: the two that its normal is farthest from.
+fn flat(normal: Vec3, p: Vec3) -> [f64; 2] {
+    let n = normal.to_array().map(f64::abs);
+    if n[0] >= n[1] && n[0] >= n[2] {
+        [p.y, p.z]
+    } else if n[1] >= n[2] {
+        [p.z, p.x]
+    } else {
+        [p.x, p.y]
+    }
+}
+
+/// Whether a point of the plane is in a wall or on its border.
+fn covers(wall: &Wall, at: &dyn Fn(u32) -> Vec3, p: Vec3, tolerance: f64) -> bool {
+    let [x, y] = flat(wall.normal, p);
+    let mut turns = 0;
+    for c in &wall.loops {
+        for k in 0..c.len() {
+            let (s, t) = (at(c[k]), at(c[(k + 1) % c.len()]));
+            let d = t - s;
+            let part = ((p - s).dot(d) / d.norm_sq()).clamp(0.0, 1.0);
+            if (s + d * part).distance(p) <= tolerance {
+                return true;
+            }
+            let ([ax, ay], [bx, by]) = (flat(wall.normal, s), flat(wall.normal, t));
+            if (ay > y) != (by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax) {
+                turns += if by > ay { 1 } else { -1 };
+            }
+        }
+    }
+    turns != 0
+}
+
+/// Whether a side in the plane of a wall runs through its inside.
+fn overlaps(wall: &Wall, at: &dyn Fn(u32) -> Vec3, [p, q]: [Vec3; 2], tolerance: f64) -> bool {
+    let d = q - p;
+    let length = d.norm();
+    let u = d / length;
+    let w = wall.normal.cross(u);
+    let mut stops = vec![0.0, length];
+    for c in &wall.loops {
+        for k in 0..c.len() {
+            let (s, t) = (at(c[k]) - p, at(c[(k + 1) % c.len()]) - p);
+            let (a, b) = (s.dot(w), t.dot(w));
+            if a.abs() <= tolerance {
+                stops.push(s.dot(u));
+            }
+            if (a > 0.0) != (b > 0.0) {
+                let x = s + (t - s) * (a / (a - b));
+                stops.push(x.dot(u));
+            }
+        }
+    }
+    stops.sort_by(f64::total_cmp);
+    stops.windows(2).any(|s| {
+        let middle = 0.5 * (s[0] + s[1]);
+        let inner = s[1] - s[0] > 2.0 * tolerance && middle > 0.0 && middle < length;
+        inner && covers(wall, at, p + u * middle, 0.0) && {
+            // Along its border is no overlap.
+            let x = p + u * middle;
+            !wall.loops.iter().any(|c| {
+                (0..c.len()).any(|k| {
+                    let (s, t) = (at(c[k]), at(c[(k + 1) % c.len()]));
+                    let d = t - s;
+                    let part = ((x - s).dot(d) / d.norm_sq()).clamp(0.0, 1.0);
+                    (s + d * part).distance(x) <= tolerance
+                })
+            })
+        }
+    })
+}
+
+fn bounds(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+    let mut low: Vec3 = Vec3::of(f64::INFINITY, f64::INFINITY, f64::INFINITY);
+    let mut high = -low;
+    for p in points {
+        low = Vec3::new(low.x.min(p.x), low.y.min(p.y), low.z.min(p.z));
+        high = Vec3::new(high.x.max(p.x), high.y.max(p.y), high.z.max(p.z));
+    }
+    [low, high]
+}
+
+/// Which way the shells of a body face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shells {
+    /// Outer ones outward, those of cavities inward.
+    Outward,
+    /// All the other way.
+    Inward,
+    /// Some one, some the other way.
+    Mixed,
+}
+
+/// The direction of the shells that hang together by edges.
+fn shells<T: Real>(body: &Solid<T>) -> Shells {
+    let mut parent: Vec<usize> = (0..body.faces.len()).collect();
+    fn root(parent: &mut [usize], mut k: usize) -> usize {
+        while parent[k] != k {
+            parent[k] = parent[parent[k]];
+            k = parent[k];
+        }
+        k
+    }
+    let mut first: BTreeMap<usize, usize> = BTreeMap::new();
+    for (f, face) in body.faces.iter().enumerate() {
+        for &(e, _) in face.loops.iter().flatten() {
+            let other = *first.entry(e).or_insert(f);
+            let (a, b) = (root(&mut parent, other), root(&mut parent, f));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let outline = body.outline();
+    let at = |v: u32| outline.points[v as usize].re();
+    let centre = outline.points.first().map_or(Vec3::zero(), |p| p.re());
+    // The triangles of each shell: signed fans serve for volumes and solid angles.
+    let mut fans: BTreeMap<usize, Vec<[Vec3; 3]>> = BTreeMap::new();
+    for (f, face) in body.faces.iter().enumerate() {
+        let fan = fans.entry(root(&mut parent, f)).or_default();
+        let mut add = |c: &Vec<u32>, apex: Vec3| {
+            fan.extend((0..c.len()).map(|k| [apex, at(c[k]), at(c[(k + 1) % c.len()])]));
+        };
+        if face.ruled || face.trim.is_some() {
+            outline.strips(body, f).iter().for_each(|(l, _)| add(&l[0], at(l[0][0])));
+        } else {
+            let loops = outline.loops(body, f).0;
+            loops.iter().for_each(|c| add(c, at(loops[0][0])));
+        }
+    }
+    let volume = |fan: &Vec<[Vec3; 3]>| -> f64 {
+        fan.iter().map(|[a, b, c]| (*a - centre).dot((*b - centre).cross(*c - centre))).sum()
+    };
+    if fans.len() == 1 {
+        let all = fans.values().map(volume).sum::<f64>();
+        return if all > 0.0 { Shells::Outward } else { Shells::Inward };
+    }
+    let mut right = 0;
+    for (k, fan) in &fans {
+        let p = fan[0][1];
+        let others = fans.iter().filter(|(other, _)| *other != k).flat_map(|(_, f)| f);
+        let turns = others.map(|t| solid_angle(t, p)).sum::<f64>() / (4.0 * std::f64::consts::PI);
+        let inside = turns.abs().round() as i64 % 2 == 1;
+        right += usize::from((volume(fan) > 0.0) != inside);
+    }
+    match right {
+        n if n == fans.len() => Shells::Outward,
+        0 => Shells::Inward,
+        _ => Shells::Mixed,
+    }
+}
+
+/// The solid angle of a triangle seen from `p` (van Oosterom and Strackee, 1983).
+fn solid_angle(corners: &[Vec3; 3], p: Vec3) -> f64 {
+    let [a, b, c] = corners.map(|x| x - p);
+    let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+    let top = a.dot(b.cross(c));
+    let bottom = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    if top == 0.0 { 0.0 } else { 2.0 * Real::atan2(top, bottom) }
+}
+
+/// A cycle of a plane face that crosses itself; in a section also two cycles that cross.
+fn crossed_cycle<T: Real>(body: &Solid<T>, between: bool) -> Option<Flaw> {
+    let outline = body.outline();
+    let at = |v: u32| outline.points[v as usize].re();
+    let [low, high] = bounds(outline.points.iter().map(|p| p.re()));
+    let tolerance = 1e-9 * (high - low).norm();
+    let round = |f: &SolidFace| f.ruled || f.trim.is_some();
+    for (f, face) in body.faces.iter().enumerate().filter(|(_, f)| !round(f)) {
+        let (loops, tags) = outline.loops(body, f);
+        let mut sides: Vec<(usize, u32, [u32; 2])> = Vec::new();
+        for (k, (cycle, tags)) in loops.iter().zip(&tags).enumerate() {
+            let n = cycle.len();
+            sides.extend((0..n).map(|i| (k, tags[i], [cycle[i], cycle[(i + 1) % n]])));
+        }
+        let boxes: Vec<[Vec3; 2]> = sides.iter().map(|s| bounds(s.2.map(at).into_iter())).collect();
+        let mut found = None;
+        super::arrangement::overlapping(&boxes, 0.0, usize::MAX, |i, j| {
+            let (s, t) = (&sides[i], &sides[j]);
+            if found.is_some() || (s.0 != t.0 && !between) || s.2.iter().any(|v| t.2.contains(v)) {
+                return;
+            }
+            let ([p, q], [r, e]) = (s.2.map(at), t.2.map(at));
+            let (d, w) = (q - p, e - r);
+            let normal = d.cross(w);
+            let det = normal.norm_sq();
+            if det <= 1e-18 * d.norm_sq() * w.norm_sq() {
+                return;
+            }
+            let a = (r - p).cross(w).dot(normal) / det;
+            let b = (r - p).cross(d).dot(normal) / det;
+            let (ma, mb) = (tolerance / d.norm(), tolerance / w.norm());
+            if a > ma && a < 1.0 - ma && b > mb && b < 1.0 - mb {
+                let name = |tag: u32| body.edges[tag as usize].ends.map(|v| body.vertices[v].id);
+                found = Some((p + d * a, [name(s.1), name(t.1)]));
+            }
+        });
+        if let Some((at, sides)) = found {
+            return Some(Flaw::Crossed { face: face.id, sides, at });
+        }
+    }
+    None
+}
