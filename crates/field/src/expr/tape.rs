@@ -614,7 +614,7 @@ impl Tape<f64> {
                 two(out, of(a), of(b), |a, b| if b > a { b } else { a })
             }
             Code::Div(a, b) => two(out, of(a), of(b), |a, b| a / b),
-            Code::Mod(a, b) => two(out, of(a), of(b), |a, b| crate::expr::algebra::remainder(a, b)),
+            Code::Mod(a, b) => two(out, of(a), of(b), crate::expr::algebra::remainder),
             Code::Atan2(a, b) => {
                 for ((o, a), b) in out[..count].iter_mut().zip(of(a)).zip(of(b)) {
                     *o = libm::atan2(*a, *b);
