@@ -7,6 +7,9 @@ use moldloft_registry::{
 };
 use moldloft_spline::arclen;
 
+/// The accuracy of lengths, as a share of a rough one.
+const LENGTH_ACCURACY: f64 = 1e-12;
+
 /// The fault of a parameter outside [0, 1], in field `field`.
 fn inside<T: Real>(parameters: &[T], field: FieldId) -> Result<(), CallError> {
     let outside = |t: &T| !(0.0..=1.0).contains(&t.re());
@@ -315,7 +318,7 @@ fn whole_length<T: Real>(curve: &CurveRef<T>) -> Value<T> {
     let rough = gauss_legendre(0.0, 1.0, speed);
     Value::Number(match rough {
         0.0 => T::zero(),
-        rough => arclen(curve, T::zero(), T::one(), 1e-12 * rough),
+        rough => arclen(curve, T::zero(), T::one(), LENGTH_ACCURACY * rough),
     })
 }
 

@@ -13,6 +13,12 @@ use moldloft_registry::{
 use moldloft_spline::{End, Ends, GridSpline};
 use std::sync::Arc;
 
+/// Boundary points farther than this share of the size from the surface are not on it.
+const OFF_WALL: f64 = 1e-6;
+
+/// Points within this share of their size about a line have no plane of their own.
+const NO_WIDTH: f64 = 1e-12;
+
 /// The fault of a grid, about field 0.
 pub fn fault(error: GridError, field: FieldId) -> CallError {
     let message = error.to_string();
@@ -314,12 +320,12 @@ fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
     }
     let along = (second - first) / size;
     let (width, third) = far(&|p| (*p - first).cross(along).norm());
-    if width <= 1e-12 * size {
+    if width <= NO_WIDTH * size {
         return true;
     }
     let normal = (third - first).cross(along);
     let normal = normal / normal.norm();
-    points.iter().all(|p| (*p - first).dot(normal).abs() <= 1e-12 * size)
+    points.iter().all(|p| (*p - first).dot(normal).abs() <= NO_WIDTH * size)
 }
 
 /// The spline surface through the points, even in the indices.
@@ -339,7 +345,7 @@ fn on_surface<T: Scalar>(
     let (uv, off) = crate::locate::nearest_parameters(on, &points);
     let size = grid.size();
     let worst = (0..points.len()).fold(0, |w, k| if off[k] > off[w] { k } else { w });
-    if off[worst] > 1e-6 * size {
+    if off[worst] > OFF_WALL * size {
         let (i, j) = (worst / grid.n + 1, worst % grid.n + 1);
         let message = format!("point [{i},{j}] of the grid is {} off the surface", off[worst]);
         return Err(CallError::new("off-surface", message)

@@ -7,6 +7,9 @@
 use crate::text::{put, xml};
 use std::fmt::Write as _;
 
+/// A step that falls short of the wanted one by this share is the wanted one.
+const ROUNDING: f64 = 1e-12;
+
 /// A cut of the model with a plane of constant coordinate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contour {
@@ -179,7 +182,7 @@ fn round_up(x: f64) -> f64 {
     }
     let power = libm::pow(10.0, libm::floor(libm::log10(x)));
     let steps = [1.0, 2.0, 2.5, 5.0, 10.0, 20.0];
-    steps.into_iter().map(|s| s * power).find(|&s| s >= x * (1.0 - 1e-12)).unwrap_or(x)
+    steps.into_iter().map(|s| s * power).find(|&s| s >= x * (1.0 - ROUNDING)).unwrap_or(x)
 }
 
 /// The drawing's place on its sheet.

@@ -5,6 +5,9 @@ use crate::error::check_positions;
 use crate::{WriteError, text};
 use moldloft_mesh::{Mesh, Tag, is_triangle};
 
+/// Vertices within this share of the size from the plane of symmetry or the water lie in it.
+const SNAP: f64 = 1e-9;
+
 /// What the file of a panel code is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PanelFileOptions {
@@ -38,7 +41,7 @@ impl Panels {
     pub fn of(mesh: &Mesh, options: PanelFileOptions) -> Result<Self, WriteError> {
         check_positions(mesh, f64::MAX)?;
         let mirrors = [options.mirror_x, options.mirror_y];
-        let snap = 1e-9 * mesh.bounds().diagonal();
+        let snap = SNAP * mesh.bounds().diagonal();
         let place = |v: u32| {
             let mut p = mesh.positions()[v as usize].to_array();
             for axis in 0..2 {

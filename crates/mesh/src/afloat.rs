@@ -5,6 +5,9 @@ use crate::hydrostatics::skin_of;
 use crate::{FloatOptions, Hydrostatics, Mesh, Symmetry, hydrostatics};
 use moldloft_num::{Real, Vec3};
 
+/// Vertices within this share of the size of a mesh from a plane lie in it.
+const SAME_PLACE: f64 = 1e-9;
+
 /// How a body lies in the water: first heeled about its own x axis, then trimmed about the level
 /// axis across it, both through its origin; then the water stands at `level` above the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -246,7 +249,7 @@ pub(crate) fn extents<T: Real>(mesh: &Mesh<T>) -> Extents<T> {
 
 /// The lowest point of the open edges that do not lie in the symmetry plane.
 pub(crate) fn rim<T: Real>(mesh: &Mesh<T>, symmetry: Symmetry) -> Option<T> {
-    let epsilon = 1e-9 * mesh.bounds().diagonal();
+    let epsilon = SAME_PLACE * mesh.bounds().diagonal();
     let position = |v: u32| mesh.positions()[v as usize];
     let sides = half_edges(mesh.topology());
     let skin = |face: usize| mesh.patches()[mesh.topology().patch_of(face)].info.tag.is_skin();

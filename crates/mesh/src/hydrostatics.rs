@@ -8,6 +8,9 @@ use crate::sum::chunked_sum;
 use crate::{Mesh, Panel};
 use moldloft_num::{Real, Vec3};
 
+/// Vertices within this share of the size of a mesh from a plane lie in it.
+const SAME_PLACE: f64 = 1e-9;
+
 /// How much of the body the mesh shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Symmetry {
@@ -443,7 +446,7 @@ fn at_station<T: Real>(aft: Vec3<T>, fore: Vec3<T>, station: T) -> Vec3<T> {
 /// Open edges that reach below the level and do not lie in the symmetry plane, both to within 1e-9 of
 /// the mesh's diagonal (far above rounding, far below any panel).
 fn open_edges_below<T: Real>(mesh: &Mesh<T>, level: f64, mirrored: bool) -> usize {
-    let epsilon = 1e-9 * mesh.bounds().diagonal();
+    let epsilon = SAME_PLACE * mesh.bounds().diagonal();
     let position = |v: u32| mesh.positions()[v as usize].re();
     let sides = half_edges(mesh.topology());
     let open =

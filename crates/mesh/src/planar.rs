@@ -4,6 +4,9 @@ use crate::triangulate;
 use moldloft_num::Vec3;
 use std::collections::{HashMap, HashSet};
 
+/// Points with less than this share of the area to an edge lie on it.
+const ON_EDGE: f64 = 1e-9;
+
 /// Triangles, counter-clockwise, of the region between `loops` (the first counter-clockwise round the
 /// others, which are clockwise), with the points `inner` inside it as vertices. Every edge of the loops
 /// is an edge of a triangle; within them edges are flipped until no vertex lies in the circumcircle of a
@@ -131,7 +134,7 @@ impl Net<'_> {
         let t = self.triangles[at];
         let size = self.turn(t[0], t[1], t[2]);
         // On an edge, the triangles of both sides are split.
-        let on = (0..3).find(|&k| self.turn(t[k], t[(k + 1) % 3], p) <= 1e-9 * size);
+        let on = (0..3).find(|&k| self.turn(t[k], t[(k + 1) % 3], p) <= ON_EDGE * size);
         if let Some(k) = on {
             let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
             let Some((other, d)) = self.left(b, a) else { return };

@@ -4,6 +4,9 @@ use crate::half_edge::{edges, half_edges};
 use crate::{Mesh, is_triangle};
 use moldloft_num::{Plane, Vec3, find_root};
 
+/// The root of the chord serves where the height there is at most this share of those at the ends.
+const FLAT_HEIGHT: f64 = 1e-12;
+
 /// A run of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyline {
@@ -65,7 +68,7 @@ pub fn section_where(
         let (a, b) = (d(node.low), d(node.high));
         let flat = p.lerp(q, a / (a - b));
         // Where the height is not linear along the side, its root.
-        if height(flat).abs() <= 1e-12 * (a.abs() + b.abs()) {
+        if height(flat).abs() <= FLAT_HEIGHT * (a.abs() + b.abs()) {
             return flat;
         }
         find_root(|t| height(p.lerp(q, t)), 0.0, 1.0).map_or(flat, |t| p.lerp(q, t))

@@ -6,6 +6,9 @@ use moldloft_num::Vec3;
 use moldloft_num::union_find::SignedUnionFind;
 use std::sync::Arc;
 
+/// An edge within this share of its length from a coordinate plane lies in it.
+const IN_PLANE: f64 = 1e-9;
+
 /// Cones that come to less than this share of their absolute volumes do not say where outside is.
 const NEARLY_FLAT: f64 = 0.05;
 
@@ -104,7 +107,7 @@ fn apex(points: &[Arc<Vec<Vec3>>], free_edges: &[FreeEdge]) -> Vec3 {
         let step = a.distance(b);
         centre += (a + b) * (0.5 * step);
         length += step;
-        let plane = (0..3).find(|&axis| a[axis].abs().max(b[axis].abs()) <= 1e-9 * step);
+        let plane = (0..3).find(|&axis| a[axis].abs().max(b[axis].abs()) <= IN_PLANE * step);
         match plane {
             Some(axis) => used[axis] = true,
             None => closing = false,

@@ -13,6 +13,9 @@ use moldloft_registry::Spacing;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
+/// A length that exceeds a whole number of panels by less than this share of one needs no further panel.
+const COUNT_SLACK: f64 = 1e-6;
+
 /// The most contradictions that are reported one by one.
 const MOST_REPORTED: usize = 20;
 
@@ -520,7 +523,7 @@ fn count_of(length: f64, size: f64, spacing: Option<Spacing>) -> u32 {
         _ => ratio,
     };
     // Rounding must not turn 10.000000001 panels into 11.
-    (n - 1e-6).ceil().clamp(1.0, MOST_DIVISIONS) as u32
+    (n - COUNT_SLACK).ceil().clamp(1.0, MOST_DIVISIONS) as u32
 }
 
 #[cfg(test)]

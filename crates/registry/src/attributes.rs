@@ -5,6 +5,9 @@ use crate::{CallError, Class, DefaultValue, Field, Unit, Value};
 use moldloft_num::Real;
 use std::sync::Arc;
 
+/// Below this logarithm of the total growth the panels are alike.
+const NO_GROWTH: f64 = 1e-12;
+
 /// How the panels along a parameter are spaced, from one end to the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Spacing {
@@ -48,7 +51,7 @@ impl Spacing {
             Spacing::Growth(q) => {
                 // (q^(n s) - 1) / (q^n - 1), without overflow for large n.
                 let log = Real::ln(q) * f64::from(n);
-                if log.abs() < 1e-12 {
+                if log.abs() < NO_GROWTH {
                     s
                 } else if log > 0.0 {
                     (Real::exp(log * (s - 1.0)) - Real::exp(-log)) / (1.0 - Real::exp(-log))

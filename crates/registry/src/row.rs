@@ -7,6 +7,9 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+/// The tolerance of a model that states none, in its unit.
+const DEFAULT_TOLERANCE: f64 = 1e-6;
+
 /// The closed list of scalars that models are evaluated with.
 pub trait Scalar: Real + FromValue<Self> {
     /// The body of `row` for this scalar, called.
@@ -53,7 +56,12 @@ pub struct Context {
 
 impl Default for Context {
     fn default() -> Self {
-        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default(), kept: Kept::default() }
+        Self {
+            tolerance: DEFAULT_TOLERANCE,
+            nesting: 0,
+            cancel: Arc::default(),
+            kept: Kept::default(),
+        }
     }
 }
 

@@ -5,6 +5,9 @@ use moldloft_num::{Real, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
+/// A volume below this share of the area to the power 3/2 is none: the centroid is that of the area.
+const NO_VOLUME: f64 = 1e-12;
+
 /// Places where a body is not quite what was asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
@@ -121,7 +124,7 @@ impl<T: Real> TriangleBody<T> {
             sheet += (a + b + c) * (size / 3.0);
         }
         let size = area.re() * area.re().abs().sqrt();
-        let centroid = if volume.re().abs() > 1e-12 * size {
+        let centroid = if volume.re().abs() > NO_VOLUME * size {
             middle + moment / volume
         } else if area.re() > 0.0 {
             middle + sheet / area

@@ -33,7 +33,7 @@ fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> CallError {
 }
 
 fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, CallError> {
-    if let Some(field) = crate::functions::sets::function(name, value) {
+    if let Some(field) = crate::value::implicit::function(name, value) {
         return field;
     }
     match value {
@@ -79,7 +79,7 @@ fn reduced<T: Real>(
     args: &[Value<T>],
     f: impl Fn(T, T) -> T,
 ) -> Result<Value<T>, CallError> {
-    if let Some(field) = crate::functions::sets::functions(name, args) {
+    if let Some(field) = crate::value::implicit::functions(name, args) {
         return field;
     }
     let mut numbers = Vec::new();
@@ -170,7 +170,7 @@ pub(crate) fn apply<T: Real>(
 ) -> Result<Value<T>, CallError> {
     match f {
         Elementary::Unary(f) => each(name, &args[0], f),
-        Elementary::Binary(f) => match crate::functions::sets::functions(name, args) {
+        Elementary::Binary(f) => match crate::value::implicit::functions(name, args) {
             Some(field) => field,
             None => pairs(&args[0], &args[1], f),
         },

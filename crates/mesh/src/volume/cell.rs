@@ -3,6 +3,9 @@
 use crate::Panel;
 use moldloft_num::{Real, Vec3};
 
+/// An edge shorter than this share of its cell has collapsed.
+const COLLAPSED: f64 = 1e-12;
+
 /// The corners of a hexahedron: the trilinear map of the unit cube, u, v, w of corner c being its
 /// bits 0, 1 and 2.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +74,7 @@ impl Hexahedron<f64> {
         for (at, corner) in Self::probes() {
             let [u, v, w] = self.tangents(at);
             let lengths = [u.norm(), v.norm(), w.norm()];
-            if corner && lengths.iter().any(|&l| l <= 1e-12 * size) {
+            if corner && lengths.iter().any(|&l| l <= COLLAPSED * size) {
                 continue;
             }
             let volume = lengths.iter().product::<f64>();

@@ -9,6 +9,9 @@ use moldloft_num::union_find::UnionFind;
 use moldloft_registry::CallError;
 use std::collections::HashMap;
 
+/// Divisions nearer than this to a whole number are whole.
+const WHOLE: f64 = 1e-9;
+
 /// Cells along an axis of which nobody says anything.
 const DEFAULT_DIVISIONS: usize = 8;
 
@@ -129,8 +132,9 @@ impl DivisionClasses {
             let mut changed = false;
             for &(whole, share, part) in &self.shares {
                 let [w, p] = [whole, part].map(|a| self.equal.find(a as u32) as usize);
-                let near =
-                    |x: f64| ((x - x.round()).abs() < 1e-9 && x >= 0.5).then(|| x.round() as usize);
+                let near = |x: f64| {
+                    ((x - x.round()).abs() < WHOLE && x >= 0.5).then(|| x.round() as usize)
+                };
                 match (known[w], known[p]) {
                     (Some((n, by)), None) => {
                         if let Some(m) = near(n as f64 * share) {
@@ -170,7 +174,7 @@ impl DivisionClasses {
             let along = n as f64 * share;
             let part = self.equal.find(part as u32) as usize;
             let &mut (other, m) = first.entry(part).or_insert((whole, along));
-            if (along - m).abs() > 1e-9 {
+            if (along - m).abs() > WHOLE {
                 let name = |a: usize| drafts[a / 3].object.name.to_string();
                 let blocks = [name(whole), name(other)];
                 remarks.push(BlockNote::Divisions { blocks, divisions: n, along: m, share });

@@ -4,6 +4,9 @@ use super::draft::BlockDraft;
 use moldloft_num::trace::{Edge, Edges, Face, Mark, Piece, Root};
 use std::collections::HashMap;
 
+/// Divisions nearer than this to a whole number are whole.
+const WHOLE: f64 = 1e-9;
+
 /// Where pieces begin and end on each root, in order of its parameter.
 pub(crate) struct Marks {
     of: HashMap<Root, Vec<Mark<f64>>>,
@@ -96,7 +99,7 @@ impl BlockDraft<'_> {
 pub(crate) fn runs(parts: &[EdgePart], cells: usize) -> Vec<(usize, usize, Piece<f64>)> {
     let place = |share: f64| {
         let at = share * cells as f64;
-        ((at - at.round()).abs() <= 1e-9).then(|| at.round() as usize)
+        ((at - at.round()).abs() <= WHOLE).then(|| at.round() as usize)
     };
     let mut runs = Vec::new();
     let mut begin = 0.0;
