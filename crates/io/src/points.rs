@@ -116,13 +116,15 @@ fn error(line: usize, expected: impl Into<String>, found: impl Into<String>) -> 
 struct Cells<'a> {
     words: Vec<&'a str>,
     delimiter: Option<char>,
+    /// A comma, semicolon or tab ends the line.
+    trailing: bool,
 }
 
 impl<'a> Cells<'a> {
     /// A run of blanks is one separator, and so is one comma, semicolon or tab with the blanks
     /// around it. A last one ends the line.
     fn of(line: &'a str) -> Self {
-        let mut cells = Cells { words: Vec::new(), delimiter: None };
+        let mut cells = Cells { words: Vec::new(), delimiter: None, trailing: false };
         let mut rest = line.trim();
         while !rest.is_empty() {
             let end = rest.find(|c: char| c.is_whitespace() || ",;".contains(c));
@@ -139,6 +141,7 @@ impl<'a> Cells<'a> {
                 (None, None) => after,
             };
             let own = delimiter.or(tab.map(|_| '\t'));
+            cells.trailing = rest.is_empty() && own.is_some();
             cells.delimiter = match (cells.delimiter, own) {
                 (Some(','), _) | (_, None) => cells.delimiter,
                 (Some(';'), Some('\t')) => cells.delimiter,
@@ -185,6 +188,9 @@ impl<'a> Cells<'a> {
         match columns {
             None if !matches!(row.len(), 2 | 3) => {
                 Err(error(line, "2 or 3 columns", row.len().to_string()))
+            }
+            Some(n) if row.len() + 1 == n && self.trailing => {
+                Err(error(line, "a number in each column", "an empty one: it is missing"))
             }
             Some(n) if row.len() != n => Err(error(
                 line,
@@ -361,7 +367,7 @@ mod tests {
             ("1,,3\n", 1, "missing"),
             ("1\t\t3\n", 1, "missing"),
             (",1,3\n", 1, "missing"),
-            ("1, 2\n5,\n", 2, "1"),
+            ("1, 2\n5,\n", 2, "missing"),
             ("1 nan\n", 1, "not finite"),
             ("1 1e999\n", 1, "not finite"),
             ("1 2 3 4\n", 1, "4"),

@@ -54,6 +54,21 @@ fn words(bytes: &[u8]) -> Result<Words, ReadError> {
     Ok(all)
 }
 
+/// A reading whose sizes ask for another number of numbers than there are.
+struct Misfit {
+    ends_line: bool,
+    left: usize,
+    wanted: u128,
+    multi: bool,
+    axes: usize,
+}
+
+impl Misfit {
+    fn rank(&self) -> (bool, u128) {
+        (!self.ends_line, self.wanted.abs_diff(self.left as u128))
+    }
+}
+
 pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), ReadError> {
     let words = words(bytes)?;
     let count = words.values.len();
@@ -61,7 +76,8 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
         let x = *words.values.get(k)?;
         (words.whole[k] && x.abs() < 1e15).then_some(x as i64)
     };
-    let mut nearest: Option<(usize, u128, bool, usize)> = None;
+    // Of readings that do not fit, one whose sizes end with their line, then the nearest in number.
+    let mut nearest: Option<Misfit> = None;
     // One number in the first line and several in the next: the number of blocks, then sizes.
     let line = |k: usize| words.lines.get(k);
     let alone = line(0) != line(1) && line(1).is_some() && line(1) == line(2);
@@ -93,11 +109,10 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
                 let each = axes + usize::from(iblank);
                 let wanted = points * each as u128;
                 if wanted != left as u128 {
-                    let better = nearest.is_none_or(|(_, w, ..)| {
-                        wanted.abs_diff(left as u128) < w.abs_diff(left as u128)
-                    });
-                    if better {
-                        nearest = Some((left, wanted, multi, axes));
+                    let ends_line = line(start + header - 1) != line(start + header);
+                    let misfit = Misfit { ends_line, left, wanted, multi, axes };
+                    if nearest.as_ref().is_none_or(|other| misfit.rank() < other.rank()) {
+                        nearest = Some(misfit);
                     }
                     continue;
                 }
@@ -138,12 +153,15 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
         found,
     };
     Err(match nearest {
-        Some((left, wanted, multi, axes)) => error(
+        Some(Misfit { left, wanted, multi, axes, .. }) => error(
             format!(
                 "{wanted} coordinates after the sizes ({}, {axes}-D)",
                 if multi { "multi-block" } else { "single-block" }
             ),
-            format!("{left} numbers"),
+            match (left as u128).checked_sub(wanted) {
+                Some(more) => format!("{left} numbers, {more} too many"),
+                None => format!("{left} numbers"),
+            },
         ),
         None => error("the sizes of a grid".into(), "numbers that are not sizes".into()),
     })
