@@ -16,8 +16,8 @@ mod block;
 mod control;
 mod elliptic;
 mod error;
-mod hyperbolic;
 mod lines;
+mod marching;
 mod quality;
 mod surface_grid;
 mod zebra;
@@ -26,6 +26,9 @@ pub use blend::{Blend, transfinite};
 pub use block::{Faces, transfinite_block};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
-pub use hyperbolic::{Hyperbolic, Side, hyperbolic, hyperbolic_curve};
+pub use marching::{
+    FailureCause, Hyperbolic, MarchFailure, MarchReport, Marched, Side, Stop, StopReason, Support,
+    hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
+};
 pub use quality::{Metric, folded_cells, quality};
 pub use surface_grid::{Edge, SurfaceGrid, framed};

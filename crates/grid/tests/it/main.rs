@@ -2,3 +2,4 @@
 
 mod grids;
 mod marching;
+mod walls;
