@@ -64,6 +64,11 @@ pub enum GridError {
         /// The layer, from 1, of a marched grid.
         layer: Option<usize>,
     },
+    /// A point of a volume grid is NaN or infinite.
+    PointNotFinite {
+        /// Its indices, from 1.
+        at: [usize; 3],
+    },
     /// A grid cannot be marched farther.
     March(Box<MarchFailure>),
     /// The iteration grew beyond bounds.
@@ -110,6 +115,9 @@ impl fmt::Display for GridError {
             Self::Folded { count, at: [i, j], layer } => {
                 write!(f, "{count} cells are folded, the first at [{i},{j}]")?;
                 layer.map_or(Ok(()), |layer| write!(f, " of layer {layer}"))
+            }
+            Self::PointNotFinite { at: [i, j, k] } => {
+                write!(f, "point [{i},{j},{k}] is not finite")
             }
             Self::March(failure) => write!(f, "{failure}"),
             Self::Diverged { step } => write!(f, "the grid grew beyond bounds in step {step}"),

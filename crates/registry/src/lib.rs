@@ -32,7 +32,9 @@ pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};
 pub use refs::{CurveRef, FieldRef, Implicit, Point, RelabelRef, SetRef, SolidRef, SurfaceRef};
 pub use relabelled::relabelled;
-pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
+pub use row::{
+    Body, Build, Context, DefaultValue, Field, Foreign, Registry, Remark, Row, Scalar, Unit,
+};
 pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};
 

@@ -2,8 +2,8 @@ use crate::{Class, Fault, FromValue, Value};
 use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The closed list of scalars that models are evaluated with.
 pub trait Scalar: Real + FromValue<Self> {
@@ -41,11 +41,38 @@ pub struct Context {
     pub nesting: u32,
     /// Set to true from elsewhere to end long calls.
     pub cancel: Arc<AtomicBool>,
+    /// What calls have to say besides their values.
+    pub remarks: Arc<Mutex<Vec<Remark>>>,
+}
+
+/// What a call says besides its value: that an iteration has not settled, that a march ended early.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// A stable id.
+    pub id: &'static str,
+    /// One line that stands alone.
+    pub message: String,
+    /// What can be done about it.
+    pub help: &'static str,
+}
+
+impl Context {
+    /// Adds a remark.
+    pub fn remark(&self, id: &'static str, message: String, help: &'static str) {
+        let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
+        remarks.push(Remark { id, message, help });
+    }
+
+    /// The remarks so far; they are not kept.
+    pub fn take_remarks(&self) -> Vec<Remark> {
+        let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut *remarks)
+    }
 }
 
 impl Default for Context {
     fn default() -> Self {
-        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default() }
+        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default(), remarks: Arc::default() }
     }
 }
 

@@ -270,7 +270,9 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
                 }
                 let [next, last] = self.neighbours(&q, k);
                 let (a, b) = (node.next - node.last, next - last);
-                volume * (a.dot(b) / a.norm_sq()).max(T::one()).min(T::from(2.0))
+                // At acute corners volumes stay: there lines are pushed apart.
+                let least = if node.cosine.re() > ACUTE { 1.0 } else { 0.3 };
+                volume * (a.dot(b) / a.norm_sq()).max(T::from(least)).min(T::from(2.0))
             });
             each.collect()
         };

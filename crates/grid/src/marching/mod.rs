@@ -16,6 +16,7 @@ mod surface;
 
 pub use curve::{Support, hyperbolic_curve, hyperbolic_curve_until};
 pub use front::{FailureCause, MarchFailure};
+pub(crate) use report::hexahedron;
 pub use report::{MarchReport, StopReason};
 pub use surface::{hyperbolic, hyperbolic_until};
 

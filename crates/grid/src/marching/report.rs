@@ -110,7 +110,7 @@ pub(super) fn angle_skewness(a: Vec3, b: Vec3) -> f64 {
 
 /// Scaled Jacobian and skewness of a hexahedron with corners `p[a][b][c]`; corners at edges without length,
 /// which poles have, do not count.
-pub(super) fn hexahedron(p: [[[Vec3; 2]; 2]; 2]) -> [f64; 2] {
+pub(crate) fn hexahedron(p: [[[Vec3; 2]; 2]; 2]) -> [f64; 2] {
     let (mut least, mut skew) = (f64::INFINITY, 0.0f64);
     for k in 0..8 {
         let (a, b, c) = (k >> 2, k >> 1 & 1, k & 1);

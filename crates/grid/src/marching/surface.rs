@@ -166,6 +166,19 @@ impl<T: Real> SurfaceFront<T> {
         [next, last]
     }
 
+    /// Of each axis, which of its lines turn round an edge: at the foot of a post the bisector leans away from
+    /// it, so that less counts than for a prescribed motion.
+    fn lines_that_turn(&self, nodes: &[Node<T>]) -> [Vec<bool>; 2] {
+        [0, 1].map(|axis| {
+            let turns = |line: usize| {
+                (0..self.size[axis]).any(|along| {
+                    nodes[self.index(axis, along, line)].ways[axis].cosine.re() < -0.25
+                })
+            };
+            (0..self.size[1 - axis]).map(turns).collect()
+        })
+    }
+
     fn nodes(&self, r: &[Vec3<T>]) -> Vec<Node<T>> {
         let tiny = T::from(TINY);
         let node = |k: usize| {
@@ -388,6 +401,7 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
         let count = r.len();
         let heights = self.heights(&nodes, [r, before], [d, s], state, cap);
         let shift = report::shift(s, last);
+        let turns = self.lines_that_turn(&nodes);
         let equation = |k: usize| -> Equation<T> {
             let node = &nodes[k];
             let h = heights[k];
@@ -420,7 +434,10 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
                     let converge = report::convergence(then / now, shift);
                     shift * converge * concave * (h / length) * dissipation
                 };
-                if way.cosine.re() > ACUTE {
+                // Along a corner that also turns round a sharp edge lines converge from the wall on.
+                if way.cosine.re() > ACUTE
+                    && !turns[1 - axis][[k % self.size[1], k / self.size[1]][1 - axis]]
+                {
                     let ripe = s * way.cosine / way.sine / (way.length() * 0.3);
                     epsilon *= ripe.min(T::one());
                 }

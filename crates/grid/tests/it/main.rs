@@ -2,4 +2,5 @@
 
 mod grids;
 mod marching;
+mod volumes;
 mod walls;
