@@ -1,8 +1,8 @@
 //! Times of fairing by size: `cargo run --release -p moldloft-fair --example speed [points]`.
 
 use moldloft_fair::{
-    Bound, Job, Limit, LocalOptions, Measure, Network, OptimumOptions, Space, certified, local,
-    optimum, sweeps,
+    Bound, Job, KnotRemovalOptions, Limit, Measure, Network, OptimumOptions, Space, certified,
+    knot_removal, optimum, sweeps,
 };
 use moldloft_num::Vec3;
 use std::time::{Duration, Instant};
@@ -81,7 +81,8 @@ fn main() {
         for (name, depth) in [("plane", 0.0), ("space", 0.1)] {
             let job = Job::of_points(3, wavy(n, depth), false, 1e-4).expect("the data is good");
             let start = Clock::start();
-            let faired = local(&job, &LocalOptions::faithful(n)).expect("the job is good");
+            let faired =
+                knot_removal(&job, &KnotRemovalOptions::faithful(n)).expect("the job is good");
             println!("{n} {name}: faithful, {} steps {:?}", faired.steps, start.elapsed());
             let start = Clock::start();
             sweeps(&job, Measure::Second, 10).expect("the job is good");

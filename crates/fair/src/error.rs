@@ -1,3 +1,5 @@
+//! What cannot be faired, and why.
+
 use std::fmt;
 
 /// Why something cannot be faired.

@@ -4,7 +4,7 @@
 //! fitted have many; this crate takes them out, never farther from the original than a tolerance,
 //! and says how near the result is to the best there is.
 //!
-//! `points -> (fit) -> Job { Space, control points, Limit, marks, ends } -> local | optimum -> Report`
+//! `points -> (fit) -> Job { Space, control points, Limit, marks, ends } -> knot_removal | optimum -> Report`
 //!
 //! # A tour
 //!
@@ -15,8 +15,8 @@
 //!   one plane; per control point), `marks` (intended breaks), [`End`]s, weights.
 //! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] tells corners and wrong digits apart,
 //!   [`with_findings`] takes them into account.
-//! - [`local`]: the faithful way, knots removed and re-inserted one by one, the worst first, with a
-//!   log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and [`levels`] for bulk
+//! - [`knot_removal()`]: the faithful way, knots removed and re-inserted one by one, the worst first, with a
+//!   log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and [`multilevel()`] for bulk
 //!   work and long waves.
 //! - [`optimum`]: the least of a [`Measure`] under hard bounds ([`Bound`]) and linear
 //!   [`Condition`]s, with a [`Certificate`] that does not trust the solver.
@@ -57,6 +57,13 @@
 //! assert!(faired.certificate.relative() < 1e-6);
 //! ```
 //!
+//! # Where things are
+//!
+//! `curve/`: one curve: what its control points mean, fits, limits, conditions, knot removal.
+//! `optimum/`: the interior point method and its certificates. `net/`: surfaces and networks.
+//! `interrogate/`: curvature, deviation, reports. `kinds/`: what models say. [`SparseRows`] and
+//! [`Measure`] are what all of these speak in.
+//!
 //! # Conventions
 //!
 //! Jumps and measures are free of the parameter's unit (uniform knots count as spaced by 1), so
@@ -72,60 +79,40 @@
 //! Sapidis and Farin, CAD 22 (1990); Eck and Hadenfeld, Computing Suppl. 10 (1995); NASA CR-188796
 //! (1991).
 
-mod band;
-mod breaks;
-mod certificate;
-mod condition;
-mod cone;
-mod deviation;
-mod entity;
+mod curve;
 mod error;
-mod fit;
-mod heap;
-mod interior;
-mod job;
-mod joined;
-mod jump;
-mod levels;
-mod limit;
-mod local;
+mod indexed_heap;
+mod interrogate;
+mod kinds;
 mod measure;
-mod net_condition;
-pub mod network;
+mod net;
 mod optimum;
-mod polish;
-mod report;
-mod rows;
-pub mod shape;
-mod sharp;
-mod solver;
-mod space;
-mod spans;
-pub mod surface;
-#[cfg(test)]
-mod testing;
+mod sparse_rows;
 
-pub use breaks::{Finding, findings, with_findings};
-pub use certificate::{Certificate, ball_gap};
-pub use condition::{Condition, joined};
-pub use deviation::{Deviation, certified, deviation};
-pub use entity::rows;
-pub use error::FairError;
-pub use fit::{Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters};
-pub use job::{End, Job};
-pub use joined::{Edge, Seam, Sheet};
-pub use jump::Jumps;
-pub use levels::levels;
-pub use limit::{Limit, Motion};
-pub use local::{
-    Local, LocalOptions, Move, Rule, Step, Stopped, Stops, local, local_from, replay,
-    replay_from_with, replay_with, sweeps,
+pub use curve::breaks::{Finding, findings, with_findings};
+pub use curve::condition::{Condition, joined};
+pub use curve::corners::{FitWithCorners, interpolate_with_corners};
+pub use curve::fit::{
+    Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
 };
+pub use curve::job::{End, Job};
+pub use curve::jumps::Jumps;
+pub use curve::knot_removal::{
+    KnotRemoval, KnotRemovalOptions, Move, Rule, Step, Stopped, Stops, knot_removal,
+    knot_removal_from, replay, replay_from_with, replay_with, sweeps,
+};
+pub use curve::limit::{Limit, Motion};
+pub use curve::multilevel::multilevel;
+pub use curve::space::Space;
+pub use error::FairError;
+pub use interrogate::deviation::{Deviation, certified, deviation};
+pub use interrogate::report::{Mode, Numbers, Report, numbers, report};
+pub use interrogate::{shape, surface};
+pub use kinds::rows;
 pub use measure::{Measure, Norm, value};
-pub use network::{Network, NetworkMode, NetworkReport, Strand};
+pub use net::network;
+pub use net::network::{Network, NetworkCurve, NetworkMode, NetworkReport};
+pub use net::patches::{Edge, PatchNet, Seam};
+pub use optimum::certificate::{Certificate, ball_gap};
 pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};
-pub use report::{Mode, Numbers, Report, numbers, report};
-pub use rows::Rows;
-pub use sharp::{Sharp, interpolate_sharp};
-use space::Bezier;
-pub use space::Space;
+pub use sparse_rows::SparseRows;

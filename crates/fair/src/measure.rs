@@ -1,5 +1,7 @@
-use crate::jump::Jumps;
-use crate::{FairError, Rows, Space};
+//! What there is to be little of: measures of unfairness as sparse rows over control points.
+
+use crate::curve::jumps::Jumps;
+use crate::{FairError, Space, SparseRows};
 use moldloft_num::Vec3;
 
 /// What a fair curve has little of.
@@ -68,7 +70,7 @@ impl Measure {
     ///
     /// # Errors
     /// [`FairError::Degree`] when the spline has no derivative of that order.
-    pub fn rows(self, space: &Space) -> Result<Rows, FairError> {
+    pub fn rows(self, space: &Space) -> Result<SparseRows, FairError> {
         let actual = space.degree();
         let need = |expected| {
             if actual < expected { Err(FairError::Degree { expected, actual }) } else { Ok(()) }
@@ -86,7 +88,7 @@ impl Measure {
 }
 
 /// The value of a measure given by its rows.
-pub fn value(rows: &Rows, norm: Norm, points: &[Vec3<f64>]) -> f64 {
+pub fn value(rows: &SparseRows, norm: Norm, points: &[Vec3<f64>]) -> f64 {
     match norm {
         Norm::Square => rows.sum_sq(points),
         Norm::Length => rows.sum_abs(points),
@@ -95,11 +97,11 @@ pub fn value(rows: &Rows, norm: Norm, points: &[Vec3<f64>]) -> f64 {
 
 /// The control points of the derivative of order `order`, each weighted with the root of its basis
 /// function's integral, in units of the mean span: plain differences on uniform knots.
-fn differences(space: &Space, order: usize) -> Rows {
+fn differences(space: &Space, order: usize) -> SparseRows {
     let p = space.degree() as isize;
     let n = space.count() as isize;
     let mean = space.mean_span();
-    let mut rows = Rows::new();
+    let mut rows = SparseRows::new();
     let first = if space.is_closed() { 0 } else { order as isize };
     'rows: for s in first..n {
         // Factors of the control points s - order ..= s.
@@ -135,14 +137,14 @@ fn differences(space: &Space, order: usize) -> Rows {
     rows
 }
 
-/// Rows whose squares add up to the integral of the squared derivative, by Gauss quadrature of
+/// SparseRows whose squares add up to the integral of the squared derivative, by Gauss quadrature of
 /// sufficient order, in units of the mean span.
-fn integrated(space: &Space, order: usize) -> Rows {
+fn integrated(space: &Space, order: usize) -> SparseRows {
     let p = space.degree();
     let mean = space.mean_span();
     let unit = mean.powi(2 * order as i32 - 1);
     let rule = gauss((p - order + 1).max(1));
-    let mut rows = Rows::new();
+    let mut rows = SparseRows::new();
     for k in space.spans() {
         let (a, b) = (space.knot(k), space.knot(k + 1));
         for &(x, w) in &rule {

@@ -3,7 +3,7 @@ use crate::object::{Failure, Object, State};
 use indexmap::IndexMap;
 use moldloft_diag::nearest;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Class, Context, Fault, Head, Row, Scalar, Value};
+use moldloft_registry::{Class, Context, Fault, Head, Kept, Row, Scalar, Value};
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashSet};
@@ -151,6 +151,11 @@ impl<T: Scalar> Graph<T> {
     /// Says what ends long evaluations when it is set to true.
     pub fn obey(&mut self, cancel: Arc<AtomicBool>) {
         self.context.cancel = cancel;
+    }
+
+    /// Says where calls keep what spares work later.
+    pub fn keep_in(&mut self, kept: Kept) {
+        self.context.kept = kept;
     }
 
     pub(crate) fn object(&self, key: Key) -> &Object<T> {

@@ -1,5 +1,5 @@
 use moldloft_num::Vec3;
-use moldloft_registry::{Context, Fault, Remark, Row, Scalar, Value};
+use moldloft_registry::{Context, Fault, CallRemark, Row, Scalar, Value};
 use std::collections::{HashMap, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -24,7 +24,7 @@ struct Remembered<T: Scalar> {
     args: Vec<Value<T>>,
     value: Value<T>,
     /// What the call said besides; said again when it is remembered.
-    remarks: Vec<Remark>,
+    remarks: Vec<CallRemark>,
     numbers: usize,
     used_at: u64,
 }

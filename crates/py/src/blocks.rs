@@ -2,8 +2,8 @@
 
 use crate::arrays;
 use crate::diagnostics::Diagnostic;
+use moldloft_document::Blocked;
 use moldloft_io::{plot3d, vtk};
-use moldloft_lang::Blocked;
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -12,8 +12,8 @@ use crate::value::to_python;
 use crate::work::{interruptible, interruptible_shared};
 use crate::write;
 use moldloft_diag::Sources;
+use moldloft_document::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
 use moldloft_host::FileWorld;
-use moldloft_lang::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
 use moldloft_model::Object;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
@@ -125,7 +125,7 @@ impl PyDocument {
     fn open(py: Python<'_>, path: String, library: Vec<String>) -> PyResult<Self> {
         let world = Box::new(FileWorld::around(&path, &library));
         let never = AtomicBool::new(false);
-        let open = move || Document::open(moldloft_lang::registry(), world, &path);
+        let open = move || Document::open(moldloft_document::registry(), world, &path);
         interruptible(py, &never, open).map(Self::new)
     }
 
@@ -139,7 +139,7 @@ impl PyDocument {
     ) -> PyResult<Self> {
         let world = Box::new(FileWorld::new(folder.as_deref().map(Path::new), &library));
         let never = AtomicBool::new(false);
-        let open = move || Document::from_text(moldloft_lang::registry(), world, &name, &text);
+        let open = move || Document::from_text(moldloft_document::registry(), world, &name, &text);
         interruptible(py, &never, open).map(Self::new)
     }
 
@@ -175,7 +175,7 @@ impl PyDocument {
     /// Rows of name, value, default, low, high, whole.
     fn params(&self, py: Python<'_>) -> Vec<(String, f64, f64, Option<f64>, Option<f64>, bool)> {
         let document = self.lock(py);
-        let row = |p: &moldloft_lang::Param| {
+        let row = |p: &moldloft_document::Param| {
             let (low, high) = p.range.unzip();
             (p.name.clone(), p.value, p.default, low, high, p.is_int)
         };

@@ -1,7 +1,7 @@
 //! Pictures for the reference: an object among those that it is made of.
 
 use moldloft_diag::Diagnostic;
-use moldloft_lang::Document;
+use moldloft_document::Document;
 use moldloft_mesh::{Mesh, MeshError, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Order, Plane, Solid, Vec3};
 use moldloft_picture::{Line, Look, Options, render};

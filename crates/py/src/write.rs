@@ -1,16 +1,16 @@
 //! Formats by name: from a document to the writers.
 
 use moldloft_diag::Diagnostic;
+use moldloft_document::{Document, Section};
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
 use moldloft_io::{
     Skin, Strands, WriteError, aqwa, gdf, gltf, hams, hydrostar, nemoh, obj, plot3d, ply, stl,
     threemf, vtk,
 };
-use moldloft_lang::{Document, Section};
 use moldloft_mesh::Mesh;
-use moldloft_model::{Polyline, Sectioned};
 use moldloft_num::Vec3;
+use moldloft_panel::{Polyline, Sectioned};
 use moldloft_picture::{Line, Options, patch_colour, render};
 use moldloft_registry::{Family, Value};
 
@@ -154,7 +154,7 @@ fn looks(document: &mut Document) -> Outcome<Vec<vtk::PatchFields>> {
         components: f.components,
         values: f.values,
     };
-    let patch = |p: moldloft_lang::PatchFields| vtk::PatchFields {
+    let patch = |p: moldloft_document::PatchFields| vtk::PatchFields {
         patch: p.patch,
         fields: p.fields.into_iter().map(field).collect(),
     };

@@ -15,6 +15,7 @@ mod facets;
 mod fault;
 mod found;
 mod head;
+mod kept;
 mod read;
 mod refs;
 mod relabelled;
@@ -28,12 +29,13 @@ pub use facets::{Border, Facets, Flaw, Group, Hem, Hemmed};
 pub use fault::{Fault, Place};
 pub use found::{Found, FoundStatus, Remark};
 pub use head::{HEAD, Head, Panels, Spacing};
+pub use kept::Kept;
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};
 pub use refs::{CurveRef, FieldRef, Implicit, Point, RelabelRef, SetRef, SolidRef, SurfaceRef};
 pub use relabelled::relabelled;
 pub use row::{
-    Body, Build, Context, DefaultValue, Field, Foreign, Registry, Remark, Row, Scalar, Unit,
+    Body, Build, CallRemark, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit,
 };
 pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};

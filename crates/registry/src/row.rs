@@ -1,4 +1,4 @@
-use crate::{Class, Fault, FromValue, Value};
+use crate::{Class, Fault, FromValue, Kept, Value};
 use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
@@ -41,13 +41,15 @@ pub struct Context {
     pub nesting: u32,
     /// Set to true from elsewhere to end long calls.
     pub cancel: Arc<AtomicBool>,
+    /// What calls keep from one to the next.
+    pub kept: Kept,
     /// What calls have to say besides their values.
-    pub remarks: Arc<Mutex<Vec<Remark>>>,
+    pub remarks: Arc<Mutex<Vec<CallRemark>>>,
 }
 
 /// What a call says besides its value: that an iteration has not settled, that a march ended early.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Remark {
+pub struct CallRemark {
     /// A stable id.
     pub id: &'static str,
     /// One line that stands alone.
@@ -60,11 +62,11 @@ impl Context {
     /// Adds a remark.
     pub fn remark(&self, id: &'static str, message: String, help: &'static str) {
         let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
-        remarks.push(Remark { id, message, help });
+        remarks.push(CallRemark { id, message, help });
     }
 
     /// The remarks so far; they are not kept.
-    pub fn take_remarks(&self) -> Vec<Remark> {
+    pub fn take_remarks(&self) -> Vec<CallRemark> {
         let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut *remarks)
     }
@@ -72,7 +74,13 @@ impl Context {
 
 impl Default for Context {
     fn default() -> Self {
-        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default(), remarks: Arc::default() }
+        Self {
+            tolerance: 1e-6,
+            nesting: 0,
+            cancel: Arc::default(),
+            kept: Kept::default(),
+            remarks: Arc::default(),
+        }
     }
 }
 

@@ -3,10 +3,11 @@
 use super::body::options;
 use super::read::{Solid, fault, primitive_of, set_of};
 use super::region::{Region, around, region};
-use crate::curved::Curved;
 use crate::facet::{Facets, Resolution};
+use crate::measure::curved::{self, Curved};
+use crate::query::foot;
 use crate::{
-    FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, cache, facet_mixed, foot,
+    FacetMemo, FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, facet_mixed,
 };
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{
@@ -48,8 +49,9 @@ fn moments<T: Real>(
         None => USUAL * size,
     };
     let mut before: Option<(Arc<Facets>, f64)> = None;
+    let memo = context.kept.of::<FacetMemo>();
     for depth in DEPTHS[0]..=DEPTHS[1] {
-        let facets = cache::facet(&solid, &region.over, &sharp(depth, context))?;
+        let facets = memo.facet(&solid, &region.over, &sharp(depth, context))?;
         if facets.mesh.faces().is_empty() {
             return Ok(none());
         }
@@ -163,7 +165,8 @@ measure!(
     "How well two values, of a box divided once more, agree; by default 1e-6 of the area.",
     "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.56637) < 1e-5;",
     |this, set, region, context| {
-        refined(this.accuracy, context, |options| area(set, &region, options))
+        let memo = context.kept.of();
+        refined(this.accuracy, context, |options| area(set, &region, options, &memo))
     }
 );
 
@@ -208,6 +211,7 @@ fn area<T: Real>(
     set: &Set<T>,
     region: &Region<T>,
     options: &crate::Options,
+    memo: &FacetMemo,
 ) -> Result<T, FieldError> {
     let plain = set.re();
     let lifter = Lifter::of(set, &plain, region.corners);
@@ -218,7 +222,7 @@ fn area<T: Real>(
         Ok(Curved::new(&facets.flat()).area(&positions, &primitives, counts))
     };
     if plain.leaves().iter().all(|l| !l.primitive.is_sheet()) {
-        return own(&*cache::facet(&plain, &region.over, options)?);
+        return own(&*memo.facet(&plain, &region.over, options)?);
     }
     let mixed = facet_mixed(&plain, &region.over, options)?;
     let mut area = own(&mixed.solid)?;
@@ -240,7 +244,7 @@ fn length<T: Real>(
     let lifter = Lifter::of(set, &plain, region.corners);
     let mut sum = T::zero();
     for wire in &facet_mixed(&plain, &region.over, options)?.wires {
-        sum += crate::curved::length(wire, &lifter.primitives_on(&wire.on)?);
+        sum += curved::length(wire, &lifter.primitives_on(&wire.on)?);
     }
     Ok(sum)
 }
@@ -557,7 +561,7 @@ impl<T: Real> Build<T> for Distance<T> {
         let [p, q] = [a.re(), b.re()];
         let over = region(&(p.clone() | q.clone()), &self.low, &self.high, 3)?.over;
         let accuracy = self.accuracy.map_or(1e-5 * over.diagonal(), T::re);
-        let found = crate::gap(&p, &q, &over, accuracy).map_err(|e| fault(&e))?;
+        let found = crate::distance(&p, &q, &over, accuracy).map_err(|e| fault(&e))?;
         let Some(found) = found else { return Err(empty()) };
         if found.distance == 0.0 {
             return Ok(Value::Number(T::zero()));
@@ -600,7 +604,8 @@ impl<T: Real> Build<T> for Components<T> {
         }
         let over = region(&set, &self.low, &self.high, 2)?.over;
         let options = options(Resolution::Level(self.depth), context);
-        let facets = cache::facet(&set, &over, &options).map_err(|e| fault(&e))?;
+        let facets = context.kept.of::<FacetMemo>().facet(&set, &over, &options);
+        let facets = facets.map_err(|e| fault(&e))?;
         Ok(Value::Number(T::from(facets.bodies() as f64)))
     }
 }

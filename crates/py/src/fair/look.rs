@@ -2,7 +2,7 @@
 
 use super::refused;
 use crate::arrays;
-use moldloft_fair::surface::{self, Look as One};
+use moldloft_fair::surface::{self, SurfaceAnalysis as One};
 use moldloft_num::{Surface, Vec3};
 use numpy::ndarray::Array2;
 use numpy::{PyArray2, PyArray3, ToPyArray};

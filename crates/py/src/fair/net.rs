@@ -4,8 +4,8 @@ use super::solve::{bound, contradiction, end, get, motion};
 use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
 use crate::arrays;
 use moldloft_fair::{
-    Condition, End, FairError, Limit, Network, NetworkMode, NetworkReport, Seam, Sheet, Space,
-    Strand,
+    Condition, End, FairError, Limit, Network, NetworkCurve, NetworkMode, NetworkReport, PatchNet,
+    Seam, Space,
 };
 use moldloft_num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -164,7 +164,7 @@ impl Net {
             let own = radii.get(at..at + net.points.len()).unwrap_or_default().to_vec();
             at += net.points.len();
             let limit = Limit::new(motion, own).map_err(fair_error)?;
-            let mut sheet = Sheet::new(net.spaces.clone(), net.points.clone(), limit);
+            let mut sheet = PatchNet::new(net.spaces.clone(), net.points.clone(), limit);
             sheet.weights.clone_from(&net.weights);
             sheet.rims = rims;
             sheets.push(sheet);
@@ -221,7 +221,7 @@ impl Web {
             let form = if *closed { "closed" } else { "floating" };
             let space = space(self.degree, own.len(), form, None, None)
                 .map_err(|e| refused(format!("curve {}: {e}", k + 1)))?;
-            strands.push(Strand {
+            strands.push(NetworkCurve {
                 space,
                 points: own.clone(),
                 weights: None,

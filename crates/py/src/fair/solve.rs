@@ -3,8 +3,8 @@
 use super::spline::told;
 use super::{Spline, certificate, fair_error, measure, refused};
 use moldloft_fair::{
-    Bound as Bounded, Condition, End, FairError, Job, Limit, LocalOptions, Mode, Motion, Numbers,
-    OptimumOptions, Report, Rule, Space, Step, Stops, local, report,
+    Bound as Bounded, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Mode, Motion,
+    Numbers, OptimumOptions, Report, Rule, Space, Step, Stops, knot_removal, report,
 };
 use moldloft_num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -102,7 +102,7 @@ fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)>
     let mut owners = Vec::new();
     let local = |rule, step| {
         let (least_move, least_drop, gap, pieces) = get(options, "stops")?;
-        Ok::<_, PyErr>(Mode::Local(LocalOptions {
+        Ok::<_, PyErr>(Mode::KnotRemoval(KnotRemovalOptions {
             rule,
             step,
             measure: named,
@@ -127,7 +127,7 @@ fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)>
         "literal" => local(Rule::Literal, Step::Knot)?,
         "vertex" => local(Rule::Achievable, Step::Vertex)?,
         "sweeps" => Mode::Sweeps(named, steps),
-        "levels" => Mode::Levels(named, steps),
+        "levels" => Mode::Multilevel(named, steps),
         _ => {
             let known = "optimum, faithful, literal, vertex, sweeps, levels";
             return Err(refused(format!("there is no mode `{mode}`; there are: {known}")));
@@ -143,12 +143,12 @@ pub fn curve<'py>(
 ) -> PyResult<(Spline, Bound<'py, PyDict>)> {
     let (job, mode, owners) = asked(spline, options)?;
     let labels: Vec<String> = get(options, "labels")?;
-    let logged = matches!(&mode, Mode::Local(options) if options.log);
+    let logged = matches!(&mode, Mode::KnotRemoval(options) if options.log);
     let done = crate::work::interruptible(py, &Default::default(), move || {
         let told = report(&job, &mode)?;
         // The steps are made again for their log: a log of all steps is not always wanted.
         let log = match &mode {
-            Mode::Local(options) if logged => local(&job, options)?.log,
+            Mode::KnotRemoval(options) if logged => knot_removal(&job, options)?.log,
             _ => Vec::new(),
         };
         Ok::<_, FairError>((told, log))

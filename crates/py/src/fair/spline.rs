@@ -4,8 +4,8 @@ use super::{fair_error, floats, long, measure, refused, solve, space, vectors};
 use crate::arrays;
 use moldloft_fair::shape::{self, Sample};
 use moldloft_fair::{
-    Finding, Job, Jumps, Space, Spacing, fit, fit_rational, interpolate_sharp, least_squares,
-    parameters, surface,
+    Finding, Job, Jumps, Space, Spacing, fit, fit_rational, interpolate_with_corners,
+    least_squares, parameters, surface,
 };
 use moldloft_num::Vec3;
 use numpy::ndarray::Array1;
@@ -127,7 +127,8 @@ impl Spline {
     ) -> PyResult<(Self, Bound<'py, PyArray1<f64>>, Vec<usize>)> {
         let points = vectors(&points)?;
         let spaced = spacing(spaced)?;
-        let sharp = long(py, move || interpolate_sharp(degree, &points, spaced, closed, &breaks))?;
+        let sharp =
+            long(py, move || interpolate_with_corners(degree, &points, spaced, closed, &breaks))?;
         let at = shares(&sharp.fit.space, &sharp.at).to_pyarray(py);
         let spline = Self { space: sharp.fit.space, points: sharp.points, weights: None };
         Ok((spline, at, sharp.marks))

@@ -1,3 +1,5 @@
+//! Bodies bounded by triangles.
+
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, Context, Facets, Fault, Kind, Value};
 use std::sync::Arc;

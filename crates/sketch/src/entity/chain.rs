@@ -1,3 +1,5 @@
+//! Chains of cubics.
+
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};

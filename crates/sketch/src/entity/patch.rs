@@ -1,3 +1,5 @@
+//! Faces as surfaces.
+
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
 use moldloft_registry::{Build, Context, Fault, Kind, Point, SurfaceRef, Value};

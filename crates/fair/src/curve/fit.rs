@@ -1,0 +1,332 @@
+//! Splines through or near data points: the step before fairing.
+
+use crate::error::check_finite;
+use crate::optimum::problem::{self, Bounds, Problem};
+use crate::{FairError, Norm, Space, SparseRows};
+use moldloft_num::{Real, Vec3};
+use moldloft_spline::KnotVector;
+
+/// How data points are given parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spacing {
+    /// Equal steps.
+    Uniform,
+    /// By distance.
+    Chord,
+    /// By the root of the distance (Lee 1989): calmer at sharp turns.
+    Centripetal,
+}
+
+/// A fitted spline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Its knots.
+    pub space: Space,
+    /// Its control points.
+    pub points: Vec<Vec3<f64>>,
+    /// The parameters of the data points.
+    pub parameters: Vec<f64>,
+    /// The largest distance of a data point from the curve at its parameter.
+    pub largest: f64,
+    /// The root mean square of those distances.
+    pub rms: f64,
+}
+
+/// The parameters of data points on [0, 1]; of a closed curve the last is less than 1, the point
+/// after the last being the first.
+///
+/// # Errors
+/// [`FairError::Coincident`] when two neighbours have no distance and a distance is asked for.
+pub fn parameters(
+    points: &[Vec3<f64>],
+    spacing: Spacing,
+    closed: bool,
+) -> Result<Vec<f64>, FairError> {
+    check_finite(points)?;
+    let n = points.len();
+    if n < 2 {
+        return Err(FairError::TooFew { expected: 2, actual: n });
+    }
+    let steps = if closed { n } else { n - 1 };
+    let mut at = vec![0.0];
+    for k in 0..steps {
+        let chord = (points[(k + 1) % n] - points[k]).norm();
+        let step = match spacing {
+            Spacing::Uniform => 1.0,
+            Spacing::Chord => chord,
+            Spacing::Centripetal => Real::sqrt(chord),
+        };
+        if step == 0.0 {
+            return Err(FairError::Coincident { first: k });
+        }
+        at.push(at[k] + step);
+    }
+    let total = at[steps];
+    at.truncate(n);
+    let mut at: Vec<f64> = at.into_iter().map(|t| t / total).collect();
+    if !closed {
+        at[n - 1] = 1.0;
+    }
+    Ok(at)
+}
+
+/// The spline through all points: clamped knots that are means of `degree` parameters (de Boor
+/// 1978, X(6)), or, closed, knots at the parameters (odd degree; for even degrees midway).
+///
+/// # Errors
+/// [`FairError`] when the points are too few, not finite or coincide.
+///
+/// # Example
+/// ```
+/// use moldloft_fair::{Spacing, interpolate};
+/// use moldloft_num::Vec3;
+/// let points: Vec<_> = (0..9).map(|i| Vec3::of(i as f64, (i * i) as f64, 0.0)).collect();
+/// let fit = interpolate(3, &points, Spacing::Chord, false).unwrap();
+/// assert!(fit.largest < 1e-12);
+/// ```
+pub fn interpolate(
+    degree: usize,
+    points: &[Vec3<f64>],
+    spacing: Spacing,
+    closed: bool,
+) -> Result<Fit, FairError> {
+    let at = parameters(points, spacing, closed)?;
+    let n = points.len();
+    let space = if closed {
+        let shift = |k: usize| {
+            let next = if k + 1 < n { at[k + 1] } else { 1.0 };
+            if degree % 2 == 1 { at[k] } else { 0.5 * (at[k] + next) }
+        };
+        Space::periodic(degree, (0..n).map(shift).collect(), 1.0)?
+    } else {
+        if n < degree + 2 {
+            return Err(FairError::TooFew { expected: degree + 2, actual: n });
+        }
+        let mut knots = vec![0.0; degree + 1];
+        for j in 1..n - degree {
+            knots.push(at[j..j + degree].iter().sum::<f64>() / degree as f64);
+        }
+        knots.extend(std::iter::repeat_n(1.0, degree + 1));
+        Space::open(KnotVector::new(degree, knots)?)?
+    };
+    fit(space, points, at, &vec![1.0; n])
+}
+
+/// The spline with `count` control points nearest to the data points in the sum of squares, its
+/// ends at the first and last point. Knots follow the density of the parameters (Piegl and Tiller
+/// 1997, eq. 9.69); of a closed curve they are uniform.
+///
+/// # Errors
+/// [`FairError`] when the points are fewer than `count`, not finite or coincide.
+pub fn least_squares(
+    degree: usize,
+    points: &[Vec3<f64>],
+    count: usize,
+    spacing: Spacing,
+    closed: bool,
+) -> Result<Fit, FairError> {
+    let at = parameters(points, spacing, closed)?;
+    let n = points.len();
+    if n < count {
+        return Err(FairError::TooFew { expected: count, actual: n });
+    }
+    let space = if closed {
+        Space::periodic(degree, (0..count).map(|k| k as f64 / count as f64).collect(), 1.0)?
+    } else {
+        if count < degree + 2 {
+            return Err(FairError::TooFew { expected: degree + 2, actual: count });
+        }
+        let mut knots = vec![0.0; degree + 1];
+        let stride = n as f64 / (count - degree) as f64;
+        for j in 1..count - degree {
+            let place = j as f64 * stride;
+            let i = place.floor();
+            let share = place - i;
+            let i = i as usize;
+            knots.push((1.0 - share) * at[i - 1] + share * at[i]);
+        }
+        knots.extend(std::iter::repeat_n(1.0, degree + 1));
+        Space::open(KnotVector::new(degree, knots)?)?
+    };
+    fit(space, points, at, &vec![1.0; n])
+}
+
+/// The spline of a given space nearest to data points at given parameters, each with the weight of
+/// its squared distance; a clamped spline ends at the first and last point.
+///
+/// # Errors
+/// [`FairError::Singular`] when the data do not determine the spline, [`FairError::Count`].
+pub fn fit(
+    space: Space,
+    points: &[Vec3<f64>],
+    parameters: Vec<f64>,
+    weights: &[f64],
+) -> Result<Fit, FairError> {
+    check_finite(points)?;
+    for (what, actual) in [("parameters", parameters.len()), ("weights", weights.len())] {
+        if actual != points.len() {
+            return Err(FairError::Count { what, expected: points.len(), actual });
+        }
+    }
+    if points.is_empty() {
+        return Err(FairError::TooFew { expected: 1, actual: 0 });
+    }
+    if let Some(index) = weights.iter().position(|w| !w.is_finite() || *w <= 0.0) {
+        return Err(FairError::Weight { index, weight: weights[index] });
+    }
+    let n = space.count();
+    let rows = values(&space, &parameters);
+    let mut control = vec![points[0]; n];
+    let mut frozen = vec![false; n];
+    if space.is_clamped() {
+        control[n - 1] = points[points.len() - 1];
+        (frozen[0], frozen[n - 1]) = (true, true);
+    }
+    let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
+    let mut weighted = SparseRows::new();
+    for (k, root) in roots.iter().enumerate() {
+        let (c, f) = rows.row(k);
+        weighted.push(c.iter().map(|&c| c as usize).zip(f.iter().map(|x| x * root)));
+    }
+    // The normal equations, with their own residual solved for twice more.
+    for _ in 0..3 {
+        let off = |k: usize| ((rows.apply(k, &control) - points[k]) * roots[k]).to_array();
+        let problem = Problem {
+            dimension: 3,
+            offsets: (0..weighted.len()).map(off).collect(),
+            measure: weighted.clone(),
+            norm: Norm::Square,
+            bounds: Bounds {
+                rows: SparseRows::new(),
+                direct: true,
+                radii: Vec::new(),
+                separate: false,
+            },
+            frozen: frozen.clone(),
+            conditions: Vec::new(),
+            reach: vec![f64::INFINITY; n],
+        };
+        let step = problem::solve(&problem, 0.0, 0.0, 0.0)?;
+        for (c, x) in control.iter_mut().zip(step.x) {
+            *c += Vec3::from(x);
+        }
+    }
+    if control.iter().any(|c| !c.is_finite()) {
+        return Err(FairError::Singular);
+    }
+    // Control points that no datum holds would stay where they began.
+    let listeners = rows.transposed(n);
+    if (0..n).any(|j| listeners.row(j).1.iter().all(|x| x.abs() < 1e-12)) {
+        return Err(FairError::Singular);
+    }
+    let distances: Vec<f64> =
+        (0..points.len()).map(|k| (rows.apply(k, &control) - points[k]).norm()).collect();
+    let largest = distances.iter().copied().fold(0.0, f64::max);
+    let rms = (distances.iter().map(|d| d * d).sum::<f64>() / points.len() as f64).sqrt();
+    Ok(Fit { space, points: control, parameters, largest, rms })
+}
+
+/// The spline of a given space, rational with these weights of its control points, nearest to data
+/// points at given parameters: through them when there are as many. The weights stay as they are, so
+/// the fit is linear: the homogeneous curve through points times their denominator.
+///
+/// # Errors
+/// As [`fit`]; [`FairError::Weight`], [`FairError::Count`] of the weights.
+pub fn fit_rational(
+    space: Space,
+    points: &[Vec3<f64>],
+    parameters: Vec<f64>,
+    weights: &[f64],
+) -> Result<Fit, FairError> {
+    let (expected, actual) = (space.count(), weights.len());
+    if expected != actual {
+        return Err(FairError::Count { what: "weights", expected, actual });
+    }
+    if let Some(index) = weights.iter().position(|w| !w.is_finite() || *w <= 0.0) {
+        return Err(FairError::Weight { index, weight: weights[index] });
+    }
+    let rows = values(&space, &parameters);
+    let under = |k: usize| {
+        let (columns, factors) = rows.row(k);
+        columns.iter().zip(factors).map(|(&c, x)| weights[c as usize] * x).sum::<f64>()
+    };
+    let totals: Vec<f64> = (0..rows.len()).map(under).collect();
+    let raised: Vec<_> = points.iter().zip(&totals).map(|(&p, &w)| p * w).collect();
+    // Distances of the curve itself count, not those of its homogeneous form.
+    let counts: Vec<f64> = totals.iter().map(|w| 1.0 / (w * w)).collect();
+    let mut fitted = fit(space, &raised, parameters, &counts)?;
+    let away = |(k, p): (usize, &Vec3<f64>)| {
+        (rows.apply(k, &fitted.points) * (1.0 / totals[k]) - *p).norm()
+    };
+    let distances: Vec<f64> = points.iter().enumerate().map(away).collect();
+    fitted.largest = distances.iter().copied().fold(0.0, f64::max);
+    fitted.rms = (distances.iter().map(|d| d * d).sum::<f64>() / points.len() as f64).sqrt();
+    for (c, w) in fitted.points.iter_mut().zip(weights) {
+        *c = *c * (1.0 / w);
+    }
+    Ok(fitted)
+}
+
+/// The basis functions at parameters, as rows over the control points.
+fn values(space: &Space, parameters: &[f64]) -> SparseRows {
+    let mut rows = SparseRows::new();
+    for &t in parameters {
+        let (k, t) = space.locate(t);
+        let basis = space.basis(k, t);
+        rows.push(space.columns(k).zip(basis.rows[0].iter().copied()));
+    }
+    rows
+}
+
+/// A sum of squares without limits.
+fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Problem {
+    let reach = vec![f64::INFINITY; frozen.len()];
+    let bounds =
+        Bounds { rows: SparseRows::new(), direct: true, radii: Vec::new(), separate: false };
+    let conditions = Vec::new();
+    Problem {
+        dimension: 3,
+        measure,
+        norm: Norm::Square,
+        offsets,
+        bounds,
+        frozen,
+        conditions,
+        reach,
+    }
+}
+
+/// The control points of an unweighted fit for data that carry derivatives, whose real parts are
+/// those that were fitted. Knots and parameters stay as they are, so a fit is linear in its data.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_with<T: Real>(fit: &Fit, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+    let n = fit.space.count();
+    let rows = values(&fit.space, &fit.parameters);
+    let mut frozen = vec![false; n];
+    let change = |p: &Vec3<T>| *p - Vec3::lifted(p.re());
+    let mut control: Vec<Vec3<T>> = fit.points.iter().map(|&p| Vec3::lifted(p)).collect();
+    if fit.space.is_clamped() {
+        (frozen[0], frozen[n - 1]) = (true, true);
+        control[0] += change(&points[0]);
+        control[n - 1] += change(&points[points.len() - 1]);
+    }
+    let offsets: Vec<[T; 3]> = (0..rows.len())
+        .map(|k| {
+            let (columns, factors) = rows.row(k);
+            let ends = columns.iter().zip(factors).filter(|(c, _)| frozen[**c as usize]);
+            let moved = ends
+                .fold(Vec3::zero(), |s, (&c, &x)| s + change(&control[c as usize]).map(|v| v * x));
+            (moved - change(&points[k])).to_array()
+        })
+        .collect();
+    let problem = squares(rows, vec![[0.0; 3]; offsets.len()], frozen);
+    let still = problem::solve(&problem, 0.0, 0.0, 0.0)?;
+    for (c, x) in
+        control.iter_mut().zip(problem::respond(&problem, &still, &offsets, &[], &[], &[])?)
+    {
+        *c += Vec3::from(x);
+    }
+    Ok(control)
+}

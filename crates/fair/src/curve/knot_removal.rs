@@ -1,0 +1,426 @@
+//! KnotRemoval steps: knots are removed and re-inserted one at a time, the worst first.
+
+use crate::indexed_heap::IndexedHeap;
+use crate::optimum::certificate::ball_gap;
+use crate::{FairError, Job, Jumps, Measure, Norm, SparseRows, shape};
+use moldloft_num::{Real, Vec3};
+
+/// Which knot comes next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// The one whose point can make the longest move within its limit. Points that sit on their
+    /// limit are passed over, so the steps converge to the optimum.
+    Achievable,
+    /// The one with the largest jump, as the report of 1991 has it. Once that point sits on its
+    /// limit nothing moves any more: the loop stalls, usually long before the optimum.
+    Literal,
+}
+
+/// What one step does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The knot's jump is made zero (Farin, Rein, Sapidis and Worsey 1987). On knots that are not
+    /// uniform a step is taken only when the measure falls.
+    Knot,
+    /// The measure is minimised over one control point. For [`Measure::Second`] on uniform cubics
+    /// this is the same step.
+    Vertex,
+}
+
+/// When the steps end. The first that holds is reported.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stops {
+    /// After so many steps.
+    pub steps: usize,
+    /// When no move is longer than this share of the largest finite limit.
+    pub least_move: f64,
+    /// When a step lowers the measure by less than this share of it.
+    pub least_drop: f64,
+    /// When the certified gap, asked for once in n steps, is below this share of the measure.
+    pub gap: f64,
+    /// When the number of monotone curvature pieces, asked for once in n steps, no longer falls.
+    pub pieces: bool,
+}
+
+impl Stops {
+    /// So many steps, or nothing left to do.
+    pub fn after(steps: usize) -> Self {
+        Self { steps, least_move: 0.0, least_drop: 0.0, gap: 0.0, pieces: false }
+    }
+}
+
+/// Which stop ended the steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// The number of steps was used up.
+    Steps,
+    /// The longest move left is short.
+    Move,
+    /// The measure hardly falls.
+    Drop,
+    /// The certified gap is small.
+    Gap,
+    /// There are no fewer monotone curvature pieces than n steps before.
+    Pieces,
+    /// The literal rule has chosen a point that sits on its limit.
+    Stalled,
+    /// No point has a step to make.
+    Done,
+}
+
+impl Stopped {
+    /// A word for reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stopped::Steps => "steps",
+            Stopped::Move => "move",
+            Stopped::Drop => "drop",
+            Stopped::Gap => "gap",
+            Stopped::Pieces => "pieces",
+            Stopped::Stalled => "stalled",
+            Stopped::Done => "done",
+        }
+    }
+}
+
+/// How to make local steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnotRemovalOptions {
+    /// Which knot comes next.
+    pub rule: Rule,
+    /// What one step does.
+    pub step: Step,
+    /// The measure that [`Step::Vertex`] lowers and that stops look at; one of squares.
+    pub measure: Measure,
+    /// When to end.
+    pub stops: Stops,
+    /// Whether the steps are written down.
+    pub log: bool,
+}
+
+impl KnotRemovalOptions {
+    /// The faithful algorithm, `steps` steps long.
+    pub fn faithful(steps: usize) -> Self {
+        Self {
+            rule: Rule::Achievable,
+            step: Step::Knot,
+            measure: Measure::Second,
+            stops: Stops::after(steps),
+            log: false,
+        }
+    }
+}
+
+/// One step: a control point and its new place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// The control point.
+    pub index: u32,
+    /// Where it went.
+    pub to: Vec3<f64>,
+}
+
+/// What local steps led to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnotRemoval {
+    /// The control points. Those that no step moved have their original bits.
+    pub points: Vec<Vec3<f64>>,
+    /// The number of steps made.
+    pub steps: usize,
+    /// Why they ended.
+    pub stopped: Stopped,
+    /// The steps in order, if they were asked for; see [`replay`].
+    pub log: Vec<Move>,
+}
+
+/// The points after the steps of a log: the same bits as [`KnotRemoval::points`].
+pub fn replay(original: &[Vec3<f64>], log: &[Move]) -> Vec<Vec3<f64>> {
+    let mut points = original.to_vec();
+    for step in log {
+        points[step.index as usize] = step.to;
+    }
+    points
+}
+
+/// One linear form per control point whose zero is the point's step, and who listens to whom.
+pub(crate) struct Steps {
+    /// Empty where a point has no step.
+    pub rows: SparseRows,
+    /// The factor of the point itself in its row.
+    pub own: Vec<f64>,
+    /// Row j: the points whose form contains point j.
+    pub listeners: SparseRows,
+}
+
+impl Steps {
+    /// The steps of `job` by `step`, none for frozen points.
+    pub fn of(job: &Job, step: Step, measure: &SparseRows) -> Self {
+        let n = job.points.len();
+        let frozen = job.frozen();
+        let mut rows = SparseRows::new();
+        let mut own = vec![0.0; n];
+        match step {
+            Step::Vertex => {
+                let gram = measure.gram(n);
+                for (j, own) in own.iter_mut().enumerate() {
+                    let (columns, factors) = gram.row(j);
+                    let at = columns.iter().position(|&c| c as usize == j);
+                    match at.filter(|&at| !frozen[j] && factors[at] > 0.0) {
+                        Some(at) => {
+                            *own = factors[at];
+                            rows.push(
+                                columns.iter().map(|&c| c as usize).zip(factors.iter().copied()),
+                            );
+                        }
+                        None => rows.push([]),
+                    }
+                }
+            }
+            Step::Knot => {
+                let jumps = Jumps::of(&job.space);
+                let jump_rows = job.own_rows(&jumps.rows);
+                let mut of_point = vec![usize::MAX; n];
+                for (k, &j) in jumps.moved.iter().enumerate() {
+                    if !frozen[j] && !job.crosses_mark(jumps.rows.row(k)) {
+                        of_point[j] = k;
+                    }
+                }
+                for j in 0..n {
+                    if of_point[j] == usize::MAX {
+                        rows.push([]);
+                        continue;
+                    }
+                    let (columns, factors) = jump_rows.row(of_point[j]);
+                    let at = columns.iter().position(|&c| c as usize == j);
+                    own[j] = at.map_or(0.0, |at| factors[at]);
+                    rows.push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
+                }
+            }
+        }
+        let listeners = rows.transposed(n);
+        Self { rows, own, listeners }
+    }
+
+    /// Where point `j` wants to go, and its form's length.
+    #[inline(always)]
+    fn wanted(&self, j: usize, points: &[Vec3<f64>], origin: Vec3<f64>) -> (Vec3<f64>, f64) {
+        if self.own[j] == 0.0 {
+            return (points[j], 0.0);
+        }
+        let (columns, factors) = self.rows.row(j);
+        let mut form = Vec3::zero();
+        for (&c, &a) in columns.iter().zip(factors) {
+            let p = points[c as usize] - origin;
+            form += Vec3::of(a * p.x, a * p.y, a * p.z);
+        }
+        (points[j] - form * (1.0 / self.own[j]), form.norm())
+    }
+}
+
+/// Makes local steps.
+///
+/// Cost: O(log n) per step. The result is reproducible but jumps where two knots tie: a small
+/// change of the input may change which knot comes first. [`crate::optimum`] is continuous.
+///
+/// # Errors
+/// [`FairError`] when the measure does not exist for the degree.
+pub fn knot_removal(job: &Job, options: &KnotRemovalOptions) -> Result<KnotRemoval, FairError> {
+    knot_removal_from(job, job.points.clone(), options)
+}
+
+/// Makes local steps from points that are not the original any more: limits are measured from the
+/// original of the job, across all passes.
+///
+/// # Errors
+/// As [`local`].
+pub fn knot_removal_from(
+    job: &Job,
+    from: Vec<Vec3<f64>>,
+    options: &KnotRemovalOptions,
+) -> Result<KnotRemoval, FairError> {
+    job.check()?;
+    if from.len() != job.points.len() {
+        let (expected, actual) = (job.points.len(), from.len());
+        return Err(FairError::Count { what: "control points", expected, actual });
+    }
+    let n = job.points.len();
+    let rows = job.measure_rows(options.measure)?;
+    let steps = Steps::of(job, options.step, &rows);
+    // Where the step is not the measure's own, each step is checked to lower it.
+    let check = match options.step {
+        Step::Knot if !job.space.is_uniform() || job.weights.is_some() => {
+            Some(Steps::of(job, Step::Vertex, &rows))
+        }
+        _ => None,
+    };
+    let origin = job.origin();
+    let mut points = from;
+    let place = |j: usize, points: &[Vec3<f64>]| {
+        let (wanted, form) = steps.wanted(j, points, origin);
+        (job.limit.nearest(j, job.points[j], points[j], wanted), form)
+    };
+    let drop = |j: usize, points: &[Vec3<f64>], to: Vec3<f64>| {
+        let by = check.as_ref().unwrap_or(&steps);
+        if by.own[j] == 0.0 {
+            return 0.0;
+        }
+        let (free, _) = by.wanted(j, points, origin);
+        by.own[j] * ((points[j] - free).norm_sq() - (to - free).norm_sq())
+    };
+    let key = |j: usize, points: &[Vec3<f64>]| {
+        if steps.own[j] == 0.0 {
+            return 0.0;
+        }
+        let (to, form) = place(j, points);
+        match options.rule {
+            Rule::Literal => form,
+            Rule::Achievable if check.is_some() && drop(j, points, to) <= 0.0 => 0.0,
+            Rule::Achievable => (to - points[j]).norm(),
+        }
+    };
+    let mut heap = IndexedHeap::new((0..n).map(|j| key(j, &points)).collect());
+    let stops = &options.stops;
+    // Moves below the rounding of the coordinates are no moves.
+    let size = job.points.iter().map(|p| (*p - origin).norm()).fold(0.0, f64::max);
+    let radius = job.limit.radii.iter().copied().filter(|r| r.is_finite()).fold(0.0, f64::max);
+    let least = (stops.least_move * radius).max(4.0 * f64::EPSILON * size);
+    let watch = stops.gap > 0.0 || stops.pieces;
+    let relative = |p: &[Vec3<f64>]| job.relative(p);
+    let mut total = if stops.least_drop > 0.0 { rows.sum_sq(&relative(&points)) } else { 0.0 };
+    let mut pieces = if stops.pieces { shape::pieces(&job.space, &points) } else { 0 };
+    let mut log = Vec::new();
+    let mut done = 0;
+    let stopped = loop {
+        if done == stops.steps {
+            break Stopped::Steps;
+        }
+        let Some((j, top)) = heap.top() else { break Stopped::Done };
+        if top == 0.0 {
+            break Stopped::Done;
+        }
+        if watch && done > 0 && done % n == 0 {
+            if stops.gap > 0.0 {
+                let gap = ball_gap(job, &rows, Norm::Square, &points);
+                if gap.gap <= stops.gap * gap.value {
+                    break Stopped::Gap;
+                }
+            }
+            if stops.pieces {
+                let now = shape::pieces(&job.space, &points);
+                if now >= pieces {
+                    break Stopped::Pieces;
+                }
+                pieces = now;
+            }
+        }
+        let (to, _) = place(j, &points);
+        let length = (to - points[j]).norm();
+        if length <= least {
+            break match options.rule {
+                Rule::Literal => Stopped::Stalled,
+                Rule::Achievable => Stopped::Move,
+            };
+        }
+        if options.rule == Rule::Literal && check.is_some() && drop(j, &points, to) <= 0.0 {
+            break Stopped::Stalled;
+        }
+        if stops.least_drop > 0.0 {
+            let lower = drop(j, &points, to);
+            if lower < stops.least_drop * total {
+                break Stopped::Drop;
+            }
+            total -= lower;
+        }
+        points[j] = to;
+        done += 1;
+        if options.log {
+            log.push(Move { index: j as u32, to });
+        }
+        let (listeners, _) = steps.listeners.row(j);
+        for &i in listeners {
+            heap.set(i as usize, key(i as usize, &points));
+        }
+        if let Some(check) = &check {
+            // A knot that may not move now may move when the measure's slope there has changed.
+            for &i in check.listeners.row(j).0 {
+                heap.set(i as usize, key(i as usize, &points));
+            }
+        }
+    };
+    Ok(KnotRemoval { points, steps: done, stopped, log })
+}
+
+/// A fixed number of sweeps over all points in order, each at its limited one-point minimiser:
+/// continuous in the input, and quicker than ranked steps for bulk work. Points at least as far
+/// apart as the stencil is wide are independent, so the sweep runs colour by colour and could be
+/// shared among threads without a change of bits.
+///
+/// # Errors
+/// [`FairError`] when the measure does not exist for the degree.
+pub fn sweeps(job: &Job, measure: Measure, count: usize) -> Result<Vec<Vec3<f64>>, FairError> {
+    job.check()?;
+    let n = job.points.len();
+    let rows = job.measure_rows(measure)?;
+    let steps = Steps::of(job, Step::Vertex, &rows);
+    let origin = job.origin();
+    let mut points = job.points.clone();
+    let widest = (0..n).map(|j| steps.rows.row(j).0.len()).max().unwrap_or(1);
+    let colours = widest.div_ceil(2).max(1);
+    for _ in 0..count {
+        for colour in 0..colours {
+            for j in (colour..n).step_by(colours) {
+                if steps.own[j] != 0.0 {
+                    let (wanted, _) = steps.wanted(j, &points, origin);
+                    points[j] = job.limit.nearest(j, job.points[j], points[j], wanted);
+                }
+            }
+        }
+    }
+    Ok(points)
+}
+
+/// The points after the steps of a log, with numbers that carry derivatives: which points moved is
+/// as it was, where they went follows the input; real parts are the bits of the log.
+///
+/// # Errors
+/// [`FairError`] as for [`local`].
+pub fn replay_with<T: Real>(
+    job: &Job,
+    options: &KnotRemovalOptions,
+    log: &[Move],
+    points: &[Vec3<T>],
+    tolerances: &[T],
+) -> Result<Vec<Vec3<T>>, FairError> {
+    replay_from_with(job, options, log, points, points, tolerances)
+}
+
+/// The same for steps that began elsewhere, at `from`: see [`knot_removal_from`].
+///
+/// # Errors
+/// As [`replay_with`].
+pub fn replay_from_with<T: Real>(
+    job: &Job,
+    options: &KnotRemovalOptions,
+    log: &[Move],
+    from: &[Vec3<T>],
+    points: &[Vec3<T>],
+    tolerances: &[T],
+) -> Result<Vec<Vec3<T>>, FairError> {
+    let rows = job.measure_rows(options.measure)?;
+    let steps = Steps::of(job, options.step, &rows);
+    let mut now = from.to_vec();
+    for step in log {
+        let j = step.index as usize;
+        let (columns, factors) = steps.rows.row(j);
+        let entries = columns.iter().zip(factors);
+        let form: Vec3<T> =
+            entries.fold(Vec3::zero(), |s, (&c, &a)| s + now[c as usize].map(|x| x * a));
+        let wanted = now[j] - form.map(|x| x / steps.own[j]);
+        let moved = points[j] + job.limit.motion.allowed(wanted - points[j], tolerances[j]);
+        now[j] = moved + Vec3::lifted(step.to - moved.re());
+        // The sum may round in the last bit: the log decides.
+        let off = step.to - now[j].re();
+        now[j] += Vec3::lifted(off);
+    }
+    Ok(now)
+}

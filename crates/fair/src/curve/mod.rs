@@ -1,0 +1,13 @@
+//! One curve to be faired: what its control points mean, how points become a spline, what may move
+//! how far, and the step of knot removal.
+
+pub(crate) mod breaks;
+pub(crate) mod condition;
+pub(crate) mod corners;
+pub(crate) mod fit;
+pub(crate) mod job;
+pub(crate) mod jumps;
+pub(crate) mod knot_removal;
+pub(crate) mod limit;
+pub(crate) mod multilevel;
+pub(crate) mod space;

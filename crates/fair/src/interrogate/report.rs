@@ -1,0 +1,236 @@
+//! All about one fairing, as data: what the command line prints.
+
+use crate::{
+    Certificate, Deviation, FairError, Finding, Job, Jumps, KnotRemoval, KnotRemovalOptions,
+    Measure, Norm, Optimum, OptimumOptions, Stopped, ball_gap, deviation, knot_removal, multilevel,
+    optimum, shape, sweeps,
+};
+use moldloft_num::Vec3;
+use std::fmt;
+
+/// How the fairing is to be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mode {
+    /// The optimum within the tolerance.
+    Optimum(OptimumOptions),
+    /// KnotRemoval steps.
+    KnotRemoval(KnotRemovalOptions),
+    /// So many sweeps over all points; see [`sweeps`].
+    Sweeps(Measure, usize),
+    /// So many cycles over waves of all lengths; see [`levels`].
+    Multilevel(Measure, usize),
+}
+
+/// Counts and sums over a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbers {
+    /// The measure that was asked for.
+    pub measure: f64,
+    /// Sum of squared jumps.
+    pub jumps: f64,
+    /// The largest jump.
+    pub largest_jump: f64,
+    /// Monotone pieces of the curvature, reversals below a thousandth of its range ignored.
+    pub pieces: usize,
+    /// Sign changes of the curvature.
+    pub inflections: usize,
+    /// The largest curvature.
+    pub largest_curvature: f64,
+}
+
+/// The result of a fairing with all that is to be said about it. The time is the caller's to take.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The faired control points.
+    pub points: Vec<Vec3<f64>>,
+    /// The measure's name.
+    pub measure: &'static str,
+    /// The original curve.
+    pub before: Numbers,
+    /// The faired curve.
+    pub after: Numbers,
+    /// Distance from the original.
+    pub deviation: Deviation,
+    /// The measure and what is left to gain.
+    pub certificate: Certificate,
+    /// Newton steps, or local steps.
+    pub steps: usize,
+    /// Why local steps ended; `None` for the optimum.
+    pub stopped: Option<Stopped>,
+    /// Limits that are reached; for the optimum.
+    pub active: Option<usize>,
+    /// Corners and wrong points that the original's jumps give away and that are not marked.
+    pub findings: Vec<Finding>,
+    /// The jump at each knot, before and after, for jump plots.
+    pub jumps: [Vec<f64>; 2],
+    /// Things the user should know, besides the findings.
+    pub notes: Vec<String>,
+}
+
+/// Samples on each span for curvature counts.
+const SAMPLES: usize = 16;
+
+/// The numbers of a curve.
+///
+/// # Errors
+/// [`FairError::Degree`].
+pub fn numbers(job: &Job, measure: Measure, points: &[Vec3<f64>]) -> Result<Numbers, FairError> {
+    let samples = shape::samples(&job.space, points, job.weights.as_deref(), SAMPLES);
+    let curvatures = shape::curvatures(&samples);
+    let rows = job.own_rows(&Jumps::of(&job.space).rows);
+    let relative = job.relative(points);
+    let jumps = (0..rows.len()).map(|k| rows.apply(k, &relative).norm());
+    Ok(Numbers {
+        measure: job.value(measure, points)?,
+        jumps: rows.sum_sq(&relative),
+        largest_jump: jumps.fold(0.0, f64::max),
+        pieces: shape::monotone_runs(&curvatures, 1e-3),
+        inflections: shape::inflections(&samples),
+        largest_curvature: curvatures.iter().fold(0.0, |m: f64, k| m.max(k.abs())),
+    })
+}
+
+/// Fairs a curve and reports.
+///
+/// # Errors
+/// [`FairError`] as for [`optimum`] and [`local`].
+///
+/// # Example
+/// ```
+/// use moldloft_fair::{Job, Measure, Mode, OptimumOptions, report};
+/// use moldloft_num::Vec3;
+/// let wavy = |i: i32| Vec3::of(f64::from(i), if i % 3 == 0 { 0.01 } else { 0.0 }, 0.0);
+/// let job = Job::of_points(3, (0..20).map(wavy).collect(), false, 0.02).unwrap();
+/// let report = report(&job, &Mode::Optimum(OptimumOptions::of(Measure::Second))).unwrap();
+/// assert!(report.deviation.certified <= 0.02 && report.after.jumps < 1e-3 * report.before.jumps);
+/// assert!(report.to_string().contains("certified"));
+/// ```
+pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
+    let (points, measure, certificate, steps, stopped, active) = match mode {
+        Mode::Optimum(options) => {
+            let Optimum { points, certificate, iterations, active } = optimum(job, options)?;
+            (points, options.measure, certificate, iterations, None, Some(active))
+        }
+        Mode::KnotRemoval(options) => {
+            let KnotRemoval { points, steps, stopped, .. } = knot_removal(job, options)?;
+            let rows = job.measure_rows(options.measure)?;
+            let gap = ball_gap(job, &rows, Norm::Square, &points);
+            (points, options.measure, gap, steps, Some(stopped), None)
+        }
+        Mode::Sweeps(measure, count) | Mode::Multilevel(measure, count) => {
+            if measure.norm() != Norm::Square {
+                return Err(FairError::Squares);
+            }
+            let points = match mode {
+                Mode::Sweeps(..) => sweeps(job, *measure, *count)?,
+                _ => multilevel(job, *measure, *count, u32::BITS)?,
+            };
+            let gap = ball_gap(job, &job.measure_rows(*measure)?, Norm::Square, &points);
+            (points, *measure, gap, *count, Some(Stopped::Steps), None)
+        }
+    };
+    let (before, after) = (numbers(job, measure, &job.points)?, numbers(job, measure, &points)?);
+    let rows = job.own_rows(&Jumps::of(&job.space).rows);
+    let jumps = [&job.points, &points].map(|p| {
+        let relative = job.relative(p);
+        (0..rows.len()).map(|k| rows.apply(k, &relative).norm()).collect()
+    });
+    let mut report = Report {
+        deviation: deviation(job, &points),
+        points,
+        measure: measure.name(),
+        before,
+        after,
+        certificate,
+        steps,
+        stopped,
+        active,
+        findings: unmarked(job),
+        jumps,
+        notes: Vec::new(),
+    };
+    report.notes = notes(job, &report);
+    Ok(report)
+}
+
+/// What stands out and is not taken into account yet.
+fn unmarked(job: &Job) -> Vec<Finding> {
+    let mut found = crate::findings(job);
+    found.retain(|f| !job.marks.contains(&f.index()));
+    found
+}
+
+fn notes(job: &Job, report: &Report) -> Vec<String> {
+    let mut notes = Vec::new();
+    if report.stopped == Some(Stopped::Stalled) {
+        notes.push(
+            "the literal rule stalled: the worst knot's point sits on its limit; rank by \
+             achievable move, or take the optimum"
+                .to_string(),
+        );
+    }
+    if report.after.inflections > report.before.inflections {
+        notes.push(format!(
+            "{} inflections appeared",
+            report.after.inflections - report.before.inflections
+        ));
+    }
+    if job.limit.radii.iter().any(|r| r.is_infinite()) {
+        notes.push(
+            "no tolerance: steps without end lead to a single polynomial, far from the data"
+                .to_string(),
+        );
+    }
+    // Noise in end points that stand still shows as a kink beside them.
+    let jumps = &report.jumps[1];
+    if let (Some(first), Some(last)) = (jumps.first(), jumps.last())
+        && !job.space.is_closed()
+        && jumps.len() > 4
+    {
+        let largest = jumps.iter().copied().fold(0.0, f64::max);
+        let inner = jumps[1..jumps.len() - 1].iter().copied().fold(0.0, f64::max);
+        if largest > 0.0 && largest == first.max(*last) && largest > 2.0 * inner {
+            notes.push(
+                "the largest jump left is beside an end that stands still: its points may be \
+                 off; free the end or fit it"
+                    .to_string(),
+            );
+        }
+    }
+    notes
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (b, a, d) = (&self.before, &self.after, &self.deviation);
+        writeln!(f, "                         before         after")?;
+        writeln!(f, "{:<18} {:>12.6e}  {:>12.6e}", self.measure, b.measure, a.measure)?;
+        writeln!(f, "{:<18} {:>12.6e}  {:>12.6e}", "squared jumps", b.jumps, a.jumps)?;
+        let largest = (b.largest_jump, a.largest_jump);
+        writeln!(f, "{:<18} {:>12.6e}  {:>12.6e}", "largest jump", largest.0, largest.1)?;
+        writeln!(f, "{:<18} {:>12}  {:>12}", "monotone pieces", b.pieces, a.pieces)?;
+        writeln!(f, "{:<18} {:>12}  {:>12}", "inflections", b.inflections, a.inflections)?;
+        writeln!(
+            f,
+            "deviation          certified {:.6e} (sampled {:.6e}), {:.4} % of the length",
+            d.certified,
+            d.sampled,
+            d.percent()
+        )?;
+        writeln!(
+            f,
+            "certificate        {:.9e}, at most {:.2e} of it left to gain",
+            self.certificate.value,
+            self.certificate.relative()
+        )?;
+        match (self.stopped, self.active) {
+            (Some(why), _) => writeln!(f, "steps              {} ({})", self.steps, why.name())?,
+            (None, Some(active)) => {
+                writeln!(f, "iterations         {}, {active} limits reached", self.steps)?;
+            }
+            (None, None) => {}
+        }
+        self.findings.iter().try_for_each(|finding| writeln!(f, "note: {finding}"))?;
+        self.notes.iter().try_for_each(|note| writeln!(f, "note: {note}"))
+    }
+}

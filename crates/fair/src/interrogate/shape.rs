@@ -1,0 +1,316 @@
+//! Curvature and its relatives along a spline, as numbers.
+
+use crate::Space;
+use crate::interrogate::spans::each_span;
+use moldloft_num::{Real, Vec3, gauss_points};
+
+/// A curve at one parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The parameter, in the space's own knots.
+    pub t: f64,
+    /// Position.
+    pub point: Vec3<f64>,
+    /// First, second and third derivative by `t`.
+    pub derivatives: [Vec3<f64>; 3],
+}
+
+impl Sample {
+    /// Of the sums of basis functions and their derivatives times control points, and for a rational
+    /// curve of the same with weights (Piegl and Tiller 1997, eq. 4.8).
+    pub(crate) fn of_sums(t: f64, a: [Vec3<f64>; 4], weights: Option<[f64; 4]>) -> Self {
+        let Some(w) = weights else {
+            let [point, derivatives @ ..] = a;
+            return Self { t, point, derivatives };
+        };
+        let point = a[0] * (1.0 / w[0]);
+        let d1 = (a[1] - point * w[1]) * (1.0 / w[0]);
+        let d2 = (a[2] - d1 * (2.0 * w[1]) - point * w[2]) * (1.0 / w[0]);
+        let d3 = (a[3] - d2 * (3.0 * w[1]) - d1 * (3.0 * w[2]) - point * w[3]) * (1.0 / w[0]);
+        Self { t, point, derivatives: [d1, d2, d3] }
+    }
+
+    /// The curvature vector's length, |x' x x''| / |x'|^3; 0 where the curve stands still.
+    pub fn curvature(&self) -> f64 {
+        let [d1, d2, _] = self.derivatives;
+        let speed = d1.norm();
+        if speed == 0.0 { 0.0 } else { d1.cross(d2).norm() / speed.powi(3) }
+    }
+
+    /// The curvature with the sign of x' x x'' along `normal`: positive where a plane curve turns
+    /// left, seen against the normal.
+    pub fn signed_curvature(&self, normal: Vec3<f64>) -> f64 {
+        let [d1, d2, _] = self.derivatives;
+        let speed = d1.norm();
+        if speed == 0.0 { 0.0 } else { d1.cross(d2).dot(normal) / speed.powi(3) }
+    }
+
+    /// The torsion det(x', x'', x''') / |x' x x''|^2; 0 at inflections.
+    pub fn torsion(&self) -> f64 {
+        let [d1, d2, d3] = self.derivatives;
+        let cross = d1.cross(d2);
+        let square = cross.norm_sq();
+        if square == 0.0 { 0.0 } else { cross.dot(d3) / square }
+    }
+
+    /// The derivative of the signed curvature by arc length, for curves in the plane of `normal`:
+    /// (det(x', x''') |x'|^2 - 3 det(x', x'') (x' . x'')) / |x'|^6.
+    pub fn curvature_slope(&self, normal: Vec3<f64>) -> f64 {
+        let [d1, d2, d3] = self.derivatives;
+        let square = d1.norm_sq();
+        if square == 0.0 {
+            return 0.0;
+        }
+        let det = |a: Vec3<f64>, b: Vec3<f64>| a.cross(b).dot(normal);
+        (det(d1, d3) * square - 3.0 * det(d1, d2) * d1.dot(d2)) / square.powi(3)
+    }
+
+    /// The principal normal: the direction the curve bends to; zero at inflections.
+    pub fn bend(&self) -> Vec3<f64> {
+        let [d1, d2, _] = self.derivatives;
+        let square = d1.norm_sq();
+        if square == 0.0 {
+            return Vec3::zero();
+        }
+        (d2 - d1 * (d1.dot(d2) / square)).normalized().unwrap_or_default()
+    }
+}
+
+/// The curve at `t` by the polynomials of span `k`.
+pub fn sample_in(
+    space: &Space,
+    points: &[Vec3<f64>],
+    weights: Option<&[f64]>,
+    k: isize,
+    t: f64,
+) -> Sample {
+    let mut a = [Vec3::zero(); 4];
+    let mut w = [0.0; 4];
+    let basis = space.basis(k, t);
+    let third = space.derivative(k, t, 3);
+    let rows: [&[f64]; 4] = [&basis.rows[0], &basis.rows[1], &basis.rows[2], &third];
+    for (order, row) in rows.into_iter().enumerate() {
+        for (c, &b) in space.columns(k).zip(row) {
+            let weight = weights.map_or(1.0, |w| w[c]);
+            a[order] += points[c] * (weight * b);
+            w[order] += weight * b;
+        }
+    }
+    Sample::of_sums(t, a, weights.is_some().then_some(w))
+}
+
+/// The curve at `t`.
+pub fn sample_at(space: &Space, points: &[Vec3<f64>], weights: Option<&[f64]>, t: f64) -> Sample {
+    let (k, t) = space.locate(t);
+    sample_in(space, points, weights, k, t)
+}
+
+/// `per_span + 1` samples on each span, both ends included: at a knot the curve is sampled from
+/// either side.
+pub fn samples(
+    space: &Space,
+    points: &[Vec3<f64>],
+    weights: Option<&[f64]>,
+    per_span: usize,
+) -> Vec<Sample> {
+    let mut out = Vec::new();
+    let shares = (0..=per_span).map(|i| i as f64 / per_span as f64);
+    each_span(space, points, weights, shares, |samples| out.extend(samples));
+    out
+}
+
+/// The unit normal of the plane that the samples bend in, if they all do: their largest bend's
+/// axis, +z or the nearest to it.
+pub fn plane_normal(samples: &[Sample]) -> Option<Vec3<f64>> {
+    let axis = |s: &Sample| s.derivatives[0].cross(s.derivatives[1]);
+    let largest = samples
+        .iter()
+        .map(axis)
+        .fold(Vec3::zero(), |best, a| if a.norm_sq() > best.norm_sq() { a } else { best });
+    let Some(normal) = largest.normalized() else {
+        return Some(Vec3::of(0.0, 0.0, 1.0));
+    };
+    let flip = [normal.z, normal.y, normal.x].into_iter().find(|c| c.abs() > 1e-9);
+    let normal = if flip.is_some_and(|c| c < 0.0) { -normal } else { normal };
+    let origin = samples.first().map_or(Vec3::zero(), |s| s.point);
+    let size = samples.iter().map(|s| (s.point - origin).norm()).fold(0.0, f64::max);
+    let flat = samples.iter().all(|s| (s.point - origin).dot(normal).abs() <= 1e-9 * size);
+    flat.then_some(normal)
+}
+
+/// Curvatures of the samples: signed for a plane curve, otherwise lengths.
+pub fn curvatures(samples: &[Sample]) -> Vec<f64> {
+    match plane_normal(samples) {
+        Some(normal) => samples.iter().map(|s| s.signed_curvature(normal)).collect(),
+        None => samples.iter().map(Sample::curvature).collect(),
+    }
+}
+
+/// The number of monotone runs in a list of numbers when reversals smaller than `share` of the
+/// range are ignored; 0 for a constant list.
+///
+/// The first run begins where the numbers have left their first one by that much: ripples before do
+/// not count. So a list read backwards may have a few runs more or fewer.
+pub fn monotone_runs(values: &[f64], share: f64) -> usize {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let size = low.abs().max(high.abs());
+    let least = share * (high - low);
+    // A range within rounding is no range.
+    if high - low <= 1e-9 * size {
+        return 0;
+    }
+    let (mut runs, mut rising) = (0, None);
+    // The extreme since the last turn: of a rising run its top, of a falling one its bottom.
+    let mut extreme = values[0];
+    for &v in values {
+        let on = match rising {
+            None => false,
+            Some(true) => v >= extreme,
+            Some(false) => v <= extreme,
+        };
+        if on {
+            extreme = v;
+        } else if (v - extreme).abs() > least {
+            (runs, rising, extreme) = (runs + 1, Some(v > extreme), v);
+        }
+    }
+    runs
+}
+
+/// The number of sign changes of the curvature: how often x' x x'' turns against its last
+/// direction. Where it comes to zero and goes back there are two inflections in one place; a
+/// straight stretch is a change where it begins and where it ends. A curve that is straight within
+/// rounding has none.
+///
+/// On rounded data, whose second differences are often exactly zero, rounding decides whether such a
+/// place is a touch or none.
+pub fn inflections(samples: &[Sample]) -> usize {
+    let most = |f: &dyn Fn(&Sample) -> f64| samples.iter().map(f).fold(0.0, f64::max);
+    if most(&Sample::curvature) * most(&|s| (s.point - samples[0].point).norm()) <= 1e-9 {
+        return 0;
+    }
+    let mut last: Option<Vec3<f64>> = None;
+    let mut changes = 0;
+    // Where the curve is straight: from and to. Both sides of a knot are one place.
+    let mut straight: Option<[f64; 2]> = None;
+    for s in samples {
+        let [d1, d2, _] = s.derivatives;
+        let axis = d1.cross(d2);
+        if axis.norm() <= 1e-9 * d1.norm() * d2.norm() {
+            straight = Some([straight.map_or(s.t, |[from, _]| from), s.t]);
+            continue;
+        }
+        if let Some(before) = last {
+            let turned = before.dot(axis) < 0.0;
+            changes += match straight {
+                None => usize::from(turned),
+                Some([from, to]) if from < to => 2,
+                Some(_) => 2 - usize::from(turned),
+            };
+        } else if straight.is_some_and(|[from, to]| from < to) {
+            changes += 1;
+        }
+        straight = None;
+        last = Some(axis);
+    }
+    let ends_straight = straight.is_some_and(|[from, to]| from < to);
+    changes + usize::from(last.is_some() && ends_straight)
+}
+
+/// Samples on each span for counts.
+const COUNTING: usize = 16;
+
+/// The number of monotone pieces of the curvature, reversals below a thousandth of its range
+/// ignored (Dill 1981; Farin 2002, ch. 23: few pieces are fair).
+pub fn pieces(space: &Space, points: &[Vec3<f64>]) -> usize {
+    monotone_runs(&curvatures(&samples(space, points, None, COUNTING)), 1e-3)
+}
+
+/// The length of the curve, by the 8-point Gauss-Legendre rule on each span.
+pub fn arc_length(space: &Space, points: &[Vec3<f64>], weights: Option<&[f64]>) -> f64 {
+    let rule = gauss_points(0.0, 1.0);
+    let mut lengths = Vec::new();
+    let mut widths = space.spans().map(|k| space.knot(k + 1) - space.knot(k));
+    each_span(space, points, weights, rule.iter().map(|r| r.0), |samples| {
+        let speed = |(s, (_, w)): (Sample, &(f64, f64))| w * s.derivatives[0].norm();
+        let sum: f64 = samples.zip(&rule).map(speed).sum();
+        lengths.push(sum * widths.next().expect("a width for each span"));
+    });
+    crate::sparse_rows::chunked_sum(lengths.len(), |i| lengths[i])
+}
+
+/// A point of the logarithmic curvature graph (Yoshida and Saito 2006).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Logarithmic {
+    /// log of the radius of curvature.
+    pub radius: f64,
+    /// log |radius ds / d radius|.
+    pub rate: f64,
+}
+
+/// The logarithmic curvature graph of a plane curve: a straight line of slope alpha for
+/// log-aesthetic curves (-1 clothoid, 1 logarithmic spiral, 2 involute of a circle). Samples where
+/// curvature or its slope vanishes have no place on it.
+pub fn logarithmic_graph(samples: &[Sample]) -> Vec<Logarithmic> {
+    let Some(normal) = plane_normal(samples) else { return Vec::new() };
+    let point = |s: &Sample| {
+        let (curvature, slope) = (s.signed_curvature(normal), s.curvature_slope(normal));
+        // rho = 1/k, so rho ds/drho = -k / k'.
+        let rate = (curvature / slope).abs();
+        let fits = curvature != 0.0 && slope != 0.0 && rate.is_finite();
+        fits.then(|| Logarithmic { radius: -Real::ln(curvature.abs()), rate: Real::ln(rate) })
+    };
+    samples.iter().filter_map(point).collect()
+}
+
+/// Points of the curvature comb: x + scale k n, with n to the left of the curve in its plane, or
+/// away from the bend for space curves.
+pub fn comb(samples: &[Sample], scale: f64) -> Vec<Vec3<f64>> {
+    match plane_normal(samples) {
+        Some(normal) => samples
+            .iter()
+            .map(|s| {
+                let left = normal.cross(s.derivatives[0]).normalized().unwrap_or_default();
+                s.point - left * (scale * s.signed_curvature(normal))
+            })
+            .collect(),
+        None => samples.iter().map(|s| s.point - s.bend() * (scale * s.curvature())).collect(),
+    }
+}
+
+/// The k-orthotomic of a plane curve for a point p: p + k ((x - p) . n) n. It has cusps exactly at
+/// inflections when p lies on no tangent (Hoschek 1985).
+pub fn orthotomic(samples: &[Sample], p: Vec3<f64>, k: f64) -> Vec<Vec3<f64>> {
+    let normal = plane_normal(samples).unwrap_or(Vec3::of(0.0, 0.0, 1.0));
+    samples
+        .iter()
+        .map(|s| {
+            let n = normal.cross(s.derivatives[0]).normalized().unwrap_or_default();
+            p + n * (k * (s.point - p).dot(n))
+        })
+        .collect()
+}
+
+/// Second divided differences of points at parameters `t`, one per inner point: twice the second
+/// derivative of the parabola through each three.
+///
+/// # Errors
+/// [`crate::FairError`] when the lists differ in length or parameters do not increase.
+pub fn divided_differences(
+    points: &[Vec3<f64>],
+    t: &[f64],
+) -> Result<Vec<Vec3<f64>>, crate::FairError> {
+    if points.len() != t.len() {
+        let (expected, actual) = (points.len(), t.len());
+        return Err(crate::FairError::Count { what: "parameters", expected, actual });
+    }
+    if let Some(k) =
+        t.windows(2).position(|w| w[1].partial_cmp(&w[0]) != Some(std::cmp::Ordering::Greater))
+    {
+        return Err(crate::FairError::Unsorted { index: k + 1 });
+    }
+    let slope = |k: usize| (points[k + 1] - points[k]) * (1.0 / (t[k + 1] - t[k]));
+    let inner = 1..points.len().saturating_sub(1);
+    Ok(inner.map(|k| (slope(k) - slope(k - 1)) * (1.0 / (t[k + 1] - t[k - 1]))).collect())
+}

@@ -1,0 +1,252 @@
+//! `FairCurve`: the faired spline of points.
+
+use super::shapes::{self, Ended};
+use super::{Intent, Own, Places, end, faithful, fault, measure, role};
+use crate::FairError;
+use moldloft_num::{Order, Real, Vec3};
+use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use std::sync::Arc;
+
+/// A fair B-spline curve within a tolerance of the one through its points.
+///
+/// The points are interpolated at uniform parameters (or are control points, or are faired
+/// themselves: see `as`). Of all splines on the same knots that stay within the tolerance of that
+/// curve everywhere, the one with the least of the measure is taken. The result is continuous in
+/// the points, except in mode "faithful": there the worst knots are removed and re-inserted one
+/// after the other (Farin and Sapidis 1989), one step per point, and which knot comes first may
+/// change with the points.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0.52, 0); AbsPoint C(2, 0.83, 0); \
+               AbsPoint D(3, 0.88, 0); AbsPoint E(4, 0.81, 0); AbsPoint F(5, 0.49, 0); \
+               AbsPoint G(6, 0, 0); FairCurve c({A, B, C, D, E, F, G}, 0.05);"
+)]
+pub struct FairCurve<T: Real> {
+    /// Points, at least degree + 2 of them (closed: 2 degree + 2).
+    #[field(min_items = 3)]
+    points: Vec<Point<T>>,
+    /// How far the curve may be from the one through the points; 0 leaves it alone.
+    #[field(min = 0)]
+    tolerance: T,
+    /// What there is to be little of: "second", "third", "jumps", "jump-lengths", "bending" or
+    /// "variation".
+    #[field(default = "second")]
+    measure: Arc<str>,
+    /// What the points are: "fit" (the curve passes through them before it is faired), "control"
+    /// (its control points) or "points" (they are faired and then interpolated).
+    #[field(default = "fit")]
+    r#as: Arc<str>,
+    /// Numbers of points, from 1, that are intended breaks: they stay, and nothing is smoothed
+    /// across them. A curve through its points has corners there; a closed one begins at the
+    /// first of them.
+    #[field(default)]
+    breaks: Option<Vec<usize>>,
+    /// What open ends keep: "free", "position", "tangent" or "curvature".
+    #[field(default = "tangent")]
+    ends: Arc<str>,
+    /// "optimum" or "faithful".
+    #[field(default = "optimum")]
+    mode: Arc<str>,
+    /// Polynomial degree.
+    #[field(default = 3, min = 2, max = 9)]
+    degree: usize,
+    /// 1 for a closed curve, whose first point is not repeated.
+    #[field(default = 0, min = 0, max = 1)]
+    closed: usize,
+    /// Curves that it runs on from, or into, with the same tangent direction and curvature: each
+    /// begins or ends where this one does. They stay as they are; `ends` is for the other end.
+    #[field(default)]
+    joins: Option<Vec<CurveRef<T>>>,
+    /// Positive weights of the control points (`as = "control"`), which make it rational and stay as
+    /// they are. They count as constants: derivatives do not go through them.
+    #[field(default)]
+    weights: Option<Vec<T>>,
+    /// Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of them, which
+    /// do not fall; constants too.
+    #[field(default)]
+    knots: Option<Vec<T>>,
+}
+
+/// Ends within this share of the curve's extent are one place.
+const TOGETHER: f64 = 1e-9;
+
+/// The field of the joins.
+const JOINS: usize = 9;
+
+/// The fields of the weights and the knots.
+const WEIGHTS: usize = 10;
+const KNOTS: usize = 11;
+
+impl<T: Real> FairCurve<T> {
+    /// Weights and knots, where they have a meaning.
+    fn own(&self) -> Result<Own, Fault> {
+        let plain =
+            |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
+        let own = Own { knots: plain(&self.knots), weights: plain(&self.weights) };
+        let given =
+            [(own.weights.is_some(), "weights", WEIGHTS), (own.knots.is_some(), "knots", KNOTS)];
+        for (_, what, field) in given.into_iter().filter(|g| g.0) {
+            let refused = |why: &str, expected: &str, found: &str| {
+                Fault::new("not-control", format!("{what} {why}"))
+                    .expected(expected)
+                    .found(found)
+                    .in_field(field)
+            };
+            if &*self.r#as != "control" {
+                let found = format!("as = \"{}\"", self.r#as);
+                return Err(refused("are those of control points", "as = \"control\"", &found));
+            }
+            if what == "weights" && &*self.mode == "faithful" {
+                return Err(refused(
+                    "need the optimum",
+                    "mode = \"optimum\"",
+                    "mode = \"faithful\"",
+                ));
+            }
+            if what == "weights" && self.joins.as_ref().is_some_and(|j| !j.is_empty()) {
+                return Err(refused("and joins do not go together", "one of them", "both"));
+            }
+            if what == "knots" && self.closed == 1 {
+                return Err(refused("are for open curves", "closed = 0", "closed = 1"));
+            }
+        }
+        Ok(own)
+    }
+}
+
+impl<T: Real> FairCurve<T> {
+    /// What the curve runs on from at its start and its end, and which of the joins that is.
+    #[expect(clippy::type_complexity, reason = "two ends, each with a place and derivatives")]
+    fn neighbours(&self) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], Fault> {
+        let mut found = [None; 2];
+        let joins = self.joins.as_deref().unwrap_or_default();
+        let ([first, .., last], false) = (self.points.as_slice(), joins.is_empty()) else {
+            return Ok(found);
+        };
+        let only = |what: &str, found: &str| {
+            Fault::new("not-joined", format!("a curve that joins others {what}"))
+                .expected("no `joins`, or another way")
+                .found(found)
+                .in_field(JOINS)
+        };
+        if self.closed == 1 {
+            return Err(only("has ends", "a closed curve"));
+        }
+        if &*self.mode == "faithful" {
+            return Err(only("is an optimum", "mode = \"faithful\""));
+        }
+        if &*self.r#as == "points" {
+            return Err(only("has its points on it, or as control points", "as = \"points\""));
+        }
+        let own = [first, last].map(|p| p.xyz);
+        let extent =
+            self.points.iter().map(|p| (p.xyz.re() - own[0].re()).norm()).fold(0.0, f64::max);
+        for (k, other) in joins.iter().enumerate() {
+            let jets = [0.0, 1.0].map(|t| other.jet(T::from(t), Order::Second));
+            let pairs = [(0, 1), (0, 0), (1, 0), (1, 1)];
+            let away = |&(a, b): &(usize, usize)| (own[a].re() - jets[b][0].re()).norm();
+            let near = pairs.into_iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+            let (a, b) = near.expect("there are four pairs");
+            let far = away(&(a, b));
+            if far.is_nan() || far > TOGETHER * extent {
+                return Err(Fault::new(
+                    "no-common-end",
+                    "a curve of `joins` does not meet this one",
+                )
+                .expected("a curve that begins or ends at its first or last point")
+                .found(format!("{far:.3e} between the nearest ends"))
+                .related(other.key, "ends elsewhere")
+                .in_item(k)
+                .in_field(JOINS));
+            }
+            if found[a].is_some() {
+                let end = ["start", "end"][a];
+                return Err(Fault::new("joined-twice", format!("two curves join at its {end}"))
+                    .expected("one at each end")
+                    .related(other.key, "the second")
+                    .in_item(k)
+                    .in_field(JOINS));
+            }
+            // The neighbour's parameter runs into the start, or on from the end, or the other way.
+            let sign = if a == b { -1.0 } else { 1.0 };
+            found[a] = Some((k, [jets[b][1].map(|x| x * sign), jets[b][2]]));
+        }
+        Ok(found)
+    }
+}
+
+/// Which of the joins a refusal is about.
+fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> Fault {
+    let present: Vec<usize> = joins.iter().flatten().copied().collect();
+    let about = |k: Option<&usize>, id: &'static str, message: String| {
+        let fault = Fault::new(id, message);
+        k.map_or(fault.clone(), |&k| fault.in_item(k)).in_field(JOINS)
+    };
+    match error {
+        FairError::Contradiction { conditions, miss, .. } if !present.is_empty() => {
+            let whose = conditions.first().and_then(|c| present.get(c / 6));
+            let message = format!(
+                "the curvature of a curve that it joins cannot be met within the tolerance (missed \
+                 by {miss:.3e})"
+            );
+            about(whose, "contradiction", message)
+                .expected("a larger tolerance, or points that run on from the neighbour")
+        }
+        FairError::TurnsBack => about(present.first(), "turns-back", error.to_string())
+            .expected("a curve that runs on where its neighbour ends"),
+        FairError::Singular if !present.is_empty() => about(
+            present.first(),
+            "stands-still",
+            "a curve of `joins` has no direction at the common end".to_string(),
+        ),
+        other => fault(other, places),
+    }
+}
+
+impl<T: Real> Build<T> for FairCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let neighbours = self.neighbours()?;
+        let own = self.own()?;
+        let intent = Intent {
+            tolerance: self.tolerance,
+            degree: self.degree,
+            closed: self.closed == 1,
+            role: role(&self.r#as, 3)?,
+            measure: measure(&self.measure, 2)?,
+            faithful: faithful(&self.mode, 6)?,
+            end: end(&self.ends, 5)?,
+            breaks: self.breaks.unwrap_or_default(),
+            joins: neighbours.map(|n| n.map(|(_, derivatives)| derivatives)),
+            own,
+        };
+        let places = Places { points: 0, tolerance: 1, degree: 7, breaks: 4 };
+        let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
+        let joins = neighbours.map(|n| n.map(|(k, _)| k));
+        let about = |e: FairError| match e {
+            FairError::Weight { .. } | FairError::Count { what: "weights", .. } => {
+                Fault::new("bad-weight", e.to_string()).in_field(WEIGHTS)
+            }
+            FairError::Unsorted { .. }
+            | FairError::Knots(_)
+            | FairError::Count { what: "knots", .. } => {
+                Fault::new("bad-knots", e.to_string()).in_field(KNOTS)
+            }
+            e => unjoined(e, joins, &places),
+        };
+        let (space, control) = intent.spline(&points).map_err(about)?;
+        let made = match &intent.own.weights {
+            Some(weights) => shapes::rational(&space, &control, weights),
+            None => shapes::curve(&space, &control),
+        };
+        let curve = made.map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+        let [first, .., last] = self.points.as_slice() else {
+            return Err(Fault::new("too-few-items", "a curve needs points").in_field(0));
+        };
+        // A free end leaves its point, and a closed curve has no ends.
+        let kept = |at: usize| !intent.closed && (intent.end.kept() > 0 || joins[at].is_some());
+        let end = |at: usize, p: &Point<T>| if kept(at) { p.key } else { None };
+        let ends = [end(0, first), end(1, last)];
+        Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
+    }
+}

@@ -1,0 +1,148 @@
+//! The functions `fair`, `jumps` and `curvature` of the language.
+
+use super::{Intent, Places, Role, faithful, fault, measure};
+use crate::{FairError, Space};
+use moldloft_num::{Order, Real, Vec3};
+use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value, Vectors};
+use std::sync::Arc;
+
+/// A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
+///
+/// On uniform points the same steps fair the points themselves: interpolation and fourth
+/// differences commute. Open rows keep their first and last two points.
+#[derive(Kind)]
+#[kind(
+    class = Vectors,
+    function,
+    name = "fair",
+    example = "Line l({0, 0, 0}, {1, 0, 0}); curve p = distc(l, uniform(0, 1, 9)); \
+               curve q = fair(p, 0.01);"
+)]
+pub struct Fair<T: Real> {
+    /// Points, five or more (closed: eight or more).
+    #[field(min_items = 5)]
+    points: Vec<Vec3<T>>,
+    /// How far each point may move.
+    #[field(min = 0)]
+    tolerance: T,
+    /// What there is to be little of; see `FairCurve`.
+    #[field(default = "second")]
+    measure: Arc<str>,
+    /// "optimum" or "faithful".
+    #[field(default = "optimum")]
+    mode: Arc<str>,
+    /// 1 for a closed row, whose first point is not repeated.
+    #[field(default = 0, min = 0, max = 1)]
+    closed: usize,
+}
+
+impl<T: Real> Build<T> for Fair<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let intent = Intent {
+            tolerance: self.tolerance,
+            degree: 3,
+            closed: self.closed == 1,
+            role: Role::Control,
+            measure: measure(&self.measure, 2)?,
+            faithful: faithful(&self.mode, 3)?,
+            end: crate::End::Points(2),
+            breaks: Vec::new(),
+            joins: [None; 2],
+            own: super::Own::default(),
+        };
+        let places = Places { points: 0, tolerance: 1, degree: 0, breaks: 0 };
+        let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
+        Ok(Value::Vectors(Arc::new(Vectors::row(faired))))
+    }
+}
+
+/// How unfair a row of points is: the length of the jump of the third derivative at each knot of
+/// the uniform cubic with these control points, `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|`.
+///
+/// An open row has four fewer jumps than points.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    function,
+    name = "jumps",
+    example = "Line l({0, 0, 0}, {1, 0, 0}); curve p = distc(l, uniform(0, 1, 9)); \
+               farray e = jumps(p);"
+)]
+pub struct Jumps<T: Real> {
+    /// Points, five or more (closed: eight or more).
+    #[field(min_items = 5)]
+    points: Vec<Vec3<T>>,
+    /// 1 for a closed row, whose first point is not repeated.
+    #[field(default = 0, min = 0, max = 1)]
+    closed: usize,
+}
+
+impl<T: Real> Build<T> for Jumps<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let n = self.points.len();
+        let space = match (self.closed, n) {
+            (1, _) => Space::closed(3, n),
+            (_, ..5) => Err(FairError::TooFew { expected: 5, actual: n }),
+            _ => Space::floating(3, n),
+        };
+        let places = Places { points: 0, tolerance: 0, degree: 0, breaks: 0 };
+        let jumps = crate::Jumps::of(&space.map_err(|e| fault(e, &places))?);
+        let length = |k: usize| {
+            let (columns, factors) = jumps.rows.row(k);
+            let entries = columns.iter().zip(factors);
+            let sum: Vec3<T> = entries
+                .fold(Vec3::zero(), |s, (&c, &a)| s + self.points[c as usize].map(|x| x * a));
+            // A jump that is exactly zero has no derivative of its length.
+            if sum.norm_sq().re() == 0.0 { T::zero() } else { sum.norm() }
+        };
+        let row = (0..jumps.rows.len()).map(length).collect();
+        Ok(Value::Numbers(Arc::new(Array::row(row))))
+    }
+}
+
+/// The curvature of a curve at a parameter or a row of parameters: |C' x C''| / |C'|^3.
+#[derive(Kind)]
+#[kind(
+    class = Any,
+    function,
+    name = "curvature",
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 0, 0); BCurve c({A, B, C}); \
+               float k = curvature(c, 0.5);"
+)]
+pub struct Curvature<T: Real> {
+    /// The curve.
+    curve: CurveRef<T>,
+    /// A parameter, or a row of them.
+    t: Value<T>,
+}
+
+impl<T: Real> Build<T> for Curvature<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let at = |t: T| {
+            let [_, d1, d2] = self.curve.jet(t, Order::Second);
+            let speed = d1.norm();
+            if speed.re() == 0.0 {
+                return Err(Fault::new(
+                    "stands-still",
+                    format!("the curve stands still at t = {}", t.re()),
+                )
+                .expected("a parameter at which the curve moves on")
+                .in_field(1));
+            }
+            let cross = d1.cross(d2);
+            // A straight stretch: the root of zero has no derivative.
+            let bend = if cross.norm_sq().re() == 0.0 { T::zero() } else { cross.norm() };
+            Ok(bend / (speed * speed * speed))
+        };
+        match &self.t {
+            Value::Number(t) => at(*t).map(Value::Number),
+            Value::Numbers(a) => {
+                let items: Result<_, _> = a.items.iter().map(|&t| at(t)).collect();
+                Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: items? })))
+            }
+            other => Err(Fault::wrong_class(moldloft_registry::Class::Number, other.class())
+                .expected("a number or an farray")
+                .in_field(1)),
+        }
+    }
+}

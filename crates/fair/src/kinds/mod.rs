@@ -1,0 +1,289 @@
+//! Fairing in the graph: the kinds that store an intent and run again when their points change.
+
+mod curve;
+mod functions;
+mod net;
+mod patches;
+mod shapes;
+mod snake;
+mod surface;
+
+use crate::curve::condition::{end_jet, joined};
+use crate::{
+    Bound, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Measure, Motion,
+    OptimumOptions, Space, Spacing, interpolate_with_corners, knot_removal, optimum_with,
+    replay_with,
+};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::export::StaticRow;
+use moldloft_registry::{Fault, Row};
+use moldloft_spline::KnotVector;
+
+/// All kinds and functions of this crate, in the order of the reference.
+///
+/// # Example
+/// ```
+/// let rows = moldloft_fair::rows();
+/// assert!(rows.iter().any(|row| row.name == "FairCurve"));
+/// ```
+pub fn rows() -> Vec<Row> {
+    vec![
+        curve::FairCurve::<f64>::row(),
+        snake::FairSnake::<f64>::row(),
+        surface::FairSurf::<f64>::row(),
+        net::FairNet::<f64>::row(),
+        net::NetCurve::<f64>::row(),
+        patches::FairPatches::<f64>::row(),
+        patches::NetSurf::<f64>::row(),
+        functions::Fair::<f64>::row(),
+        functions::Jumps::<f64>::row(),
+        functions::Curvature::<f64>::row(),
+    ]
+}
+
+/// The certified gap of the kinds: as small as rounding allows, so that which limits are reached is
+/// decided and derivatives are those of the optimum itself.
+pub(crate) const ACCURACY: f64 = 1e-13;
+
+/// How points become a fair spline: what the arguments of the kinds say.
+pub(crate) struct Intent<T> {
+    pub tolerance: T,
+    pub degree: usize,
+    pub closed: bool,
+    pub role: Role,
+    pub measure: Measure,
+    pub faithful: bool,
+    pub end: End,
+    /// Intended breaks, from 1.
+    pub breaks: Vec<usize>,
+    /// First and second derivative of what the curve runs on from, at its start and end, by a
+    /// parameter that runs as its own.
+    pub joins: [Option<[Vec3<T>; 2]>; 2],
+    /// Knots of the control points, and their weights, which stay.
+    pub own: Own,
+}
+
+/// Knots and weights of the user's.
+#[derive(Clone, Default)]
+pub(crate) struct Own {
+    pub knots: Option<Vec<f64>>,
+    pub weights: Option<Vec<f64>>,
+}
+
+impl Own {
+    /// The space of `count` control points on its knots, or on uniform ones.
+    pub fn space(&self, degree: usize, count: usize) -> Result<Space, FairError> {
+        let Some(knots) = &self.knots else {
+            return if count < degree + 2 {
+                Err(FairError::TooFew { expected: degree + 2, actual: count })
+            } else {
+                Space::clamped(degree, count)
+            };
+        };
+        let (expected, actual) = (count + degree + 1, knots.len());
+        if expected != actual {
+            return Err(FairError::Count { what: "knots", expected, actual });
+        }
+        if let Some(index) =
+            knots.windows(2).position(|w| w[0] > w[1] || w[0].is_nan() || w[1].is_nan())
+        {
+            return Err(FairError::Unsorted { index: index + 1 });
+        }
+        Space::open(KnotVector::new(degree, knots.clone())?)
+    }
+}
+
+/// What the given points are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// Points that the spline passes through before it is faired.
+    Fit,
+    /// Control points.
+    Control,
+    /// Points that are faired themselves, and then interpolated.
+    Points,
+}
+
+/// The places of the arguments that can be at fault.
+#[derive(Clone, Copy)]
+pub(crate) struct Places {
+    pub points: usize,
+    pub tolerance: usize,
+    pub degree: usize,
+    pub breaks: usize,
+}
+
+fn unknown(noun: &str, found: &str, all: &[&str], field: usize) -> Fault {
+    let all: Vec<_> = all.iter().map(|n| format!("\"{n}\"")).collect();
+    Fault::new("unknown-name", format!("there is no {noun} \"{found}\""))
+        .expected(all.join(", "))
+        .found(format!("\"{found}\""))
+        .in_field(field)
+}
+
+/// The role called `name`, an argument in `field`.
+pub(crate) fn role(name: &str, field: usize) -> Result<Role, Fault> {
+    Ok(match name {
+        "fit" => Role::Fit,
+        "control" => Role::Control,
+        "points" => Role::Points,
+        _ => return Err(unknown("role of points", name, &["fit", "control", "points"], field)),
+    })
+}
+
+/// The measure called `name`.
+pub(crate) fn measure(name: &str, field: usize) -> Result<Measure, Fault> {
+    let all = Measure::ALL.map(Measure::name);
+    Measure::named(name).ok_or_else(|| unknown("measure", name, &all, field))
+}
+
+/// True for the mode "faithful", false for "optimum".
+pub(crate) fn faithful(name: &str, field: usize) -> Result<bool, Fault> {
+    match name {
+        "optimum" => Ok(false),
+        "faithful" => Ok(true),
+        _ => Err(unknown("mode", name, &["optimum", "faithful"], field)),
+    }
+}
+
+/// The end condition called `name`.
+pub(crate) fn end(name: &str, field: usize) -> Result<End, Fault> {
+    let all = ["free", "position", "tangent", "curvature"];
+    End::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
+}
+
+/// A refusal as a fault at its argument.
+pub(crate) fn fault(error: FairError, places: &Places) -> Fault {
+    let text = error.to_string();
+    match error {
+        FairError::TooFew { expected, actual } => Fault::new("too-few-items", text)
+            .expected(format!("at least {expected} points"))
+            .found(actual.to_string())
+            .in_field(places.points),
+        FairError::NotFinite { index } => {
+            Fault::new("not-finite", text).in_item(index).in_field(places.points)
+        }
+        FairError::Coincident { first } => {
+            Fault::new("coincident-points", text).in_item(first + 1).in_field(places.points)
+        }
+        FairError::Tolerance { value } => Fault::new("out-of-range", text)
+            .expected("a tolerance of at least 0")
+            .found(value.to_string())
+            .in_field(places.tolerance),
+        FairError::Mark { index, count } => {
+            Fault::new("out-of-range", format!("there is no point {}", index + 1))
+                .expected(format!("numbers of points from 1 to {count}"))
+                .found((index + 1).to_string())
+                .in_field(places.breaks)
+        }
+        FairError::Degree { expected, actual } => Fault::new("out-of-range", text)
+            .expected(format!("degree {expected} or more for this measure"))
+            .found(actual.to_string())
+            .in_field(places.degree),
+        _ => Fault::new("not-faired", text).in_field(places.points),
+    }
+}
+
+/// Numbers of points, from 1, as indices.
+pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, FairError> {
+    let from_zero = |&b: &usize| match b.checked_sub(1) {
+        Some(index) if index < count => Ok(index),
+        index => Err(FairError::Mark { index: index.unwrap_or(usize::MAX - 1), count }),
+    };
+    numbers.iter().map(from_zero).collect()
+}
+
+impl<T: Real> Intent<T> {
+    /// The faired spline of points.
+    pub fn spline(&self, points: &[Vec3<T>]) -> Result<(Space, Vec<Vec3<T>>), FairError> {
+        let n = points.len();
+        let marks = indices(&self.breaks, n)?;
+        let fitted = |points: &[Vec3<T>]| {
+            interpolate_with_corners(self.degree, points, Spacing::Uniform, self.closed, &marks)
+        };
+        match self.role {
+            Role::Control => {
+                let space = if self.closed {
+                    let knots = (0..n).map(|k| k as f64 / n as f64).collect();
+                    Space::periodic(self.degree, knots, 1.0)?
+                } else {
+                    self.own.space(self.degree, n)?
+                };
+                let faired = self.within(&space, points, Bound::Bezier, marks)?;
+                Ok((space, faired))
+            }
+            Role::Fit => {
+                let sharp = fitted(points)?;
+                let space = sharp.fit.space;
+                let faired = self.within(&space, &sharp.points, Bound::Bezier, sharp.marks)?;
+                Ok((space, faired))
+            }
+            Role::Points => {
+                let sharp = fitted(&self.faired_points(points)?)?;
+                Ok((sharp.fit.space, sharp.points))
+            }
+        }
+    }
+
+    /// Points, faired with a bound on each of them: as the control points of a uniform spline, for
+    /// which interpolation and the measures commute.
+    pub fn faired_points(&self, points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+        let (n, degree) = (points.len(), self.degree);
+        let space = if self.closed {
+            Space::closed(degree, n)?
+        } else if n < degree + 2 {
+            return Err(FairError::TooFew { expected: degree + 2, actual: n });
+        } else {
+            Space::floating(degree, n)?
+        };
+        // What an end keeps is counted in points: with tangents, two of them.
+        let end = match self.end {
+            End::Points(k) => k,
+            end => end.kept(),
+        };
+        let (breaks, own) = (self.breaks.clone(), self.own.clone());
+        let held = Self { end: End::Points(end), breaks, own, ..*self };
+        held.within(&space, points, Bound::ControlPoints, indices(&self.breaks, n)?)
+    }
+
+    fn within(
+        &self,
+        space: &Space,
+        points: &[Vec3<T>],
+        bound: Bound,
+        marks: Vec<usize>,
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let n = points.len();
+        let mut job = Job {
+            space: space.clone(),
+            points: points.iter().map(|p| p.re()).collect(),
+            weights: self.own.weights.clone(),
+            limit: Limit::new(Motion::Ball, vec![self.tolerance.re(); n])?,
+            marks,
+            ends: [self.end; 2],
+        };
+        let (mut conditions, mut targets) = (Vec::new(), Vec::new());
+        for (at, other) in self.joins.iter().enumerate() {
+            let Some(other) = other else { continue };
+            job.ends[at] = End::Position;
+            let plain = other.map(|v| v.re());
+            conditions.extend(Condition::join(space, &job.points, at == 1, plain)?);
+            let aims = joined(end_jet(space, points, at == 1), *other)?;
+            targets.extend(aims.iter().flat_map(|v| v.to_array()));
+        }
+        let tolerances = vec![self.tolerance; n];
+        if self.faithful {
+            let mut options = KnotRemovalOptions::faithful(n);
+            options.log = true;
+            let steps = knot_removal(&job, &options)?;
+            replay_with(&job, &options, &steps.log, points, &tolerances)
+        } else {
+            let mut options = OptimumOptions::of(self.measure);
+            options.bound = bound;
+            options.accuracy = ACCURACY;
+            options.conditions = conditions;
+            let best = optimum_with(&job, &options, points, &tolerances, &targets)?;
+            Ok(best.0)
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! `FairNet` and `NetCurve`: networks of curves that share points.
+
+use super::shapes::{self, Ended};
+use super::{ACCURACY, Places, fault, measure};
+use crate::{
+    Bound, End, FairError, Limit, Motion, Network, NetworkCurve, Space, Spacing,
+    interpolate_with_corners,
+};
+use moldloft_num::trace::Key;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{
+    Build, Class, Context, CurveRef, Fault, FromValue, Kind, Point, Value, many,
+};
+use std::sync::Arc;
+
+/// The points of one curve of a network.
+struct Row<T: Real>(Vec<Point<T>>);
+
+impl<T: Real> FromValue<T> for Row<T> {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        many(value).map(Self)
+    }
+}
+
+/// Curves that share points, faired together within a tolerance: the stations, waterlines and
+/// buttocks of a hull.
+///
+/// Each curve is a list of points; a point object that stands in several lists is one point of all
+/// these curves. All points move at once, none by more than the tolerance, so that the sum of the
+/// measure over all curves is the least; each curve then passes through its moved points, so that
+/// curves still meet where they did. A list that ends with its first point is a closed curve. The
+/// value is the list of the faired curves: `net[2]` is the second, `NetCurve` makes it an object.
+/// Equal coordinates alone join nothing.
+#[derive(Kind)]
+#[kind(
+    class = List,
+    example = "AbsPoint A1(0, 0, 0); AbsPoint A2(1, 0.5, 0); AbsPoint A3(2, 0.83, 0); \
+               AbsPoint A4(3, 0.88, 0); AbsPoint A5(4, 1.02, 0); AbsPoint B2(1, 0.6, 1); \
+               AbsPoint C2(1, 0.72, 2); AbsPoint D2(1, 0.7, 3); AbsPoint E2(1, 0.66, 4); \
+               FairNet n({{A1, A2, A3, A4, A5}, {A2, B2, C2, D2, E2}}, 0.05); \
+               NetCurve waterline(n, 1); NetCurve station(n, 2);"
+)]
+pub struct FairNet<T: Real> {
+    /// The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
+    #[field(min_items = 1)]
+    curves: Vec<Row<T>>,
+    /// How far each point may move; 0 leaves all alone.
+    #[field(min = 0)]
+    tolerance: T,
+    /// What there is to be little of; see `FairCurve`.
+    #[field(default = "second")]
+    measure: Arc<str>,
+    /// Points that are intended breaks: they stay, nothing is smoothed across them, and curves have
+    /// corners there.
+    #[field(default)]
+    breaks: Option<Vec<Point<T>>>,
+    /// Which ends of open curves stay: "corners" (the points at which every curve that has them
+    /// ends), "ends" or "none".
+    #[field(default = "corners")]
+    keep: Arc<str>,
+    /// The direction in which points may move, such as {0, 1, 0} for offsets of stations and
+    /// waterlines; any direction without it.
+    #[field(default)]
+    along: Option<Vec3<T>>,
+    /// Polynomial degree.
+    #[field(default = 3, min = 2, max = 9)]
+    degree: usize,
+    /// "optimum", or "faithful": curve after curve in the order of the list, knots removed and
+    /// re-inserted one by one, three steps per point. The result then depends on that order and may
+    /// jump where two knots tie.
+    #[field(default = "optimum")]
+    mode: Arc<str>,
+    /// Passes of the faithful mode.
+    #[field(default = 1, min = 1, max = 100)]
+    passes: usize,
+}
+
+/// A network with points by identity.
+struct Joined<T: Real> {
+    points: Vec<Point<T>>,
+    /// Of each curve: its places in `points`, without the repeated first of a closed one.
+    curves: Vec<(Vec<usize>, bool)>,
+}
+
+impl<T: Real> Joined<T> {
+    fn of(rows: &[Row<T>]) -> Self {
+        let mut points: Vec<Point<T>> = Vec::new();
+        let mut known: Vec<(Key, usize)> = Vec::new();
+        let mut place = |p: &Point<T>| {
+            let found = p.key.and_then(|key| known.iter().find(|(k, _)| *k == key));
+            if let Some(&(_, at)) = found {
+                return at;
+            }
+            points.push(p.clone());
+            known.extend(p.key.map(|key| (key, points.len() - 1)));
+            points.len() - 1
+        };
+        let curve = |row: &Row<T>| {
+            let mut own: Vec<usize> = row.0.iter().map(&mut place).collect();
+            let closed = own.len() > 1 && own.first() == own.last();
+            if closed {
+                own.pop();
+            }
+            (own, closed)
+        };
+        let curves = rows.iter().map(curve).collect();
+        Self { points, curves }
+    }
+
+    /// The ends that stay.
+    fn kept(&self, which: &str) -> Result<Vec<usize>, Fault> {
+        let mut ends = vec![0usize; self.points.len()];
+        let mut uses = vec![0usize; self.points.len()];
+        for (own, closed) in &self.curves {
+            own.iter().for_each(|&i| uses[i] += 1);
+            if let (false, [first, .., last]) = (closed, own.as_slice()) {
+                ends[*first] += 1;
+                ends[*last] += 1;
+            }
+        }
+        let all = 0..self.points.len();
+        Ok(match which {
+            "none" => Vec::new(),
+            "ends" => all.filter(|&i| ends[i] > 0).collect(),
+            "corners" => all.filter(|&i| ends[i] > 0 && ends[i] == uses[i]).collect(),
+            _ => {
+                let known = ["corners", "ends", "none"];
+                return Err(super::unknown("way to keep ends", which, &known, 4));
+            }
+        })
+    }
+}
+
+impl<T: Real> Build<T> for FairNet<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let joined = Joined::of(&self.curves);
+        let breaks = self.breaks.unwrap_or_default();
+        let mut marked = Vec::new();
+        for (k, b) in breaks.iter().enumerate() {
+            let found = joined.points.iter().position(|p| p.key.is_some() && p.key == b.key);
+            let Some(at) = found else {
+                return Err(Fault::new("not-a-parent", "a break is no point of the network")
+                    .expected("points that stand in the lists of the curves")
+                    .related(b.key, "is in none of them")
+                    .in_item(k)
+                    .in_field(3));
+            };
+            marked.push(at);
+        }
+        let degree = self.degree;
+        let marks_of = |own: &[usize]| -> Vec<usize> {
+            (0..own.len()).filter(|&k| marked.contains(&own[k])).collect()
+        };
+        let places = Places { points: 0, tolerance: 1, degree: 6, breaks: 3 };
+        let mut strands = Vec::new();
+        for (k, (own, closed)) in joined.curves.iter().enumerate() {
+            let space = match (closed, own.len()) {
+                (true, n) => Space::closed(degree, n),
+                (false, n) if n < degree + 2 => {
+                    Err(FairError::TooFew { expected: degree + 2, actual: n })
+                }
+                (false, n) => Space::floating(degree, n),
+            };
+            let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(0))?;
+            if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
+                return Err(Fault::new("point-twice", "a curve passes twice through a point")
+                    .expected("different points; only the first may come again, at the end")
+                    .related(joined.points[own[twice]].key, "stands twice in the list")
+                    .in_item(k)
+                    .in_field(0));
+            }
+            let (marks, ends) = (marks_of(own), [End::Points(0); 2]);
+            strands.push(NetworkCurve { space, points: own.clone(), weights: None, marks, ends });
+        }
+        let motion = match &self.along {
+            None => Motion::Ball,
+            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
+            Some(_) => {
+                return Err(Fault::new("zero-direction", "the direction has no length")
+                    .expected("a direction such as {0, 1, 0}")
+                    .in_field(5));
+            }
+        };
+        let measure = measure(&self.measure, 2)?;
+        let passes = super::faithful(&self.mode, 7)?.then_some(self.passes);
+        let kept = joined.kept(&self.keep)?;
+        let mut still = vec![self.tolerance.re() == 0.0; joined.points.len()];
+        kept.iter().chain(&marked).for_each(|&i| still[i] = true);
+        let xyz: Vec<Vec3<T>> = joined.points.iter().map(|p| p.xyz).collect();
+        let solve = || -> Result<Vec<Vec3<T>>, FairError> {
+            let limit = Limit::new(motion, vec![self.tolerance.re(); xyz.len()])?;
+            let plain = xyz.iter().map(|p| p.re()).collect();
+            let mut network = Network::new(plain, strands, limit)?;
+            network.kept = kept;
+            let tolerances = vec![self.tolerance; xyz.len()];
+            if let Some(passes) = passes {
+                return network.passes_with(passes, 3, &xyz, &tolerances);
+            }
+            let bound = Bound::ControlPoints;
+            Ok(network.optimum_with(measure, bound, ACCURACY, &xyz, &tolerances)?.0)
+        };
+        let moved = solve().map_err(|e| fault(e, &places))?;
+        let curve = |(k, (own, closed)): (usize, &(Vec<usize>, bool))| {
+            let points: Vec<Vec3<T>> = own.iter().map(|&i| moved[i]).collect();
+            let sharp = interpolate_with_corners(
+                degree,
+                &points,
+                Spacing::Uniform,
+                *closed,
+                &marks_of(own),
+            )
+            .map_err(|e| fault(e, &places).in_item(k).in_field(0))?;
+            let curve = shapes::curve(&sharp.fit.space, &sharp.points)
+                .map_err(|e| Fault::new("no-spline", e.to_string()).in_item(k).in_field(0))?;
+            // Ends that may move are no longer their point objects.
+            let end = |i: Option<&usize>| {
+                i.filter(|&&i| !closed && still[i]).and_then(|&i| joined.points[i].key)
+            };
+            let ends = [end(own.first()), end(own.last())];
+            Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
+        };
+        let curves: Result<Vec<_>, Fault> = joined.curves.iter().enumerate().map(curve).collect();
+        Ok(Value::list(curves?))
+    }
+}
+
+/// One curve of a faired network.
+#[derive(Kind)]
+#[kind(
+    class = Curve,
+    example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0.52, 0); AbsPoint C(2, 0.83, 0); \
+               AbsPoint D(3, 0.88, 0); AbsPoint E(4, 0.81, 0); \
+               FairNet n({{A, B, C, D, E}}, 0.05); NetCurve c(n, 1);"
+)]
+pub struct NetCurve<T: Real> {
+    /// The network, a `FairNet`.
+    net: Value<T>,
+    /// The number of the curve in the list of the network, from 1.
+    #[field(min = 1)]
+    index: usize,
+}
+
+impl<T: Real> Build<T> for NetCurve<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Value::List(curves) = &self.net else {
+            return Err(Fault::wrong_class(Class::List, self.net.class())
+                .expected("a network of curves, such as a FairNet")
+                .in_field(0));
+        };
+        match curves.get(self.index.wrapping_sub(1)) {
+            Some(Value::Curve(curve)) => Ok(Value::Curve(curve.clone())),
+            Some(other) => {
+                Err(Fault::wrong_class(Class::Curve, other.class()).in_item(self.index - 1))
+            }
+            None => Err(Fault::new("out-of-range", format!("there is no curve {}", self.index))
+                .expected(format!("a number from 1 to {}", curves.len()))
+                .found(self.index.to_string())
+                .in_field(1)),
+        }
+    }
+}

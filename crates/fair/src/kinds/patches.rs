@@ -1,0 +1,194 @@
+//! `FairPatches` and `NetSurf`: surfaces faired together with their common edges.
+
+use super::surface::{Grid, Rims, fitted, turned};
+use super::{ACCURACY, Places, Role, fault, measure, role};
+use crate::{Bound, End, FairError, Limit, Network, PatchNet, Seam, Space};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{ArrayShape, Build, Class, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_spline::BSplineSurface;
+use std::sync::Arc;
+
+/// Surfaces with common edges, faired together within a tolerance, so that tangents and curvature run
+/// on across the edges.
+///
+/// Each grid of points is a surface; where a side of one has the same points as a side of another (or
+/// of itself), in either direction, they share a seam. All points of all surfaces move at once, those
+/// of a seam for both, so that the sum of the measure over all curves of the nets is the least. Across
+/// seams the surfaces stay together (`seams = "position"`), with continuous tangent planes ("tangent")
+/// or curvature too ("curvature"): the ratio of the parameters' speeds on both sides is read from the
+/// surfaces as given. Corners that lie on no seam keep position, tangents and twist. The value is the
+/// list of the faired surfaces: `NetSurf` makes one an object.
+#[derive(Kind)]
+#[kind(
+    class = List,
+    example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; surface h[5, 5]; \
+               vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
+               g[3,] = g[2,] + {0, 1, 0.2}; g[4,] = g[2,] + {0, 2, 0.32}; g[5,] = g[1,] + {0, 4, 0.7}; \
+               h[1,] = g[5,]; h[2,] = g[5,] + {0, 1, 0.01}; h[3,] = g[5,] + {0, 2, 0}; \
+               h[4,] = g[5,] + {0, 3, -0.04}; h[5,] = g[5,] + {0, 4, -0.1}; \
+               FairPatches n({g, h}, 0.2); NetSurf first(n, 1); NetSurf second(n, 2);"
+)]
+pub struct FairPatches<T: Real> {
+    /// Grids of points, each at least degree + 2 in each direction.
+    #[field(min_items = 1)]
+    surfaces: Vec<Grid<T>>,
+    /// How far control points may move; 0 leaves all alone.
+    #[field(min = 0)]
+    tolerance: T,
+    /// What there is to be little of; see `FairCurve`.
+    #[field(default = "second")]
+    measure: Arc<str>,
+    /// What the points are: "fit" or "control".
+    #[field(default = "fit")]
+    r#as: Arc<str>,
+    /// Polynomial degree in both directions.
+    #[field(default = 3, min = 2, max = 9)]
+    degree: usize,
+    /// What is continuous across seams: "position", "tangent" or "curvature".
+    #[field(default = "curvature")]
+    seams: Arc<str>,
+    /// What rims that are no seams keep; see `FairSurf`.
+    #[field(default = "corners")]
+    rims: Rims,
+}
+
+impl<T: Real> Build<T> for FairPatches<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let measure = measure(&self.measure, 2)?;
+        let fit = match role(&self.r#as, 3)? {
+            Role::Fit => true,
+            Role::Control => false,
+            Role::Points => {
+                return Err(Fault::new("unknown-name", "surfaces have no role \"points\"")
+                    .expected("\"fit\" or \"control\"")
+                    .found("\"points\"")
+                    .in_field(3));
+            }
+        };
+        let keeps = match &*self.seams {
+            "position" => End::Position,
+            "tangent" => End::Tangent,
+            "curvature" => End::Curvature,
+            word => {
+                let known = ["position", "tangent", "curvature"];
+                return Err(super::unknown("way to keep a seam", word, &known, 5));
+            }
+        };
+        let Rims([south, east, north, west]) = self.rims;
+        let places = Places { points: 0, tolerance: 1, degree: 4, breaks: 0 };
+        let degree = self.degree;
+        let mut sheets = Vec::new();
+        let mut given: Vec<Vec3<T>> = Vec::new();
+        for (k, Grid(grid)) in self.surfaces.iter().enumerate() {
+            let ArrayShape::Grid(m, n) = grid.shape else {
+                return Err(Fault::new("wrong-shape", "a surface needs a grid of points")
+                    .expected("a grid [m, n] of vectors")
+                    .found(format!("a row {}", grid.shape))
+                    .in_item(k)
+                    .in_field(0));
+            };
+            let made = || -> Result<(PatchNet, Vec<Vec3<T>>), FairError> {
+                if let Some(actual) = [m, n].into_iter().find(|&c| c < degree + 2) {
+                    return Err(FairError::TooFew { expected: degree + 2, actual });
+                }
+                let (spaces, net) = if fit {
+                    let (u, net, _) = fitted(degree, &grid.points(), m, &[])?;
+                    let (v, net, _) = fitted(degree, &turned(&net, u.count()), n, &[])?;
+                    let net = turned(&net, v.count());
+                    ([u, v], net)
+                } else {
+                    let spaces = [Space::clamped(degree, m)?, Space::clamped(degree, n)?];
+                    (spaces, grid.points())
+                };
+                let limit = Limit::ball(net.len(), self.tolerance.re())?;
+                let plain = net.iter().map(|p| p.re()).collect();
+                let mut sheet = PatchNet::new(spaces, plain, limit);
+                sheet.rims = [[west, east], [south, north]];
+                Ok((sheet, net))
+            };
+            let (sheet, net) = made().map_err(|e| fault(e, &places).in_item(k))?;
+            sheets.push(sheet);
+            given.extend(net);
+        }
+        // A rim that is a seam is the seam's business.
+        let seams = Seam::found(&sheets, keeps);
+        for seam in &seams {
+            for k in 0..2 {
+                let edge = seam.edges[k];
+                sheets[seam.sheets[k]].rims[edge.direction][edge.end] = End::Free;
+            }
+        }
+        let solve = || -> Result<Vec<Vec<Vec3<T>>>, FairError> {
+            let network = Network::joined(&sheets, &seams)?;
+            let points = network.gathered(&given);
+            let tolerances = vec![self.tolerance; points.len()];
+            let faired = if self.tolerance.re() == 0.0 {
+                points
+            } else {
+                let bound = Bound::ControlPoints;
+                network.optimum_with(measure, bound, ACCURACY, &points, &tolerances)?.0
+            };
+            Ok((0..sheets.len()).map(|k| network.sheet(k, &faired)).collect())
+        };
+        let contradicted = |e: FairError| match e {
+            FairError::Contradiction { miss, .. } => {
+                let text = format!(
+                    "the surfaces cannot run on across their seams within the tolerance (missed by {miss:.3e})"
+                );
+                Fault::new("contradiction", text)
+                    .expected("a larger tolerance, or surfaces that run on more smoothly")
+                    .in_field(5)
+            }
+            FairError::TurnsBack => Fault::new("turns-back", e.to_string())
+                .expected("surfaces that run on where their neighbours end")
+                .in_field(0),
+            e => fault(e, &places),
+        };
+        let faired = solve().map_err(contradicted)?;
+        let surface = |(sheet, points): (&PatchNet, Vec<Vec3<T>>)| {
+            let [u, v] = sheet.spaces.each_ref().map(|s| s.knot_vector().0);
+            let surface = BSplineSurface::new(u, v, points, None)
+                .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+            Ok(Value::Surface(SurfaceRef::new(surface, 0)))
+        };
+        let surfaces: Result<Vec<_>, Fault> = sheets.iter().zip(faired).map(surface).collect();
+        Ok(Value::list(surfaces?))
+    }
+}
+
+/// One surface of several that are faired together.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; \
+               g[1,] = distc(a, t); g[2,] = g[1,] + {0, 1, 0.3}; g[3,] = g[1,] + {0, 2, 0.4}; \
+               g[4,] = g[1,] + {0, 3, 0.3}; g[5,] = g[1,] + {0, 4, 0}; \
+               FairPatches n({g}, 0.02); NetSurf s(n, 1);"
+)]
+pub struct NetSurf<T: Real> {
+    /// The surfaces, a `FairPatches`.
+    net: Value<T>,
+    /// The number of the surface in their list, from 1.
+    #[field(min = 1)]
+    index: usize,
+}
+
+impl<T: Real> Build<T> for NetSurf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Value::List(surfaces) = &self.net else {
+            return Err(Fault::wrong_class(Class::List, self.net.class())
+                .expected("surfaces that are faired together, a FairPatches")
+                .in_field(0));
+        };
+        match surfaces.get(self.index.wrapping_sub(1)) {
+            Some(Value::Surface(surface)) => Ok(Value::Surface(surface.clone())),
+            Some(other) => {
+                Err(Fault::wrong_class(Class::Surface, other.class()).in_item(self.index - 1))
+            }
+            None => Err(Fault::new("out-of-range", format!("there is no surface {}", self.index))
+                .expected(format!("a number from 1 to {}", surfaces.len()))
+                .found(self.index.to_string())
+                .in_field(1)),
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! `FairSurf`: the faired surface of a grid of points.
+
+use super::{ACCURACY, Own, Places, Role, faithful, fault, indices, measure, role};
+use crate::{Bound, End, FairError, Limit, Network, Space, Spacing, interpolate_with_corners};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{
+    ArrayShape, Build, Class, Context, Fault, FromValue, Kind, SurfaceRef, Value, Vectors,
+};
+use moldloft_spline::BSplineSurface;
+use std::sync::Arc;
+
+/// A grid of points.
+pub(super) struct Grid<T: Real>(pub Arc<Vectors<T>>);
+
+impl<T: Real> FromValue<T> for Grid<T> {
+    const CLASS: Class = Class::Vectors;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Vectors(array) => Ok(Self(array.clone())),
+            other => Err(Fault::wrong_class(Class::Vectors, other.class())),
+        }
+    }
+}
+
+/// A fair B-spline surface within a tolerance of the one through a grid of points.
+///
+/// All rows and columns of the net are faired at once: the sum of the measure over both
+/// directions is the least within the tolerance. The four corners keep position, tangents and
+/// twist. Mode "faithful" fairs curve after curve as the report of 1991 has it, first those of
+/// constant v, then those of constant u, `passes` times over, three steps per point: its result
+/// depends on that order and may jump where two knots tie.
+#[derive(Kind)]
+#[kind(
+    class = Surface,
+    example = "Line a({0, 0, 0}, {4, 0, 0}); farray t = uniform(0, 1, 5); surface g[5, 5]; \
+               vector up = {0, 1, 0.3}; g[1,] = distc(a, t); g[2,] = g[1,] + up; \
+               g[3,] = g[2,] + {0, 1, 0.1}; g[4,] = g[2,] + {0, 2, 0}; g[5,] = g[1,] + {0, 4, 0}; \
+               FairSurf s(g, 0.02);"
+)]
+pub struct FairSurf<T: Real> {
+    /// A grid of points, at least degree + 2 in each direction.
+    points: Grid<T>,
+    /// How far the surface may be from the one through the points; 0 leaves it alone.
+    #[field(min = 0)]
+    tolerance: T,
+    /// What there is to be little of; see `FairCurve`.
+    #[field(default = "second")]
+    measure: Arc<str>,
+    /// What the points are: "fit" or "control".
+    #[field(default = "fit")]
+    r#as: Arc<str>,
+    /// Polynomial degree in both directions.
+    #[field(default = 3, min = 2, max = 9)]
+    degree: usize,
+    /// SparseRows (numbers of points along u, from 1) that are knuckle lines: their points stay, and
+    /// nothing is smoothed across them. A surface through its points has a sharp edge there.
+    #[field(default)]
+    breaks_u: Option<Vec<usize>>,
+    /// The same along v.
+    #[field(default)]
+    breaks_v: Option<Vec<usize>>,
+    /// "optimum" or "faithful".
+    #[field(default = "optimum")]
+    mode: Arc<str>,
+    /// Passes of the faithful mode.
+    #[field(default = 1, min = 1, max = 100)]
+    passes: usize,
+    /// What the rims keep, so that neighbours still fit: "corners" (only these), "position",
+    /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
+    #[field(default = "corners")]
+    rims: Rims,
+    /// Positive weights of the control points (`as = "control"`), a grid like the points, which make
+    /// it rational and stay as they are. They count as constants: derivatives do not go through them.
+    #[field(default)]
+    weights: Option<Weights>,
+    /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, which do not
+    /// fall; constants too.
+    #[field(default)]
+    knots_u: Option<Vec<T>>,
+    /// The same along v.
+    #[field(default)]
+    knots_v: Option<Vec<T>>,
+}
+
+/// The fields of weights and knots.
+const WEIGHTS: usize = 10;
+const KNOTS: [usize; 2] = [11, 12];
+
+/// Weights of control points.
+struct Weights {
+    shape: ArrayShape,
+    items: Vec<f64>,
+}
+
+impl<T: Real> FromValue<T> for Weights {
+    const CLASS: Class = Class::Numbers;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        match value {
+            Value::Numbers(array) => {
+                let items = array.items.iter().map(|x| x.re()).collect();
+                Ok(Self { shape: array.shape, items })
+            }
+            other => Err(Fault::wrong_class(Class::Numbers, other.class())),
+        }
+    }
+}
+
+impl<T: Real> FairSurf<T> {
+    /// Weights and knots, where they have a meaning.
+    fn own(&self, shape: ArrayShape) -> Result<[Own; 2], Fault> {
+        let plain =
+            |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
+        let own = [&self.knots_u, &self.knots_v].map(|k| Own { knots: plain(k), weights: None });
+        let fields = [
+            (self.weights.is_some(), "weights", WEIGHTS),
+            (own[0].knots.is_some(), "knots", KNOTS[0]),
+            (own[1].knots.is_some(), "knots", KNOTS[1]),
+        ];
+        for (_, what, field) in fields.into_iter().filter(|g| g.0) {
+            if &*self.r#as != "control" {
+                let text = format!("{what} are those of control points");
+                return Err(Fault::new("not-control", text)
+                    .expected("as = \"control\"")
+                    .found(format!("as = \"{}\"", self.r#as))
+                    .in_field(field));
+            }
+        }
+        if let Some(weights) = &self.weights {
+            let refused = |text: &str, expected: String, found: String| {
+                Err(Fault::new("bad-weight", text)
+                    .expected(expected)
+                    .found(found)
+                    .in_field(WEIGHTS))
+            };
+            if weights.shape != shape {
+                let found = weights.shape.to_string();
+                return refused("weights are a grid like the points", shape.to_string(), found);
+            }
+            if &*self.mode == "faithful" {
+                let (expected, found) = ("mode = \"optimum\"", "mode = \"faithful\"");
+                return refused("weights need the optimum", expected.into(), found.into());
+            }
+        }
+        Ok(own)
+    }
+}
+
+/// What the rims keep, in the order of the edges of a surface.
+pub(super) struct Rims(pub [End; 4]);
+
+impl<T: Real> FromValue<T> for Rims {
+    const CLASS: Class = Class::Any;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        let known = ["corners", "position", "tangent", "curvature"];
+        let one = |word: &str| match word {
+            "corners" => Ok(End::Free),
+            "free" => Err(super::unknown("way to keep a rim", word, &known, 9)),
+            _ => {
+                End::named(word).ok_or_else(|| super::unknown("way to keep a rim", word, &known, 9))
+            }
+        };
+        let text = |value: &Value<T>| <Arc<str> as FromValue<T>>::from_value(value);
+        match value {
+            Value::List(items) if items.len() == 4 => {
+                let mut ends = [End::Free; 4];
+                for (end, item) in ends.iter_mut().zip(items.iter()) {
+                    *end = one(&text(item)?)?;
+                }
+                Ok(Self(ends))
+            }
+            Value::List(items) => Err(Fault::new("wrong-count", "a surface has four rims")
+                .expected("a word, or four of them for v = 0, u = 1, v = 1 and u = 0")
+                .found(format!("{} items", items.len()))),
+            other => Ok(Self([one(&text(other)?)?; 4])),
+        }
+    }
+}
+
+/// A grid of points, as the control points of the spline of `degree` through each of its rows along
+/// the first index; the space, and which rows of control points are breaks.
+pub(super) type Along<T> = (Space, Vec<Vec3<T>>, Vec<usize>);
+
+/// Fits all lines of a grid `[m, n]` along its first index.
+pub(super) fn fitted<T: Real>(
+    degree: usize,
+    grid: &[Vec3<T>],
+    m: usize,
+    breaks: &[usize],
+) -> Result<Along<T>, FairError> {
+    let n = grid.len() / m;
+    let mut out = Vec::new();
+    let mut common = None;
+    for j in 0..n {
+        let line: Vec<Vec3<T>> = (0..m).map(|i| grid[i * n + j]).collect();
+        let sharp = interpolate_with_corners(degree, &line, Spacing::Uniform, false, breaks)?;
+        out.resize(sharp.points.len() * n, Vec3::zero());
+        for (i, p) in sharp.points.into_iter().enumerate() {
+            out[i * n + j] = p;
+        }
+        common = Some((sharp.fit.space, sharp.marks));
+    }
+    let (space, marks) = common.ok_or(FairError::TooFew { expected: 1, actual: 0 })?;
+    Ok((space, out, marks))
+}
+
+/// The grid with its indices exchanged.
+pub(super) fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
+    let n = grid.len() / m;
+    (0..n).flat_map(|j| (0..m).map(move |i| grid[i * n + j])).collect()
+}
+
+impl<T: Real> Build<T> for FairSurf<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let Grid(grid) = &self.points;
+        let ArrayShape::Grid(m, n) = grid.shape else {
+            return Err(Fault::new("wrong-shape", "a surface needs a grid of points")
+                .expected("a grid [m, n] of vectors")
+                .found(format!("a row {}", grid.shape))
+                .in_field(0));
+        };
+        let measure = measure(&self.measure, 2)?;
+        let fitted_first = match role(&self.r#as, 3)? {
+            Role::Fit => true,
+            Role::Control => false,
+            Role::Points => {
+                return Err(Fault::new("unknown-name", "surfaces have no role \"points\"")
+                    .expected("\"fit\" or \"control\"")
+                    .found("\"points\"")
+                    .in_field(3));
+            }
+        };
+        let places = Places { points: 0, tolerance: 1, degree: 4, breaks: 5 };
+        let along_v = Places { breaks: 6, ..places };
+        let passes = faithful(&self.mode, 7)?.then_some(self.passes);
+        let [marks_u, marks_v] = [(&self.breaks_u, m, &places), (&self.breaks_v, n, &along_v)].map(
+            |(breaks, count, places)| {
+                let numbers = breaks.as_deref().unwrap_or_default();
+                indices(numbers, count).map_err(|e| fault(e, places))
+            },
+        );
+        let (marks_u, marks_v) = (marks_u?, marks_v?);
+        let own = self.own(grid.shape)?;
+        let weights = self.weights.as_ref().map(|w| w.items.clone());
+        let Rims([south, east, north, west]) = self.rims;
+        let rims = [[west, east], [south, north]];
+        let make = || -> Result<_, FairError> {
+            let degree = self.degree;
+            for actual in [m, n] {
+                if actual < degree + 2 {
+                    return Err(FairError::TooFew { expected: degree + 2, actual });
+                }
+            }
+            let (spaces, net, marks) = if fitted_first {
+                let (u, net, mu) = fitted(degree, &grid.points(), m, &marks_u)?;
+                let (v, net, mv) = fitted(degree, &turned(&net, u.count()), n, &marks_v)?;
+                let net = turned(&net, v.count());
+                ([u, v], net, [mu, mv])
+            } else {
+                let spaces = [own[0].space(degree, m)?, own[1].space(degree, n)?];
+                (spaces, grid.points(), [marks_u, marks_v])
+            };
+            let limit = Limit::ball(net.len(), self.tolerance.re())?;
+            let plain = net.iter().map(|p| p.re()).collect();
+            let network = Network::net(spaces.clone(), plain, weights.clone(), limit)?
+                .with_breaks(&marks[0], &marks[1])?
+                .with_rims(rims)?;
+            let tolerances = vec![self.tolerance; net.len()];
+            let points = match passes {
+                Some(passes) => network.passes_with(passes, 3, &net, &tolerances)?,
+                None => {
+                    let bound = Bound::ControlPoints;
+                    network.optimum_with(measure, bound, ACCURACY, &net, &tolerances)?.0
+                }
+            };
+            Ok((spaces, points))
+        };
+        let about = |e: FairError| match e {
+            FairError::Weight { .. } => Fault::new("bad-weight", e.to_string()).in_field(WEIGHTS),
+            FairError::Unsorted { .. }
+            | FairError::Knots(_)
+            | FairError::Count { what: "knots", .. } => {
+                let along = usize::from(own[0].space(self.degree, m).is_ok());
+                Fault::new("bad-knots", e.to_string()).in_field(KNOTS[along])
+            }
+            e => fault(e, &places),
+        };
+        let (spaces, points) = make().map_err(about)?;
+        let [u, v] = spaces.map(|s| s.knot_vector().0);
+        let weights = weights.map(|w| w.into_iter().map(T::from).collect());
+        let surface = BSplineSurface::new(u, v, points, weights)
+            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+        Ok(Value::Surface(SurfaceRef::new(surface, 0)))
+    }
+}

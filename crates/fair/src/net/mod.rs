@@ -1,0 +1,5 @@
+//! Nets of surfaces, networks of curves, and surfaces with common edges.
+
+mod conditions;
+pub mod network;
+pub(crate) mod patches;

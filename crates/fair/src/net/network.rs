@@ -1,0 +1,629 @@
+//! Curves that share points: control nets of surfaces, and hulls of stations, waterlines and
+//! buttocks.
+
+use crate::error::check_finite;
+use crate::net::patches::{Across, Patch};
+use crate::optimum::certificate::gap;
+use crate::optimum::{Optimum, Parts};
+use crate::{
+    Bound, Certificate, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Measure, Space,
+    SparseRows, knot_removal_from, replay_from_with,
+};
+use moldloft_num::{Real, Surface, Vec3};
+use moldloft_spline::BSplineSurface;
+
+/// One curve of a network.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NetworkCurve {
+    /// Its spline.
+    pub space: Space,
+    /// Its control points: places in the network's list.
+    pub points: Vec<usize>,
+    /// Weights of a rational curve.
+    pub weights: Option<Vec<f64>>,
+    /// Its own places that are intended breaks.
+    pub marks: Vec<usize>,
+    /// What its ends keep when it is faired by itself.
+    pub ends: [End; 2],
+}
+
+/// Curves over common points. A shared point is one point: it moves for all its curves at once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Network {
+    /// The original points.
+    pub points: Vec<Vec3<f64>>,
+    /// How far they may move, across all passes.
+    pub limit: Limit,
+    /// The curves, in the order of passes.
+    pub strands: Vec<NetworkCurve>,
+    /// Points that do not move.
+    pub kept: Vec<usize>,
+    /// The spaces of a tensor-product net, whose point (i, j) stands at `i * count_v + j`.
+    net: Option<[Space; 2]>,
+    weights: Option<Vec<f64>>,
+    /// The nets of joined surfaces.
+    pub(crate) patches: Vec<Patch>,
+    /// What holds across their seams, and how it hangs on the points given.
+    pub(crate) seams: Vec<Condition>,
+    pub(crate) across: Vec<Across>,
+}
+
+impl Network {
+    /// A network of curves.
+    ///
+    /// # Errors
+    /// [`FairError`] when a curve refers to points that do not exist, or as for [`Job::check`].
+    pub fn new(
+        points: Vec<Vec3<f64>>,
+        strands: Vec<NetworkCurve>,
+        limit: Limit,
+    ) -> Result<Self, FairError> {
+        let network = Self::of(points, limit, strands);
+        network.check()?;
+        Ok(network)
+    }
+
+    fn of(points: Vec<Vec3<f64>>, limit: Limit, strands: Vec<NetworkCurve>) -> Self {
+        let (kept, patches, seams, across) = Default::default();
+        Self { points, limit, strands, kept, net: None, weights: None, patches, seams, across }
+    }
+
+    /// The control net of a surface with point (i, j) at `i * v.count() + j`. Passes run over the
+    /// curves of constant v first, as the report of 1991 has it, then over those of constant u.
+    /// Each curve keeps two points at open ends; the joint optimum keeps the four corners, two by
+    /// two points each, of open directions.
+    ///
+    /// # Errors
+    /// As [`Network::new`].
+    pub fn net(
+        spaces: [Space; 2],
+        points: Vec<Vec3<f64>>,
+        weights: Option<Vec<f64>>,
+        limit: Limit,
+    ) -> Result<Self, FairError> {
+        let [nu, nv] = [spaces[0].count(), spaces[1].count()];
+        for (what, actual) in [
+            ("control points", points.len()),
+            ("weights", weights.as_ref().map_or(nu * nv, Vec::len)),
+        ] {
+            if actual != nu * nv {
+                return Err(FairError::Count { what, expected: nu * nv, actual });
+            }
+        }
+        let strand = |space: &Space, own: Vec<usize>| NetworkCurve {
+            space: space.clone(),
+            weights: weights.as_ref().map(|w| own.iter().map(|&i| w[i]).collect()),
+            points: own,
+            marks: Vec::new(),
+            ends: [End::Points(2); 2],
+        };
+        let along_u = (0..nv).map(|j| strand(&spaces[0], (0..nu).map(|i| i * nv + j).collect()));
+        let along_v = (0..nu).map(|i| strand(&spaces[1], (0..nv).map(|j| i * nv + j).collect()));
+        let strands = along_u.chain(along_v).collect();
+        let rim = |k: usize, n: usize| k < 2 || k + 2 >= n;
+        let corners = !spaces[0].is_closed() && !spaces[1].is_closed();
+        let kept = (0..nu * nv).filter(|k| corners && rim(k / nv, nu) && rim(k % nv, nv)).collect();
+        let plain = Self::of(points, limit, strands);
+        let network = Self { kept, net: Some(spaces), weights, ..plain };
+        network.check()?;
+        Ok(network)
+    }
+
+    /// The net with intended breaks: knuckle lines along whole rows of points, at these places along
+    /// u (each a curve of constant u) and along v. Their points stay, and nothing is smoothed across
+    /// them.
+    ///
+    /// # Errors
+    /// [`FairError::Mark`] when there is no such row, or the network is no net.
+    pub fn with_breaks(mut self, along_u: &[usize], along_v: &[usize]) -> Result<Self, FairError> {
+        let [nu, nv] = self.net.as_ref().map_or([0, 0], |[u, v]| [u.count(), v.count()]);
+        for (breaks, count) in [(along_u, nu), (along_v, nv)] {
+            if let Some(&index) = breaks.iter().find(|&&b| b >= count) {
+                return Err(FairError::Mark { index, count });
+            }
+        }
+        // Curves along u come first.
+        for (k, strand) in self.strands.iter_mut().enumerate() {
+            strand.marks.extend(if k < nv { along_u } else { along_v });
+        }
+        // Those along the knuckle stand still too, whole.
+        for (k, strand) in self.strands.iter().enumerate() {
+            let own = if k < nv { along_v.contains(&k) } else { along_u.contains(&(k - nv)) };
+            if own {
+                self.kept.extend(&strand.points);
+            }
+        }
+        self.kept.sort_unstable();
+        self.kept.dedup();
+        Ok(self)
+    }
+
+    /// The net with rims that keep what neighbours share with it: at both ends of u, then of v.
+    /// On clamped knots the position is one row of points, tangents are two and curvature three;
+    /// these do not move by a bit, in the joint optimum and in passes. Rims of a closed direction are
+    /// none.
+    ///
+    /// # Errors
+    /// [`FairError::Count`] when the network is no net.
+    pub fn with_rims(mut self, rims: [[End; 2]; 2]) -> Result<Self, FairError> {
+        let Some([su, sv]) = &self.net else {
+            return Err(FairError::Count { what: "directions of a net", expected: 2, actual: 0 });
+        };
+        let (nu, nv) = (su.count(), sv.count());
+        let rows = |space: &Space, [low, high]: [End; 2]| {
+            let of = |end: End| end.points(space.is_clamped(), space.degree());
+            let some = if space.is_closed() { [0, 0] } else { [of(low), of(high)] };
+            some.map(|k| k.min(space.count()))
+        };
+        let ([u0, u1], [v0, v1]) = (rows(su, rims[0]), rows(sv, rims[1]));
+        let still = |i: usize, j: usize| i < u0 || i >= nu - u1 || j < v0 || j >= nv - v1;
+        self.kept.extend((0..nu * nv).filter(|k| still(k / nv, k % nv)));
+        self.kept.sort_unstable();
+        self.kept.dedup();
+        Ok(self)
+    }
+
+    /// The spaces of a net and its weights.
+    pub(crate) fn net_parts(&self) -> Option<(&[Space; 2], Option<&[f64]>)> {
+        self.net.as_ref().map(|spaces| (spaces, self.weights.as_deref()))
+    }
+
+    /// Refuses what cannot be faired.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn check(&self) -> Result<(), FairError> {
+        check_finite(&self.points)?;
+        let count = self.points.len();
+        if self.limit.radii.len() != count {
+            let (expected, actual) = (count, self.limit.radii.len());
+            return Err(FairError::Count { what: "tolerances", expected, actual });
+        }
+        let all = self.strands.iter().flat_map(|s| &s.points).chain(&self.kept);
+        if let Some(&index) = all.into_iter().find(|&&i| i >= count) {
+            return Err(FairError::Mark { index, count });
+        }
+        (0..self.strands.len()).try_for_each(|k| {
+            let strand = &self.strands[k];
+            let (expected, actual) = (strand.space.count(), strand.points.len());
+            if expected != actual {
+                return Err(FairError::Count { what: "points of a curve", expected, actual });
+            }
+            self.job(k, &self.points).check()
+        })
+    }
+
+    fn check_seams(&self) -> Result<(), FairError> {
+        if self.seams.is_empty() { Ok(()) } else { Err(FairError::SeamsByPasses) }
+    }
+
+    /// Curve `k` as a job of its own, at these points.
+    fn job(&self, k: usize, points: &[Vec3<f64>]) -> Job {
+        let strand = &self.strands[k];
+        let pick = |i: &usize| points[*i];
+        Job {
+            space: strand.space.clone(),
+            points: strand.points.iter().map(pick).collect(),
+            weights: strand.weights.clone(),
+            limit: Limit {
+                motion: self.limit.motion,
+                radii: strand.points.iter().map(|&i| self.limit.radii[i]).collect(),
+            },
+            marks: strand.marks.clone(),
+            ends: strand.ends,
+        }
+    }
+
+    /// Curve `k` at the original points, where what stands still for any curve does so for this one.
+    fn pass_job(&self, k: usize, frozen: &[bool]) -> Job {
+        let mut job = self.job(k, &self.points);
+        for (radius, &i) in job.limit.radii.iter_mut().zip(&self.strands[k].points) {
+            if frozen[i] {
+                *radius = 0.0;
+            }
+        }
+        job
+    }
+
+    /// The value of a measure over some of the curves.
+    ///
+    /// # Errors
+    /// [`FairError::Degree`].
+    pub fn value(
+        &self,
+        measure: Measure,
+        strands: std::ops::Range<usize>,
+        points: &[Vec3<f64>],
+    ) -> Result<f64, FairError> {
+        let origin = self.origin();
+        let mut sum = 0.0;
+        for k in strands {
+            let job = self.job(k, points);
+            let relative: Vec<_> = job.points.iter().map(|&p| p - origin).collect();
+            sum += crate::measure::value(&job.measure_rows(measure)?, measure.norm(), &relative);
+        }
+        Ok(sum)
+    }
+
+    /// Fairs curve after curve by local steps, `passes` times over: the faithful way. The limit is
+    /// kept from the original across passes. The direction faired first gets rougher again, so
+    /// passes do not converge to the joint optimum.
+    ///
+    /// `steps` is the number of steps per control point of each curve.
+    ///
+    /// # Errors
+    /// As [`crate::knot_removal`].
+    pub fn passes(&self, passes: usize, steps: usize) -> Result<Vec<Vec3<f64>>, FairError> {
+        self.check()?;
+        self.check_seams()?;
+        let frozen = self.frozen();
+        let mut points = self.points.clone();
+        for _ in 0..passes {
+            for k in 0..self.strands.len() {
+                let job = self.pass_job(k, &frozen);
+                let from = self.strands[k].points.iter().map(|&i| points[i]).collect();
+                let options = KnotRemovalOptions::faithful(steps * job.points.len());
+                let faired = knot_removal_from(&job, from, &options)?.points;
+                for (&i, p) in self.strands[k].points.iter().zip(faired) {
+                    points[i] = p;
+                }
+            }
+        }
+        Ok(points)
+    }
+
+    /// The same for points that carry derivatives, whose real parts are those of the network: which
+    /// knots are chosen is as it is for the real parts.
+    ///
+    /// # Errors
+    /// As [`Network::passes`].
+    pub fn passes_with<T: Real>(
+        &self,
+        passes: usize,
+        steps: usize,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        self.check()?;
+        self.check_seams()?;
+        let frozen = self.frozen();
+        let mut now = points.to_vec();
+        for _ in 0..passes {
+            for (k, strand) in self.strands.iter().enumerate() {
+                let job = self.pass_job(k, &frozen);
+                let pick = |of: &[Vec3<T>]| -> Vec<Vec3<T>> {
+                    strand.points.iter().map(|&i| of[i]).collect()
+                };
+                let (from, original) = (pick(&now), pick(points));
+                let radii: Vec<T> = strand.points.iter().map(|&i| tolerances[i]).collect();
+                let plain = from.iter().map(|p| p.re()).collect();
+                let mut options = KnotRemovalOptions::faithful(steps * job.points.len());
+                options.log = true;
+                let made = knot_removal_from(&job, plain, &options)?;
+                let faired = replay_from_with(&job, &options, &made.log, &from, &original, &radii)?;
+                for (&i, p) in strand.points.iter().zip(faired) {
+                    now[i] = p;
+                }
+            }
+        }
+        Ok(now)
+    }
+
+    /// The rows of a measure over all curves.
+    fn rows(&self, measure: Measure) -> Result<SparseRows, FairError> {
+        let mut all = SparseRows::new();
+        for k in 0..self.strands.len() {
+            let rows = self.job(k, &self.points).measure_rows(measure)?;
+            let own = &self.strands[k].points;
+            for r in 0..rows.len() {
+                let (c, f) = rows.row(r);
+                all.push(c.iter().map(|&c| own[c as usize]).zip(f.iter().copied()));
+            }
+        }
+        Ok(all)
+    }
+
+    /// Which points stand still in the joint optimum.
+    fn frozen(&self) -> Vec<bool> {
+        let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
+        let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
+        for i in self.kept.iter().copied().chain(marked) {
+            frozen[i] = true;
+        }
+        frozen
+    }
+
+    /// The point that measures refer to: the mean of the original points when there are weights,
+    /// so that results move with the network.
+    fn origin(&self) -> Vec3<f64> {
+        if self.strands.iter().all(|s| s.weights.is_none()) {
+            return Vec3::zero();
+        }
+        let sum = self.points.iter().fold(Vec3::zero(), |s, &p| s + p);
+        sum * (1.0 / self.points.len() as f64)
+    }
+
+    /// Points as measures see them.
+    fn relative(&self, points: &[Vec3<f64>]) -> Vec<Vec3<f64>> {
+        let origin = self.origin();
+        points.iter().map(|&p| p - origin).collect()
+    }
+
+    /// The Bézier points of the net's displacement and how far control points can move under them.
+    fn bezier(&self) -> Option<(SparseRows, Vec<f64>)> {
+        if !self.patches.is_empty() {
+            return self.patches_bezier();
+        }
+        let [su, sv] = self.net.as_ref()?;
+        let (bu, bv, nv) = (su.bezier(None), sv.bezier(None), sv.count());
+        let mut rows = SparseRows::new();
+        for a in 0..bu.len() {
+            let (cu, fu) = bu.row(a);
+            for b in 0..bv.len() {
+                let (cv, fv) = bv.row(b);
+                let mut entries = Vec::with_capacity(cu.len() * cv.len());
+                for (&i, &x) in cu.iter().zip(fu) {
+                    for (&j, &y) in cv.iter().zip(fv) {
+                        let at = i as usize * nv + j as usize;
+                        entries.push((at, x * y * self.weights.as_ref().map_or(1.0, |w| w[at])));
+                    }
+                }
+                if self.weights.is_some() {
+                    let total: f64 = entries.iter().map(|e| e.1).sum();
+                    entries.iter_mut().for_each(|e| e.1 /= total);
+                }
+                rows.push(entries);
+            }
+        }
+        // With weights the inverse's norm grows at most by their ratio.
+        let spread = self.weights.as_ref().map_or(1.0, |w| {
+            let (low, high) =
+                w.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &x| (l.min(x), h.max(x)));
+            high / low
+        });
+        let (ru, rv) = (su.reach(None), sv.reach(None));
+        let reach = ru.iter().flat_map(|a| rv.iter().map(move |b| a * b * spread)).collect();
+        Some((rows, reach))
+    }
+
+    /// The same of joined surfaces; a point of several can move as far as the least of them allows.
+    fn patches_bezier(&self) -> Option<(SparseRows, Vec<f64>)> {
+        let mut all = SparseRows::new();
+        let mut reach = vec![f64::INFINITY; self.points.len()];
+        for patch in &self.patches {
+            let (rows, own) = patch.net.bezier()?;
+            for k in 0..rows.len() {
+                let (c, f) = rows.row(k);
+                all.push(c.iter().map(|&c| patch.places[c as usize]).zip(f.iter().copied()));
+            }
+            for (&i, r) in patch.places.iter().zip(own) {
+                reach[i] = reach[i].min(r);
+            }
+        }
+        Some((all, reach))
+    }
+
+    /// A certified bound on the displacement of the surface of a net: the largest Bézier point of
+    /// the displacement; for other networks the largest move of a point.
+    pub fn certified(&self, points: &[Vec3<f64>]) -> f64 {
+        let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+        match self.bezier() {
+            Some((rows, _)) => {
+                let largest = (0..rows.len()).map(|k| rows.apply(k, &moved).norm());
+                largest.fold(0.0, f64::max) * (1.0 + 32.0 * f64::EPSILON)
+            }
+            None => moved.iter().map(|m| m.norm()).fold(0.0, f64::max),
+        }
+    }
+
+    /// All curves faired together: the sum of the measure over all of them is the least within the
+    /// limits, with a certificate. `conditions` are over the network's points.
+    ///
+    /// The factor of a net of m by n points takes about m n min(m, n) numbers.
+    ///
+    /// # Errors
+    /// [`FairError::TooLarge`] beyond that ([`Network::sweeps`] is for such nets); others as for
+    /// [`crate::optimum`]. [`Bound::Bezier`] is for nets only.
+    pub fn optimum(
+        &self,
+        measure: Measure,
+        bound: Bound,
+        conditions: Vec<Condition>,
+        accuracy: f64,
+    ) -> Result<Optimum, FairError> {
+        self.parts(measure, bound, conditions, accuracy)?.solve()
+    }
+
+    /// The same for numbers that carry derivatives; see [`crate::optimum_with`].
+    ///
+    /// # Errors
+    /// As [`Network::optimum`].
+    pub fn optimum_with<T: Real>(
+        &self,
+        measure: Measure,
+        bound: Bound,
+        accuracy: f64,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+    ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+        let parts = self.parts(measure, bound, Vec::new(), accuracy)?;
+        // The ratios of seams follow the points given.
+        parts.solve_bent(points, tolerances, &[], &self.bends(points)?)
+    }
+
+    fn parts(
+        &self,
+        measure: Measure,
+        bound: Bound,
+        conditions: Vec<Condition>,
+        accuracy: f64,
+    ) -> Result<Parts<'_>, FairError> {
+        self.check()?;
+        let mut conditions = conditions;
+        // Last, so that the caller's keep their numbers.
+        conditions.extend(self.seams.iter().cloned());
+        Ok(Parts {
+            points: &self.points,
+            relative: self.relative(&self.points),
+            centred: self.strands.iter().any(|s| s.weights.is_some()),
+            limit: &self.limit,
+            measure: self.rows(measure)?,
+            norm: measure.norm(),
+            frozen: self.frozen(),
+            conditions,
+            own: 0,
+            bezier: if bound == Bound::Bezier { self.bezier() } else { None },
+            accuracy,
+        })
+    }
+
+    /// Joint sweeps over single points, each to its limited minimiser: for nets beyond the direct
+    /// solver. Never worse from sweep to sweep; says how far from the optimum it is.
+    ///
+    /// # Errors
+    /// As [`crate::sweeps`].
+    pub fn sweeps(
+        &self,
+        measure: Measure,
+        count: usize,
+    ) -> Result<(Vec<Vec3<f64>>, Certificate), FairError> {
+        self.check()?;
+        self.check_seams()?;
+        let n = self.points.len();
+        let rows = self.rows(measure)?;
+        let gram = rows.gram(n);
+        let frozen = self.frozen();
+        let origin = self.origin();
+        let mut relative = self.relative(&self.points);
+        let mut points = self.points.clone();
+        for _ in 0..count {
+            for j in (0..n).filter(|&j| !frozen[j]) {
+                let (columns, factors) = gram.row(j);
+                let Some(at) = columns.iter().position(|&c| c as usize == j) else { continue };
+                if factors[at] > 0.0 {
+                    let wanted = points[j] - gram.apply(j, &relative) * (1.0 / factors[at]);
+                    points[j] = self.limit.nearest(j, self.points[j], points[j], wanted);
+                    relative[j] = points[j] - origin;
+                }
+            }
+        }
+        let norm = measure.norm();
+        let certificate = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
+        Ok((points, certificate))
+    }
+
+    /// The surface of a net with these control points.
+    ///
+    /// # Errors
+    /// [`FairError::Count`] when there are more or fewer, or the network is no net.
+    pub fn surface(&self, points: &[Vec3<f64>]) -> Result<BSplineSurface<f64>, FairError> {
+        let expected = self.points.len();
+        let Some([u, v]) = self.net.as_ref().filter(|_| points.len() == expected) else {
+            let actual = points.len();
+            return Err(FairError::Count { what: "control points of a net", expected, actual });
+        };
+        let ((ku, pu), (kv, pv)) = (u.knot_vector(), v.knot_vector());
+        let places = || pu.iter().flat_map(|&i| pv.iter().map(move |&j| i * v.count() + j));
+        let weights = self.weights.as_ref().map(|w| places().map(|k| w[k]).collect());
+        let net = places().map(|k| points[k]).collect();
+        BSplineSurface::new(ku, kv, net, weights).map_err(|_| FairError::Singular)
+    }
+
+    /// The largest displacement of the surface of a net on a grid of about four samples to a span;
+    /// for other networks the largest move of a point.
+    pub fn sampled(&self, points: &[Vec3<f64>]) -> f64 {
+        let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+        let largest = |all: &[Vec3<f64>]| all.iter().map(|m| m.norm()).fold(0.0, f64::max);
+        if !self.patches.is_empty() {
+            let each = self.patches.iter().enumerate();
+            let each = each.map(|(k, p)| p.net.sampled(&self.sheet(k, points)));
+            return each.fold(0.0, f64::max);
+        }
+        let Some([u, v]) = &self.net else { return largest(&moved) };
+        let Ok(surface) = self.surface(&moved) else { return f64::NAN };
+        let steps =
+            |n: usize| -> Vec<f64> { (0..=4 * n).map(|k| k as f64 / (4 * n) as f64).collect() };
+        let (us, vs) = (steps(u.count()), steps(v.count()));
+        let mut grid = vec![Vec3::zero(); us.len() * vs.len()];
+        surface.grid(&us, &vs, &mut grid, None);
+        largest(&grid)
+    }
+}
+
+/// What a fairing did to a network, for reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NetworkReport {
+    /// The faired points.
+    pub points: Vec<Vec3<f64>>,
+    /// The measure over all curves, before and after.
+    pub measure: [f64; 2],
+    /// Sum of squared jumps over all curves, before and after.
+    pub jumps: [f64; 2],
+    /// No point of the surface (or control point of a network) moved farther.
+    pub certified: f64,
+    /// The largest distance found by sampling.
+    pub sampled: f64,
+    /// The measure and what is left to gain within the limits.
+    pub certificate: Certificate,
+}
+
+/// How a network is faired.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NetworkMode {
+    /// All curves at once.
+    Joint(Bound),
+    /// All curves at once by so many sweeps over single points.
+    Sweeps(usize),
+    /// Curve after curve: so many passes of so many steps per point.
+    Passes(usize, usize),
+}
+
+impl Network {
+    /// Fairs and reports.
+    ///
+    /// # Errors
+    /// As [`Network::optimum`], [`Network::sweeps`] and [`Network::passes`].
+    pub fn report(&self, measure: Measure, mode: NetworkMode) -> Result<NetworkReport, FairError> {
+        self.report_with(measure, mode, Vec::new())
+    }
+
+    /// The same under linear conditions, which the joint optimum alone can keep.
+    ///
+    /// # Errors
+    /// As [`Network::report`].
+    pub fn report_with(
+        &self,
+        measure: Measure,
+        mode: NetworkMode,
+        conditions: Vec<Condition>,
+    ) -> Result<NetworkReport, FairError> {
+        let (points, certificate) = match mode {
+            NetworkMode::Joint(bound) => {
+                let best = self.optimum(measure, bound, conditions, 1e-9)?;
+                (best.points, best.certificate)
+            }
+            NetworkMode::Sweeps(count) => self.sweeps(measure, count)?,
+            NetworkMode::Passes(passes, steps) => {
+                let points = self.passes(passes, steps)?;
+                let rows = self.rows(measure)?;
+                let relative = self.relative(&points);
+                let frozen = vec![false; points.len()];
+                let norm = measure.norm();
+                let left = gap(&self.points, &self.limit, &frozen, &rows, norm, &points, &relative);
+                (points, left)
+            }
+        };
+        let all = 0..self.strands.len();
+        let both = |m: Measure| -> Result<[f64; 2], FairError> {
+            Ok([self.value(m, all.clone(), &self.points)?, self.value(m, all.clone(), &points)?])
+        };
+        Ok(NetworkReport {
+            measure: both(measure)?,
+            jumps: both(Measure::Jumps)?,
+            certified: self.certified(&points),
+            sampled: self.sampled(&points),
+            certificate,
+            points,
+        })
+    }
+}

@@ -1,0 +1,730 @@
+//! The interior point method of [`crate::optimum::problem`], for D coordinates.
+//!
+//! All lists are over unknowns: points that stand still are left out of the rows, for their
+//! displacement is zero.
+
+use crate::optimum::band::Band;
+use crate::optimum::problem::{Active, NONE, Order, Problem, Solution};
+use crate::optimum::second_order_cone::{Cone, Pair, V, axpy, dot};
+use crate::{FairError, Norm, SparseRows};
+use moldloft_num::Real;
+
+const MOST_ITERATIONS: usize = 80;
+
+/// The share of the value at which the gap shows which limits are reached, and the next one when it
+/// did not: there the solution is polished.
+const SHOWS: f64 = 1e-7;
+
+/// Newton steps without a better certificate after which it will not get better.
+const MOST_IDLE: usize = 6;
+
+/// The same as long as the conditions are not met.
+const MOST_TRIALS: usize = 12;
+
+/// Once the complementarity is this share of the certified gap, the rest of the gap is rounding.
+const ROUNDING: f64 = 1e-3;
+
+/// The most unknowns of which a solution that rounding ended is polished all the same: of more, squares
+/// of fourth differences have too few digits left.
+const POLISHED: usize = 1000;
+
+/// The largest matrix of which the measure's share is kept beside the sum.
+const KEPT: usize = 1 << 24;
+
+/// A condition over unknowns.
+pub(crate) struct Linear<const D: usize> {
+    pub entries: Vec<(usize, V<D>)>,
+    pub value: f64,
+}
+
+pub(crate) struct State<'a, const D: usize> {
+    pub p: &'a Problem,
+    pub order: Order,
+    pub measure: SparseRows,
+    pub limit_rows: SparseRows,
+    offsets: Vec<V<D>>,
+    reach: Vec<f64>,
+    pub conditions: Vec<Linear<D>>,
+    pub x: Vec<V<D>>,
+    /// Cones of the limits, then those of the lengths.
+    pub cones: Vec<Cone<D>>,
+    pub nu: Vec<f64>,
+    /// Set once the solution is polished.
+    pub active: Option<Active>,
+    /// The measure's share of the matrix.
+    base: Option<Band>,
+}
+
+/// What a Newton step changes.
+struct Direction<const D: usize> {
+    x: Vec<V<D>>,
+    /// What the complementarity of each cone should become.
+    goals: Vec<Pair<D>>,
+    /// Slack and dual of each cone.
+    u: Vec<Pair<D>>,
+    y: Vec<Pair<D>>,
+    nu: Vec<f64>,
+}
+
+impl<const D: usize> Direction<D> {
+    fn zero(unknowns: usize, cones: usize) -> Self {
+        let none = vec![(0.0, [0.0; D]); cones];
+        Self {
+            x: vec![[0.0; D]; unknowns],
+            goals: none.clone(),
+            u: none.clone(),
+            y: none,
+            nu: Vec::new(),
+        }
+    }
+
+    /// A sum is finite when its terms are, unless they are far beyond any use.
+    fn is_finite(&self) -> bool {
+        let pair = |p: &Pair<D>| p.0 + p.1.iter().sum::<f64>();
+        let cones: f64 = self.u.iter().chain(&self.y).map(pair).sum();
+        (cones + self.x.as_flattened().iter().sum::<f64>()).is_finite()
+    }
+}
+
+/// The first D coordinates.
+#[inline(always)]
+fn cut<T: Copy, const D: usize>(v: &[T; 3]) -> [T; D] {
+    std::array::from_fn(|c| v[c])
+}
+
+#[inline(always)]
+fn widened<const D: usize>(v: V<D>) -> V<3> {
+    let mut out = [0.0; 3];
+    out[..D].copy_from_slice(&v);
+    out
+}
+
+/// Row `k` times the unknowns.
+#[inline(always)]
+pub(crate) fn apply<const D: usize>(rows: &SparseRows, k: usize, x: &[V<D>]) -> V<D> {
+    let (columns, factors) = rows.row(k);
+    let mut sum = [0.0; D];
+    for (&c, &a) in columns.iter().zip(factors) {
+        axpy(&mut sum, a, x[c as usize]);
+    }
+    sum
+}
+
+/// Adds the transpose of row `k` times `y` to `sum`.
+#[inline(always)]
+pub(crate) fn spread<const D: usize>(rows: &SparseRows, k: usize, y: V<D>, sum: &mut [V<D>]) {
+    let (columns, factors) = rows.row(k);
+    for (&c, &a) in columns.iter().zip(factors) {
+        axpy(&mut sum[c as usize], a, y);
+    }
+}
+
+/// Adds P^T W P to the matrix.
+#[inline(always)]
+pub(crate) fn add_block<const D: usize>(
+    band: &mut Band,
+    rows: &SparseRows,
+    k: usize,
+    w: &[V<D>; D],
+) {
+    let (columns, factors) = rows.row(k);
+    for (i, (&ci, &ai)) in columns.iter().zip(factors).enumerate() {
+        for (&cj, &aj) in columns[..=i].iter().zip(factors) {
+            band.add_block(ci as usize, cj as usize, ai * aj, w);
+        }
+    }
+}
+
+fn identity<const D: usize>() -> [V<D>; D] {
+    std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))))
+}
+
+impl<'a, const D: usize> State<'a, D> {
+    pub fn new(p: &'a Problem, order: Order) -> Self {
+        let place = &order.place;
+        let mut reach = vec![0.0; order.unknowns];
+        for (&at, &r) in place.iter().zip(&p.reach) {
+            if at != NONE {
+                reach[at as usize] = r;
+            }
+        }
+        let condition = |c: &crate::optimum::problem::Condition| Linear {
+            entries: c
+                .entries
+                .iter()
+                .filter(|(i, _)| place[*i] != NONE)
+                .map(|(i, f)| (place[*i] as usize, cut(f)))
+                .collect(),
+            value: c.value,
+        };
+        Self {
+            p,
+            measure: p.measure.renumbered(place),
+            limit_rows: p.bounds.rows.renumbered(place),
+            offsets: p.offsets.iter().map(cut).collect(),
+            reach,
+            conditions: p.conditions.iter().map(condition).collect(),
+            x: vec![[0.0; D]; order.unknowns],
+            cones: Vec::new(),
+            nu: vec![0.0; p.conditions.len()],
+            active: None,
+            base: None,
+            order,
+        }
+    }
+
+    pub fn unknowns(&self) -> usize {
+        self.order.unknowns
+    }
+
+    /// The zero matrix of the unknowns; the measure's share is computed once where it is not huge.
+    pub fn band(&mut self) -> Result<Band, FairError> {
+        let mut band = Band::zero(self.unknowns() * D, D * (self.order.span + 1) - 1)?;
+        if self.p.norm == Norm::Square && band.size() <= KEPT {
+            self.add_measure(&mut band);
+            self.base = Some(band.clone());
+        }
+        Ok(band)
+    }
+
+    fn add_measure(&self, band: &mut Band) {
+        for k in 0..self.measure.len() {
+            add_block(band, &self.measure, k, &identity::<D>());
+        }
+    }
+
+    /// Makes the matrix P'P of a measure of squares, zero of one of lengths.
+    pub fn begin(&self, band: &mut Band) {
+        match &self.base {
+            Some(base) => band.copy(base),
+            None => {
+                band.clear();
+                if self.p.norm == Norm::Square {
+                    self.add_measure(band);
+                }
+            }
+        }
+    }
+
+    /// Row `k` of the measure at displacements `x`.
+    #[inline(always)]
+    pub fn error_at(&self, k: usize, x: &[V<D>]) -> V<D> {
+        let mut e = self.offsets[k];
+        axpy(&mut e, 1.0, apply(&self.measure, k, x));
+        e
+    }
+
+    #[inline(always)]
+    fn error(&self, k: usize) -> V<D> {
+        self.error_at(k, &self.x)
+    }
+
+    /// Coordinate groups of a limit.
+    pub fn groups(&self) -> usize {
+        if self.p.bounds.separate { D } else { 1 }
+    }
+
+    /// The number of cones of limits; cone c belongs to limit c / groups.
+    pub fn limits(&self) -> usize {
+        self.limit_rows.len() * self.groups()
+    }
+
+    /// The part of a limit's row that cone `c` is about.
+    #[inline(always)]
+    pub fn part(&self, c: usize, s: V<D>) -> V<D> {
+        if !self.p.bounds.separate {
+            return s;
+        }
+        let mut only = [0.0; D];
+        only[c % D] = s[c % D];
+        only
+    }
+
+    /// The rows of cone `c`.
+    #[inline(always)]
+    pub fn rows_of(&self, c: usize) -> (&SparseRows, usize) {
+        match c.checked_sub(self.limits()) {
+            None => (&self.limit_rows, if self.p.bounds.separate { c / D } else { c }),
+            Some(k) => (&self.measure, k),
+        }
+    }
+
+    fn assemble(&self, band: &mut Band) {
+        self.begin(band);
+        let limits = self.limits();
+        for (c, cone) in self.cones.iter().enumerate() {
+            let mut w = cone.stiffness(c >= limits);
+            if c < limits && self.p.bounds.separate {
+                let own = w[c % D][c % D];
+                w = [[0.0; D]; D];
+                w[c % D][c % D] = own;
+            }
+            let (rows, k) = self.rows_of(c);
+            add_block(band, rows, k, &w);
+        }
+    }
+
+    /// The Newton direction towards the centre `mu`, corrected for the second-order terms of
+    /// `before` when given, else towards complementarity itself. The dual residual is removed whole.
+    fn direction(
+        &self,
+        band: &Band,
+        dense: &Schur,
+        mu: f64,
+        before: Option<&Direction<D>>,
+        out: &mut Direction<D>,
+    ) {
+        let limits = self.limits();
+        out.x.fill([0.0; D]);
+        if self.p.norm == Norm::Square {
+            for k in 0..self.measure.len() {
+                spread(&self.measure, k, self.error(k).map(|c| -c), &mut out.x);
+            }
+        }
+        for (c, cone) in self.cones.iter().enumerate() {
+            let goal = cone.goal(before.map(|d| (mu, &d.u[c], &d.y[c])));
+            out.goals[c] = goal;
+            if before.is_none() && c < limits {
+                // The dual and its whole change cancel.
+                continue;
+            }
+            let mut force = cone.y.1;
+            axpy(&mut force, 1.0, cone.fixed(&goal, c >= limits));
+            let (rows, k) = self.rows_of(c);
+            spread(rows, k, force, &mut out.x);
+        }
+        band.solve(out.x.as_flattened_mut());
+        // Conditions by their Schur complement: x = x0 - Y nu, A x = b - A x_now.
+        out.nu = dense.solve(self, &self.x, out.x.as_flattened_mut());
+        for (c, cone) in self.cones.iter().enumerate() {
+            let (rows, k) = self.rows_of(c);
+            let length = c >= limits;
+            let mut de = apply(rows, k, &out.x);
+            if !length {
+                de = self.part(c, de);
+            }
+            let (du, dy) = cone.change(&out.goals[c], de, length);
+            out.u[c] = du;
+            out.y[c] = if length { dy } else { (dy.0, self.part(c, dy.1)) };
+        }
+    }
+
+    /// The longest step along `d` that keeps all cones, at most 2.
+    fn longest(&self, d: &Direction<D>) -> f64 {
+        let each = self.cones.iter().zip(&d.u).zip(&d.y);
+        each.fold(2.0, |step, ((cone, &du), &dy)| cone.longest(du, dy, step))
+    }
+
+    /// The sum of complementarities.
+    fn complementarity(&self) -> f64 {
+        self.cones.iter().map(|c| c.u.0 * c.y.0 + dot(c.u.1, c.y.1)).sum()
+    }
+
+    fn step(&mut self, d: &Direction<D>, by: f64) {
+        for (x, dx) in self.x.iter_mut().zip(&d.x) {
+            axpy(x, by, *dx);
+        }
+        let limits = self.limits();
+        for c in 0..self.cones.len() {
+            // Slacks are recomputed from x, so they never drift from it.
+            let inner = if c < limits {
+                let (rows, k) = self.rows_of(c);
+                self.part(c, apply(rows, k, &self.x))
+            } else {
+                self.error(c - limits)
+            };
+            let cone = &mut self.cones[c];
+            cone.u = (cone.u.0 + by * d.u[c].0, inner);
+            cone.y.0 += by * d.y[c].0;
+            axpy(&mut cone.y.1, by, d.y[c].1);
+        }
+        for (nu, new) in self.nu.iter_mut().zip(&d.nu) {
+            *nu += by * (new - *nu);
+        }
+    }
+
+    /// The measure and a rigorous bound on what is left to gain.
+    ///
+    /// With any z (|z| <= 1 for lengths, e for squares) and g = P^T z, every allowed y has
+    /// f(y) >= f(x) - sum(|e| - z . e) + g (y - x). For any forces m and nu,
+    /// g = -Q^T m - A^T nu + rest, so g (x - y) <= sum (r |m| - m . s) + |rest| (|x| + reach).
+    fn certificate(&self) -> (f64, f64) {
+        let p = self.p;
+        let limits = self.limits();
+        let mut slope = vec![[0.0; D]; self.x.len()];
+        let (mut value, mut gap) = (0.0, 0.0);
+        for k in 0..self.measure.len() {
+            let e = self.error(k);
+            let z = match p.norm {
+                Norm::Square => {
+                    value += 0.5 * dot(e, e);
+                    e
+                }
+                Norm::Length => {
+                    let z = self.cones[limits + k].y.1.map(|c| -c);
+                    let length = dot(e, e).sqrt();
+                    value += length;
+                    gap += length - dot(z, e);
+                    z
+                }
+            };
+            spread(&self.measure, k, z, &mut slope);
+        }
+        for (condition, nu) in self.conditions.iter().zip(&self.nu) {
+            for (i, factor) in &condition.entries {
+                axpy(&mut slope[*i], *nu, *factor);
+            }
+        }
+        let norm = |v: V<D>| {
+            if p.bounds.separate { v.iter().map(|c| c.abs()).sum() } else { dot(v, v).sqrt() }
+        };
+        for k in 0..self.limit_rows.len() {
+            let r = p.bounds.radii[k];
+            if p.bounds.direct {
+                // One limit per point: the force is eliminated, nothing is trusted.
+                let i = self.limit_rows.row(k).0[0] as usize;
+                let g = std::mem::replace(&mut slope[i], [0.0; D]);
+                gap += dot(g, self.x[i]) + r * norm(g);
+            } else {
+                let s = apply(&self.limit_rows, k, &self.x);
+                let mut force = [0.0; D];
+                for g in 0..self.groups() {
+                    axpy(&mut force, -1.0, self.cones[k * self.groups() + g].y.1);
+                }
+                gap += r * norm(force) - dot(force, s);
+                spread(&self.limit_rows, k, force, &mut slope);
+            }
+        }
+        for ((rest, x), reach) in slope.iter().zip(&self.x).zip(&self.reach) {
+            let rest = dot(*rest, *rest).sqrt();
+            gap += if rest == 0.0 { 0.0 } else { rest * (dot(*x, *x).sqrt() + reach) };
+        }
+        (value, gap.max(0.0))
+    }
+
+    /// By how much each condition is missed, relative to what the limits let it vary.
+    fn misses(&self) -> Vec<f64> {
+        let of = |c: &Linear<D>| {
+            let most = |(i, f): &(usize, V<D>)| dot(*f, *f).sqrt() * self.reach[*i].min(1e300);
+            let scale: f64 = c.entries.iter().map(most).sum();
+            let off = (met(c, &self.x) - c.value).abs();
+            if off == 0.0 { 0.0 } else { off / scale.max(f64::MIN_POSITIVE) }
+        };
+        self.conditions.iter().map(of).collect()
+    }
+
+    /// Centred starting duals of the size of the slopes.
+    fn start(&mut self) {
+        let mut slope = vec![[0.0; D]; self.x.len()];
+        let errors: Vec<V<D>> = (0..self.measure.len()).map(|k| self.error(k)).collect();
+        let mean =
+            errors.iter().map(|e| dot(*e, *e).sqrt()).sum::<f64>() / errors.len().max(1) as f64;
+        // Lengths change by about as much as points move: where all are zero, that is their size.
+        let radii = || self.p.bounds.radii.iter().filter(|r| r.is_finite());
+        let radius = radii().sum::<f64>() / radii().count().max(1) as f64;
+        let mu = mean.max(0.1 * radius).max(1e-200);
+        let mut lengths = Vec::new();
+        for (k, &e) in errors.iter().enumerate() {
+            let mut z = e;
+            if self.p.norm == Norm::Length {
+                let t = 0.5 * (mu + (mu * mu + 4.0 * dot(e, e)).sqrt());
+                z = e.map(|c| c / t);
+                lengths.push(Cone::new((t, e), (1.0, z.map(|c| -c))));
+            }
+            spread(&self.measure, k, z, &mut slope);
+        }
+        let total: f64 = slope.iter().map(|s| dot(*s, *s).sqrt()).sum();
+        let force = (total / slope.len().max(1) as f64).max(1e-200);
+        for &radius in &self.p.bounds.radii {
+            for _ in 0..self.groups() {
+                self.cones.push(Cone::new((radius, [0.0; D]), (force, [0.0; D])));
+            }
+        }
+        self.cones.extend(lengths);
+    }
+
+    /// By points.
+    fn solution(self, iterations: usize) -> Solution {
+        let (value, gap) = self.certificate();
+        let misses = self.misses();
+        let point = |&at: &u32| match at {
+            NONE => [0.0; 3],
+            at => widened(self.x[at as usize]),
+        };
+        let wide = |p: Pair<D>| (p.0, widened(p.1));
+        Solution {
+            x: self.order.place.iter().map(point).collect(),
+            value,
+            gap,
+            iterations,
+            misses,
+            cones: self.cones.iter().map(|c| (wide(c.u), wide(c.y))).collect(),
+            nu: self.nu,
+            active: self.active,
+        }
+    }
+
+    /// See [`crate::optimum::problem::respond`].
+    pub fn respond<T: Real>(
+        mut self,
+        solution: &Solution,
+        offsets: &[[T; 3]],
+        radii: &[T],
+        values: &[T],
+        pushes: &[[T; 3]],
+    ) -> Result<Vec<[T; 3]>, FairError> {
+        let zero = [T::zero(); D];
+        let count = self.order.place.len();
+        if self.unknowns() == 0 {
+            return Ok(vec![[T::zero(); 3]; count]);
+        }
+        for (x, &at) in solution.x.iter().zip(&self.order.place) {
+            if at != NONE {
+                self.x[at as usize] = cut(x);
+            }
+        }
+        let narrow = |p: Pair<3>| (p.0, cut(&p.1));
+        let cones = solution.cones.iter().map(|&(u, y)| Cone::new(narrow(u), narrow(y)));
+        let centred = solution.active.is_none();
+        self.cones = cones.map(|c| if centred { c.centred() } else { c }).collect();
+        let mut band = self.band()?;
+        let mut right = vec![zero; self.unknowns()];
+        for (push, &at) in pushes.iter().zip(&self.order.place) {
+            if at != NONE {
+                right[at as usize] = std::array::from_fn(|r| -push[r]);
+            }
+        }
+        let mut push = |rows: &SparseRows, k: usize, force: [T; D]| {
+            let (columns, factors) = rows.row(k);
+            for (&c, &a) in columns.iter().zip(factors) {
+                for r in 0..D {
+                    right[c as usize][r] -= force[r] * a;
+                }
+            }
+        };
+        let limits = self.limits();
+        for (k, change) in offsets.iter().enumerate() {
+            let change: [T; D] = cut(change);
+            let force = match self.p.norm {
+                Norm::Square => change,
+                Norm::Length => {
+                    let w = self.cones[limits + k].stiffness(true);
+                    let row = |r: usize| (0..D).fold(T::zero(), |s, c| s + change[c] * w[r][c]);
+                    std::array::from_fn(row)
+                }
+            };
+            push(&self.measure, k, force);
+        }
+        let flat = if let Some(active) = &solution.active {
+            self.answer(&mut band, active, &right, radii, values)
+        } else {
+            for c in 0..limits {
+                let (rows, k) = self.rows_of(c);
+                let side = self.part(c, self.cones[c].side());
+                push(rows, k, side.map(|s| radii[k] * s));
+            }
+            self.assemble(&mut band);
+            band.factor();
+            band.solve_any(right.as_flattened_mut());
+            if !self.conditions.is_empty() {
+                Schur::new(&self, &band).answer(values, right.as_flattened_mut());
+            }
+            right
+        };
+        let pick = |&at: &u32| {
+            let mut v = [T::zero(); 3];
+            if at != NONE {
+                v[..D].copy_from_slice(&flat[at as usize]);
+            }
+            v
+        };
+        Ok(self.order.place.iter().map(pick).collect())
+    }
+}
+
+/// The left side of a condition.
+fn met<const D: usize>(condition: &Linear<D>, x: &[V<D>]) -> f64 {
+    condition.entries.iter().map(|(i, factor)| dot(*factor, x[*i])).sum()
+}
+
+/// The dense system of the conditions' multipliers.
+pub(crate) struct Schur {
+    /// Solutions of the band matrix for each condition.
+    columns: Vec<Vec<f64>>,
+    /// Conditions over the unknowns.
+    rows: Vec<Vec<f64>>,
+    matrix: Vec<f64>,
+}
+
+impl Schur {
+    pub fn new<const D: usize>(state: &State<D>, band: &Band) -> Self {
+        let row = |c: &Linear<D>| {
+            let mut by_point = vec![[0.0; D]; state.x.len()];
+            for (i, factor) in &c.entries {
+                axpy(&mut by_point[*i], 1.0, *factor);
+            }
+            by_point.as_flattened().to_vec()
+        };
+        let rows: Vec<Vec<f64>> = state.conditions.iter().map(row).collect();
+        let columns: Vec<Vec<f64>> = rows
+            .iter()
+            .map(|row| {
+                let mut y = row.clone();
+                band.solve(&mut y);
+                y
+            })
+            .collect();
+        let m = rows.len();
+        let mut matrix = vec![0.0; m * m];
+        for i in 0..m {
+            for j in 0..m {
+                matrix[i * m + j] = rows[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum();
+            }
+        }
+        // Conditions that repeat each other leave a singular matrix: a trace of weight decides.
+        for i in 0..m {
+            matrix[i * m + i] *= 1.0 + 1e-13;
+        }
+        Self { columns, rows, matrix }
+    }
+
+    /// Turns the unconstrained direction into one that meets the conditions; returns their
+    /// multipliers.
+    pub fn solve<const D: usize>(&self, state: &State<D>, now: &[V<D>], x: &mut [f64]) -> Vec<f64> {
+        let m = self.rows.len();
+        if m == 0 {
+            return Vec::new();
+        }
+        let mut nu: Vec<f64> = (0..m)
+            .map(|k| {
+                let here: f64 = self.rows[k].iter().zip(&*x).map(|(a, b)| a * b).sum();
+                here - (state.conditions[k].value - met(&state.conditions[k], now))
+            })
+            .collect();
+        let mut matrix = self.matrix.clone();
+        if moldloft_num::solve_dense(&mut matrix, &mut nu).is_err() {
+            return vec![0.0; m];
+        }
+        for (column, nu) in self.columns.iter().zip(&nu) {
+            for (x, y) in x.iter_mut().zip(column) {
+                *x -= nu * y;
+            }
+        }
+        nu
+    }
+
+    /// The same for a direction of numbers of any kind, whose conditions should come to `wanted`.
+    pub fn answer<T: Real>(&self, wanted: &[T], x: &mut [T]) -> Vec<T> {
+        let short = |(row, &wanted): (&Vec<f64>, &T)| {
+            row.iter().zip(&*x).fold(T::zero(), |s, (a, b)| s + *b * *a) - wanted
+        };
+        let mut nu: Vec<T> = self.rows.iter().zip(wanted).map(short).collect();
+        let mut matrix: Vec<T> = self.matrix.iter().map(|&a| T::from(a)).collect();
+        if moldloft_num::solve_dense(&mut matrix, &mut nu).is_err() {
+            return vec![T::zero(); nu.len()];
+        }
+        for (column, nu) in self.columns.iter().zip(&nu) {
+            for (x, y) in x.iter_mut().zip(column) {
+                *x -= *nu * *y;
+            }
+        }
+        nu
+    }
+}
+
+/// See [`crate::optimum::problem::solve`].
+pub(crate) fn solve<const D: usize>(
+    mut state: State<D>,
+    accuracy: f64,
+    floor: f64,
+    margin: f64,
+) -> Result<Solution, FairError> {
+    state.start();
+    let mut iterations = 0;
+    if state.unknowns() == 0 {
+        return Ok(state.solution(iterations));
+    }
+    let mut band = state.band()?;
+    let mut best: Option<(f64, Vec<V<D>>, Vec<Cone<D>>, Vec<f64>)> = None;
+    let mut affine = Direction::zero(state.unknowns(), state.cones.len());
+    let mut corrected = Direction::zero(state.unknowns(), state.cones.len());
+    let mut idle = 0;
+    let mut shows = SHOWS;
+    while iterations < MOST_ITERATIONS {
+        iterations += 1;
+        state.cones.iter_mut().for_each(Cone::scale);
+        state.assemble(&mut band);
+        band.factor();
+        let dense = Schur::new(&state, &band);
+        state.direction(&band, &dense, 0.0, None, &mut affine);
+        if state.cones.is_empty() {
+            // Nothing is limited: one step solves a sum of squares.
+            state.step(&affine, 1.0);
+            break;
+        }
+        let mu = state.complementarity() / state.cones.len() as f64;
+        let reach = state.longest(&affine).min(1.0);
+        let centring = (1.0 - reach).powi(3);
+        state.direction(&band, &dense, centring * mu, Some(&affine), &mut corrected);
+        let longest = state.longest(&corrected);
+        if !corrected.is_finite() {
+            // The matrix has no digits left: what was reached before stands.
+            break;
+        }
+        state.step(&corrected, (longest * 0.99).min(1.0));
+        let missed = state.misses().into_iter().fold(0.0, f64::max);
+        let (value, gap) = state.certificate();
+        if !(value.is_finite() && gap.is_finite()) {
+            break;
+        }
+        let meets = missed <= 1e-9;
+        if meets && best.as_ref().is_none_or(|b| gap < b.0) {
+            // Better by a hair is no better.
+            idle = if best.as_ref().is_some_and(|b| gap > 0.99 * b.0) { idle + 1 } else { 0 };
+            best = Some((gap, state.x.clone(), state.cones.clone(), state.nu.clone()));
+        } else {
+            idle += 1;
+        }
+        let rounded = state.complementarity() <= ROUNDING * gap;
+        let most = if best.is_some() { MOST_IDLE } else { MOST_TRIALS };
+        if meets && gap <= (accuracy * value).max(floor) || idle > most {
+            break;
+        }
+        if state.p.norm == Norm::Square && meets && gap <= shows * value {
+            let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
+            if state.polish(&mut band, margin) {
+                let (value, after) = state.certificate();
+                // The margin is part of the gap: forces times what is not used of the limits.
+                let unused: f64 =
+                    state.active.iter().flat_map(|a| &a.forces).map(|f| f * margin).sum();
+                let missed = state.misses().into_iter().fold(0.0, f64::max);
+                if missed <= 1e-9 && after <= (accuracy * value).max(floor) + 4.0 * unused {
+                    best = None;
+                    break;
+                }
+                state.active = None;
+            }
+            (state.x, state.cones, state.nu) = kept;
+            shows *= 1e-2;
+        }
+        if meets && rounded {
+            break;
+        }
+    }
+    if let Some((gap, x, cones, nu)) = best {
+        (state.x, state.cones, state.nu) = (x, cones, nu);
+        if state.p.norm == Norm::Square && state.unknowns() <= POLISHED {
+            // Where rounding ends the search early, the limits that are reached may show all the same.
+            let kept = (state.x.clone(), state.cones.clone(), state.nu.clone());
+            let better = state.polish(&mut band, margin) && {
+                let missed = state.misses().into_iter().fold(0.0, f64::max);
+                missed <= 1e-9 && state.certificate().1 <= gap
+            };
+            if !better {
+                (state.x, state.cones, state.nu) = kept;
+                state.active = None;
+            }
+        }
+    }
+    Ok(state.solution(iterations))
+}

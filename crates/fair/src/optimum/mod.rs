@@ -1,0 +1,445 @@
+//! The fairest curve within the limits, with a proof.
+
+mod band;
+pub(crate) mod certificate;
+mod interior_point;
+mod polish;
+pub(crate) mod problem;
+mod second_order_cone;
+
+use crate::curve::condition::{AXES, across};
+use crate::curve::job::End;
+use crate::{Certificate, Condition, FairError, Job, Limit, Measure, Motion, Norm, SparseRows};
+use moldloft_num::{Order, Real, Vec3};
+use problem::{Bounds, Problem, V};
+
+/// What the tolerance is a bound on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// Each control point stays near its original place.
+    ControlPoints,
+    /// Each Bézier point of the displacement stays small, which bounds the displacement of the
+    /// curve everywhere and leaves the control points more room.
+    Bezier,
+}
+
+/// How to look for the optimum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OptimumOptions {
+    /// What there is to be little of.
+    pub measure: Measure,
+    /// What the tolerance bounds.
+    pub bound: Bound,
+    /// Conditions besides the ends.
+    pub conditions: Vec<Condition>,
+    /// The certified gap to reach, as a share of the measure.
+    pub accuracy: f64,
+}
+
+impl OptimumOptions {
+    /// The fairest curve by a measure under balls round the control points, to a relative gap
+    /// of 1e-9.
+    pub fn of(measure: Measure) -> Self {
+        Self { measure, bound: Bound::ControlPoints, conditions: Vec::new(), accuracy: 1e-9 }
+    }
+}
+
+/// The fairest curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Optimum {
+    /// The control points; those that must not move have their original bits.
+    pub points: Vec<Vec3<f64>>,
+    /// The measure and the proven bound on what is left to gain.
+    pub certificate: Certificate,
+    /// Newton steps taken.
+    pub iterations: usize,
+    /// How many limits are reached: their multiplier outweighs their slack.
+    pub active: usize,
+}
+
+/// The frame that points move in: the directions that matter.
+pub(crate) struct Frame {
+    pub axes: Vec<Vec3<f64>>,
+    pub separate: bool,
+}
+
+impl Frame {
+    /// The frame of a motion; coordinates in which nothing varies are left out.
+    pub fn of(motion: Motion, points: &[Vec3<f64>], conditions: &[Condition]) -> Self {
+        let axes: Vec<Vec3<f64>> = match motion {
+            Motion::Along(d) => vec![d],
+            Motion::Across(d) => {
+                let (a, b) = across(d);
+                vec![a, b]
+            }
+            Motion::Ball | Motion::Box => AXES.to_vec(),
+        };
+        let varies = |a: &Vec3<f64>| {
+            points.iter().any(|p| p.dot(*a) != points[0].dot(*a))
+                || conditions.iter().any(|c| c.entries.iter().any(|(_, f)| f.dot(*a) != 0.0))
+        };
+        Self { axes: axes.into_iter().filter(varies).collect(), separate: motion == Motion::Box }
+    }
+
+    pub fn down(&self, v: Vec3<f64>) -> V {
+        let mut out = [0.0; 3];
+        for (o, a) in out.iter_mut().zip(&self.axes) {
+            *o = v.dot(*a);
+        }
+        out
+    }
+
+    pub fn up(&self, v: V) -> Vec3<f64> {
+        self.axes.iter().zip(v).fold(Vec3::zero(), |s, (a, c)| s + *a * c)
+    }
+}
+
+/// The fairest curve within the limits of a job.
+///
+/// The result is a continuous function of the input, and the same bits whatever was computed
+/// before. The certificate does not trust the solver: any curve within the limits, met conditions
+/// included, measures at least `value - gap`.
+///
+/// # Errors
+/// [`FairError::Contradiction`] when the conditions cannot hold within the limits; others as for
+/// [`Job::check`].
+///
+/// # Example
+/// ```
+/// use moldloft_fair::{Job, Measure, OptimumOptions, optimum};
+/// use moldloft_num::Vec3;
+/// let bent = |i: i32| Vec3::of(f64::from(i), if i == 5 { 0.01 } else { 0.0 }, 0.0);
+/// let job = Job::of_points(3, (0..11).map(bent).collect(), false, 0.02).unwrap();
+/// let faired = optimum(&job, &OptimumOptions::of(Measure::Second)).unwrap();
+/// assert!(faired.points[5].y.abs() < 1e-6);
+/// ```
+pub fn optimum(job: &Job, options: &OptimumOptions) -> Result<Optimum, FairError> {
+    Parts::of(job, options)?.solve()
+}
+
+/// The same for numbers that carry derivatives: `points` and `tolerances` (per control point) have
+/// the real parts of the job, whose weights are constant, `targets` those of the values of the options' conditions (empty when these are constant). Derivatives follow from the
+/// conditions of optimality by the implicit function theorem; real parts are the bits of
+/// [`optimum`]. Factors of conditions are taken as constant.
+///
+/// # Errors
+/// As [`optimum`].
+pub fn optimum_with<T: Real>(
+    job: &Job,
+    options: &OptimumOptions,
+    points: &[Vec3<T>],
+    tolerances: &[T],
+    targets: &[T],
+) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+    Parts::of(job, options)?.solve_with(points, tolerances, targets)
+}
+
+/// The number of a condition, and by how much its factors change, point by point.
+pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
+
+/// What curves, nets and networks have in common.
+pub(crate) struct Parts<'a> {
+    pub points: &'a [Vec3<f64>],
+    /// The points as the measure sees them.
+    pub relative: Vec<Vec3<f64>>,
+    pub limit: &'a Limit,
+    pub measure: SparseRows,
+    pub norm: Norm,
+    pub frozen: Vec<bool>,
+    pub conditions: Vec<Condition>,
+    /// Whether the measure sees points from their mean, as of rational splines.
+    pub centred: bool,
+    /// How many of the conditions are not the caller's.
+    pub own: usize,
+    /// Bézier points of the displacement, and how far control points can move under them.
+    pub bezier: Option<(SparseRows, Vec<f64>)>,
+    pub accuracy: f64,
+}
+
+impl<'a> Parts<'a> {
+    /// The parts of a curve.
+    pub fn of(job: &'a Job, options: &OptimumOptions) -> Result<Self, FairError> {
+        job.check()?;
+        let (frozen, mut conditions) = kept(job);
+        let own = conditions.len();
+        conditions.extend(options.conditions.iter().cloned());
+        let weights = job.weights.as_deref();
+        Ok(Parts {
+            points: &job.points,
+            relative: job.relative(&job.points),
+            centred: job.weights.is_some(),
+            limit: &job.limit,
+            measure: job.measure_rows(options.measure)?,
+            norm: options.measure.norm(),
+            frozen,
+            conditions,
+            own,
+            bezier: match options.bound {
+                Bound::ControlPoints => None,
+                Bound::Bezier => Some((job.space.bezier(weights), job.space.reach(weights))),
+            },
+            accuracy: options.accuracy,
+        })
+    }
+
+    /// The optimum.
+    pub fn solve(&self) -> Result<Optimum, FairError> {
+        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let problem = self.problem(&frame);
+        Ok(self.solved(&frame, &problem)?.0)
+    }
+
+    /// The optimum with the numbers or their derivatives of `points`, `tolerances` (per control
+    /// point) and `targets` (per condition of the caller's; empty when constant), whose real parts are those of the job. The real parts of the result are the bits of
+    /// [`Parts::solve`].
+    pub fn solve_with<T: Real>(
+        &self,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+        targets: &[T],
+    ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+        self.solve_bent(points, tolerances, targets, &[])
+    }
+
+    /// The same where factors of conditions follow the points, too: `bends` are what they change by, for
+    /// conditions of the caller's, with zero real parts.
+    pub fn solve_bent<T: Real>(
+        &self,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+        targets: &[T],
+        bends: &[Bend<T>],
+    ) -> Result<(Vec<Vec3<T>>, Optimum), FairError> {
+        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let problem = self.problem(&frame);
+        let (optimum, solution) = self.solved(&frame, &problem)?;
+        let constant = |p: &Vec3<T>| p.to_array().iter().all(|c| c.is_constant());
+        let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
+        let still = points.iter().all(constant) && fixed(tolerances) && fixed(targets);
+        if still {
+            let lifted = optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
+            return Ok((lifted, optimum));
+        }
+        let change = |p: &Vec3<T>| *p - Vec3::lifted(p.re());
+        let changes: Vec<Vec3<T>> = points.iter().map(change).collect();
+        let middle = if self.centred {
+            let sum = changes.iter().fold(Vec3::zero(), |s: Vec3<T>, c| s + *c);
+            sum / T::from(points.len() as f64)
+        } else {
+            Vec3::zero()
+        };
+        let rows = &problem.measure;
+        let down = |v: Vec3<T>| {
+            let mut out = [T::zero(); 3];
+            for (o, a) in out.iter_mut().zip(&frame.axes) {
+                *o = v.x * a.x + v.y * a.y + v.z * a.z;
+            }
+            out
+        };
+        let offsets: Vec<_> = (0..rows.len())
+            .map(|k| {
+                let (columns, factors) = rows.row(k);
+                let entries = columns.iter().zip(factors);
+                down(entries.fold(Vec3::zero(), |s, (&c, &f)| {
+                    s + (changes[c as usize] - middle).map(|x| x * f)
+                }))
+            })
+            .collect();
+        let limits = &problem.bounds.rows;
+        let radii: Vec<T> = (0..limits.len())
+            .map(|k| {
+                // The tolerance that set this limit's radius: the first of the smallest.
+                let near = limits.row(k).0.iter().map(|&c| c as usize);
+                let set = near
+                    .filter(|&c| self.limit.radii[c] > 0.0)
+                    .reduce(|a, b| if self.limit.radii[b] < self.limit.radii[a] { b } else { a });
+                set.map_or(T::zero(), |c| tolerances[c] - T::from(tolerances[c].re()))
+            })
+            .collect();
+        // What is kept moves with the points; what is aimed at does not.
+        let value = |(k, condition): (usize, &Condition)| {
+            if k < self.own {
+                return T::zero();
+            }
+            let target = targets.get(k - self.own);
+            let aim = target.map_or(T::zero(), |&t| t - T::from(t.re()));
+            condition.entries.iter().fold(aim, |aim, (i, f)| {
+                let c = changes[*i];
+                aim - (c.x * f.x + c.y * f.y + c.z * f.z)
+            })
+        };
+        let mut values: Vec<T> = self.conditions.iter().enumerate().map(value).collect();
+        // d(A x) = 0 and d(slope + nu A) = 0: both have a share of dA.
+        let mut pushes = vec![[T::zero(); 3]; if bends.is_empty() { 0 } else { points.len() }];
+        for (k, entries) in bends {
+            let k = k + self.own;
+            for (i, f) in entries {
+                let p = optimum.points[*i];
+                values[k] -= f.x * p.x + f.y * p.y + f.z * p.z;
+                for (push, x) in pushes[*i].iter_mut().zip(down(*f)) {
+                    *push += x * solution.nu[k];
+                }
+            }
+        }
+        let answers = problem::respond(&problem, &solution, &offsets, &radii, &values, &pushes)?;
+        let faired = (0..points.len()).map(|i| {
+            let mut p = Vec3::lifted(optimum.points[i]) + changes[i];
+            for (a, x) in frame.axes.iter().zip(answers[i]) {
+                p += Vec3::new(x * a.x, x * a.y, x * a.z);
+            }
+            // The answer's real part is zero; adding it must not touch a bit.
+            p - Vec3::lifted(p.re() - optimum.points[i])
+        });
+        Ok((faired.collect(), optimum))
+    }
+
+    fn solved(
+        &self,
+        frame: &Frame,
+        problem: &Problem,
+    ) -> Result<(Optimum, problem::Solution), FairError> {
+        // Gaps below the rounding of the measure are no gaps.
+        let size = self.relative.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let noise = 4.0 * f64::EPSILON * size;
+        let rows = problem.measure.len() as f64;
+        let floor = match self.norm {
+            Norm::Square => noise * noise * rows,
+            Norm::Length => noise * rows,
+        };
+        // Positions round by half a unit in the last place of the largest coordinate, moves too.
+        let margin = 4.0 * f64::EPSILON * self.points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let solution = problem::solve(problem, self.accuracy, floor, margin)?;
+        let points = self.moved(frame, &solution.x);
+        let count = self.conditions.len();
+        // What is no number is missed.
+        let met = |k: usize| solution.misses[k] <= 1e-7;
+        let missed: Vec<usize> = (0..count).filter(|&k| !met(k)).collect();
+        if !missed.is_empty() {
+            let off = |k: &usize| {
+                let condition = &self.conditions[*k];
+                (condition.at(&points) - condition.value).abs()
+            };
+            let miss = missed.iter().map(off).fold(0.0, f64::max);
+            let ends = missed.iter().any(|&k| k < self.own);
+            let conditions = missed.into_iter().filter_map(|k| k.checked_sub(self.own)).collect();
+            return Err(FairError::Contradiction { conditions, ends, miss });
+        }
+        // Squares are solved as halves.
+        let unit = if self.norm == Norm::Square { 2.0 } else { 1.0 };
+        let certificate = Certificate { value: unit * solution.value, gap: unit * solution.gap };
+        let active = active(problem, &solution);
+        let iterations = solution.iterations;
+        Ok((Optimum { points, certificate, iterations, active }, solution))
+    }
+
+    fn moved(&self, frame: &Frame, x: &[V]) -> Vec<Vec3<f64>> {
+        let zero = |v: &V| v.iter().all(|&c| c == 0.0);
+        let place = |(&p, v): (&Vec3<f64>, &V)| if zero(v) { p } else { p + frame.up(*v) };
+        self.points.iter().zip(x).map(place).collect()
+    }
+
+    /// The problem in the frame of its motion.
+    pub fn problem(&self, frame: &Frame) -> Problem {
+        let (n, radii, frozen) = (self.points.len(), &self.limit.radii, &self.frozen);
+        let rows = &self.measure;
+        let offsets = (0..rows.len()).map(|k| frame.down(rows.apply(k, &self.relative))).collect();
+        let corner = if frame.separate { (frame.axes.len() as f64).sqrt() } else { 1.0 };
+        let mut reach: Vec<f64> = radii.iter().map(|r| r * corner).collect();
+        let mut bounds = Bounds {
+            rows: SparseRows::new(),
+            direct: self.bezier.is_none(),
+            radii: Vec::new(),
+            separate: frame.separate,
+        };
+        match &self.bezier {
+            None => {
+                for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
+                    bounds.rows.push([(i, 1.0)]);
+                    bounds.radii.push(radii[i]);
+                }
+            }
+            Some((all, most)) => {
+                for k in 0..all.len() {
+                    let (columns, factors) = all.row(k);
+                    let columns = || columns.iter().map(|&c| c as usize);
+                    let near = columns().map(|c| radii[c]).filter(|&r| r > 0.0);
+                    let radius = near.fold(f64::INFINITY, f64::min);
+                    if radius.is_finite() && columns().any(|c| !frozen[c]) {
+                        bounds.rows.push(columns().zip(factors.iter().copied()));
+                        bounds.radii.push(radius);
+                    }
+                }
+                let largest = radii.iter().copied().fold(0.0, f64::max);
+                reach = most.iter().map(|r| r * largest * corner).collect();
+            }
+        }
+        let conditions = self
+            .conditions
+            .iter()
+            .map(|c| {
+                let free = c.entries.iter().filter(|(i, _)| !frozen[*i]);
+                problem::Condition {
+                    entries: free.map(|(i, f)| (*i, frame.down(*f))).collect(),
+                    value: c.value - c.at(self.points),
+                }
+            })
+            .collect();
+        Problem {
+            dimension: frame.axes.len(),
+            measure: self.measure.clone(),
+            norm: self.norm,
+            offsets,
+            bounds,
+            frozen: self.frozen.clone(),
+            conditions,
+            reach,
+        }
+    }
+}
+
+/// The limits that are reached.
+fn active(p: &Problem, s: &problem::Solution) -> usize {
+    let groups = if p.bounds.separate { p.dimension } else { 1 };
+    let mut count = 0;
+    for k in 0..p.bounds.rows.len() {
+        let (columns, factors) = p.bounds.rows.row(k);
+        let mut sum = [0.0; 3];
+        for (&c, &a) in columns.iter().zip(factors) {
+            for (q, x) in sum.iter_mut().zip(s.x[c as usize]) {
+                *q += a * x;
+            }
+        }
+        let r = p.bounds.radii[k];
+        for g in 0..groups {
+            let length = if p.bounds.separate {
+                sum[g].abs()
+            } else {
+                sum.map(|q| q * q).iter().sum::<f64>().sqrt()
+            };
+            count += usize::from(length > r * (1.0 - 1e-4));
+        }
+    }
+    count
+}
+
+/// Frozen points, and the conditions that keep the ends of a spline that is not clamped.
+pub(crate) fn kept(job: &Job) -> (Vec<bool>, Vec<Condition>) {
+    let mut conditions = Vec::new();
+    let mut freer = job.clone();
+    if !job.space.is_closed() && !job.space.is_clamped() {
+        let (start, end) = job.space.domain();
+        for (at, t) in [start, end].into_iter().enumerate() {
+            for order in
+                [Order::Zero, Order::First, Order::Second].into_iter().take(job.ends[at].kept())
+            {
+                let mut three = Condition::derivative(&job.space, t, order, Vec3::zero());
+                for c in &mut three {
+                    c.value = c.at(&job.points);
+                }
+                conditions.extend(three);
+                freer.ends[at] = End::Free;
+            }
+        }
+    }
+    (freer.frozen(), conditions)
+}

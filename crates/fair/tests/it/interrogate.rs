@@ -1,0 +1,169 @@
+//! Interrogation against closed forms.
+
+use crate::fixtures::*;
+use moldloft_fair::*;
+use moldloft_num::{Jet, SurfaceFormula, Vec3};
+
+/// A circle of radius 2 as a rational quadratic: curvature 1/2, no torsion.
+#[test]
+fn a_rational_circle_has_constant_curvature() {
+    let knots = vec![0., 0., 0., 1., 1., 2., 2., 3., 3., 4., 4., 4.];
+    let space = Space::open(moldloft_spline::KnotVector::new(2, knots).unwrap()).unwrap();
+    let corner = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)];
+    let points: Vec<_> =
+        corner.map(|(x, y)| Vec3::of(2.0 * f64::from(x), 2.0 * f64::from(y), 1.0)).to_vec();
+    let weights: Vec<_> = (0..9).map(|i| if i % 2 == 0 { 1.0 } else { 0.5f64.sqrt() }).collect();
+    let samples = shape::samples(&space, &points, Some(&weights), 12);
+    let normal = shape::plane_normal(&samples).unwrap();
+    for s in &samples {
+        assert!((s.signed_curvature(normal) - 0.5).abs() < 1e-13);
+        assert!(s.torsion().abs() < 1e-12 && s.curvature_slope(normal).abs() < 1e-12);
+    }
+    assert_eq!(shape::monotone_runs(&shape::curvatures(&samples), 1e-3), 0);
+    near(
+        "length",
+        shape::arc_length(&space, &points, Some(&weights)),
+        4.0 * std::f64::consts::PI,
+        1e-9,
+    );
+    for p in shape::comb(&samples, 1.0) {
+        assert!(((p - Vec3::of(0.0, 0.0, 1.0)).norm() - 2.5).abs() < 1e-12);
+    }
+}
+
+/// x = t, y = t^2, z = t^3 at 0: curvature 2, torsion 3; the plane parabola's curvature slope.
+#[test]
+fn the_twisted_cubic_has_its_torsion() {
+    let knots = [-3., -2., -1., 0., 1., 2., 3., 4.];
+    let space = Space::open(
+        moldloft_spline::KnotVector::new(3, [knots.as_slice(), &[5.]].concat()).unwrap(),
+    )
+    .unwrap();
+    let polar = |i: usize, power: usize| {
+        let k: Vec<f64> = (1..4).map(|j| i as f64 - 3.0 + j as f64).collect();
+        match power {
+            1 => (k[0] + k[1] + k[2]) / 3.0,
+            2 => (k[0] * k[1] + k[0] * k[2] + k[1] * k[2]) / 3.0,
+            _ => k[0] * k[1] * k[2],
+        }
+    };
+    let points: Vec<Vec3<f64>> =
+        (0..5).map(|i| Vec3::of(polar(i, 1), polar(i, 2), polar(i, 3))).collect();
+    let s = shape::sample_at(&space, &points, None, 0.0);
+    near("curvature", s.curvature(), 2.0, 1e-13);
+    near("torsion", s.torsion(), 3.0, 1e-13);
+    let flat: Vec<Vec3<f64>> = points.iter().map(|p| Vec3::of(p.x, p.y, 0.0)).collect();
+    let t = 0.7;
+    let s = shape::sample_at(&space, &flat, None, t);
+    // k = 2 (1 + 4 t^2)^(-3/2), dk/ds = -24 t (1 + 4 t^2)^(-3).
+    near(
+        "slope",
+        s.curvature_slope(Vec3::of(0.0, 0.0, 1.0)),
+        -24.0 * t * (1.0f64 + 4.0 * t * t).powi(-3),
+        1e-12,
+    );
+}
+
+/// Runs are counted with hysteresis, inflections where the curve turns over, cusps of the
+/// orthotomic stand there.
+#[test]
+fn counts_and_graphs() {
+    assert_eq!(shape::monotone_runs(&[0.0, 1.0, 0.5, 2.0, 1.0], 1e-3), 4);
+    assert_eq!(shape::monotone_runs(&[0.0, 1.0, 0.9999, 2.0, 1.0], 1e-3), 2);
+    assert_eq!(shape::monotone_runs(&[1.0; 4], 1e-3), 0);
+    let wave: Vec<Vec3<f64>> =
+        (0..60).map(|i| f64::from(i) * 0.21).map(|x| Vec3::of(x, x.sin(), 0.0)).collect();
+    let space = Space::floating(3, 60).unwrap();
+    let samples = shape::samples(&space, &wave, None, 16);
+    assert_eq!(shape::inflections(&samples), 3);
+    // A logarithmic spiral has a straight graph of slope 1.
+    let spiral: Vec<Vec3<f64>> = (0..200)
+        .map(|i| f64::from(i) * 0.03)
+        .map(|a| Vec3::of((0.3 * a).exp() * a.cos(), (0.3 * a).exp() * a.sin(), 0.0))
+        .collect();
+    let fit = interpolate(5, &spiral, Spacing::Uniform, false).unwrap();
+    let samples = shape::samples(&fit.space, &fit.points, None, 4);
+    let graph = shape::logarithmic_graph(&samples[80..samples.len() - 80]);
+    let (first, last) = (graph[0], graph[graph.len() - 1]);
+    near("alpha", (last.rate - first.rate) / (last.radius - first.radius), 1.0, 1e-3);
+    let parabola: Vec<Vec3<f64>> =
+        [0.0, 0.1, 0.4, 1.0].iter().map(|&t| Vec3::of(t, 3.0 * t * t, 0.0)).collect();
+    let d = shape::divided_differences(&parabola, &[0.0, 0.1, 0.4, 1.0]).unwrap();
+    assert!(d.iter().all(|d| (d.y - 3.0).abs() < 1e-12 && d.x.abs() < 1e-12));
+    let unsorted = shape::divided_differences(&parabola, &[0.0, 0.1, 0.1, 1.0]);
+    assert_eq!(unsorted, Err(FairError::Unsorted { index: 2 }));
+}
+
+struct Torus;
+
+impl SurfaceFormula for Torus {
+    type Scalar = f64;
+    fn at<J: Jet<f64>>(&self, u: J, v: J) -> Vec3<J> {
+        let r = v.cos() + 3.0;
+        Vec3::new(r * u.cos(), r * u.sin(), v.sin())
+    }
+}
+
+#[test]
+fn a_torus_has_its_curvatures() {
+    for v in [0.0f64, 0.7, 2.0, 4.0] {
+        let look = surface::look(&Torus, 0.4, v).unwrap();
+        let c = look.curvatures;
+        let (a, b) = (1.0, v.cos() / (3.0 + v.cos()));
+        assert!((c.gaussian - a * b).abs() < 1e-13);
+        assert!((c.mean.abs() - 0.5 * (a + b)).abs() < 1e-13);
+        assert!((c.absolute() - a - b.abs()).abs() < 1e-12);
+        // The light line through the point along the normal meets it everywhere on the normal.
+        assert!(
+            surface::highlight(&look, look.point + look.normal * 2.0, Vec3::of(0.3, 0.2, 1.0))
+                .abs()
+                < 1e-13
+        );
+        let view = look.normal;
+        assert!(
+            surface::reflection(&look, view, look.point + look.normal, Vec3::of(1.0, 2.0, 3.0))
+                .abs()
+                < 1e-12
+        );
+        assert!((surface::isophote(&look, look.normal) - 1.0).abs() < 1e-14);
+        let p = Vec3::of(0.1, 0.2, 0.3);
+        let q = surface::orthotomic(&look, p, 1.0);
+        assert!((q - p).cross(look.normal).norm() < 1e-12);
+        assert_eq!(surface::zebra(&look, view, Vec3::of(0.0, 0.0, 1.0), 5.0).abs(), 1.0);
+    }
+}
+
+#[test]
+fn the_metric_of_a_sheared_grid() {
+    let (m, n) = (5, 4);
+    let grid: Vec<_> = (0..m * n)
+        .map(|k| ((k / n) as f64, (k % n) as f64))
+        .map(|(i, j)| Vec3::of(2.0 * i + 0.5 * j, 0.25 * j, 0.0))
+        .collect();
+    let metric = surface::eta_y(&grid, m, n).unwrap();
+    assert!(metric.iter().all(|x| (x - 4.0).abs() < 1e-12));
+    assert!(surface::eta_y(&grid, 4, 4).is_err() && surface::eta_y(&grid[..4], 1, 4).is_err());
+}
+
+#[test]
+fn the_report_tells_all() {
+    let f = f1b();
+    let job = Job::of_points(3, f.points.clone(), false, f.tolerance).unwrap();
+    let best = report(&job, &Mode::Optimum(OptimumOptions::of(Measure::Second))).unwrap();
+    near("measure", best.after.measure, 1.29637452e-4, 1e-6);
+    near("jumps before", best.before.jumps, 1.684e-3, 1e-6);
+    assert_eq!((best.before.pieces, best.after.pieces), (56, 4));
+    assert_eq!(best.after.inflections, 0);
+    assert!(best.deviation.sampled <= best.deviation.certified);
+    assert!(best.deviation.certified <= f.tolerance && best.deviation.percent() < 0.06);
+    assert_eq!(best.jumps[0].len(), 77);
+    let literal =
+        KnotRemovalOptions { rule: Rule::Literal, ..KnotRemovalOptions::faithful(100_000) };
+    let stalled = report(&job, &Mode::KnotRemoval(literal)).unwrap();
+    assert_eq!(stalled.stopped, Some(Stopped::Stalled));
+    assert!(stalled.notes.iter().any(|n| n.contains("stalled")));
+    assert!(stalled.certificate.gap > best.certificate.gap);
+    for word in ["certified", "monotone pieces", "inflections", "left to gain", "stalled"] {
+        assert!(stalled.to_string().contains(word), "{word}");
+    }
+}

@@ -1,0 +1,15 @@
+//! The tests of fairing: one program.
+#![allow(missing_docs)]
+
+mod breaks;
+mod entity;
+mod fit;
+mod fixtures;
+mod interrogate;
+mod joined;
+mod joins;
+mod kinds_of_nets;
+mod knot_removal;
+mod network;
+mod optimum;
+mod rational;

@@ -1,0 +1,263 @@
+//! Nets and networks: the Wigley half hull of the notes.
+
+use crate::fixtures::*;
+use moldloft_fair::*;
+use moldloft_num::Vec3;
+
+const NU: usize = 41;
+const NV: usize = 17;
+
+fn wigley(noise: f64) -> Vec<Vec3<f64>> {
+    let mut random = Lcg::new(1);
+    let mut points = Vec::new();
+    for i in 0..NU {
+        for j in 0..NV {
+            let x = -0.5 + i as f64 / (NU - 1) as f64;
+            let z = -0.0625 * j as f64 / (NV - 1) as f64;
+            let y = 0.05 * (1.0 - 4.0 * x * x) * (1.0 - (z / 0.0625).powi(2));
+            points.push(Vec3::of(x, y + noise * random.centred(), z));
+        }
+    }
+    points
+}
+
+fn net(points: Vec<Vec3<f64>>, tolerance: f64) -> Network {
+    let spaces = [Space::floating(3, NU).unwrap(), Space::floating(3, NV).unwrap()];
+    let limit = Limit::ball(points.len(), tolerance).unwrap();
+    Network::net(spaces, points, None, limit).unwrap()
+}
+
+fn measures(net: &Network, measure: Measure, p: &[Vec3<f64>]) -> [f64; 2] {
+    [0..NV, NV..NV + NU].map(|r| net.value(measure, r, p).unwrap())
+}
+
+#[test]
+fn the_true_net_is_fair_and_the_input_is_that_of_the_notes() {
+    let truth = net(wigley(0.0), 2e-4);
+    assert!(measures(&truth, Measure::Jumps, &truth.points).iter().all(|&m| m < 1e-28));
+    let noisy = net(wigley(2e-4), 2e-4);
+    let [u, v] = measures(&noisy, Measure::Second, &noisy.points);
+    near("E_u", u, 3.59334e-5, 1e-5);
+    near("E_v", v, 5.98370e-5, 1e-5);
+    let [u, v] = measures(&noisy, Measure::Jumps, &noisy.points);
+    near("jumps u", u, 1.5976e-4, 1e-4);
+    near("jumps v", v, 1.0820e-4, 1e-4);
+    near("rms", rms(&noisy.points, &truth.points), 5.699e-5, 1e-3);
+}
+
+#[test]
+fn passes_are_those_of_the_report() {
+    let noisy = net(wigley(2e-4), 2e-4);
+    let truth = wigley(0.0);
+    for (passes, wanted, distance) in
+        [(1, [4.59e-6, 4.2e-8], 4.25e-5), (10, [2.66e-6, 5.5e-8], 5.98e-5)]
+    {
+        let faired = noisy.passes(passes, 3).unwrap();
+        let got = measures(&noisy, Measure::Jumps, &faired);
+        for (g, w) in got.into_iter().zip(wanted) {
+            near("jumps", g, w, 0.3);
+        }
+        near("rms", rms(&faired, &truth), distance, 0.1);
+        let moved = faired.iter().zip(&noisy.points).map(|(p, q)| (*p - *q).norm());
+        assert!(moved.fold(0.0, f64::max) <= 2e-4);
+        assert!(noisy.certified(&faired) <= 2e-4);
+    }
+}
+
+#[test]
+fn the_joint_optimum_is_orders_better() {
+    let truth = wigley(0.0);
+    for (tolerance, jumps, second, distance) in [
+        (2e-4, [8.9e-10, 6.9e-10], 6.221144e-5, 8.2e-5),
+        (1e-4, [1.8e-8, 6.4e-9], 6.672774e-5, 1.90e-5),
+    ] {
+        let noisy = net(wigley(2e-4), tolerance);
+        let solve = |measure| noisy.optimum(measure, Bound::ControlPoints, vec![], 1e-8).unwrap();
+        let best = solve(Measure::Jumps);
+        let got = measures(&noisy, Measure::Jumps, &best.points);
+        for (g, w) in got.into_iter().zip(jumps) {
+            near("jumps", g, w, 0.1);
+        }
+        near("rms", rms(&best.points, &truth), distance, 0.1);
+        assert!(best.certificate.relative() < 1e-4, "{:?}", best.certificate);
+        let best = solve(Measure::Second);
+        near("second", best.certificate.value, second, 1e-6);
+        assert!(best.certificate.relative() < 1e-7);
+        for i in [0, 1, NV, NV + 1, NU * NV - 1] {
+            assert!(best.points[i].bits_eq(noisy.points[i]));
+        }
+        let (swept, gap) = noisy.sweeps(Measure::Second, 200).unwrap();
+        assert!(gap.value > best.certificate.value * (1.0 - 1e-9));
+        assert!(gap.gap >= gap.value - best.certificate.value);
+        near("sweeps", gap.value, second, 0.01);
+        assert!(noisy.certified(&swept) <= tolerance);
+    }
+}
+
+#[test]
+fn bezier_bounds_hold_on_random_nets() {
+    let mut random = Lcg::new(5);
+    let count = moldloft_testing::rounds(40, 1_000);
+    for round in 0..count {
+        let (nu, nv) = (8 + round % 3, 8 + round % 2);
+        let spaces = [
+            if round % 2 == 0 { Space::closed(3, nu) } else { Space::clamped(3, nu) }.unwrap(),
+            Space::clamped(2, nv).unwrap(),
+        ];
+        let points: Vec<_> = (0..nu * nv)
+            .map(|_| Vec3::of(random.centred(), random.centred(), random.centred()))
+            .collect();
+        let weights =
+            (round % 3 == 0).then(|| (0..nu * nv).map(|_| 1.0 + random.centred()).collect());
+        let tolerance = 0.05 + 0.1 * (random.centred() + 0.5);
+        let limit = Limit::ball(nu * nv, tolerance).unwrap();
+        let net = Network::net(spaces.clone(), points.clone(), weights.clone(), limit).unwrap();
+        let best = net.optimum(Measure::Second, Bound::Bezier, vec![], 1e-4).unwrap();
+        let all = net.value(Measure::Second, 0..nu + nv, &best.points).unwrap();
+        near("value", all, best.certificate.value, 1e-9);
+        assert!(best.certificate.relative() < 1e-3, "{round} {:?}", best.certificate);
+        let certified = net.certified(&best.points);
+        assert!(certified <= tolerance * (1.0 + 1e-9));
+        // Samples of the displacement, curve by curve.
+        let moved: Vec<_> = best.points.iter().zip(&points).map(|(p, q)| *p - *q).collect();
+        let w = weights.unwrap_or(vec![1.0; nu * nv]);
+        for a in 0..20 {
+            let (start, end) = spaces[0].domain();
+            let u = start + (end - start) * f64::from(a) / 20.0;
+            // The weighted column at u is a curve in v.
+            let column = |value: &dyn Fn(usize) -> Vec3<f64>| -> Vec<Vec3<f64>> {
+                (0..nv)
+                    .map(|j| {
+                        let line: Vec<_> = (0..nu).map(|i| value(i * nv + j)).collect();
+                        shape::sample_at(&spaces[0], &line, None, u).point
+                    })
+                    .collect()
+            };
+            let top = column(&|k| moved[k] * w[k]);
+            let under = column(&|k| Vec3::of(w[k], 0.0, 0.0));
+            for b in 0..=20 {
+                let v = f64::from(b) / 20.0;
+                let sum = shape::sample_at(&spaces[1], &top, None, v).point;
+                let weight = shape::sample_at(&spaces[1], &under, None, v).point.x;
+                assert!(sum.norm() / weight <= certified, "{round}");
+            }
+        }
+    }
+}
+
+/// Stations and waterlines through common points: one answer for a shared point, whatever the
+/// order of the curves.
+#[test]
+fn a_network_moves_shared_points_once() {
+    let points = wigley(2e-4);
+    let strand = |space: Space, points: Vec<usize>| NetworkCurve {
+        space,
+        points,
+        weights: None,
+        marks: vec![],
+        ends: [End::Points(2); 2],
+    };
+    let mut strands: Vec<_> = (0..NV)
+        .step_by(4)
+        .map(|j| strand(Space::floating(3, NU).unwrap(), (0..NU).map(|i| i * NV + j).collect()))
+        .collect();
+    strands.extend(
+        (0..NU).step_by(5).map(|i| {
+            strand(Space::floating(3, NV).unwrap(), (0..NV).map(|j| i * NV + j).collect())
+        }),
+    );
+    let across =
+        Limit::new(Motion::Along(Vec3::of(0.0, 1.0, 0.0)), vec![2e-4; points.len()]).unwrap();
+    let network = Network::new(points.clone(), strands.clone(), across.clone()).unwrap();
+    let best = network.optimum(Measure::Second, Bound::ControlPoints, vec![], 1e-9).unwrap();
+    assert!(best.certificate.relative() < 1e-9);
+    strands.reverse();
+    let other = Network::new(points.clone(), strands, across).unwrap();
+    let again = other.optimum(Measure::Second, Bound::ControlPoints, vec![], 1e-9).unwrap();
+    assert!(rms(&again.points, &best.points) < 1e-7);
+    for (p, q) in best.points.iter().zip(&points) {
+        assert!(p.x == q.x && p.z == q.z && (p.y - q.y).abs() <= 2e-4);
+    }
+    let mut bad = network.clone();
+    bad.strands[0].points[3] = points.len();
+    assert_eq!(bad.check(), Err(FairError::Mark { index: points.len(), count: points.len() }));
+}
+
+#[test]
+fn reports_of_all_ways() {
+    let noisy = net(wigley(2e-4), 2e-4);
+    let report = |mode| noisy.report(Measure::Second, mode).unwrap();
+    let joint = report(NetworkMode::Joint(Bound::ControlPoints));
+    let wider = report(NetworkMode::Joint(Bound::Bezier));
+    let swept = report(NetworkMode::Sweeps(30));
+    let passed = report(NetworkMode::Passes(1, 3));
+    for r in [&joint, &wider, &swept, &passed] {
+        assert!(r.sampled <= r.certified && r.certified <= 2e-4 * (1.0 + 1e-9), "{r:?}");
+        assert!(r.measure[1] < r.measure[0] && r.jumps[1] < 0.1 * r.jumps[0]);
+        near("value", r.certificate.value, r.measure[1], 1e-9);
+        assert!(r.certificate.value - r.certificate.gap <= joint.measure[1]);
+    }
+    assert!(wider.measure[1] < joint.measure[1] && joint.measure[1] < swept.measure[1]);
+}
+
+/// Points, tangents, normals, area and volume of nets, rational ones too; contradictions are named.
+#[test]
+fn surfaces_keep_conditions() {
+    let mut random = Lcg::new(12);
+    for weighted in [false, true] {
+        let (nu, nv) = (9, 8);
+        let spaces = [Space::clamped(3, nu).unwrap(), Space::clamped(2, nv).unwrap()];
+        let points: Vec<_> = (0..nu * nv)
+            .map(|k| {
+                let (x, y) = ((k / nv) as f64, (k % nv) as f64);
+                Vec3::of(x, y, 0.2 * (x * y * 0.1).sin() + 0.05 * random.centred())
+            })
+            .collect();
+        let weights =
+            weighted.then(|| (0..nu * nv).map(|_| 1.0 + 0.5 * random.centred()).collect());
+        let limit = Limit::ball(nu * nv, 0.25).unwrap();
+        let net = Network::net(spaces.clone(), points.clone(), weights.clone(), limit).unwrap();
+        let before = net.surface(&points).unwrap();
+        let solve =
+            |conditions| net.optimum(Measure::Second, Bound::ControlPoints, conditions, 1e-9);
+        let area = |points: &[Vec3<f64>]| {
+            let s = net.surface(points).unwrap();
+            let mut sum = 0.0;
+            for (i, j) in (0..200).flat_map(|i| (0..200).map(move |j| (i, j))) {
+                let at = [i, j].map(|k| (f64::from(k) + 0.5) / 200.0);
+                let jet = moldloft_num::Surface::jet(&s, at[0], at[1], moldloft_num::Order::First);
+                sum += jet.u.cross(jet.v).norm() / 4e4;
+            }
+            sum
+        };
+        let free = solve(vec![]).unwrap().points;
+        let kept = solve(vec![net.area_condition().unwrap()]).unwrap().points;
+        let (was, drift) = (area(&points), [&free, &kept].map(|p| (area(p) - area(&points)).abs()));
+        // To first order: the curvature of the area is left.
+        assert!(drift[0] > 2e-4 * was && drift[1] < 0.5 * drift[0], "{was} {drift:?}");
+        let at = [0.37, 0.61];
+        let jet =
+            |s: &dyn moldloft_num::Surface<f64>| s.jet(at[0], at[1], moldloft_num::Order::First);
+        let through = jet(&before).p + Vec3::of(0.0, 0.0, 0.03);
+        let normal = Vec3::of(0.0, -0.02, 1.0);
+        let mut all = net.point_condition(at, through).unwrap();
+        all.extend(net.normal_condition(at, normal).unwrap());
+        all.extend(net.tangent_condition(at, 1, Vec3::of(0.05, 1.0, 0.02)).unwrap());
+        let faired = net.surface(&solve(all).unwrap().points).unwrap();
+        let here = jet(&faired);
+        assert!((here.p - through).norm() < 1e-10, "{:?}", here.p - through);
+        let n = here.u.cross(here.v).normalized().unwrap();
+        assert!(n.cross(normal).norm() < 1e-9, "{n:?}");
+        let v = here.v.normalized().unwrap();
+        assert!(v.cross(Vec3::of(0.05, 1.0, 0.02)).norm() < 1e-9, "{v:?}");
+        let mut both = net.point_condition(at, through).unwrap();
+        both.extend(net.point_condition(at, through + Vec3::of(0.0, 0.0, 0.01)).unwrap());
+        let refused = solve(both).unwrap_err();
+        let FairError::Contradiction { conditions, .. } = refused else { panic!("{refused:?}") };
+        assert!(conditions.contains(&2) || conditions.contains(&5), "{conditions:?}");
+        let far = net.point_condition(at, through + Vec3::of(0.0, 0.0, 1.0)).unwrap();
+        assert!(matches!(solve(far), Err(FairError::Contradiction { .. })));
+    }
+    let web = Network::new(vec![Vec3::zero(); 3], vec![], Limit::ball(3, 1.0).unwrap()).unwrap();
+    assert!(web.area_condition().is_err() && web.clone().with_rims([[End::Free; 2]; 2]).is_err());
+}
