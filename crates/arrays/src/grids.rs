@@ -21,7 +21,7 @@ pub fn fault(error: GridError) -> Fault {
         GridError::TooFew { expected, actual: [m, n] } => with("too-few-items")
             .expected(format!("at least {expected} points each way"))
             .found(format!("[{m},{n}]")),
-        GridError::NotFinite { .. } => with("not-finite").expected("finite points"),
+        GridError::NotFinite { .. } | GridError::PointNotFinite { .. } => with("not-finite").expected("finite points"),
         GridError::EdgesApart { corner, gap } => {
             let [i, j] = corner.at;
             with("edges-apart")

@@ -19,6 +19,7 @@ mod distribution;
 mod evaluate;
 mod grids;
 mod locate;
+mod masks;
 mod moves;
 mod reduce;
 mod shape;
@@ -85,6 +86,15 @@ pub fn rows() -> Vec<Row> {
         reduce::Centroid,
         reduce::BboxMin,
         reduce::BboxMax,
+        masks::Where,
+        masks::Clamp,
+        masks::Any,
+        masks::All,
+        masks::Find,
+        masks::Sort,
+        masks::CumSum,
+        masks::Diff,
+        masks::Interp,
         shape::List,
         shape::PointsOf,
         shape::Join,

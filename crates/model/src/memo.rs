@@ -1,5 +1,5 @@
 use moldloft_num::Vec3;
-use moldloft_registry::{Context, Fault, CallRemark, Row, Scalar, Value};
+use moldloft_registry::{CallRemark, Context, Fault, Row, Scalar, Value};
 use std::collections::{HashMap, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
