@@ -136,6 +136,17 @@ def test_every_dependency_has_a_why() -> None:
     assert used == why
 
 
+def test_paths_that_pages_name_exist() -> None:
+    lost = []
+    for page in [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]:
+        text = page.read_text(encoding="utf-8")
+        named = r"`((?:crates|python|tests|benches|examples|docs|editors|fuzz)/[\w./*-]+)`"
+        for path in re.findall(named, text):
+            if not any(ROOT.glob(path.rstrip("/"))):
+                lost.append((page.name, path))
+    assert not lost
+
+
 def test_the_page_on_architecture_is_one_page() -> None:
     assert len((DOCS / "architecture.md").read_text(encoding="utf-8").splitlines()) <= 90
 

@@ -8,13 +8,13 @@ use moldloft_grid::{
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, Context, Fault, FromValue, Kind, Scalar, SurfaceRef, Value,
+    ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::{End, Ends, GridSpline};
 use std::sync::Arc;
 
 /// The fault of a grid, about field 0.
-pub fn fault(error: GridError) -> Fault {
+pub fn fault(error: GridError, field: FieldId) -> Fault {
     let message = error.to_string();
     let with = |id: &'static str| Fault::new(id, message.clone());
     match error {
@@ -60,10 +60,10 @@ pub fn fault(error: GridError) -> Fault {
             with("no-direction").expected("a surface with a normal at every point")
         }
     }
-    .in_field(0)
+    .in_field(field)
 }
 
-fn unknown(word: &str, what: &str, expected: String, field: usize) -> Fault {
+fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> Fault {
     Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
@@ -105,14 +105,15 @@ impl<T: Scalar> Build<T> for Tfi<T> {
             "soni2" => Blend::Soni2,
             word => {
                 let expected = "\"arc\", \"linear\", \"hermite\" or \"soni2\"".to_string();
-                return Err(unknown(word, "kind of interpolation", expected, 1));
+                return Err(unknown(word, "kind of interpolation", expected, Self::KIND));
             }
         };
         let Value::List(items) = &self.s else {
-            let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
-            return transfinite(&grid, blend).map(surface).map_err(fault);
+            let GridArg(grid) =
+                GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+            return transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S));
         };
-        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(0);
+        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(Self::S);
         match items.len() {
             4 => {
                 let mut edges: [Vec<Vec3<T>>; 4] = Default::default();
@@ -127,31 +128,31 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                             .expected(format!("{m} points"))
                             .found(format!("{n} points"))
                             .in_item(b)
-                            .in_field(0));
+                            .in_field(Self::S));
                     }
                 }
-                let grid = framed(&edges).map_err(fault)?;
-                transfinite(&grid, blend).map(surface).map_err(fault)
+                let grid = framed(&edges).map_err(|error| fault(error, Self::S))?;
+                transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S))
             }
             6 => {
                 let mut faces: Vec<SurfaceGrid<T>> = Vec::with_capacity(6);
                 for (k, item) in items.iter().enumerate() {
                     faces.push(GridArg::from_value(item).map_err(place(k))?.0);
                 }
-                let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6))?;
-                let layers = transfinite_block(&faces).map_err(fault)?;
+                let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6, Self::S))?;
+                let layers = transfinite_block(&faces).map_err(|error| fault(error, Self::S))?;
                 Ok(Value::list(layers.into_iter().map(surface)))
             }
-            n => Err(fault_of_count(n)),
+            n => Err(fault_of_count(n, Self::S)),
         }
     }
 }
 
-fn fault_of_count(n: usize) -> Fault {
+fn fault_of_count(n: usize, field: FieldId) -> Fault {
     Fault::new("wrong-shape", format!("nothing is bounded by {n} edges or faces"))
         .expected("a surface, a list of four curves or a list of six surfaces")
         .found(format!("a list of {n}"))
-        .in_field(0)
+        .in_field(field)
 }
 
 /// The edges by the names of the language.
@@ -216,7 +217,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             "sorenson" => Method::Sorenson,
             word => {
                 let expected = "\"laplace\", \"middlecoff\" or \"sorenson\"".to_string();
-                return Err(unknown(word, "method", expected, 3));
+                return Err(unknown(word, "method", expected, Self::METHOD));
             }
         };
         let allowed = match &*self.folded {
@@ -224,13 +225,15 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             "allow" => true,
             word => {
                 let expected = "\"refuse\" or \"allow\"".to_string();
-                return Err(unknown(word, "answer to folded cells", expected, 9));
+                return Err(unknown(word, "answer to folded cells", expected, Self::FOLDED));
             }
         };
         let walls = match (method, &self.walls, self.spacing) {
-            (Method::Sorenson, Some(words), Some(spacing)) => walls(words, spacing, self.angle)?,
+            (Method::Sorenson, Some(words), Some(spacing)) => {
+                walls::<T>(words, spacing, self.angle)?
+            }
             (Method::Sorenson, ..) => {
-                let field = if self.walls.is_none() { 5 } else { 6 };
+                let field = if self.walls.is_none() { Self::WALLS } else { Self::SPACING };
                 return Err(Fault::new(
                     "missing-argument",
                     "\"sorenson\" needs walls and a spacing",
@@ -243,17 +246,17 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
                 return Err(Fault::new("unused-argument", "walls are for the method \"sorenson\"")
                     .expected("\"sorenson\"")
                     .found(format!("\"{}\"", self.method))
-                    .in_field(3));
+                    .in_field(Self::METHOD));
             }
         };
         let grid = self.s.0;
-        grid.re().check_edges().map_err(fault)?;
+        grid.re().check_edges().map_err(|error| fault(error, Self::S))?;
         let own;
         let on: Option<(&dyn Surface<T>, [Vec<T>; 2])> = match &self.on {
             Some(surface) => Some((&**surface, on_surface(&grid, surface)?)),
             None if plane(&grid) => None,
             None => {
-                own = through(&grid)?;
+                own = through(&grid, Self::S)?;
                 let (m, n) = (grid.m, grid.n);
                 let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
                 let u = (0..m * n).map(|k| even(k / n, m)).collect();
@@ -269,7 +272,8 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             walls,
             on,
         };
-        let done = elliptic_until(&grid, &options, &context.cancel).map_err(fault)?;
+        let done = elliptic_until(&grid, &options, &context.cancel)
+            .map_err(|error| fault(error, Self::S))?;
         if !done.converged && self.n > 0 {
             context.remark(
                 "not-converged",
@@ -281,7 +285,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
         let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
         if let Some(&[i, j]) = folded.first() {
             let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };
-            return Err(fault(error).help(
+            return Err(fault(error, Self::S).help(
                 "allow more sweeps, or look at it with folded = \"allow\" and quality(s, \"sj\")",
             ));
         }
@@ -308,12 +312,12 @@ fn unsettled<T: Real>(done: &Smoothed<T>) -> String {
     text
 }
 
-fn walls<T: Real>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fault> {
+fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fault> {
     let mut walls = Vec::new();
     for word in words.split([' ', ',']).filter(|word| !word.is_empty()) {
         let Some((_, edge)) = EDGES.iter().find(|(name, _)| *name == word) else {
             let expected = "\"i1\", \"im\", \"j1\" or \"jn\"".to_string();
-            return Err(unknown(word, "edge", expected, 5));
+            return Err(unknown(word, "edge", expected, EllipticGrid::<T>::WALLS));
         };
         walls.push(Wall { edge: *edge, spacing: vec![spacing], angle });
     }
@@ -321,7 +325,7 @@ fn walls<T: Real>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fau
         return Err(Fault::new("out-of-range", "the spacing off a wall is a positive length")
             .expected("a positive number")
             .found(spacing.re().to_string())
-            .in_field(6));
+            .in_field(EllipticGrid::<T>::SPACING));
     }
     Ok(walls)
 }
@@ -352,15 +356,15 @@ fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
 }
 
 /// The spline surface through the points, even in the indices.
-fn through<T: Real>(grid: &SurfaceGrid<T>) -> Result<GridSpline<T>, Fault> {
+fn through<T: Real>(grid: &SurfaceGrid<T>, field: FieldId) -> Result<GridSpline<T>, Fault> {
     let knots = |n: usize| (0..n).map(|k| T::from(k as f64 / (n - 1) as f64)).collect();
     let ends = Ends::Open(End::NotAKnot, End::NotAKnot);
     GridSpline::bicubic(knots(grid.m), knots(grid.n), grid.points().collect(), ends)
-        .map_err(|error| crate::spline::fault(error, "point"))
+        .map_err(|error| crate::spline::fault(error, "point", [field, field]))
 }
 
 /// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
-fn on_surface<T: Real>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
+fn on_surface<T: Scalar>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
     let points: Vec<Vec3<T>> = grid.points().collect();
     let (uv, off) = crate::locate::nearest_parameters(on, &points);
     let size = grid.size();
@@ -372,7 +376,7 @@ fn on_surface<T: Real>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec
             .expected("a grid whose points lie on the surface")
             .found(format!("a distance of {}", off[worst]))
             .help("project(s, surface) brings them there")
-            .in_field(4));
+            .in_field(EllipticGrid::<T>::ON));
     }
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
 }
@@ -421,17 +425,17 @@ pub struct HyperbolicGrid<T: Scalar> {
 
 impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let heights = self.heights.row().map_err(|fault| fault.in_field(1))?;
+        let heights = self.heights.row().map_err(|fault| fault.in_field(Self::HEIGHTS))?;
         let is_curve =
             matches!(&self.s, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
         let options = Hyperbolic {
             heights,
-            sides: sides(&self.sides, is_curve)?,
+            sides: sides(&self.sides, is_curve, Self::SIDES)?,
             smoothing: self.smoothing.re(),
-            stop: stop(&self.stop)?,
+            stop: stop(&self.stop, Self::STOP)?,
         };
         let marched = if is_curve {
-            let Points(curve) = Points::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+            let Points(curve) = Points::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             let support: Box<dyn Support<T>> = match &self.on {
                 Some(surface) => {
                     let side = self.normal.map(|normal| normal.re());
@@ -442,7 +446,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
                     let unit = normal.normalized().ok_or_else(|| {
                         Fault::new("no-direction", "the normal has no length")
                             .expected("a vector that is not zero")
-                            .in_field(4)
+                            .in_field(Self::NORMAL)
                     })?;
                     Box::new(InPlane { normal: unit })
                 }
@@ -452,14 +456,14 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             if self.on.is_some() {
                 return Err(Fault::new("unused-argument", "`on` is for grids off curves")
                     .expected("a curve to march from")
-                    .in_field(6));
+                    .in_field(Self::ON));
             }
-            let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+            let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             hyperbolic_until(&grid, &options, &context.cancel)
         };
         let marched = marched.map_err(|error| match error {
-            GridError::Heights { .. } => crate::spline::moved(fault(error), 1),
-            error => fault(error),
+            GridError::Heights { .. } => fault(error, Self::HEIGHTS),
+            error => fault(error, Self::S),
         })?;
         if let Some(reason) = &marched.report.stopped {
             let layers = marched.report.layers;
@@ -508,7 +512,7 @@ impl<T: Scalar> Support<T> for OnSurface<T> {
     }
 }
 
-fn stop(text: &str) -> Result<Stop, Fault> {
+fn stop(text: &str, field: FieldId) -> Result<Stop, Fault> {
     let mut stop = Stop::default();
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let words: Vec<&str> = part.split_whitespace().collect();
@@ -522,21 +526,21 @@ fn stop(text: &str) -> Result<Stop, Fault> {
             _ => {
                 let expected =
                     "\"keep\", \"isotropic\", \"jacobian 0.1\", \"skew 0.9\" or \"growth 1.5\"";
-                return Err(unknown(part, "criterion", expected.to_string(), 5));
+                return Err(unknown(part, "criterion", expected.to_string(), field));
             }
         }
     }
     Ok(stop)
 }
 
-fn sides(text: &str, is_curve: bool) -> Result<[Side; 4], Fault> {
+fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], Fault> {
     let mut sides = [Side::Free; 4];
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let words: Vec<&str> = part.split_whitespace().collect();
         let bad = || {
             let expected =
                 "\"i1 pole\", \"j1 symmetry z\", \"im periodic\" and the like".to_string();
-            unknown(part, "side", expected, 2)
+            unknown(part, "side", expected, field)
         };
         let at = EDGES.iter().position(|(name, _)| Some(name) == words.first());
         let at = at.filter(|at| !is_curve || *at < 2).ok_or_else(bad)?;
@@ -559,11 +563,11 @@ fn sides(text: &str, is_curve: bool) -> Result<[Side; 4], Fault> {
     Ok(sides)
 }
 
-fn metric(word: &str) -> Result<Metric, Fault> {
+fn metric(word: &str, field: FieldId) -> Result<Metric, Fault> {
     let known = Metric::ALL.iter().find(|metric| metric.word() == word);
     known.copied().ok_or_else(|| {
         let words: Vec<String> = Metric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
-        unknown(word, "metric", words.join(", "), 1)
+        unknown(word, "metric", words.join(", "), field)
     })
 }
 
@@ -592,10 +596,13 @@ pub struct QualityOf<T: Scalar> {
 
 impl<T: Scalar> Build<T> for QualityOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let metric = metric(&self.metric)?;
+        let metric = metric(&self.metric, Self::METRIC)?;
         let grid = self.s.0;
         if grid.m.min(grid.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [grid.m, grid.n] }));
+            return Err(fault(
+                GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },
+                Self::S,
+            ));
         }
         let values = quality(&grid, metric);
         Ok(crate::value::numbers(ArrayShape::Grid(grid.m - 1, grid.n - 1), values))
@@ -642,7 +649,10 @@ impl<T: Scalar> Build<T> for Report<T> {
         use std::fmt::Write;
         let grid = self.s.0.re();
         if grid.m.min(grid.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [grid.m, grid.n] }));
+            return Err(fault(
+                GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },
+                Self::S,
+            ));
         }
         let n = grid.n - 1;
         let folded = folded_cells(&grid).len();
@@ -667,11 +677,14 @@ impl<T: Scalar> Build<T> for Report<T> {
 }
 
 /// Jets of the spline through a grid's own points, at its points.
-pub fn jets<T: Real>(grid: &SurfaceGrid<T>) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
+pub fn jets<T: Real>(
+    grid: &SurfaceGrid<T>,
+    field: FieldId,
+) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
     if grid.m.min(grid.n) < 3 {
-        return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }));
+        return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }, field));
     }
-    let spline = through(grid)?;
+    let spline = through(grid, field)?;
     let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
     let (m, n) = (grid.m, grid.n);
     Ok((0..m * n).map(|k| spline.jet(even(k / n, m), even(k % n, n), Order::Second)).collect())

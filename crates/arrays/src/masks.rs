@@ -4,13 +4,13 @@
 
 use crate::value::{Farray, Numbers, farray, numbers};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, FromValue, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, Value};
 
 fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
 }
 
-fn differ(a: ArrayShape, b: ArrayShape, field: usize) -> Fault {
+fn differ(a: ArrayShape, b: ArrayShape, field: FieldId) -> Fault {
     Fault::new("shapes-differ", format!("shapes differ: {a} and {b}"))
         .expected("equal shapes, or a single value")
         .found(format!("{a} and {b}"))
@@ -46,7 +46,7 @@ impl<T: Scalar> Where<T> {
     fn choice(
         value: &Value<T>,
         shape: Option<ArrayShape>,
-        field: usize,
+        field: FieldId,
     ) -> Result<Choice<T>, Fault> {
         let fits = |found: ArrayShape| match shape {
             Some(shape) if shape == found => Ok(()),
@@ -82,8 +82,8 @@ impl<T: Scalar> Build<T> for Where<T> {
             let each = mask.iter().enumerate();
             each.map(|(k, x)| if x.re() == 0.0 { at(b, k) } else { at(a, k) }).collect()
         }
-        let a = Self::choice(&self.a, Some(shape), 1)?;
-        let b = Self::choice(&self.b, Some(shape), 2)?;
+        let a = Self::choice(&self.a, Some(shape), Self::A)?;
+        let b = Self::choice(&self.b, Some(shape), Self::B)?;
         Ok(match (a, b) {
             (Choice::Numbers(a), Choice::Numbers(b)) => numbers(shape, picked(mask, &a, &b)),
             (Choice::Vectors(a), Choice::Vectors(b)) => {
@@ -92,7 +92,7 @@ impl<T: Scalar> Build<T> for Where<T> {
             _ => {
                 return Err(Fault::new("wrong-class", "numbers and vectors are no choice")
                     .expected("numbers in both places, or vectors in both")
-                    .in_field(2));
+                    .in_field(Self::B));
             }
         })
     }
@@ -121,7 +121,7 @@ impl<T: Scalar> Build<T> for Clamp<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let all = [&self.a, &self.low, &self.high];
         let mut shape = None;
-        for (field, part) in all.iter().enumerate() {
+        for (field, part) in [Self::A, Self::LOW, Self::HIGH].into_iter().zip(all) {
             if let Numbers::Many(a) = part {
                 match shape {
                     None => shape = Some(a.shape),
@@ -142,7 +142,7 @@ impl<T: Scalar> Build<T> for Clamp<T> {
                 let message = format!("the bounds {} and {} hold nothing", low.re(), high.re());
                 return Err(Fault::new("out-of-range", message)
                     .expected("a lower bound that is not above the upper one")
-                    .in_field(2));
+                    .in_field(Self::HIGH));
             }
             items.push(x.max(low).min(high));
         }
@@ -198,7 +198,7 @@ pub struct Find<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Find<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let mask = self.mask.row().map_err(|fault| fault.in_field(0))?;
+        let mask = self.mask.row().map_err(|fault| fault.in_field(Self::MASK))?;
         let held = mask.iter().enumerate().filter(|(_, x)| x.re() != 0.0);
         Ok(farray(held.map(|(k, _)| T::from((k + 1) as f64)).collect()))
     }
@@ -219,7 +219,7 @@ pub struct Sort<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Sort<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let mut row = self.a.row().map_err(|fault| fault.in_field(0))?;
+        let mut row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
         row.sort_by(|a, b| a.re().total_cmp(&b.re()));
         Ok(farray(row))
     }
@@ -240,7 +240,7 @@ pub struct CumSum<T: Scalar> {
 
 impl<T: Scalar> Build<T> for CumSum<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let row = self.a.row().map_err(|fault| fault.in_field(0))?;
+        let row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
         let mut sum: Option<T> = None;
         let sums = row.into_iter().map(|x| {
             let now = sum.map_or(x, |sum| sum + x);
@@ -266,12 +266,12 @@ pub struct Diff<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Diff<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let row = self.a.row().map_err(|fault| fault.in_field(0))?;
+        let row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
         if row.len() < 2 {
             return Err(Fault::new("too-few-items", "one number has no difference")
                 .expected("at least 2 numbers")
                 .found(row.len().to_string())
-                .in_field(0));
+                .in_field(Self::A));
         }
         Ok(farray(row.windows(2).map(|w| w[1] - w[0]).collect()))
     }
@@ -296,17 +296,17 @@ pub struct Interp<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Interp<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let xs = self.xs.row().map_err(|fault| fault.in_field(1))?;
-        let ys = self.ys.row().map_err(|fault| fault.in_field(2))?;
+        let xs = self.xs.row().map_err(|fault| fault.in_field(Self::XS))?;
+        let ys = self.ys.row().map_err(|fault| fault.in_field(Self::YS))?;
         if xs.is_empty() || xs.len() != ys.len() {
-            return Err(differ(ArrayShape::Row(xs.len()), ArrayShape::Row(ys.len()), 2));
+            return Err(differ(ArrayShape::Row(xs.len()), ArrayShape::Row(ys.len()), Self::YS));
         }
         if let Some(k) = xs.windows(2).position(|w| !(w[1].re() > w[0].re())) {
             return Err(Fault::new("not-monotone", format!("element {} does not ascend", k + 2))
                 .expected("numbers that ascend")
                 .found(xs[k + 1].re().to_string())
                 .in_item(k + 1)
-                .in_field(1));
+                .in_field(Self::XS));
         }
         let last = xs.len() - 1;
         let at = |x: T| {

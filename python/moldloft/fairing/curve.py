@@ -121,7 +121,7 @@ class Fairing:
     def displacement(self) -> tuple[Floats, Floats]:
         """How far each place of the curve has moved: share of the arc length and percent of it."""
         if self.spline.closed != self.original.closed:
-            raise FairingError("error: the faired curve and its original are not alike")
+            raise FairingError("the faired curve and its original are not alike")
         before, after = self.original.samples(8), self.spline.samples(8)
         far = np.linalg.norm(after.points - before.points, axis=1)
         return before.arc, 100.0 * far / self.length if self.length > 0 else far
@@ -245,14 +245,14 @@ def _conditions(
         for t, vector in rows:
             v = _vector(vector)
             if not 0 <= t <= 1:
-                raise FairingError(f"error: expected a parameter from 0 to 1, found {t:g}")
+                raise FairingError(f"expected a parameter from 0 to 1, found {t:g}")
             if word == "tangent" and not any(v):
-                raise FairingError(f"error: the tangent at {t:g} has no direction")
+                raise FairingError(f"the tangent at {t:g} has no direction")
             out.append((word, float(t), v, none))
             labels.append(f"{word} at {t:g}")
     for word in keep:
         if word not in ("area", "centroid", "volume"):
-            raise FairingError(f"error: `{word}` cannot be kept; what can: area, centroid, volume")
+            raise FairingError(f"`{word}` cannot be kept; what can: area, centroid, volume")
         axis = (1.0, 0.0, 0.0) if word == "volume" else (0.0, 0.0, 1.0)
         out.append((word, 0.0, axis, none))
         labels.append(f"keep {word}")
@@ -262,23 +262,23 @@ def _conditions(
 def _joins(joins: Sequence[Spline], spline: Spline) -> list[_Condition]:
     """What the curve's ends run on from: conditions whose parameter is 0 or 1."""
     if joins and spline.closed:
-        raise FairingError("error: a closed curve has no ends to join")
+        raise FairingError("a closed curve has no ends to join")
     out: dict[int, _Condition] = {}
     own = spline([0.0, 1.0])
     extent = float(np.ptp(spline.control_points, axis=0).max())
     for k, other in enumerate(joins):
         if not isinstance(other, Spline) or other.closed:
-            raise FairingError(f"error: join {k + 1} is no open spline")
+            raise FairingError(f"join {k + 1} is no open spline")
         ends = other.at([0.0, 1.0])
         away = np.linalg.norm(own[:, None] - ends.points[None], axis=2)
         a, b = (int(i) for i in np.unravel_index(int(np.argmin(away)), away.shape))
         if not away[a, b] <= TOGETHER * extent:
             raise FairingError(
-                f"error: join {k + 1} does not begin or end where the curve does: its nearest end "
+                f"join {k + 1} does not begin or end where the curve does: its nearest end "
                 f"is {away[a, b]:.3e} off (a fitted curve ends at its points: as `fit`)"
             )
         if a in out:
-            raise FairingError(f"error: two curves join at the {('start', 'end')[a]} of the curve")
+            raise FairingError(f"two curves join at the {('start', 'end')[a]} of the curve")
         # The neighbour's parameter runs into the start, or on from the end, or the other way.
         first = ends.first[b] * (-1.0 if a == b else 1.0)
         out[a] = ("join", float(a), _vector(first), _vector(ends.second[b]))
@@ -400,7 +400,7 @@ def fair_curve(
         With :attr:`~moldloft.errors.FairingError.index`, the point at fault.
     """
     if as_ not in ROLES:
-        raise FairingError(f"error: points are `control`, `points` or `fit`, not `{as_}`")
+        raise FairingError(f"points are `control`, `points` or `fit`, not `{as_}`")
     started = time.perf_counter()
     own = _Own(knots, weights, period)
     made = _prepared(points, as_, closed, degree, spacing, count, breaks, own)
@@ -439,7 +439,7 @@ def fair_curve(
         "log": log,
     }
     if conditions and mode != "optimum":
-        raise FairingError("error: only the optimum keeps conditions; take mode `optimum`")
+        raise FairingError("only the optimum keeps conditions; take mode `optimum`")
     core, told = spline._core.fair(chosen)
     seconds = time.perf_counter() - started
     return _result(made, Spline._of(core), told, tol, mode, width, seconds, data)
@@ -486,9 +486,7 @@ class _Prepared:
 def _index(given: Any, count: int) -> int:
     k = int(given)
     if not 0 <= k < count:
-        raise FairingError(
-            f"error: expected points from 0 to {count - 1}, found {k}", index=max(k, 0)
-        )
+        raise FairingError(f"expected points from 0 to {count - 1}, found {k}", index=max(k, 0))
     return k
 
 
@@ -504,7 +502,7 @@ def _prepared(
 ) -> _Prepared:
     """The spline to fair, and what the data give away."""
     if own.given and (isinstance(points, Spline) or role == "points"):
-        raise FairingError("error: knots and weights are for control points and fits")
+        raise FairingError("knots and weights are for control points and fits")
     if isinstance(points, Spline):
         data, width = points.control_points, 3
         spline: Spline = points
@@ -515,7 +513,7 @@ def _prepared(
         least = 2 * degree + 2 if closed else degree + 2
         if len(data) < least:
             raise FairingError(
-                f"error: expected at least {least} points for degree {degree}, found {len(data)}"
+                f"expected at least {least} points for degree {degree}, found {len(data)}"
             )
         plain = Spline(data, degree=degree, closed=closed, clamped=False)
         spline = own.control(data, degree, closed) if own.given and role == "control" else plain
@@ -525,7 +523,7 @@ def _prepared(
     corrected: list[Finding] = []
     if isinstance(breaks, str):
         if breaks != "auto":
-            raise FairingError(f"error: breaks are numbers of points or `auto`, not `{breaks}`")
+            raise FairingError(f"breaks are numbers of points or `auto`, not `{breaks}`")
         corrected, found = found, []
         chosen = sorted({f.index for f in corrected if f.kind == "corner"})
     else:
@@ -541,7 +539,7 @@ def _prepared(
                 moved[f.index] -= f.vector
         if own.given:
             if marks:
-                raise FairingError("error: a fit with knots or weights has its breaks in the knots")
+                raise FairingError("a fit with knots or weights has its breaks in the knots")
             spline, parameters = Spline._fit(
                 moved, degree, own.knots, count, own.weights, closed, own.period, spacing, None
             )
@@ -549,7 +547,7 @@ def _prepared(
             core, parameters, _, _ = _least_squares(moved, degree, count, spacing, closed)
             spline = core
             if marks:
-                raise FairingError("error: a least-squares fit has no breaks: fit all points")
+                raise FairingError("a least-squares fit has no breaks: fit all points")
         else:
             spline, parameters, marks = Spline._interpolated(moved, degree, spacing, closed, chosen)
     return _Prepared(

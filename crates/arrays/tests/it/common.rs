@@ -71,7 +71,7 @@ pub fn close(a: f64, b: f64, accuracy: f64) {
 pub fn refused(name: &str, args: &[Value<f64>]) -> (&'static str, Option<usize>, Option<usize>) {
     let fault = call(name, args).err().unwrap_or_else(|| panic!("{name} did not refuse"));
     assert!(!fault.message.is_empty());
-    (fault.id, fault.place.map(|p| p.field), fault.place.and_then(|p| p.item))
+    (fault.id, fault.field(), fault.item())
 }
 
 /// Every number in `value` becomes x + h * its share of a direction that depends on `seed`.

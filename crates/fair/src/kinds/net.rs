@@ -126,7 +126,12 @@ impl<T: Real> Joined<T> {
             "corners" => all.filter(|&i| ends[i] > 0 && ends[i] == uses[i]).collect(),
             _ => {
                 let known = ["corners", "ends", "none"];
-                return Err(super::unknown("way to keep ends", which, &known, 4));
+                return Err(super::unknown(
+                    "way to keep ends",
+                    which,
+                    &known,
+                    FairNet::<f64>::KEEP,
+                ));
             }
         })
     }
@@ -144,7 +149,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                     .expected("points that stand in the lists of the curves")
                     .related(b.key, "is in none of them")
                     .in_item(k)
-                    .in_field(3));
+                    .in_field(Self::BREAKS));
             };
             marked.push(at);
         }
@@ -152,7 +157,12 @@ impl<T: Real> Build<T> for FairNet<T> {
         let marks_of = |own: &[usize]| -> Vec<usize> {
             (0..own.len()).filter(|&k| marked.contains(&own[k])).collect()
         };
-        let places = Places { points: 0, tolerance: 1, degree: 6, breaks: 3 };
+        let places = Places {
+            points: Self::CURVES,
+            tolerance: Self::TOLERANCE,
+            degree: Self::DEGREE,
+            breaks: Self::BREAKS,
+        };
         let mut strands = Vec::new();
         for (k, (own, closed)) in joined.curves.iter().enumerate() {
             let space = match (closed, own.len()) {
@@ -162,13 +172,13 @@ impl<T: Real> Build<T> for FairNet<T> {
                 }
                 (false, n) => Space::floating(degree, n),
             };
-            let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(0))?;
+            let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
             if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
                 return Err(Fault::new("point-twice", "a curve passes twice through a point")
                     .expected("different points; only the first may come again, at the end")
                     .related(joined.points[own[twice]].key, "stands twice in the list")
                     .in_item(k)
-                    .in_field(0));
+                    .in_field(Self::CURVES));
             }
             let (marks, ends) = (marks_of(own), [End::Points(0); 2]);
             strands.push(NetworkCurve { space, points: own.clone(), weights: None, marks, ends });
@@ -179,11 +189,11 @@ impl<T: Real> Build<T> for FairNet<T> {
             Some(_) => {
                 return Err(Fault::new("zero-direction", "the direction has no length")
                     .expected("a direction such as {0, 1, 0}")
-                    .in_field(5));
+                    .in_field(Self::ALONG));
             }
         };
-        let measure = measure(&self.measure, 2)?;
-        let passes = super::faithful(&self.mode, 7)?.then_some(self.passes);
+        let measure = measure(&self.measure, Self::MEASURE)?;
+        let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
         let kept = joined.kept(&self.keep)?;
         let mut still = vec![self.tolerance.re() == 0.0; joined.points.len()];
         kept.iter().chain(&marked).for_each(|&i| still[i] = true);
@@ -210,9 +220,10 @@ impl<T: Real> Build<T> for FairNet<T> {
                 *closed,
                 &marks_of(own),
             )
-            .map_err(|e| fault(e, &places).in_item(k).in_field(0))?;
-            let curve = shapes::curve(&sharp.fit.space, &sharp.points)
-                .map_err(|e| Fault::new("no-spline", e.to_string()).in_item(k).in_field(0))?;
+            .map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
+            let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
+                Fault::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
+            })?;
             // Ends that may move are no longer their point objects.
             let end = |i: Option<&usize>| {
                 i.filter(|&&i| !closed && still[i]).and_then(|&i| joined.points[i].key)
@@ -246,7 +257,7 @@ impl<T: Real> Build<T> for NetCurve<T> {
         let Value::List(curves) = &self.net else {
             return Err(Fault::wrong_class(Class::List, self.net.class())
                 .expected("a network of curves, such as a FairNet")
-                .in_field(0));
+                .in_field(Self::NET));
         };
         match curves.get(self.index.wrapping_sub(1)) {
             Some(Value::Curve(curve)) => Ok(Value::Curve(curve.clone())),
@@ -256,7 +267,7 @@ impl<T: Real> Build<T> for NetCurve<T> {
             None => Err(Fault::new("out-of-range", format!("there is no curve {}", self.index))
                 .expected(format!("a number from 1 to {}", curves.len()))
                 .found(self.index.to_string())
-                .in_field(1)),
+                .in_field(Self::INDEX)),
         }
     }
 }

@@ -253,7 +253,7 @@ fn faults_name_their_argument() {
     let fault = |points: &[Vec3<f64>], tolerance: f64, named: Vec<(&str, Value<f64>)>| {
         let f = call::<f64>("FairCurve", vec![list(points), Value::Number(tolerance)], named)
             .unwrap_err();
-        (f.id, f.place.map(|p| p.field))
+        (f.id, f.field())
     };
     assert_eq!(fault(&points[..4], 0.1, vec![]), ("too-few-items", Some(0)));
     assert_eq!(fault(&points, -0.1, vec![]), ("out-of-range", Some(1)));

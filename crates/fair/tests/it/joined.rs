@@ -246,15 +246,15 @@ fn patches_have_exact_derivatives() {
 fn patches_say_what_is_wrong() {
     let fault = |named| call::<f64>(halves(4e-3), 2e-2, named).unwrap_err();
     let wrong = fault(vec![("seams", Value::text("smooth"))]);
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("unknown-name", Some(5)));
+    assert_eq!((wrong.id, wrong.field()), ("unknown-name", Some(5)));
     let wrong = fault(vec![("as", Value::text("points"))]);
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("unknown-name", Some(3)));
+    assert_eq!((wrong.id, wrong.field()), ("unknown-name", Some(3)));
     let wrong = fault(vec![("degree", Value::Number(7.0))]);
     assert_eq!(wrong.id, "too-few-items");
     let mut bent = halves(0.0);
     bent[1].iter_mut().skip(8).for_each(|p| p.y += 0.5 * p.x);
     let wrong = call::<f64>(bent, 1e-3, vec![]).unwrap_err();
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("contradiction", Some(5)));
+    assert_eq!((wrong.id, wrong.field()), ("contradiction", Some(5)));
     // A tolerance of zero leaves all as it is.
     let still = call::<f64>(halves(4e-3), 0.0, vec![("as", Value::text("control"))]).unwrap();
     assert!(place(&still, 0, 1.0, 0.0).bits_eq(halves(4e-3)[0][72]));

@@ -137,7 +137,7 @@ fn what_cannot_be_joined_is_refused() {
     let fault = |points: &[Vec3<f64>], tolerance: f64, named: Vec<(&str, Value<f64>)>| {
         let Err(f) = call(vec![list(points), Value::Number(tolerance)], named) else { panic!() };
         let text = f.message.clone();
-        (f.id, f.place.map(|p| (p.field, p.item)), text)
+        (f.id, f.field().map(|field| (field, f.item())), text)
     };
     let joins = |all: Vec<Value<f64>>| ("joins", Value::list(all));
     let one = || joins(vec![neighbour(&fore, false)]);

@@ -142,7 +142,7 @@ fn wrong_weights_and_knots_are_refused() {
     let refused = |named: Named<f64>| {
         let list = Value::list(points.iter().map(|&p| Value::Vector(p)));
         let fault = call("FairCurve", vec![list, Value::Number(0.01)], named).unwrap_err();
-        (fault.id, fault.place.map(|p| p.field))
+        (fault.id, fault.field())
     };
     let control = || ("as", Value::text("control"));
     assert_eq!(refused(vec![("weights", numbers(&weights))]), ("not-control", Some(10)));

@@ -52,7 +52,7 @@ impl<T: Real> Build<T> for SetBody<T> {
             (Some(_), Some(_)) => {
                 return Err(Fault::new("argument-twice", "depth and accuracy are both given")
                     .expected("one of them")
-                    .in_field(4));
+                    .in_field(Self::ACCURACY));
             }
             (Some(depth), None) => Resolution::Depth(depth),
             (None, Some(accuracy)) => Resolution::Accuracy(accuracy.re()),
@@ -61,9 +61,9 @@ impl<T: Real> Build<T> for SetBody<T> {
         let set = &self.set.0;
         let plain = set.re();
         if plain.is_nothing() {
-            return Err(Fault::new("empty-set", "the set is empty").in_field(0));
+            return Err(Fault::new("empty-set", "the set is empty").in_field(Self::SET));
         }
-        let region = region(&plain, &self.low, &self.high, 2)?;
+        let region = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let lifter = Lifter::of(set, &plain, region.corners);
         let simplify = self.simplify.map(T::re);
         let body =
@@ -77,7 +77,7 @@ impl<T: Real> Build<T> for SetBody<T> {
         if body.triangles.is_empty() && body.wires.is_empty() && body.dots.is_empty() {
             return Err(Fault::new("empty-set", "the set has no surface in the box")
                 .expected("a set whose surface passes through the box")
-                .in_field(0));
+                .in_field(Self::SET));
         }
         Ok(Value::Mesh(Arc::new(body)))
     }

@@ -634,7 +634,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let spans: Vec<Span> = args.iter().map(|&a| m.program[a].span).collect();
         // Scalars, and whatever is not taken, by the row itself.
         let value = elementary::apply(name, function, &values).map_err(|fault| {
-            let at = fault.place.map_or(span, |p| spans[p.field.min(spans.len() - 1)]);
+            let at = fault.field().map_or(span, |field| spans[field]);
             let d = crate::source::fault_location::unplaced(&fault);
             match &values[..] {
                 [a, b] => {

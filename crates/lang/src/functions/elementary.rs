@@ -2,6 +2,7 @@
 
 use crate::value::variables::Called as _;
 use moldloft_num::Real;
+use moldloft_registry::export::field_id;
 use moldloft_registry::{
     Array, ArrayShape, Body, Class, Context, DefaultValue, Fault, Field, Row, Unit, Value,
 };
@@ -23,12 +24,12 @@ const fn argument(name: &'static str, help: &'static str) -> Field {
     }
 }
 
-fn not_a_number<T: Real>(value: &Value<T>, field: usize) -> Fault {
+fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> Fault {
     let found = value.called();
     Fault::new("wrong-class", format!("expected a number or a row of numbers, found {found}"))
         .expected("a number or an farray")
         .found(found)
-        .in_field(field)
+        .in_field(field_id(position))
 }
 
 fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault> {
@@ -91,7 +92,7 @@ fn reduced<T: Real>(
             [(_, value)] => along_axis(value, axis.re(), f),
             _ => Err(Fault::new("unused-argument", "an axis goes with one array")
                 .expected("one array")
-                .in_field(4)),
+                .in_field(field_id(4))),
         };
     }
     if let [(k, value)] = &given[..] {
@@ -109,7 +110,7 @@ fn reduced<T: Real>(
     }
     let mut all: Option<Value<T>> = None;
     for (k, value) in given {
-        let place = |fault: Fault| fault.in_field(k);
+        let place = |fault: Fault| fault.in_field(field_id(k));
         all = Some(match all {
             None => value.into_owned(),
             Some(all) => componentwise(&all, &value, f).map_err(place)?,
@@ -152,13 +153,13 @@ fn along_axis<T: Real>(
     let ArrayShape::Grid(m, n) = a.shape else {
         return Err(Fault::new("wrong-shape", format!("an farray {} has one axis", a.shape))
             .expected("numbers [m,n]")
-            .in_field(0));
+            .in_field(field_id(0)));
     };
     if axis != 1.0 && axis != 2.0 {
         return Err(Fault::new("out-of-range", format!("there is no axis {axis}"))
             .expected("1 or 2")
             .found(axis.to_string())
-            .in_field(4));
+            .in_field(field_id(4)));
     }
     let (count, length) = if axis == 1.0 { (n, m) } else { (m, n) };
     let at = |k: usize, l: usize| if axis == 1.0 { a.items[l * n + k] } else { a.items[k * n + l] };

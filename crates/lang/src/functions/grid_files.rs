@@ -7,13 +7,12 @@ use crate::run::interpreter::{Interpreter, silent};
 use crate::source::module::Module;
 use crate::value::variables;
 use moldloft_diag::Diagnostic;
-use moldloft_io::plot3d_any::{self, Laid, Variant};
-use moldloft_io::{Lattice, section, write_stl, write_vts};
+use moldloft_io::plot3d::{self, Laid, Variant};
+use moldloft_io::{StructuredGrid, points, section, stl, vtk};
 use moldloft_model::Extent;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{ArrayShape, Scalar, Value, Vectors};
 use moldloft_syntax::sdl::ExprId;
-use std::fmt::Write;
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
@@ -56,17 +55,21 @@ fn variant(words: &str) -> Result<Variant, Diagnostic> {
     Ok(v)
 }
 
-fn lattice<T: Real>(a: &Vectors<T>) -> Lattice {
+fn grid<T: Real>(a: &Vectors<T>) -> StructuredGrid {
     let [m, n] = match a.shape {
         ArrayShape::Row(n) => [n, 1],
         ArrayShape::Grid(m, n) => [m, n],
     };
     let plane = |c: usize| (0..m * n).map(|k| a.planes[c][k % m * n + k / m].re() + 0.0).collect();
-    Lattice { size: [m, n, 1], planes: [plane(0), plane(1), plane(2)], iblank: None }
+    StructuredGrid { size: [m, n, 1], planes: [plane(0), plane(1), plane(2)], iblank: None }
 }
 
 /// The block, if all of its points are finite: files with others are of no use to their readers.
-fn finite(block: Lattice, shape: ArrayShape, written: &str) -> Result<Lattice, Diagnostic> {
+fn finite(
+    block: StructuredGrid,
+    shape: ArrayShape,
+    written: &str,
+) -> Result<StructuredGrid, Diagnostic> {
     let bad = |k: &usize| block.planes.iter().any(|plane| !plane[*k].is_finite());
     let Some(k) = (0..block.count()).find(bad) else { return Ok(block) };
     let [ni, ..] = block.size;
@@ -112,7 +115,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let at_name = m.program[given[0]].span;
         let mut words: Arc<str> = "".into();
         let mut words_at = at_name;
-        let mut blocks: Vec<Lattice> = Vec::new();
+        let mut blocks: Vec<StructuredGrid> = Vec::new();
         let mut names: Vec<String> = Vec::new();
         for (k, &arg) in given[1..].iter().enumerate() {
             let span = m.program[arg].span;
@@ -122,7 +125,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Value::Text(text) if k == 0 => (words, words_at) = (text.clone(), span),
                 Value::Vectors(a) => {
                     let written = m.program.slice(span).trim().to_string();
-                    blocks.push(finite(lattice(a), a.shape, &written).map_err(|d| d.at(span))?);
+                    blocks.push(finite(grid(a), a.shape, &written).map_err(|d| d.at(span))?);
                     names.push(written);
                 }
                 Value::Numbers(a) if name == "write_p3d" && !blocks.is_empty() => {
@@ -181,13 +184,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         block.iblank = Some(block.iblank.take().unwrap_or_else(all));
                     }
                 }
-                let bytes = plot3d_any::write(&blocks, v).map_err(|e| at(cannot(e)))?;
+                let bytes = plot3d::write(&blocks, v).map_err(|e| at(cannot(e)))?;
                 self.env.files.put(&path, bytes).map_err(at)
             }
             "write_vts" => {
                 nothing_of(&words, "")?;
                 let folder = path.rfind('/').map_or("", |k| &path[..=k]);
-                let files = write_vts(&blocks, stem(&path)).map_err(|e| at(cannot(e)))?;
+                let files = vtk::grid_files(&blocks, stem(&path)).map_err(|e| at(cannot(e)))?;
                 for file in files {
                     let name = format!("{folder}{}", file.name);
                     self.env.files.put(&name, file.bytes).map_err(at)?;
@@ -196,7 +199,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             "write_stl" => {
                 let flip = nothing_of(&words, "flip")?;
-                let bytes = write_stl(&blocks, stem(&path), flip).map_err(|e| at(cannot(e)))?;
+                let bytes =
+                    stl::write_grids(&blocks, stem(&path), flip).map_err(|e| at(cannot(e)))?;
                 self.env.files.put(&path, bytes).map_err(at)
             }
             "write_cgns" => {
@@ -206,24 +210,18 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return Err(at(Diagnostic::error("cannot-write", message)
                         .expected("surfaces of two lines and more each way")));
                 }
-                let bytes = plot3d_any::write(&blocks, Variant::default());
+                let bytes = plot3d::write(&blocks, Variant::default());
                 let bytes = bytes.map_err(|e| at(cannot(e)))?;
                 self.env.files.put(&path, bytes).map_err(at)?;
                 self.env.files.for_cgns(&path, names).map_err(at)
             }
             _ => {
                 nothing_of(&words, "")?;
-                let mut text = String::from("x,y,z\n");
-                for block in &blocks {
-                    for k in 0..block.planes[0].len() {
-                        let [x, y, z] = [0, 1, 2].map(|c| block.planes[c][k]);
-                        if ![x, y, z].iter().all(|x| x.is_finite()) {
-                            return Err(at(cannot("a point is not finite")));
-                        }
-                        writeln!(text, "{x:?},{y:?},{z:?}").expect("texts take all");
-                    }
+                let rows: Vec<Vec3> = blocks.iter().flat_map(StructuredGrid::points).collect();
+                if !rows.iter().all(|p| p.is_finite()) {
+                    return Err(at(cannot("a point is not finite")));
                 }
-                self.env.files.put(&path, text.into_bytes()).map_err(at)
+                self.env.files.put(&path, points::write_csv(&rows, 3).into_bytes()).map_err(at)
             }
         }
     }
@@ -241,7 +239,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let unreadable = |e: &dyn std::fmt::Display| {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
         };
-        let (blocks, _) = plot3d_any::read(&bytes).map_err(|e| unreadable(&e))?;
+        let (blocks, _) = plot3d::read(&bytes).map_err(|e| unreadable(&e))?;
         let number = match given.get(1) {
             Some(&arg) => self.whole(m, arg)? as usize,
             None => 1,
@@ -269,7 +267,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
         };
         let points = match name {
-            "read_points" => section::read_points(&bytes).map_err(|e| unreadable(&e))?,
+            "read_points" => points::read(&bytes).map_err(|e| unreadable(&e))?.rows,
             _ => section::read_aerofoil(&bytes).map_err(|e| unreadable(&e))?.points,
         };
         let points: Vec<Vec3<T>> = points.into_iter().map(Vec3::lifted).collect();

@@ -9,6 +9,7 @@ use moldloft_field::{Primitive, field_value, primitive_of, set_of, set_value};
 use moldloft_model::{Declaration, Extent, Failure};
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
+use moldloft_registry::export::field_id;
 use moldloft_registry::{Array, Class, Fault, Head, Scalar, Value};
 use moldloft_syntax::sdl::{BinaryOp, Declarator, StmtId, StmtKind, Symbol, Type};
 use std::sync::Arc;
@@ -120,7 +121,7 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
             .expected("a number, a row of numbers or a field")
             .found("a set")
             .help("apply it to the field, then make the set")
-            .in_field(0)));
+            .in_field(field_id(0))));
     }
     let Value::Field(_) = a else { return None };
     let f = primitive_of(a)?;
@@ -136,7 +137,7 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
             return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
                 .expected("of fields abs, sign, sqrt, s_sqrt, sin, cos, exp, min, max, atan2")
                 .found("a field")
-                .in_field(0)));
+                .in_field(field_id(0))));
         }
     })))
 }
@@ -149,7 +150,9 @@ pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result
         match primitive_of(arg) {
             Some(f) => fields.push(f),
             None => {
-                return Some(Err(Fault::wrong_class(Class::Field, arg.class()).in_field(k)));
+                return Some(Err(
+                    Fault::wrong_class(Class::Field, arg.class()).in_field(field_id(k))
+                ));
             }
         }
     }
@@ -166,7 +169,7 @@ pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result
             return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
                 .expected("numbers or rows of numbers")
                 .found("a field")
-                .in_field(at)));
+                .in_field(field_id(at))));
         }
     })))
 }

@@ -1,12 +1,10 @@
 //! Numbers of model files: variables, formulas, and formulas in columns.
 
-use crate::model_file::names::{bare, plain_name, words};
+use crate::model_file::names::{bare, words};
 use crate::model_file::{Outcome, Producer, Sorted, Trouble, wrong};
-use crate::source::env::{Binding, Bound, Environment, Param};
-use crate::source::module::{Module, Modules};
+use crate::source::env::{Binding, Bound, Param};
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_model::Graph;
 use moldloft_registry::{Scalar, Value};
 use moldloft_syntax::model_file::{Field as Written, FieldKind, Object as Line};
 

@@ -51,7 +51,7 @@ impl<T: Real> Build<T> for Model<T> {
             return Err(Fault::new("unknown-plane", format!("there is no symmetry \"{letters}\""))
                 .expected("the letters of the mirror planes, such as \"y\" or \"xy\"")
                 .found(format!("\"{letters}\""))
-                .in_field(0));
+                .in_field(Self::SYMMETRY));
         }
         let lines = self.lines.unwrap_or_default();
         let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);

@@ -469,9 +469,9 @@ impl ModelFileSource {
     pub fn fault_span<T: Scalar>(&self, object: &Object<T>, fault: &Fault) -> Option<Span> {
         let line = self.lines.get(object.origin as usize)?;
         let whole = Some(line.entity.to(line.name));
-        let Some(at) = fault.place else { return whole };
+        let Some(field) = fault.field() else { return whole };
         let sorted = self.sorted_as(&object.row, line);
-        self.place(&sorted, at.field, at.item).or(whole)
+        self.place(&sorted, field, fault.item()).or(whole)
     }
 
     /// Where an object is declared.
@@ -869,12 +869,12 @@ impl<T: Scalar> Producer<'_, '_, T> {
     /// The diagnostic of arguments that do not fit.
     fn misfit(&self, line: &Line, sorted: &Sorted, fault: &Fault) -> Diagnostic {
         let source = self.source;
-        let at = fault.place.and_then(|p| source.place(sorted, p.field, p.item));
+        let at = fault.field().and_then(|field| source.place(sorted, field, fault.item()));
         let mut diagnostic =
             fault_location::unplaced(fault).at(at.unwrap_or(line.entity.to(line.name)));
         if fault.id == "wrong-class"
-            && let (Some(place), Some(row)) = (fault.place, &sorted.row)
-            && let Some(field) = row.fields.get(place.field)
+            && let (Some(at), Some(row)) = (fault.field(), &sorted.row)
+            && let Some(field) = row.fields.get(at)
         {
             diagnostic.message = format!("`{}`: {}", field.name, diagnostic.message);
         }

@@ -2,7 +2,7 @@
 
 use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_registry::{Fault, Row, Scalar, Value};
+use moldloft_registry::{Argument, Fault, Row};
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
 
 /// The fault as a diagnostic without a place.
@@ -35,26 +35,25 @@ pub fn diagnostic(
 fn span(m: &Module, args: List<Arg>, row: &Row, positional: usize, fault: &Fault) -> Option<Span> {
     let place = fault.place?;
     let args = &m.program[args];
-    let expr = if place.field >= row.fields.len() {
-        // Too many positional arguments, or a named one by number.
-        let named: Vec<&Arg> = args.iter().filter(|a| a.name.is_some()).collect();
-        if fault.id == "too-many-arguments" {
-            args.get(row.fields.len())?.value
-        } else {
-            let arg = named.get(place.field - row.fields.len())?;
+    let expr = match place.argument {
+        Argument::Extra => args.get(row.fields.len())?.value,
+        Argument::Named(k) => {
+            let arg = args.iter().filter(|a| a.name.is_some()).nth(k)?;
             if fault.id == "unknown-argument" {
                 return arg.name.map(|n| n.span);
             }
             arg.value
         }
-    } else {
-        // An item of a list that was given as so many arguments is an argument of its own.
-        let spread = row.fields[place.field].variadic && positional > place.field + 1;
-        let at = place.field + place.item.filter(|_| spread).unwrap_or(0);
-        if let Some(arg) = args.iter().filter(|a| a.name.is_none()).nth(at).filter(|_| spread) {
-            arg.value
-        } else {
-            argument(m, args, row, positional, place.field)?
+        Argument::Field(field) => {
+            let field = field.position();
+            // An item of a list that was given as so many arguments is an argument of its own.
+            let spread = row.fields.get(field)?.variadic && positional > field + 1;
+            let at = field + place.item.filter(|_| spread).unwrap_or(0);
+            if let Some(arg) = args.iter().filter(|a| a.name.is_none()).nth(at).filter(|_| spread) {
+                arg.value
+            } else {
+                argument(m, args, row, positional, field)?
+            }
         }
     };
     let item = place.item.and_then(|k| item(m, expr, k));

@@ -1,13 +1,11 @@
 //! Structured grids as files hold them: sizes and component planes, the first index fastest.
 
-use crate::vtk::NamedFile;
-use crate::{WriteError, stl, vtk};
-use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
+use crate::WriteError;
 use moldloft_num::Vec3;
 
 /// A structured block of `size` points, a surface when the third is 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lattice {
+pub struct StructuredGrid {
     /// Points along i, j and k.
     pub size: [usize; 3],
     /// All x, all y, all z, i running fastest. A plane grid has z = 0.
@@ -16,7 +14,7 @@ pub struct Lattice {
     pub iblank: Option<Vec<i32>>,
 }
 
-impl Lattice {
+impl StructuredGrid {
     /// The surface of points (i, j) at `i * n + j`, as arrays of the language and of NumPy have them.
     ///
     /// # Panics
@@ -36,6 +34,12 @@ impl Lattice {
     pub fn at(&self, [i, j, k]: [usize; 3]) -> Vec3 {
         let at = (k * self.size[1] + j) * self.size[0] + i;
         Vec3::of(self.planes[0][at], self.planes[1][at], self.planes[2][at])
+    }
+
+    /// All points, i fastest, then j.
+    pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let [x, y, z] = &self.planes;
+        x.iter().zip(y).zip(z).map(|((x, y), z)| Vec3::of(*x, *y, *z))
     }
 
     /// Layer k as points (i, j) at `i * n + j`.
@@ -63,53 +67,14 @@ impl Lattice {
     }
 }
 
-/// The grids as `.vts` files: `stem.vts` for one; for several `stem.vtm`, which is first and names the
-/// others.
-///
-/// # Errors
-/// No grids; coordinates that are not finite.
-pub fn write_vts(blocks: &[Lattice], stem: &str) -> Result<Vec<NamedFile>, WriteError> {
-    Lattice::check(blocks, f64::MAX)?;
-    Ok(vtk::lattices(blocks, stem))
-}
-
-/// The surfaces as one binary STL. Quads are split along their shorter diagonal; triangles without
-/// area at poles are dropped. Facets face along r_i x r_j, or against it when `flip`.
-///
-/// # Errors
-/// No grids; blocks that are no surfaces; coordinates that are not finite in single precision.
-pub fn write_stl(blocks: &[Lattice], name: &str, flip: bool) -> Result<Vec<u8>, WriteError> {
-    Lattice::check(blocks, f64::from(f32::MAX))?;
-    let cannot = |what| WriteError::CannotHold { format: "STL", what };
-    let mut builder = TopologyBuilder::new();
-    let mut positions: Vec<Vec3> = Vec::new();
-    for (number, block) in blocks.iter().enumerate() {
-        let [m, n, k] = block.size;
-        if k != 1 || m < 2 || n < 2 {
-            return Err(cannot("grids other than surfaces of two lines and more each way"));
-        }
-        let first = u32::try_from(positions.len())
-            .ok()
-            .filter(|first| first.checked_add((m * n) as u32).is_some())
-            .ok_or(WriteError::TooLarge { what: "points", count: positions.len() })?;
-        positions.extend(block.layer(0));
-        let large = |_| WriteError::TooLarge { what: "points", count: m * n };
-        builder.add_vertices(m * n).map_err(large)?;
-        let vertices = (first..first + (m * n) as u32).collect();
-        let info = PatchInfo::new(format!("grid {}", number + 1));
-        builder.add_block(info, m, n, vertices, flip).map_err(large)?;
-    }
-    let mesh = Mesh::new(builder.build().into(), positions);
-    let mesh = mesh.map_err(|_| WriteError::TooLarge { what: "points", count: 0 })?;
-    stl::write(&mesh, name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{stl, vtk};
+    use moldloft_mesh::Mesh;
 
     /// A half body of revolution with a nose, 60 by 20.
-    fn body() -> Lattice {
+    fn body() -> StructuredGrid {
         let at = |k: usize| {
             let (x, a) = ((k / 20) as f64 / 59.0, (k % 20) as f64 * std::f64::consts::PI / 19.0);
             let r = 0.3 * libm::sqrt(x);
@@ -117,16 +82,16 @@ mod tests {
             Vec3::of(3.0 * x, r * libm::cos(a), r * libm::sin(a))
         };
         let points: Vec<Vec3> = (0..1200).map(at).collect();
-        Lattice::surface(60, 20, &points)
+        StructuredGrid::surface(60, 20, &points)
     }
 
     #[test]
     fn a_body_as_stl_without_the_triangles_of_its_nose() {
-        let bytes = write_stl(&[body()], "body", false).unwrap();
+        let bytes = stl::write_grids(&[body()], "body", false).unwrap();
         assert_eq!(bytes.len(), 84 + 50 * 2223);
         let back = stl::read(&bytes).unwrap();
         assert_eq!(back.faces().len(), 2223);
-        let flipped = stl::read(&write_stl(&[body()], "body", true).unwrap()).unwrap();
+        let flipped = stl::read(&stl::write_grids(&[body()], "body", true).unwrap()).unwrap();
         let sum = |mesh: &Mesh| -> Vec3 {
             mesh.faces().iter().fold(Vec3::zero(), |sum, face| {
                 let [a, b, c, _] = face.map(|v| mesh.positions()[v as usize]);
@@ -136,7 +101,7 @@ mod tests {
         assert!((sum(&back) + sum(&flipped)).norm() < 1e-9 * sum(&back).norm());
         let mut deep = body();
         deep.size = [30, 20, 2];
-        assert!(matches!(write_stl(&[deep], "", false), Err(WriteError::CannotHold { .. })));
+        assert!(matches!(stl::write_grids(&[deep], "", false), Err(WriteError::CannotHold { .. })));
     }
 
     #[test]
@@ -144,11 +109,11 @@ mod tests {
         let b = body();
         assert_eq!(b.at([59, 19, 0]), b.layer(0)[1199]);
         assert_eq!(b.planes[0][59], 3.0);
-        let files = write_vts(std::slice::from_ref(&b), "body").unwrap();
+        let files = vtk::grid_files(std::slice::from_ref(&b), "body").unwrap();
         assert_eq!((files.len(), files[0].name.as_str()), (1, "body.vts"));
         let text = String::from_utf8_lossy(&files[0].bytes).into_owned();
         assert!(text.contains("WholeExtent=\"0 59 0 19 0 0\""));
-        assert_eq!(write_vts(&[b.clone(), b], "two").unwrap()[0].name, "two.vtm");
-        assert!(matches!(write_vts(&[], "none"), Err(WriteError::NoGrid { .. })));
+        assert_eq!(vtk::grid_files(&[b.clone(), b], "two").unwrap()[0].name, "two.vtm");
+        assert!(matches!(vtk::grid_files(&[], "none"), Err(WriteError::NoGrid { .. })));
     }
 }

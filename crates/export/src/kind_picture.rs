@@ -1,4 +1,4 @@
-//! Pictures for the reference: an object among those that it is made of.
+//! Pictures for the reference: the objects of one kind among those that they are made of.
 
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
@@ -26,7 +26,7 @@ const PANELS: usize = 8;
 ///
 /// # Errors
 /// An impossible size; a model without panels that can be made.
-pub fn portrait(
+pub fn kind_picture(
     document: &mut Document,
     kind: &str,
     width: usize,
