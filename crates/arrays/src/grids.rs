@@ -435,7 +435,8 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             stop: stop(&self.stop, Self::STOP)?,
         };
         let marched = if is_curve {
-            let Points(curve) = Points::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+            let Points(curve) =
+                Points::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             let support: Box<dyn Support<T>> = match &self.on {
                 Some(surface) => {
                     let side = self.normal.map(|normal| normal.re());
@@ -458,7 +459,8 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
                     .expected("a curve to march from")
                     .in_field(Self::ON));
             }
-            let GridArg(grid) = GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+            let GridArg(grid) =
+                GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             hyperbolic_until(&grid, &options, &context.cancel)
         };
         let marched = marched.map_err(|error| match error {
@@ -609,7 +611,7 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
     }
 }
 
-/// The number of folded cells of a grid.
+/// The number of folded cells of a grid, or of a block given as the list of its layers.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -619,18 +621,25 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
                assert folds(s) == 0;"
 )]
 pub struct Folds<T: Scalar> {
-    /// The grid.
-    s: GridArg<T>,
+    /// The grid, or the layers.
+    s: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        Ok(Value::Number(T::from(folded_cells(&self.s.0).len() as f64)))
+        if let Value::List(layers) = &self.s {
+            let count = crate::volumes::folded(&crate::volumes::volume(layers, Self::S)?);
+            return Ok(Value::Number(T::from(count as f64)));
+        }
+        let GridArg(grid) =
+            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+        Ok(Value::Number(T::from(folded_cells(&grid).len() as f64)))
     }
 }
 
 /// A table of the quality of a grid, to be printed: of each metric the least, mean and greatest
-/// value and the cell that is worst.
+/// value and the cell that is worst; of a block, given as the list of its layers, the figures of
+/// OpenFOAM's checkMesh and the least scaled Jacobian.
 #[derive(Kind)]
 #[kind(
     class = Text,
@@ -640,14 +649,20 @@ impl<T: Scalar> Build<T> for Folds<T> {
                print report(s);"
 )]
 pub struct Report<T: Scalar> {
-    /// The grid.
-    s: GridArg<T>,
+    /// The grid, or the layers.
+    s: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         use std::fmt::Write;
-        let grid = self.s.0.re();
+        if let Value::List(layers) = &self.s {
+            let block = crate::volumes::volume(layers, Self::S)?;
+            return Ok(Value::text(&crate::volumes::report(&block)));
+        }
+        let GridArg(grid) =
+            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+        let grid = grid.re();
         if grid.m.min(grid.n) < 2 {
             return Err(fault(
                 GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },

@@ -26,6 +26,7 @@ mod shape;
 mod spacing;
 mod spline;
 mod value;
+mod volumes;
 
 pub use value::type_name;
 
@@ -124,6 +125,9 @@ pub fn rows() -> Vec<Row> {
         grids::Tfi,
         grids::EllipticGrid,
         grids::HyperbolicGrid,
+        volumes::EllipticBlock,
+        volumes::OGrid,
+        volumes::CGrid,
         grids::QualityOf,
         grids::Folds,
         grids::Report,

@@ -3,8 +3,10 @@
 //! A mask is an array of 0 and 1, as comparisons of arrays give; any number but 0 counts as 1.
 
 use crate::value::{Farray, Numbers, farray, numbers};
-use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, Value};
+use moldloft_num::Vec3;
+use moldloft_registry::{
+    ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, Value,
+};
 
 fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }

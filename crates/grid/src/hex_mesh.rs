@@ -159,10 +159,9 @@ impl Nodes {
         for corner in 0..8 {
             let shift = |k: usize| if corner >> k & 1 == 0 { -t } else { t };
             let key = cell(p + Vec3::of(shift(0), shift(1), shift(2)));
-            if let Some(found) = self.buckets.get(&key) {
-                if let Some(id) = found.iter().find(|id| self.points[**id].distance(p) <= t) {
-                    return *id;
-                }
+            let found = self.buckets.get(&key).into_iter().flatten();
+            if let Some(id) = found.copied().find(|id| self.points[*id].distance(p) <= t) {
+                return id;
             }
         }
         self.points.push(p);

@@ -328,10 +328,10 @@ impl<T: Real> Front<T> for CurveFront<'_, T> {
                 epsilon *= ripe.min(T::one());
             }
             let mut pull = (node.next + node.last - r[k] * T::from(2.0)) * epsilon;
-            pull = pull - ups[k] * pull.dot(ups[k]);
+            pull -= ups[k] * pull.dot(ups[k]);
             let back = pull.dot(e);
             if back.re() < 0.0 {
-                pull = pull - e * back;
+                pull -= e * back;
             }
             system.right[k] = e * h + pull;
             // C^-1 A: symmetric, with the eigenvalues plus and minus h over the length.

@@ -42,7 +42,7 @@ impl<T: Real> System<T> {
         let right = self.right[last] - apply(low, x[last - 1]) - apply(high, x[0]);
         let w = apply(&inverse(&middle), right);
         for (x, border) in x.iter_mut().zip(&border) {
-            *x = *x - apply(border, w);
+            *x -= apply(border, w);
         }
         x.push(w);
         x
@@ -65,7 +65,7 @@ impl<T: Real> System<T> {
             }
             if k > 0 {
                 subtract(&mut middle, &times(low, &upper[k - 1]));
-                right = right - apply(low, x[k - 1]);
+                right -= apply(low, x[k - 1]);
                 if BORDER {
                     subtract(&mut side, &times(low, &border[k - 1]));
                 }
@@ -79,7 +79,7 @@ impl<T: Real> System<T> {
         }
         for k in (0..count.saturating_sub(1)).rev() {
             let next = x[k + 1];
-            x[k] = x[k] - apply(&upper[k], next);
+            x[k] -= apply(&upper[k], next);
             if BORDER {
                 let product = times(&upper[k], &border[k + 1]);
                 subtract(&mut border[k], &product);
@@ -106,30 +106,31 @@ pub(super) fn smoothed<T: Real>(a: &[T], v: &[T], closed: bool) -> Vec<T> {
         let mut right = v[k];
         let mut side = T::zero();
         if closed && k == 0 {
-            side = side - a[k];
+            side -= a[k];
         }
         if closed && k + 1 == count {
-            side = side - a[k];
+            side -= a[k];
         }
         if k > 0 {
-            middle = middle + a[k] * upper[k - 1];
-            right = right + a[k] * x[k - 1];
-            side = side + a[k] * border[k - 1];
+            middle += a[k] * upper[k - 1];
+            right += a[k] * x[k - 1];
+            side += a[k] * border[k - 1];
         }
         x.push(right / middle);
         upper.push(-(a[k] / middle));
         border[k] = side / middle;
     }
     for k in (0..count - 1).rev() {
-        x[k] = x[k] - upper[k] * x[k + 1];
-        border[k] = border[k] - upper[k] * border[k + 1];
+        let (next, side) = (x[k + 1], border[k + 1]);
+        x[k] -= upper[k] * next;
+        border[k] -= upper[k] * side;
     }
     if closed {
         let a = a[n - 1];
         let whole = one + a * 2.0 + a * (border[count - 1] + border[0]);
         let w = (v[n - 1] + a * (x[count - 1] + x[0])) / whole;
         for (x, border) in x.iter_mut().zip(&border) {
-            *x = *x - *border * w;
+            *x -= *border * w;
         }
         x.push(w);
     }

@@ -204,10 +204,10 @@ pub(super) fn settled<T: Real>(
     first: Vec<(f64, f64)>,
 ) -> Result<(Vec<Vec<Vec3<T>>>, MarchReport), GridError> {
     let Outcome { mut layers, steps, rung, failure } = outcome;
-    if let Some(failure) = &failure {
-        if !options.stop.keep {
-            return Err(GridError::March(Box::new(failure.clone())));
-        }
+    if let Some(failure) = &failure
+        && !options.stop.keep
+    {
+        return Err(GridError::March(Box::new(failure.clone())));
     }
     let mut stopped = failure.map(StopReason::Failure);
     let mut worst = Worst::none();

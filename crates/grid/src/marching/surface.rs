@@ -446,7 +446,7 @@ impl<T: Real> Front<T> for SurfaceFront<T> {
             });
             let back = pull.dot(e);
             if back.re() < 0.0 {
-                pull = pull - e * back;
+                pull -= e * back;
             }
             // Rows: r_i . dr = 0, r_j . dr = 0, (r_i x r_j) . dr = V; A and B multiply the derivatives of dr by i
             // and by j. The tangents have the mean lengths of their edges and are at right angles to e.

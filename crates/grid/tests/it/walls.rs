@@ -54,7 +54,7 @@ pub fn naca4(n: usize, camber: f64, at: f64, thickness: f64, sharp: bool) -> Vec
                     + last * x.powi(4));
             let side = if b <= PI { -1.0 } else { 1.0 };
             let (mean, slope) = match camber {
-                c if c == 0.0 => (0.0, 0.0),
+                0.0 => (0.0, 0.0),
                 c if x < at => (c / at / at * (2.0 * at * x - x * x), 2.0 * c / at / at * (at - x)),
                 c => {
                     let whole = (1.0 - at) * (1.0 - at);
