@@ -2,7 +2,7 @@
 
 use crate::value::{Farray, farray};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Scalar, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Scalar, Value};
 use moldloft_spline::distribution::{self, DistributionError};
 
 /// The longest row.
@@ -18,8 +18,8 @@ pub struct Arguments {
 }
 
 /// The fault of a distribution made of these arguments.
-pub fn fault(error: DistributionError, of: Arguments) -> Fault {
-    let fault = Fault::new("no-distribution", error.to_string());
+pub fn fault(error: DistributionError, of: Arguments) -> CallError {
+    let fault = CallError::new("no-distribution", error.to_string());
     match error {
         DistributionError::TooFew { expected, actual } => {
             fault.expected(format!("at least {expected} numbers")).found(actual.to_string())
@@ -50,7 +50,7 @@ pub fn fault(error: DistributionError, of: Arguments) -> Fault {
 fn row<T: Real>(
     row: Result<Vec<T>, DistributionError>,
     [limits, spacings]: [FieldId; 2],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     row.map(farray).map_err(|error| fault(error, Arguments { limits, spacings }))
 }
 
@@ -68,7 +68,7 @@ pub struct Uniform<T: Real> {
 }
 
 impl<T: Real> Build<T> for Uniform<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         row(
             distribution::uniform(self.start, self.end, self.n as usize),
             [Self::START, Self::START],
@@ -91,7 +91,7 @@ pub struct Cosine<T: Real> {
 }
 
 impl<T: Real> Build<T> for Cosine<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         row(distribution::cosine(self.start, self.end, self.n as usize), [Self::START, Self::START])
     }
 }
@@ -120,7 +120,7 @@ pub struct Geometric<T: Real> {
 }
 
 impl<T: Real> Build<T> for Geometric<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         row(
             distribution::geometric(self.start, self.end, self.ds1, self.n as usize),
             [Self::START, Self::DS1],
@@ -155,7 +155,7 @@ pub struct Geometric2<T: Real> {
 }
 
 impl<T: Real> Build<T> for Geometric2<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::geometric2(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -190,7 +190,7 @@ pub struct DSinh<T: Real> {
 }
 
 impl<T: Real> Build<T> for DSinh<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::d_sinh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -225,7 +225,7 @@ pub struct DTanh<T: Real> {
 }
 
 impl<T: Real> Build<T> for DTanh<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::d_tanh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -260,7 +260,7 @@ pub struct DTanhX<T: Real> {
 }
 
 impl<T: Real> Build<T> for DTanhX<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::d_tanhx(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -283,7 +283,7 @@ pub struct Redist<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Redist<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let given = self.given.row().map_err(|fault| fault.in_field(Self::GIVEN))?;
         distribution::redist(&given, self.n as usize)
             .map(farray)

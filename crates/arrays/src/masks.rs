@@ -5,15 +5,15 @@
 use crate::value::{Farray, Numbers, farray, numbers};
 use moldloft_num::Vec3;
 use moldloft_registry::{
-    ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, Value,
+    ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
 };
 
 fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
 }
 
-fn differ(a: ArrayShape, b: ArrayShape, field: FieldId) -> Fault {
-    Fault::new("shapes-differ", format!("shapes differ: {a} and {b}"))
+fn differ(a: ArrayShape, b: ArrayShape, field: FieldId) -> CallError {
+    CallError::new("shapes-differ", format!("shapes differ: {a} and {b}"))
         .expected("equal shapes, or a single value")
         .found(format!("{a} and {b}"))
         .in_field(field)
@@ -49,7 +49,7 @@ impl<T: Scalar> Where<T> {
         value: &Value<T>,
         shape: Option<ArrayShape>,
         field: FieldId,
-    ) -> Result<Choice<T>, Fault> {
+    ) -> Result<Choice<T>, CallError> {
         let fits = |found: ArrayShape| match shape {
             Some(shape) if shape == found => Ok(()),
             Some(shape) => Err(differ(shape, found, field)),
@@ -72,7 +72,7 @@ impl<T: Scalar> Where<T> {
 }
 
 impl<T: Scalar> Build<T> for Where<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (shape, mask) = match &self.mask {
             Numbers::One(x) => {
                 return Ok(if x.re() == 0.0 { self.b } else { self.a });
@@ -92,7 +92,7 @@ impl<T: Scalar> Build<T> for Where<T> {
                 crate::value::vectors(shape, picked(mask, &a, &b))
             }
             _ => {
-                return Err(Fault::new("wrong-class", "numbers and vectors are no choice")
+                return Err(CallError::new("wrong-class", "numbers and vectors are no choice")
                     .expected("numbers in both places, or vectors in both")
                     .in_field(Self::B));
             }
@@ -120,7 +120,7 @@ pub struct Clamp<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Clamp<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let all = [&self.a, &self.low, &self.high];
         let mut shape = None;
         for (field, part) in [Self::A, Self::LOW, Self::HIGH].into_iter().zip(all) {
@@ -142,7 +142,7 @@ impl<T: Scalar> Build<T> for Clamp<T> {
             let [x, low, high] = all.map(|part| at(part, k));
             if low.re() > high.re() {
                 let message = format!("the bounds {} and {} hold nothing", low.re(), high.re());
-                return Err(Fault::new("out-of-range", message)
+                return Err(CallError::new("out-of-range", message)
                     .expected("a lower bound that is not above the upper one")
                     .in_field(Self::HIGH));
             }
@@ -164,7 +164,7 @@ pub struct Any<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Any<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let holds = self.mask.items().iter().any(|x| x.re() != 0.0);
         Ok(Value::Number(T::from(truth(holds))))
     }
@@ -179,7 +179,7 @@ pub struct All<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for All<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let holds = self.mask.items().iter().all(|x| x.re() != 0.0);
         Ok(Value::Number(T::from(truth(holds))))
     }
@@ -199,7 +199,7 @@ pub struct Find<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Find<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let mask = self.mask.row().map_err(|fault| fault.in_field(Self::MASK))?;
         let held = mask.iter().enumerate().filter(|(_, x)| x.re() != 0.0);
         Ok(farray(held.map(|(k, _)| T::from((k + 1) as f64)).collect()))
@@ -220,7 +220,7 @@ pub struct Sort<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Sort<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let mut row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
         row.sort_by(|a, b| a.re().total_cmp(&b.re()));
         Ok(farray(row))
@@ -241,7 +241,7 @@ pub struct CumSum<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for CumSum<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
         let mut sum: Option<T> = None;
         let sums = row.into_iter().map(|x| {
@@ -267,10 +267,10 @@ pub struct Diff<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Diff<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let row = self.a.row().map_err(|fault| fault.in_field(Self::A))?;
         if row.len() < 2 {
-            return Err(Fault::new("too-few-items", "one number has no difference")
+            return Err(CallError::new("too-few-items", "one number has no difference")
                 .expected("at least 2 numbers")
                 .found(row.len().to_string())
                 .in_field(Self::A));
@@ -297,18 +297,21 @@ pub struct Interp<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Interp<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let xs = self.xs.row().map_err(|fault| fault.in_field(Self::XS))?;
         let ys = self.ys.row().map_err(|fault| fault.in_field(Self::YS))?;
         if xs.is_empty() || xs.len() != ys.len() {
             return Err(differ(ArrayShape::Row(xs.len()), ArrayShape::Row(ys.len()), Self::YS));
         }
         if let Some(k) = xs.windows(2).position(|w| !(w[1].re() > w[0].re())) {
-            return Err(Fault::new("not-monotone", format!("element {} does not ascend", k + 2))
-                .expected("numbers that ascend")
-                .found(xs[k + 1].re().to_string())
-                .in_item(k + 1)
-                .in_field(Self::XS));
+            return Err(CallError::new(
+                "not-monotone",
+                format!("element {} does not ascend", k + 2),
+            )
+            .expected("numbers that ascend")
+            .found(xs[k + 1].re().to_string())
+            .in_item(k + 1)
+            .in_field(Self::XS));
         }
         let last = xs.len() - 1;
         let at = |x: T| {

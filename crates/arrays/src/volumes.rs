@@ -7,12 +7,12 @@ use moldloft_grid::{
     elliptic_volume_until, hyperbolic_curve_until,
 };
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, FromValue, Kind, Scalar, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value};
 use std::fmt::Write;
 use std::sync::Arc;
 
 /// The block whose layers a list holds.
-pub fn volume<T: Scalar>(layers: &[Value<T>], field: FieldId) -> Result<VolumeGrid<T>, Fault> {
+pub fn volume<T: Scalar>(layers: &[Value<T>], field: FieldId) -> Result<VolumeGrid<T>, CallError> {
     let mut grids: Vec<SurfaceGrid<T>> = Vec::with_capacity(layers.len());
     for (k, layer) in layers.iter().enumerate() {
         let grid = GridArg::from_value(layer).map_err(|fault| fault.in_item(k).in_field(field))?;
@@ -21,9 +21,12 @@ pub fn volume<T: Scalar>(layers: &[Value<T>], field: FieldId) -> Result<VolumeGr
     let grid = VolumeGrid::from_layers(&grids).map_err(|error| fault(error, field))?;
     if grid.size.iter().any(|n| *n < 2) {
         let [ni, nj, nk] = grid.size;
-        return Err(Fault::new("too-few-items", format!("a block [{ni},{nj},{nk}] has no cells"))
-            .expected("at least 2 points along each index")
-            .in_field(field));
+        return Err(CallError::new(
+            "too-few-items",
+            format!("a block [{ni},{nj},{nk}] has no cells"),
+        )
+        .expected("at least 2 points along each index")
+        .in_field(field));
     }
     Ok(grid)
 }
@@ -109,28 +112,31 @@ pub struct EllipticBlock<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for EllipticBlock<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let grid = volume(&self.layers, Self::LAYERS)?;
         let keep_spacing = match &*self.method {
             "laplace" => false,
             "middlecoff" => true,
             word => {
-                return Err(Fault::new("unknown-word", format!("there is no method \"{word}\""))
-                    .expected("\"laplace\" or \"middlecoff\"")
-                    .found(format!("\"{word}\""))
-                    .in_field(Self::METHOD));
+                return Err(CallError::new(
+                    "unknown-word",
+                    format!("there is no method \"{word}\""),
+                )
+                .expected("\"laplace\" or \"middlecoff\"")
+                .found(format!("\"{word}\""))
+                .in_field(Self::METHOD));
             }
         };
         let mut walls = Vec::new();
         for word in self.walls.split([' ', ',']).filter(|word| !word.is_empty()) {
             let Some(face) = Face::ALL.into_iter().find(|face| face.word() == word) else {
-                return Err(Fault::new("unknown-word", format!("there is no face \"{word}\""))
+                return Err(CallError::new("unknown-word", format!("there is no face \"{word}\""))
                     .expected("\"i1\", \"in\", \"j1\", \"jn\", \"k1\" or \"kn\"")
                     .found(format!("\"{word}\""))
                     .in_field(Self::WALLS));
             };
             let Some(spacing) = self.spacing.filter(|spacing| spacing.re() > 0.0) else {
-                return Err(Fault::new("missing-argument", "walls need a spacing")
+                return Err(CallError::new("missing-argument", "walls need a spacing")
                     .expected("a positive length")
                     .in_field(Self::SPACING));
             };
@@ -163,7 +169,7 @@ impl<T: Scalar> Build<T> for EllipticBlock<T> {
         }
         let turned = folded(&done.grid);
         if turned > 0 {
-            return Err(Fault::new("folded-grid", format!("{turned} cells are folded"))
+            return Err(CallError::new("folded-grid", format!("{turned} cells are folded"))
                 .expected("cells that are not turned over")
                 .found(format!("{turned} folded cells"))
                 .in_field(Self::LAYERS));
@@ -178,9 +184,9 @@ fn closed_section<T: Real>(
     mut points: Vec<Vec3<T>>,
     base: usize,
     field: FieldId,
-) -> Result<Vec<Vec3<T>>, Fault> {
+) -> Result<Vec<Vec3<T>>, CallError> {
     if points.len() < 5 {
-        return Err(Fault::new("too-few-items", "a section has at least 5 points")
+        return Err(CallError::new("too-few-items", "a section has at least 5 points")
             .expected("at least 5 points")
             .found(points.len().to_string())
             .in_field(field));
@@ -188,9 +194,12 @@ fn closed_section<T: Real>(
     let origin = points[0].re();
     let size = points.iter().map(|p| p.re().distance(origin)).fold(0.0, f64::max);
     if points.iter().any(|p| (p.re().z - origin.z).abs() > 1e-9 * size) {
-        return Err(Fault::new("wrong-shape", "the section does not lie in a plane of constant z")
-            .expected("a section in x and y")
-            .in_field(field));
+        return Err(CallError::new(
+            "wrong-shape",
+            "the section does not lie in a plane of constant z",
+        )
+        .expected("a section in x and y")
+        .in_field(field));
     }
     let n = points.len();
     let area: f64 = (0..n)
@@ -233,7 +242,7 @@ fn marched<T: Scalar>(
     ends: Side,
     [s, field]: [FieldId; 2],
     context: &Context,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let heights = heights.row().map_err(|fault| fault.in_field(field))?;
     let options = Hyperbolic::new(heights).with_sides([ends; 4]);
     let marched = hyperbolic_curve_until(curve, &Flat, &options, &context.cancel).map_err(
@@ -271,7 +280,7 @@ pub struct OGrid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for OGrid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let curve = closed_section(self.section.0, self.base, Self::SECTION)?;
         marched(&curve, self.heights, Side::Periodic, [Self::SECTION, Self::HEIGHTS], context)
     }
@@ -305,20 +314,23 @@ pub struct CGrid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for CGrid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let count = self.section.0.len();
         let section = closed_section(self.section.0, 1, Self::SECTION)?;
         if section.len() != count {
             let gap = section[count - 1].re().distance(section[count].re());
-            return Err(Fault::new("edges-apart", format!("the tail is blunt, {gap:.3e} thick"))
-                .expected("a section that ends in its first point")
-                .help("close the tail, or make an O-grid: o_grid(section, heights)")
-                .in_field(Self::SECTION));
+            return Err(CallError::new(
+                "edges-apart",
+                format!("the tail is blunt, {gap:.3e} thick"),
+            )
+            .expected("a section that ends in its first point")
+            .help("close the tail, or make an O-grid: o_grid(section, heights)")
+            .in_field(Self::SECTION));
         }
         let tail = section[0];
         let first = (section[1] - tail).norm();
         if !(self.wake.re() > 0.0) {
-            return Err(Fault::new("out-of-range", "a wake has a length")
+            return Err(CallError::new("out-of-range", "a wake has a length")
                 .expected("a positive length")
                 .found(self.wake.re().to_string())
                 .in_field(Self::WAKE));
@@ -326,7 +338,7 @@ impl<T: Scalar> Build<T> for CGrid<T> {
         let steps =
             moldloft_spline::distribution::geometric(T::zero(), self.wake, first, self.n + 1)
                 .map_err(|_| {
-                    Fault::new(
+                    CallError::new(
                         "out-of-range",
                         "no wake grows from the cell at the tail to that length",
                     )

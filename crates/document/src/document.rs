@@ -198,7 +198,7 @@ impl Document {
         report: bool,
     ) -> Applied {
         let mut found = Vec::new();
-        evaluation.graph.obey(self.cancelled.clone());
+        evaluation.graph.set_cancel_flag(self.cancelled.clone());
         evaluation.graph.keep_in(self.kept.clone());
         let inputs = Inputs {
             overrides: &self.overrides,
@@ -366,7 +366,7 @@ impl Document {
         Ok(remarks.iter().map(|remark| self.told(remark)).collect())
     }
 
-    fn told(&self, remark: &moldloft_panel::Remark) -> Diagnostic {
+    fn told(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
         let mut diagnostic =
             Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
         let object =
@@ -512,7 +512,7 @@ impl Document {
             return Ok(panelled.clone());
         }
         let unplaced =
-            |f: moldloft_registry::Fault| moldloft_lang::source::fault_location::unplaced(&f);
+            |f: moldloft_registry::CallError| moldloft_lang::source::fault_location::unplaced(&f);
         let before = self.panelled.as_ref().map(|(_, p)| p.clone());
         let before = before.as_ref().map(|p| &p.panelling);
         let mut panelling =

@@ -625,6 +625,6 @@ fn shown(value: &Value<f64>) -> String {
             format!("{first}\n\n{}, {}, {}", bounds(0), bounds(1), bounds(2))
         }
         Value::Text(text) => format!("\"{text}\""),
-        other => other.class().a().to_string(),
+        other => other.class().with_article().to_string(),
     }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Random, Sphere, brute, bumpy};
 use moldloft_locate::{
-    NearestCurve, NearestSurface, Status, by_place, nearest_on_curve, nearest_on_surface,
+    LocateStatus, NearestCurve, NearestSurface, by_place, nearest_on_curve, nearest_on_surface,
 };
 use moldloft_num::{Curve, Jet, Order, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineCurve, BSplineSurface, KnotVector};
@@ -212,9 +212,12 @@ fn a_sphere_has_its_closed_form_and_its_centre_is_told() {
     assert!((0..2).all(|k| (a[k] - b[k]).abs() < 1e-9), "{a:?} {b:?}");
     // All points are equally near: one of them comes, in bounded time, with a word of warning.
     let centre = prepared.nearest(&s, s.centre);
-    assert!((centre.distance - 2.0).abs() < 1e-12 && centre.status != Status::Ok, "{centre:?}");
+    assert!(
+        (centre.distance - 2.0).abs() < 1e-12 && centre.status != LocateStatus::Ok,
+        "{centre:?}"
+    );
     for p in [Vec3::of(f64::NAN, 0.0, 0.0), Vec3::of(0.0, f64::INFINITY, 0.0)] {
-        assert_eq!(prepared.nearest(&s, p).status, Status::Diverged);
+        assert_eq!(prepared.nearest(&s, p).status, LocateStatus::Diverged);
     }
 }
 
@@ -252,7 +255,7 @@ fn ties_edges_and_degenerate_shapes_have_their_status() {
     let s = bumpy(6, 2);
     let prepared = NearestSurface::new(&s);
     let beside = prepared.nearest(&s, Vec3::of(-3.0, 1.0, 0.5));
-    assert_eq!((beside.status, beside.at[0]), (Status::EdgeClamped, 0.0));
+    assert_eq!((beside.status, beside.at[0]), (LocateStatus::EdgeClamped, 0.0));
     // A valley run over by its middle plane: two feet.
     let k = KnotVector::clamped_uniform(2, 3).unwrap();
     let line = KnotVector::clamped_uniform(1, 2).unwrap();
@@ -261,7 +264,7 @@ fn ties_edges_and_degenerate_shapes_have_their_status() {
         .flat_map(|&(x, z)| [Vec3::of(x, 0.0, z), Vec3::of(x, 1.0, z)]);
     let valley = BSplineSurface::new(k, line, net.collect(), None).unwrap();
     let found = NearestSurface::new(&valley).nearest(&valley, Vec3::of(0.0, 0.5, 3.0));
-    assert!(matches!(found.status, Status::Multiple { count: 2, .. }), "{found:?}");
+    assert!(matches!(found.status, LocateStatus::Multiple { count: 2, .. }), "{found:?}");
     assert!(found.at[0] < 0.5);
     // A surface that is one point, and one that is a line.
     let at = Vec3::of(1.0, 2.0, 3.0);
@@ -294,7 +297,7 @@ fn curves_agree_with_a_dense_search() {
         assert!(found.distance < dense + 1e-9 && dense < found.distance + 1e-3, "{p:?} {found:?}");
     }
     let lost = prepared.nearest(&c, Vec3::of(0.0, f64::NAN, 0.0));
-    assert_eq!(lost.status, Status::Diverged);
+    assert_eq!(lost.status, LocateStatus::Diverged);
 }
 
 #[test]
@@ -360,12 +363,15 @@ fn above_a_crease_there_is_one_foot() {
             Vec3::of(random.between(0.5, 3.5), random.between(1.9, 2.1), random.between(1.3, 2.0));
         let exact = Vec3::of(p.x, 2.0, 1.0);
         let found = prepared.nearest(&Roof, p);
-        assert!(found.xyz.distance(exact) < 1e-11 && found.status == Status::Ok, "{p:?} {found:?}");
+        assert!(
+            found.xyz.distance(exact) < 1e-11 && found.status == LocateStatus::Ok,
+            "{p:?} {found:?}"
+        );
         for start in [None, Some([exact.x / 4.0, 0.4 + 0.05 * exact.x])] {
             let found = nearest_on_surface(&Roof, p, start);
             let x = Roof.jet(found.at[0], found.at[1], Order::Zero).p;
             assert!(x.distance(exact) < 1e-11, "{p:?} {found:?}");
-            assert_eq!(found.report.status, Status::Ok, "{p:?} {start:?} {found:?}");
+            assert_eq!(found.report.status, LocateStatus::Ok, "{p:?} {start:?} {found:?}");
         }
     }
 }

@@ -7,7 +7,7 @@ use moldloft_locate::roots::{
     all_curve_curve, all_curve_surface, all_on_level, curve_curve, curve_level, curve_surface,
     line_surface,
 };
-use moldloft_locate::{Level, Status, nearest_on_curve, nearest_on_surface};
+use moldloft_locate::{Level, LocateStatus, nearest_on_curve, nearest_on_surface};
 use moldloft_num::{Curve, Order, Surface, Vec3};
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {
@@ -27,34 +27,38 @@ fn nearest_on_a_sphere_lies_towards_its_centre() {
     }
     // From the centre all points are equally near.
     let found = nearest_on_surface(&s, s.centre, Some([0.3, 0.4]));
-    assert!(found.report.status != Status::Ok, "{found:?}");
+    assert!(found.report.status != LocateStatus::Ok, "{found:?}");
 }
 
 #[test]
 fn nearest_from_a_start_stays_near_it_and_an_edge_is_told() {
     let c = Circle { centre: v(0.0, 0.0, 0.0), radius: 1.0 };
     let found = nearest_on_curve(&c, v(3.0, 0.1, 1.0), Some(0.1));
-    assert_eq!(found.report.status, Status::Ok);
+    assert_eq!(found.report.status, LocateStatus::Ok);
     assert!((found.at[0] - (0.1f64 / 3.0).atan() / std::f64::consts::TAU).abs() < 1e-14);
     let l = Line(v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0));
     for start in [None, Some(0.9)] {
         let found = nearest_on_curve(&l, v(2.0, 1.0, 0.0), start);
-        assert_eq!((found.report.status, found.at[0]), (Status::EdgeClamped, 1.0), "{found:?}");
+        assert_eq!(
+            (found.report.status, found.at[0]),
+            (LocateStatus::EdgeClamped, 1.0),
+            "{found:?}"
+        );
         let found = nearest_on_curve(&l, v(0.25, 1.0, 0.0), start);
-        assert_eq!(found.report.status, Status::Ok);
+        assert_eq!(found.report.status, LocateStatus::Ok);
         assert!((found.at[0] - 0.25).abs() < 1e-15);
     }
     // Two feet at the same distance.
     let found =
         nearest_on_curve(&Line(v(-1.0, 0.0, 0.0), v(1.0, 0.0, 0.0)), v(0.0, 0.0, 0.0), None);
-    assert_eq!(found.report.status, Status::Ok);
+    assert_eq!(found.report.status, LocateStatus::Ok);
     let arc = moldloft_spline::BSplineCurve::uniform(
         2,
         vec![v(-1.0, 1.0, 0.0), v(0.0, -1.0, 0.0), v(1.0, 1.0, 0.0)],
     )
     .unwrap();
     let found = nearest_on_curve(&arc, v(0.0, 3.0, 0.0), None);
-    assert!(matches!(found.report.status, Status::Multiple { count: 2, .. }), "{found:?}");
+    assert!(matches!(found.report.status, LocateStatus::Multiple { count: 2, .. }), "{found:?}");
     assert_eq!(found.report.alternatives.len(), 1);
 }
 
@@ -80,18 +84,18 @@ fn a_circle_crosses_a_plane_twice_touches_it_once_or_misses_it() {
     assert!(all.complete && ts.len() == 2, "{all:?}");
     assert!((ts[0] - 1.0 / 6.0).abs() < 1e-14 && (ts[1] - 5.0 / 6.0).abs() < 1e-14, "{ts:?}");
     let found = curve_level(&c, &plane(1.0), Some(0.8)).unwrap();
-    assert_eq!(found.report.status, Status::Ok);
+    assert_eq!(found.report.status, LocateStatus::Ok);
     assert!((found.at[0] - 5.0 / 6.0).abs() < 1e-14);
     let found = curve_level(&c, &plane(1.0), None).unwrap();
-    assert!(matches!(found.report.status, Status::Multiple { count: 2, .. }));
+    assert!(matches!(found.report.status, LocateStatus::Multiple { count: 2, .. }));
     // The start sits at the turning point: Newton fails, subdivision does not.
     let found = curve_level(&c, &plane(1.0), Some(0.5)).unwrap();
-    assert_eq!(found.report.status, Status::Fallback, "{found:?}");
+    assert_eq!(found.report.status, LocateStatus::Fallback, "{found:?}");
     let touch = curve_level(&c, &plane(-2.0), None).unwrap();
-    assert_eq!(touch.report.status, Status::Tangent, "{touch:?}");
+    assert_eq!(touch.report.status, LocateStatus::Tangent, "{touch:?}");
     assert!((touch.at[0] - 0.5).abs() < 1e-6);
     let none = curve_level(&c, &plane(2.5), None).unwrap_err();
-    assert_eq!(none.status, Status::NoSolution);
+    assert_eq!(none.status, LocateStatus::NoSolution);
     let ball = Level::Sphere { centre: v(2.0, 0.0, 0.0), radius: 2.0 };
     assert_eq!(all_on_level(&c, &ball).roots.len(), 2);
 }
@@ -106,17 +110,17 @@ fn a_line_pierces_a_sphere_twice() {
     assert_eq!(ts.len(), 2, "{all:?}");
     assert!((ts[0] - (3.0 - h) / 6.0).abs() < 1e-12 && (ts[1] - (3.0 + h) / 6.0).abs() < 1e-12);
     let top = curve_surface(&l, &s, Some([0.6, 0.2, 0.8])).unwrap();
-    assert!((top.at[0] - ts[1]).abs() < 1e-12 && top.report.status == Status::Ok);
+    assert!((top.at[0] - ts[1]).abs() < 1e-12 && top.report.status == LocateStatus::Ok);
     let near = line_surface(&s, v(0.1, 0.2, 5.0), v(0.0, 0.0, -0.5), None).unwrap();
     assert!((near.at[2] - 2.0 * (5.0 - h)).abs() < 1e-11, "{near:?}");
-    assert!(matches!(near.report.status, Status::Multiple { count: 2, .. }));
+    assert!(matches!(near.report.status, LocateStatus::Multiple { count: 2, .. }));
     let miss = line_surface(&s, v(2.0, 0.0, 5.0), v(0.0, 0.0, 1.0), None).unwrap_err();
-    assert_eq!(miss.status, Status::NoSolution);
+    assert_eq!(miss.status, LocateStatus::NoSolution);
     assert!(miss.residual > 0.5);
     // A tangent line.
     let graze = Line(v(1.0, -3.0, 0.0), v(1.0, 3.0, 0.0));
     let touch = curve_surface(&graze, &s, None).unwrap();
-    assert_eq!(touch.report.status, Status::Tangent, "{touch:?}");
+    assert_eq!(touch.report.status, LocateStatus::Tangent, "{touch:?}");
 }
 
 #[test]

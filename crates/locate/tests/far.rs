@@ -4,7 +4,9 @@
 mod common;
 
 use common::{Circle, Random, Sphere, bumpy};
-use moldloft_locate::{NearestCurve, NearestSurface, Status, nearest_on_curve, nearest_on_surface};
+use moldloft_locate::{
+    LocateStatus, NearestCurve, NearestSurface, nearest_on_curve, nearest_on_surface,
+};
 use moldloft_num::{Curve, Order, Surface, Vec3};
 use moldloft_spline::BSplineCurve;
 
@@ -88,12 +90,12 @@ fn from_the_centre_every_point_will_do() {
     for axis in [0.0, 1.0, 1e6] {
         let p = c.centre + Vec3::of(0.0, 0.0, axis);
         let found = nearest_on_curve(&c, p, None);
-        assert!(found.report.status != Status::Ok, "{:?}", found.report.status);
+        assert!(found.report.status != LocateStatus::Ok, "{:?}", found.report.status);
         let x = c.jet(found.at[0], Order::Zero)[0];
         assert!((x.distance(c.centre) - 2.0).abs() < 1e-12);
     }
     let found = nearest_on_surface(&s, s.centre, None);
-    assert!(found.report.status != Status::Ok, "{:?}", found.report.status);
+    assert!(found.report.status != LocateStatus::Ok, "{:?}", found.report.status);
     let x = s.jet(found.at[0], found.at[1], Order::Zero).p;
     assert!((x.distance(s.centre) - 2.0).abs() < 1e-9);
 }

@@ -24,9 +24,9 @@ const REQUEST_FAILED: i64 = -32803;
 const CONTENT_MODIFIED: i64 = -32801;
 
 /// How long a program may run before it is stopped, so that an endless loop is told soon.
-const PATIENCE: Duration = Duration::from_secs(2);
+const STOP_TIMEOUT: Duration = Duration::from_secs(2);
 /// How long a run may take to notice that it was stopped; then it is left to itself.
-const GRACE: Duration = Duration::from_secs(1);
+const EXIT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Whether more messages are awaited.
 pub enum Next {
@@ -89,7 +89,7 @@ impl Running {
 
     /// When something is to be done about it.
     fn deadline(&self) -> Instant {
-        self.stopped.map_or(self.since + PATIENCE, |stopped| stopped + GRACE)
+        self.stopped.map_or(self.since + STOP_TIMEOUT, |stopped| stopped + EXIT_TIMEOUT)
     }
 }
 
@@ -523,7 +523,7 @@ fn stopped_text() -> String {
     format!(
         "the program was stopped after {} s, so that the editor goes on\n\
          look for a loop whose condition always holds; `moldloft run` gives it more time",
-        PATIENCE.as_secs()
+        STOP_TIMEOUT.as_secs()
     )
 }
 

@@ -1,5 +1,5 @@
 use moldloft_num::Vec3;
-use moldloft_registry::{CallRemark, Context, Fault, Row, Scalar, Value};
+use moldloft_registry::{CallError, CallRemark, Context, Row, Scalar, Value};
 use std::collections::{HashMap, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -42,7 +42,7 @@ impl<T: Scalar> Memo<T> {
         args: Vec<Value<T>>,
         clock: u64,
         context: &Context,
-    ) -> Result<Value<T>, Fault> {
+    ) -> Result<Value<T>, CallError> {
         let print = fingerprint(row, &args);
         let bucket = self.calls.entry(print).or_default();
         let same = |r: &&mut Remembered<T>| {

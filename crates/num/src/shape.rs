@@ -1,5 +1,5 @@
 use crate::jet::{Jet, lift_curve, lift_surface};
-use crate::law::Law;
+use crate::reparametrization::Reparametrization;
 use crate::trace::{Edges, Key, Trace};
 use crate::{Real, Vec3, find_root};
 use std::sync::Arc;
@@ -77,7 +77,7 @@ pub trait Curve<T: Real>: Send + Sync {
 
     /// The law by which its natural parameter was redistributed; `None` when it was not. Images of
     /// curves pass on their original's.
-    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         None
     }
 }

@@ -249,7 +249,7 @@ pub enum Face<T> {
 /// How the points between the layers of a solid are made of theirs: solids whose layers meet and
 /// that follow the same law meet in between, too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Law {
+pub enum LayerLaw {
     /// B-splines of this degree across the layers.
     Blend(usize),
     /// An interpolating spline with ends of this number.
@@ -265,7 +265,7 @@ pub struct Layers<T> {
     /// The surface objects with their edges, in order of w.
     pub surfaces: Vec<(Option<Key>, Edges<T>)>,
     /// What is made of them.
-    pub law: Law,
+    pub law: LayerLaw,
 }
 
 /// What the six faces of a solid run along: u = 0, u = 1, v = 0, v = 1, w = 0, w = 1; the parameters

@@ -657,7 +657,7 @@ fn similar(document: &Document, name: &str) -> Option<String> {
 }
 
 pub(crate) fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr {
-    plain_error(format!("{takes}, but `{name}` is {}", found.class().a()))
+    plain_error(format!("{takes}, but `{name}` is {}", found.class().with_article()))
 }
 
 /// Even parameters along both sides of a grid.

@@ -7,7 +7,9 @@ use crate::work::interruptible_shared;
 use moldloft_locate::branches::{Branches, CutSurface};
 use moldloft_locate::march::{Branch, Crossing, End};
 use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
-use moldloft_locate::{Level, Nearest, NearestCurve, NearestSurface, Roots, Status, by_place};
+use moldloft_locate::{
+    Level, LocateStatus, Nearest, NearestCurve, NearestSurface, Roots, by_place,
+};
 use moldloft_num::{Plane, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
@@ -61,13 +63,13 @@ fn prepared<S: Clone + Sync, P: Send + Sync>(
     made
 }
 
-fn code(status: Status) -> u8 {
+fn code(status: LocateStatus) -> u8 {
     match status {
-        Status::Ok | Status::Fallback => 0,
-        Status::EdgeClamped => 1,
-        Status::Multiple { .. } => 2,
-        Status::Tangent => 3,
-        Status::NoSolution | Status::Diverged => 4,
+        LocateStatus::Ok | LocateStatus::Fallback => 0,
+        LocateStatus::EdgeClamped => 1,
+        LocateStatus::Multiple { .. } => 2,
+        LocateStatus::Tangent => 3,
+        LocateStatus::NoSolution | LocateStatus::Diverged => 4,
     }
 }
 

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
 /// How long a cancelled run may take to notice.
-const PATIENCE: Duration = Duration::from_secs(1);
+const STOP_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Stack of the working thread: that of the main thread on Linux.
 const STACK: usize = 8 << 20;
@@ -63,7 +63,7 @@ fn unseen(
             Err(_) => {
                 if let Err(interrupt) = py.check_signals() {
                     cancel.store(true, Ordering::Relaxed);
-                    let _ = receive(PATIENCE);
+                    let _ = receive(STOP_TIMEOUT);
                     return Err(interrupt);
                 }
             }

@@ -1,7 +1,7 @@
 //! Lists under a name: of numbers, of knots, of objects.
 
 use moldloft_num::Real;
-use moldloft_registry::{Array, Build, Context, Fault, Kind, Value};
+use moldloft_registry::{Array, Build, CallError, Context, Kind, Value};
 use std::sync::Arc;
 
 /// A list of numbers under a name; it stands wherever a list of numbers is asked for.
@@ -18,7 +18,7 @@ pub struct RealList<T: Real> {
 }
 
 impl<T: Real> Build<T> for RealList<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Numbers(Arc::new(Array::row(self.values))))
     }
 }
@@ -36,11 +36,11 @@ pub struct KnotList<T: Real> {
 }
 
 impl<T: Real> Build<T> for KnotList<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let descends = self.values.windows(2).position(|w| w[1].re() < w[0].re());
         if let Some(k) = descends {
             let [before, value] = [self.values[k].re(), self.values[k + 1].re()];
-            return Err(Fault::new("not-monotone", "knots must not descend")
+            return Err(CallError::new("not-monotone", "knots must not descend")
                 .expected(format!("a knot of at least {before}"))
                 .found(value.to_string())
                 .in_item(k + 1)
@@ -67,7 +67,7 @@ pub struct EntityList<T: Real> {
 }
 
 impl<T: Real> Build<T> for EntityList<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let mut all = Vec::with_capacity(self.objects.len());
         for object in self.objects {
             match object {

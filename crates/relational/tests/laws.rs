@@ -175,7 +175,7 @@ fn samples<T: Scalar>(value: &Value<T>) -> Vec<T> {
         }
         Value::Number(x) => return vec![*x],
         // Those of the rim: how many there are inside may change.
-        Value::Mesh(m) => m.points.iter().take(8).copied().collect(),
+        Value::Body(m) => m.points.iter().take(8).copied().collect(),
         other => panic!("no samples of {other:?}"),
     };
     points.into_iter().flat_map(Vec3::to_array).collect()

@@ -440,7 +440,7 @@ fn a_trimmed_plane_has_the_area_of_its_loops() {
         LineSnake zw(z, w);";
     let scene = scene(text);
     let mesh = |name: &str| match scene.value(name) {
-        Value::Mesh(m) => m.clone(),
+        Value::Body(m) => m.clone(),
         _ => panic!("{name}"),
     };
     // 0.5 x 0.6 of 4 x 2.

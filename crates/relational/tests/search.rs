@@ -4,7 +4,7 @@ mod common;
 
 use common::{attempt, fault, run, scene};
 use moldloft_num::{Dual4, Order, Vec3};
-use moldloft_registry::{FoundStatus, Point, Scalar, Value};
+use moldloft_registry::{Point, Scalar, SearchStatus, Value};
 
 /// A quarter of a cylinder of radius 2 about the x axis, from x = 0 to 4: S(u, v).
 const TUBE: &str = "AbsPoint O(0, 0, 0); AbsPoint X(1, 0, 0); Line axis(O, X); AbsPoint A(0, 2, 0);
@@ -19,7 +19,7 @@ fn point(text: &str, name: &str) -> Point<f64> {
     }
 }
 
-fn status(p: &Point<f64>) -> FoundStatus {
+fn status(p: &Point<f64>) -> SearchStatus {
     p.found.as_ref().unwrap().status
 }
 
@@ -31,7 +31,7 @@ fn near(p: Vec3, x: f64, y: f64, z: f64) {
 fn projections_onto_a_cylinder() {
     let p = point(&format!("{TUBE} AbsPoint P(1, 3, 4); ProjMagnet q(P, S);"), "q");
     near(p.xyz, 1.0, 1.2, 1.6);
-    assert_eq!(status(&p), FoundStatus::Ok);
+    assert_eq!(status(&p), SearchStatus::Ok);
     let p = point(&format!("{TUBE} AbsPoint P(1, 1, 4); ProjMagnet q(P, S, \"z=0\");"), "q");
     near(p.xyz, 1.0, 1.0, 3f64.sqrt());
     let p = point(
@@ -44,13 +44,13 @@ fn projections_onto_a_cylinder() {
     // Beyond the edge x = 4.
     let p = point(&format!("{TUBE} AbsPoint P(5, 3, 4); ProjMagnet q(P, S);"), "q");
     near(p.xyz, 4.0, 1.2, 1.6);
-    assert_eq!(status(&p), FoundStatus::EdgeClamped);
+    assert_eq!(status(&p), SearchStatus::EdgeClamped);
     let p = point(&format!("{TUBE} AbsPoint P(5, 3, 4); ProxMagnet q(P, S);"), "q");
-    assert_eq!(status(&p), FoundStatus::Ok);
+    assert_eq!(status(&p), SearchStatus::Ok);
     // Along y the line goes through both sides: the nearer is taken, the other told.
     let p = point(&format!("{TUBE} AbsPoint P(1, 9, 1); ProjMagnet q(P, S, \"y=0\");"), "q");
     near(p.xyz, 1.0, 3f64.sqrt(), 1.0);
-    assert!(matches!(status(&p), FoundStatus::Multiple { count: 2, .. }), "{p:?}");
+    assert!(matches!(status(&p), SearchStatus::Multiple { count: 2, .. }), "{p:?}");
     assert_eq!(p.found.as_ref().unwrap().alternatives.len(), 1);
     let far = format!(
         "{TUBE} AbsPoint P(1, 9, 1); AbsMagnet k(S, 0.2, 0.9); ProjMagnet q(P, k, \"y=0\");"
@@ -62,10 +62,10 @@ fn projections_onto_a_cylinder() {
 fn beads_on_an_arc() {
     let arc = "AbsPoint A(2, 0, 0); AbsPoint B(0, 2, 0); AbsPoint C(-2, 0, 0); Arc c(A, B, C);";
     let p = point(&format!("{arc} YPlane y(1); IntBead b(c, y);"), "b");
-    assert!(matches!(status(&p), FoundStatus::Multiple { count: 2, .. }), "{p:?}");
+    assert!(matches!(status(&p), SearchStatus::Multiple { count: 2, .. }), "{p:?}");
     let p = point(&format!("{arc} YPlane y(1); AbsBead a(c, 0.9); IntBead b(a, y);"), "b");
     near(p.xyz, -(3f64.sqrt()), 1.0, 0.0);
-    assert_eq!(status(&p), FoundStatus::Ok);
+    assert_eq!(status(&p), SearchStatus::Ok);
     let p = point(&format!("{arc} AbsBead a(c, 0.1); IntBead b(a, \"y=0\", {{0, 1, 7}});"), "b");
     near(p.xyz, 3f64.sqrt(), 1.0, 0.0);
     let p = point(&format!("{arc} XYZBead b(c, \"x\", 1);"), "b");
@@ -82,7 +82,7 @@ fn beads_on_an_arc() {
     near(p.xyz, 0.0, 2.0, 0.0);
     // A plane that touches.
     let p = point(&format!("{arc} YPlane y(2); IntBead b(c, y);"), "b");
-    assert_eq!(status(&p), FoundStatus::Tangent);
+    assert_eq!(status(&p), SearchStatus::Tangent);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn curves_through_surfaces() {
     for name in ["b", "k", "x"] {
         let p = point(&text, name);
         near(p.xyz, 1.0, 1.0, 3f64.sqrt());
-        assert_eq!(status(&p), FoundStatus::Ok);
+        assert_eq!(status(&p), SearchStatus::Ok);
     }
     let p = point(&format!("{TUBE} AbsMagnet k(S, 0.25, 0.5); TanMagnet q(k, 0.5, 0);"), "q");
     near(p.xyz, 1.5, 0.0, 2.0);
@@ -424,12 +424,12 @@ fn several_branches_are_told_and_another_can_be_chosen() {
     let both = format!("{PIPE} ZPlane z(1); IntSnake c(S, z);");
     let c = curve(&scene(&both), "c");
     let found = c.found.as_ref().unwrap();
-    assert!(matches!(found.status, FoundStatus::Multiple { count: 2, .. }), "{found:?}");
+    assert!(matches!(found.status, SearchStatus::Multiple { count: 2, .. }), "{found:?}");
     assert!(found.advice.contains("magnet near it"));
     let [u, v] = found.alternatives[0].0[..] else { panic!("{found:?}") };
     let other = format!("{PIPE} ZPlane z(1); AbsMagnet k(S, {u}, {v}); IntSnake c(k, z);");
     let other = curve(&scene(&other), "c");
-    assert_eq!(other.found.as_ref().unwrap().status, FoundStatus::Ok);
+    assert_eq!(other.found.as_ref().unwrap().status, SearchStatus::Ok);
     let (p, q) = (c.end(0.5), other.end(0.5));
     assert!((p.y + q.y).abs() < 1e-11 && (p.y - q.y).abs() > 3.0, "{p:?} {q:?}");
     // A touch is no intersection, and is told.
@@ -448,11 +448,11 @@ fn three_shapes_have_common_points() {
     near(p.xyz, 1.5, -2.0, 3.0);
     let p = point(&format!("{TUBE} XPlane x(1.5); YPlane y(1); IntPoint q(S, x, y);"), "q");
     near(p.xyz, 1.5, 1.0, 3f64.sqrt());
-    assert_eq!(status(&p), FoundStatus::Ok);
+    assert_eq!(status(&p), SearchStatus::Ok);
     // The whole tube: two, of which a magnet or a point chooses.
     let two = format!("{PIPE} XPlane x(1.5); YPlane y(1);");
     let p = point(&format!("{two} IntPoint q(x, S, y);"), "q");
-    assert!(matches!(status(&p), FoundStatus::Multiple { count: 2, .. }), "{p:?}");
+    assert!(matches!(status(&p), SearchStatus::Multiple { count: 2, .. }), "{p:?}");
     let p = point(&format!("{two} AbsPoint n(0, 0, -5); IntPoint q(x, S, y, n);"), "q");
     near(p.xyz, 1.5, 1.0, -(3f64.sqrt()));
     let p = point(&format!("{two} AbsMagnet n(S, 0.4, 0.2); IntPoint q(x, n, y);"), "q");
@@ -465,7 +465,7 @@ fn three_shapes_have_common_points() {
     let h = 2f64.sqrt();
     near(p.xyz, h, h, h);
     // Only x > 0 is on the first tube: four common points.
-    assert!(matches!(status(&p), FoundStatus::Multiple { count: 4, .. }), "{:?}", p.found);
+    assert!(matches!(status(&p), SearchStatus::Multiple { count: 4, .. }), "{:?}", p.found);
     assert_eq!(
         fault("XPlane x(1); XPlane y(2); ZPlane z(3); IntPoint q(x, y, z);").id,
         "parallel-planes"

@@ -1,4 +1,4 @@
-use crate::even::{atanc_of_sq, cos_of_sq, sinc_of_sq};
+use crate::even_functions::{atanc_of_sq, cos_of_sq, sinc_of_sq};
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3, curve_jet_of};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;

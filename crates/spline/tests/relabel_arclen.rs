@@ -5,25 +5,26 @@ mod common;
 use moldloft_num::{Curve, Dual, Order, Real, Uni2, Vec3};
 use moldloft_spline::*;
 
-fn all() -> Vec<Relabel<f64>> {
+fn all() -> Vec<ReparametrizationForm<f64>> {
     let mut laws = vec![
-        Relabel::identity(),
-        Relabel::spline(3, vec![0.0, 0.1, 0.2, 0.9, 1.0]).unwrap(),
-        Relabel::spline(1, vec![0.0, 0.4, 1.0]).unwrap(),
+        ReparametrizationForm::identity(),
+        ReparametrizationForm::spline(3, vec![0.0, 0.1, 0.2, 0.9, 1.0]).unwrap(),
+        ReparametrizationForm::spline(1, vec![0.0, 0.4, 1.0]).unwrap(),
         // The ends may stand still, the inside may not.
-        Relabel::spline(3, vec![0.0, 0.0, 0.4, 1.0, 1.0]).unwrap(),
-        Relabel::table(vec![0.0, 1.0], vec![0.0, 1.0]).unwrap(),
-        Relabel::table(vec![0.0, 0.1, 0.5, 0.6, 1.0], vec![0.0, 0.5, 0.51, 0.9, 1.0]).unwrap(),
+        ReparametrizationForm::spline(3, vec![0.0, 0.0, 0.4, 1.0, 1.0]).unwrap(),
+        ReparametrizationForm::table(vec![0.0, 1.0], vec![0.0, 1.0]).unwrap(),
+        ReparametrizationForm::table(vec![0.0, 0.1, 0.5, 0.6, 1.0], vec![0.0, 0.5, 0.51, 0.9, 1.0])
+            .unwrap(),
     ];
     for q in [1e-3, 0.5, 1.0, 1.0 + 1e-9, 20.0] {
-        laws.push(Relabel::geometric(q).unwrap());
+        laws.push(ReparametrizationForm::geometric(q).unwrap());
     }
     for dense in [Dense::Both, Dense::Start, Dense::End] {
         for strength in [0.0, 1e-6, 2.0, 9.0] {
-            laws.push(Relabel::tanh(dense, strength).unwrap());
+            laws.push(ReparametrizationForm::tanh(dense, strength).unwrap());
         }
         for weight in [0.0, 0.5, 1.0] {
-            laws.push(Relabel::cosine(dense, weight).unwrap());
+            laws.push(ReparametrizationForm::cosine(dense, weight).unwrap());
         }
     }
     laws
@@ -54,10 +55,13 @@ fn relabels_are_monotone_from_zero_to_one_with_right_slopes() {
 
 #[test]
 fn dense_ends_are_where_they_are_said_to_be() {
-    let slopes = |law: &Relabel<f64>| [0.0, 1.0].map(|t| law.at(Uni2::parameter(t)).t);
-    type Make = fn(Dense) -> Relabel<f64>;
-    let makers: [Make; 2] =
-        [|d| Relabel::cosine(d, 1.0).unwrap(), |d| Relabel::tanh(d, 3.0).unwrap()];
+    let slopes =
+        |law: &ReparametrizationForm<f64>| [0.0, 1.0].map(|t| law.at(Uni2::parameter(t)).t);
+    type Make = fn(Dense) -> ReparametrizationForm<f64>;
+    let makers: [Make; 2] = [
+        |d| ReparametrizationForm::cosine(d, 1.0).unwrap(),
+        |d| ReparametrizationForm::tanh(d, 3.0).unwrap(),
+    ];
     for make in makers {
         let [start, end] = slopes(&make(Dense::Start));
         assert!(start < 0.1 && end > 1.5);
@@ -66,7 +70,7 @@ fn dense_ends_are_where_they_are_said_to_be() {
         let [start, end] = slopes(&make(Dense::Both));
         assert!(start < 0.4 && end < 0.4);
     }
-    let [start, end] = slopes(&Relabel::geometric(5.0).unwrap());
+    let [start, end] = slopes(&ReparametrizationForm::geometric(5.0).unwrap());
     assert!((end / start - 5.0).abs() < 1e-13);
 }
 
@@ -74,23 +78,32 @@ fn dense_ends_are_where_they_are_said_to_be() {
 fn relabels_move_with_their_numbers() {
     let q = Dual::<1>::seeded(1.0, 0);
     // d/dq of (q^t - 1)/(q - 1) at q = 1 is t (t - 1) / 2.
-    let slope = Relabel::geometric(q).unwrap().at(Dual::from(0.3)).eps[0];
+    let slope = ReparametrizationForm::geometric(q).unwrap().at(Dual::from(0.3)).eps[0];
     assert!((slope + 0.105).abs() < 1e-15);
     let values = [Dual::<1>::from(0.0), Dual::seeded(0.4, 0), Dual::from(1.0)];
-    let value = Relabel::spline(1, values.to_vec());
+    let value = ReparametrizationForm::spline(1, values.to_vec());
     assert_eq!(value.unwrap().at(Dual::from(0.25)).eps[0], 0.5);
 }
 
 #[test]
 fn refuses_what_is_not_monotone() {
     let back = RelabelError::NotMonotone { index: 2, before: 0.6, value: 0.5 };
-    assert_eq!(Relabel::spline(2, vec![0.0, 0.6, 0.5, 1.0]), Err(back));
+    assert_eq!(ReparametrizationForm::spline(2, vec![0.0, 0.6, 0.5, 1.0]), Err(back));
     let ends = RelabelError::Ends { first: 0.1, last: 1.0 };
-    assert_eq!(Relabel::spline(1, vec![0.1, 1.0]), Err(ends));
-    assert!(matches!(Relabel::spline(3, vec![0.0, 1.0]), Err(RelabelError::Knots(_))));
-    assert!(matches!(Relabel::cosine(Dense::Both, 1.5), Err(RelabelError::Range { .. })));
-    assert!(matches!(Relabel::geometric(-1.0), Err(RelabelError::Range { .. })));
-    assert!(matches!(Relabel::tanh(Dense::End, f64::NAN), Err(RelabelError::Range { .. })));
+    assert_eq!(ReparametrizationForm::spline(1, vec![0.1, 1.0]), Err(ends));
+    assert!(matches!(
+        ReparametrizationForm::spline(3, vec![0.0, 1.0]),
+        Err(RelabelError::Knots(_))
+    ));
+    assert!(matches!(
+        ReparametrizationForm::cosine(Dense::Both, 1.5),
+        Err(RelabelError::Range { .. })
+    ));
+    assert!(matches!(ReparametrizationForm::geometric(-1.0), Err(RelabelError::Range { .. })));
+    assert!(matches!(
+        ReparametrizationForm::tanh(Dense::End, f64::NAN),
+        Err(RelabelError::Range { .. })
+    ));
 }
 
 #[test]
@@ -149,14 +162,16 @@ fn lengths_move_with_points_and_limits() {
 #[test]
 fn tables_pass_through_their_pairs_and_keep_parabolas() {
     let (t, r) = (vec![0.0, 0.2, 0.7, 1.0], vec![0.0, 0.6, 0.65, 1.0]);
-    let law = Relabel::table(t.clone(), r.clone()).unwrap();
+    let law = ReparametrizationForm::table(t.clone(), r.clone()).unwrap();
     for (t, r) in t.iter().zip(&r) {
         assert!((law.at(*t) - r).abs() < 1e-15);
     }
     // R = (t + t^2) / 2 has slopes that nothing limits: three-point slopes are exact for parabolas.
     let parabola = |t: f64| 0.5 * (t + t * t);
     let nodes = vec![0.0, 0.3, 0.45, 0.8, 1.0];
-    let law = Relabel::table(nodes.clone(), nodes.into_iter().map(parabola).collect()).unwrap();
+    let law =
+        ReparametrizationForm::table(nodes.clone(), nodes.into_iter().map(parabola).collect())
+            .unwrap();
     for k in 0..=50 {
         let t = f64::from(k) / 50.0;
         assert!((law.at(t) - parabola(t)).abs() < 1e-15, "{t}");
@@ -166,17 +181,18 @@ fn tables_pass_through_their_pairs_and_keep_parabolas() {
 #[test]
 fn laws_that_stand_still_or_run_back_are_refused() {
     use RelabelError::*;
-    let still = Relabel::spline(1, vec![0.0, 0.5, 0.5, 1.0]).unwrap_err();
+    let still = ReparametrizationForm::spline(1, vec![0.0, 0.5, 0.5, 1.0]).unwrap_err();
     assert_eq!(still, ZeroSlope { at: 0.5 });
     // A parabola's slope is linear between the knots: one pair of equals makes it touch zero.
-    let still = Relabel::spline(2, vec![0.0, 0.4, 0.4, 0.8, 1.0]).unwrap_err();
+    let still = ReparametrizationForm::spline(2, vec![0.0, 0.4, 0.4, 0.8, 1.0]).unwrap_err();
     assert!(matches!(still, ZeroSlope { at } if (at - 1.0 / 3.0).abs() < 1e-15), "{still}");
-    assert!(Relabel::spline(3, vec![0.0, 0.4, 0.4, 0.8, 1.0]).is_ok());
+    assert!(ReparametrizationForm::spline(3, vec![0.0, 0.4, 0.4, 0.8, 1.0]).is_ok());
     assert!(matches!(
-        Relabel::spline(3, vec![0.0, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0]).unwrap_err(),
+        ReparametrizationForm::spline(3, vec![0.0, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0]).unwrap_err(),
         ZeroSlope { .. }
     ));
-    let table = |t: &[f64], r: &[f64]| Relabel::table(t.to_vec(), r.to_vec()).unwrap_err();
+    let table =
+        |t: &[f64], r: &[f64]| ReparametrizationForm::table(t.to_vec(), r.to_vec()).unwrap_err();
     assert_eq!(table(&[0.0, 1.0], &[0.0, 0.9]), Ends { first: 0.0, last: 0.9 });
     assert_eq!(table(&[0.1, 1.0], &[0.0, 1.0]), Ends { first: 0.1, last: 1.0 });
     assert_eq!(table(&[0.0, 1.0], &[0.0, 0.5, 1.0]), Lengths { parameters: 2, values: 3 });

@@ -3,7 +3,7 @@
 use crate::common::{Random, ids, open, rounds, sound, told};
 use moldloft_document::{Document, Panelled};
 use moldloft_num::Vec3;
-use moldloft_panel::Remark;
+use moldloft_panel::PanelNote;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ fn counts_flow_from_patch_to_patch() {
 fn contradictions_are_told_with_the_chain() {
     let mut d = open(&strips([", divisions = {10, 4}", "", ", divisions = {12, 5}"]));
     let p = panelled(&mut d);
-    let [Remark::Divisions { chain, divisions: [10, 12] }] = p.panelling.remarks() else {
+    let [PanelNote::Divisions { chain, divisions: [10, 12] }] = p.panelling.remarks() else {
         panic!("{:?}", p.panelling.remarks())
     };
     let names: Vec<_> =

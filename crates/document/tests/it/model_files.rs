@@ -3,7 +3,7 @@
 use moldloft_diag::Severity;
 use moldloft_document::{Document, Format, NoFiles, ReadError, ReadText, World, registry};
 use moldloft_num::Vec3;
-use moldloft_registry::{Head, Value};
+use moldloft_registry::{Attributes, Value};
 use std::f64::consts::PI;
 
 /// Our own copy of Table 2 of Letcher and Shook (1995).
@@ -91,7 +91,7 @@ fn faults(text: &str) -> Vec<(String, String, String)> {
 }
 
 /// What a model consists of, names as a model file has them.
-fn objects(document: &Document) -> Vec<(String, String, Vec<String>, Head)> {
+fn objects(document: &Document) -> Vec<(String, String, Vec<String>, Attributes)> {
     let graph = document.graph();
     let plain = |name: &str| {
         let mut name = name.to_string();

@@ -343,7 +343,7 @@ fn sheets_wires_and_points_reach_the_body() {
     );
     let body = |name: &str| {
         let object = model.graph().get(model.graph().find(name).unwrap()).unwrap();
-        let Some(Value::Mesh(m)) = object.value() else { panic!() };
+        let Some(Value::Body(m)) = object.value() else { panic!() };
         m.clone()
     };
     let (sheet, wire, dot) = (body("sheet"), body("wire"), body("dot"));
@@ -375,7 +375,7 @@ fn lines_and_points_are_sets() {
     close(number(&mut model, "volume(rod)"), 0.0);
     let body = |model: &Document, name: &str| {
         let object = model.graph().get(model.graph().find(name).unwrap()).unwrap();
-        let Some(Value::Mesh(m)) = object.value() else { panic!() };
+        let Some(Value::Body(m)) = object.value() else { panic!() };
         m.clone()
     };
     assert_eq!(body(&model, "body").wires.len(), 2);

@@ -188,7 +188,7 @@ fn edits_leave_what_a_fresh_run_makes() {
         let other = edited.graph().find(&object.name).and_then(|k| edited.graph().get(k)).unwrap();
         match (object.value(), other.value()) {
             (Some(Value::Point(a)), Some(Value::Point(b))) => assert!(a.xyz.bits_eq(b.xyz)),
-            (Some(Value::Mesh(a)), Some(Value::Mesh(b))) => assert!(a.same(b)),
+            (Some(Value::Body(a)), Some(Value::Body(b))) => assert!(a.same(b)),
             (a, b) => assert_eq!(a.is_some(), b.is_some()),
         }
     }

@@ -4,7 +4,7 @@ use super::shapes::{self, Ended};
 use super::{Intent, Own, Places, end, faithful, fault, measure, role};
 use crate::FairError;
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use std::sync::Arc;
 
 /// A fair B-spline curve within a tolerance of the one through its points.
@@ -80,7 +80,7 @@ const KNOTS: FieldId = FairCurve::<f64>::KNOTS;
 
 impl<T: Real> FairCurve<T> {
     /// Weights and knots, where they have a meaning.
-    fn own(&self) -> Result<Own, Fault> {
+    fn own(&self) -> Result<Own, CallError> {
         let plain =
             |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
         let own = Own { knots: plain(&self.knots), weights: plain(&self.weights) };
@@ -88,7 +88,7 @@ impl<T: Real> FairCurve<T> {
             [(own.weights.is_some(), "weights", WEIGHTS), (own.knots.is_some(), "knots", KNOTS)];
         for (_, what, field) in given.into_iter().filter(|g| g.0) {
             let refused = |why: &str, expected: &str, found: &str| {
-                Fault::new("not-control", format!("{what} {why}"))
+                CallError::new("not-control", format!("{what} {why}"))
                     .expected(expected)
                     .found(found)
                     .in_field(field)
@@ -118,14 +118,14 @@ impl<T: Real> FairCurve<T> {
 impl<T: Real> FairCurve<T> {
     /// What the curve runs on from at its start and its end, and which of the joins that is.
     #[expect(clippy::type_complexity, reason = "two ends, each with a place and derivatives")]
-    fn neighbours(&self) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], Fault> {
+    fn neighbours(&self) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], CallError> {
         let mut found = [None; 2];
         let joins = self.joins.as_deref().unwrap_or_default();
         let ([first, .., last], false) = (self.points.as_slice(), joins.is_empty()) else {
             return Ok(found);
         };
         let only = |what: &str, found: &str| {
-            Fault::new("not-joined", format!("a curve that joins others {what}"))
+            CallError::new("not-joined", format!("a curve that joins others {what}"))
                 .expected("no `joins`, or another way")
                 .found(found)
                 .in_field(JOINS)
@@ -150,7 +150,7 @@ impl<T: Real> FairCurve<T> {
             let (a, b) = near.expect("there are four pairs");
             let far = away(&(a, b));
             if far.is_nan() || far > TOGETHER * extent {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "no-common-end",
                     "a curve of `joins` does not meet this one",
                 )
@@ -162,11 +162,14 @@ impl<T: Real> FairCurve<T> {
             }
             if found[a].is_some() {
                 let end = ["start", "end"][a];
-                return Err(Fault::new("joined-twice", format!("two curves join at its {end}"))
-                    .expected("one at each end")
-                    .related(other.key, "the second")
-                    .in_item(k)
-                    .in_field(JOINS));
+                return Err(CallError::new(
+                    "joined-twice",
+                    format!("two curves join at its {end}"),
+                )
+                .expected("one at each end")
+                .related(other.key, "the second")
+                .in_item(k)
+                .in_field(JOINS));
             }
             // The neighbour's parameter runs into the start, or on from the end, or the other way.
             let sign = if a == b { -1.0 } else { 1.0 };
@@ -177,10 +180,10 @@ impl<T: Real> FairCurve<T> {
 }
 
 /// Which of the joins a refusal is about.
-fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> Fault {
+fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> CallError {
     let present: Vec<usize> = joins.iter().flatten().copied().collect();
     let about = |k: Option<&usize>, id: &'static str, message: String| {
-        let fault = Fault::new(id, message);
+        let fault = CallError::new(id, message);
         k.map_or(fault.clone(), |&k| fault.in_item(k)).in_field(JOINS)
     };
     match error {
@@ -205,7 +208,7 @@ fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> Fau
 }
 
 impl<T: Real> Build<T> for FairCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let neighbours = self.neighbours()?;
         let own = self.own()?;
         let intent = Intent {
@@ -230,12 +233,12 @@ impl<T: Real> Build<T> for FairCurve<T> {
         let joins = neighbours.map(|n| n.map(|(k, _)| k));
         let about = |e: FairError| match e {
             FairError::Weight { .. } | FairError::Count { what: "weights", .. } => {
-                Fault::new("bad-weight", e.to_string()).in_field(WEIGHTS)
+                CallError::new("bad-weight", e.to_string()).in_field(WEIGHTS)
             }
             FairError::Unsorted { .. }
             | FairError::Knots(_)
             | FairError::Count { what: "knots", .. } => {
-                Fault::new("bad-knots", e.to_string()).in_field(KNOTS)
+                CallError::new("bad-knots", e.to_string()).in_field(KNOTS)
             }
             e => unjoined(e, joins, &places),
         };
@@ -245,9 +248,11 @@ impl<T: Real> Build<T> for FairCurve<T> {
             None => shapes::curve(&space, &control),
         };
         let curve =
-            made.map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
+            made.map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
         let [first, .., last] = self.points.as_slice() else {
-            return Err(Fault::new("too-few-items", "a curve needs points").in_field(Self::POINTS));
+            return Err(
+                CallError::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
+            );
         };
         // A free end leaves its point, and a closed curve has no ends.
         let kept = |at: usize| !intent.closed && (intent.end.kept() > 0 || joins[at].is_some());

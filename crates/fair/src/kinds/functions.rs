@@ -3,7 +3,7 @@
 use super::{Intent, Places, Role, faithful, fault, measure};
 use crate::{FairError, Space};
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value, Vectors};
+use moldloft_registry::{Array, Build, CallError, Context, CurveRef, Kind, Value, Vectors};
 use std::sync::Arc;
 
 /// A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
@@ -37,7 +37,7 @@ pub struct Fair<T: Real> {
 }
 
 impl<T: Real> Build<T> for Fair<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let intent = Intent {
             tolerance: self.tolerance,
             degree: 3,
@@ -83,7 +83,7 @@ pub struct Jumps<T: Real> {
 }
 
 impl<T: Real> Build<T> for Jumps<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let n = self.points.len();
         let space = match (self.closed, n) {
             (1, _) => Space::closed(3, n),
@@ -127,12 +127,12 @@ pub struct Curvature<T: Real> {
 }
 
 impl<T: Real> Build<T> for Curvature<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let at = |t: T| {
             let [_, d1, d2] = self.curve.jet(t, Order::Second);
             let speed = d1.norm();
             if speed.re() == 0.0 {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "stands-still",
                     format!("the curve stands still at t = {}", t.re()),
                 )
@@ -150,7 +150,7 @@ impl<T: Real> Build<T> for Curvature<T> {
                 let items: Result<_, _> = a.items.iter().map(|&t| at(t)).collect();
                 Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: items? })))
             }
-            other => Err(Fault::wrong_class(moldloft_registry::Class::Number, other.class())
+            other => Err(CallError::wrong_class(moldloft_registry::Class::Number, other.class())
                 .expected("a number or an farray")
                 .in_field(Self::T)),
         }

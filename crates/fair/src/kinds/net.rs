@@ -9,7 +9,7 @@ use crate::{
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Build, Class, Context, CurveRef, Fault, FromValue, Kind, Point, Value, many,
+    Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, Value, many,
 };
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ struct Row<T: Real>(Vec<Point<T>>);
 
 impl<T: Real> FromValue<T> for Row<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         many(value).map(Self)
     }
 }
@@ -109,7 +109,7 @@ impl<T: Real> Joined<T> {
     }
 
     /// The ends that stay.
-    fn kept(&self, which: &str) -> Result<Vec<usize>, Fault> {
+    fn kept(&self, which: &str) -> Result<Vec<usize>, CallError> {
         let mut ends = vec![0usize; self.points.len()];
         let mut uses = vec![0usize; self.points.len()];
         for (own, closed) in &self.curves {
@@ -138,14 +138,14 @@ impl<T: Real> Joined<T> {
 }
 
 impl<T: Real> Build<T> for FairNet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let joined = Joined::of(&self.curves);
         let breaks = self.breaks.unwrap_or_default();
         let mut marked = Vec::new();
         for (k, b) in breaks.iter().enumerate() {
             let found = joined.points.iter().position(|p| p.key.is_some() && p.key == b.key);
             let Some(at) = found else {
-                return Err(Fault::new("not-a-parent", "a break is no point of the network")
+                return Err(CallError::new("not-a-parent", "a break is no point of the network")
                     .expected("points that stand in the lists of the curves")
                     .related(b.key, "is in none of them")
                     .in_item(k)
@@ -174,7 +174,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             };
             let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
             if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
-                return Err(Fault::new("point-twice", "a curve passes twice through a point")
+                return Err(CallError::new("point-twice", "a curve passes twice through a point")
                     .expected("different points; only the first may come again, at the end")
                     .related(joined.points[own[twice]].key, "stands twice in the list")
                     .in_item(k)
@@ -187,7 +187,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             None => Motion::Ball,
             Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
             Some(_) => {
-                return Err(Fault::new("zero-direction", "the direction has no length")
+                return Err(CallError::new("zero-direction", "the direction has no length")
                     .expected("a direction such as {0, 1, 0}")
                     .in_field(Self::ALONG));
             }
@@ -222,7 +222,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             )
             .map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
             let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
-                Fault::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
+                CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
             })?;
             // Ends that may move are no longer their point objects.
             let end = |i: Option<&usize>| {
@@ -231,7 +231,8 @@ impl<T: Real> Build<T> for FairNet<T> {
             let ends = [end(own.first()), end(own.last())];
             Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
         };
-        let curves: Result<Vec<_>, Fault> = joined.curves.iter().enumerate().map(curve).collect();
+        let curves: Result<Vec<_>, CallError> =
+            joined.curves.iter().enumerate().map(curve).collect();
         Ok(Value::list(curves?))
     }
 }
@@ -253,21 +254,23 @@ pub struct NetCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for NetCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Value::List(curves) = &self.net else {
-            return Err(Fault::wrong_class(Class::List, self.net.class())
+            return Err(CallError::wrong_class(Class::List, self.net.class())
                 .expected("a network of curves, such as a FairNet")
                 .in_field(Self::NET));
         };
         match curves.get(self.index.wrapping_sub(1)) {
             Some(Value::Curve(curve)) => Ok(Value::Curve(curve.clone())),
             Some(other) => {
-                Err(Fault::wrong_class(Class::Curve, other.class()).in_item(self.index - 1))
+                Err(CallError::wrong_class(Class::Curve, other.class()).in_item(self.index - 1))
             }
-            None => Err(Fault::new("out-of-range", format!("there is no curve {}", self.index))
-                .expected(format!("a number from 1 to {}", curves.len()))
-                .found(self.index.to_string())
-                .in_field(Self::INDEX)),
+            None => {
+                Err(CallError::new("out-of-range", format!("there is no curve {}", self.index))
+                    .expected(format!("a number from 1 to {}", curves.len()))
+                    .found(self.index.to_string())
+                    .in_field(Self::INDEX))
+            }
         }
     }
 }

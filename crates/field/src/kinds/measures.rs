@@ -11,7 +11,7 @@ use crate::{
 };
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{
-    Array, Build, Class, Context, Fault, FieldId, FromValue, Kind, Point, Value, Vectors,
+    Array, Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, Value, Vectors,
 };
 use std::sync::Arc;
 
@@ -96,7 +96,7 @@ macro_rules! measure {
         }
 
         impl<T: Real> Build<T> for $kind<T> {
-            fn build(self, $context: &Context) -> Result<Value<T>, Fault> {
+            fn build(self, $context: &Context) -> Result<Value<T>, CallError> {
                 let $this = self;
                 let $set = &$this.set.0;
                 let $region = region(&$set.re(), &$this.low, &$this.high, [Self::SET, Self::HIGH])?;
@@ -151,8 +151,8 @@ measure!(
     }
 );
 
-fn empty(set: FieldId) -> Fault {
-    Fault::new("empty-set", "the set has no volume in the box")
+fn empty(set: FieldId) -> CallError {
+    CallError::new("empty-set", "the set has no volume in the box")
         .expected("a solid in the box")
         .in_field(set)
 }
@@ -190,7 +190,7 @@ fn refined<T: Real>(
     field: FieldId,
     context: &Context,
     measure: impl Fn(&crate::Options) -> Result<T, FieldError>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let asked = match accuracy {
         Some(a) => Some(
             crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(field))?,
@@ -275,7 +275,7 @@ pub struct VolumeBracket<T: Real> {
 }
 
 impl<T: Real> Build<T> for VolumeBracket<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let set = self.set.0.re();
         let region = region(&set, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let volume = bracket(&set, &region.over, self.depth).map_err(|e| fault(&e))?.volume();
@@ -303,7 +303,7 @@ pub struct Member<T: Real> {
 }
 
 impl<T: Real> Build<T> for Member<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let place = self.set.0.member(self.point.xyz, self.tolerance.re());
         Ok(Value::text(match place {
             Membership::Solid => "solid",
@@ -329,7 +329,7 @@ pub struct Winner<T: Real> {
 }
 
 impl<T: Real> Build<T> for Winner<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let word = match self.set.0.winner(self.point.xyz) {
             (_, Some(leaf)) => {
                 let leaf = self.set.0.leaves().swap_remove(leaf);
@@ -349,8 +349,8 @@ enum Either<T: Real> {
 
 impl<T: Real> FromValue<T> for Either<T> {
     const CLASS: Class = Class::Set;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
-        let wrong = || Fault::wrong_class(Class::Set, value.class());
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
+        let wrong = || CallError::wrong_class(Class::Set, value.class());
         match value {
             Value::Set(_) => set_of(value).map(Either::Set).ok_or_else(wrong),
             _ => primitive_of(value).map(Either::Field).ok_or_else(wrong),
@@ -374,7 +374,7 @@ pub struct Gradient<T: Real> {
 }
 
 impl<T: Real> Build<T> for Gradient<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let p = self.point.xyz;
         Ok(Value::Vector(match self.shape {
             Either::Field(f) => f.gradient(p).slope,
@@ -401,7 +401,7 @@ pub struct Range<T: Real> {
 }
 
 impl<T: Real> Build<T> for Range<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let over = Box3 { low: self.low.xyz.re(), high: self.high.xyz.re() };
         let over = crate::error::solid_box(over).map_err(|e| fault(&e).in_field(Self::HIGH))?;
         let range = match self.shape {
@@ -428,7 +428,7 @@ pub struct Degree<T: Real> {
 }
 
 impl<T: Real> Build<T> for Degree<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let degree = match self.shape {
             Either::Field(f) => f.degree(),
             Either::Set(s) => s.degree(),
@@ -464,7 +464,7 @@ pub struct NearestPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for NearestPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let set = &self.set.0;
         let plain = set.re();
         let over = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?.over;
@@ -472,7 +472,7 @@ impl<T: Real> Build<T> for NearestPoint<T> {
         let p = self.point.xyz;
         let found = crate::nearest(&plain, p.re(), &over, accuracy).map_err(|e| fault(&e))?;
         let Some(found) = found else {
-            return Err(Fault::new("no-surface", "the set has no surface in the box")
+            return Err(CallError::new("no-surface", "the set has no surface in the box")
                 .expected("a set whose surface passes through the box")
                 .in_field(Self::SET));
         };
@@ -502,7 +502,7 @@ pub struct FirstHit<T: Real> {
 }
 
 impl<T: Real> Build<T> for FirstHit<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let set = &self.set.0;
         let plain = set.re();
         let (start, direction) = (self.start.xyz, self.direction.xyz);
@@ -512,7 +512,8 @@ impl<T: Real> Build<T> for FirstHit<T> {
             return Err(fault(&none).in_field(Self::DIRECTION));
         }
         let none = || {
-            Fault::new("no-hit", "the ray does not meet the set").expected("a ray that meets it")
+            CallError::new("no-hit", "the ray does not meet the set")
+                .expected("a ray that meets it")
         };
         let length = match self.length {
             Some(length) => length.re(),
@@ -560,7 +561,7 @@ pub struct Distance<T: Real> {
 }
 
 impl<T: Real> Build<T> for Distance<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [a, b] = [&self.a.0, &self.b.0];
         let [p, q] = [a.re(), b.re()];
         let over =
@@ -602,7 +603,7 @@ pub struct Components<T: Real> {
 }
 
 impl<T: Real> Build<T> for Components<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let set = self.set.0.re();
         if set.is_nothing() {
             return Ok(Value::Number(T::zero()));
@@ -632,7 +633,7 @@ pub struct Bounds<T: Real> {
 }
 
 impl<T: Real> Build<T> for Bounds<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let found = crate::bounds(&self.set.0.re(), self.accuracy.re()).map_err(|e| fault(&e))?;
         let Some(over) = found else { return Err(empty(Self::SET)) };
         let ends = vec![Vec3::lifted(over.low), Vec3::lifted(over.high)];

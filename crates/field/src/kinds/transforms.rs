@@ -3,32 +3,34 @@
 use super::read::{fault, field, primitive_of, set, set_of};
 use crate::Affine;
 use moldloft_num::{Axis, Plane, Real, Vec3};
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Mirror, Point, Value};
+use moldloft_registry::{
+    Build, CallError, Class, Context, FromValue, Kind, MirrorArgument, Point, Value,
+};
 
 /// A field or a set.
 pub struct Movable<T: Real>(Value<T>);
 
 impl<T: Real> FromValue<T> for Movable<T> {
     const CLASS: Class = Class::Set;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Field(_) | Value::Set(_) | Value::Plane(_) => Ok(Self(value.clone())),
-            other => Err(Fault::wrong_class(Class::Set, other.class())),
+            other => Err(CallError::wrong_class(Class::Set, other.class())),
         }
     }
 }
 
 impl<T: Real> Movable<T> {
     /// It moved; a field stays a field.
-    fn mapped(self, world_from: &Affine<T>) -> Result<Value<T>, Fault> {
+    fn mapped(self, world_from: &Affine<T>) -> Result<Value<T>, CallError> {
         match &self.0 {
             Value::Set(_) => match set_of(&self.0) {
                 Some(s) => set(s.mapped(world_from)),
-                None => Err(Fault::wrong_class(Class::Set, self.0.class())),
+                None => Err(CallError::wrong_class(Class::Set, self.0.class())),
             },
             value => match primitive_of(value) {
                 Some(f) => field(f.mapped(world_from)),
-                None => Err(Fault::wrong_class(Class::Field, value.class())),
+                None => Err(CallError::wrong_class(Class::Field, value.class())),
             },
         }
     }
@@ -50,7 +52,7 @@ pub struct Translated<T: Real> {
 }
 
 impl<T: Real> Build<T> for Translated<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         self.shape.mapped(&Affine::translation(self.by.xyz))
     }
 }
@@ -74,7 +76,7 @@ pub struct Turned<T: Real> {
 }
 
 impl<T: Real> Build<T> for Turned<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         self.shape.mapped(&Affine::rotation(&self.axis, self.angle))
     }
 }
@@ -91,15 +93,15 @@ pub struct Mirrored<T: Real> {
     /// What is mirrored.
     shape: Movable<T>,
     /// A plane, line or point.
-    mirror: Mirror<T>,
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Build<T> for Mirrored<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let map = match &self.mirror {
-            Mirror::Plane(plane) => Affine::reflection(&unit(plane)),
-            Mirror::Line(axis) => Affine::rotation(axis, T::from(std::f64::consts::PI)),
-            Mirror::Point(p) => Affine::scaling(*p, T::from(-1.0)),
+            MirrorArgument::Plane(plane) => Affine::reflection(&unit(plane)),
+            MirrorArgument::Line(axis) => Affine::rotation(axis, T::from(std::f64::consts::PI)),
+            MirrorArgument::Point(p) => Affine::scaling(*p, T::from(-1.0)),
         };
         self.shape.mapped(&map)
     }
@@ -128,7 +130,7 @@ pub struct Scaled<T: Real> {
 }
 
 impl<T: Real> Build<T> for Scaled<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let centre = self.centre.map_or_else(Vec3::zero, |p| p.xyz);
         let map = Affine::scaling(centre, self.factor);
         self.shape.mapped(&map).map_err(|f| f.in_field(Self::FACTOR))
@@ -153,7 +155,7 @@ pub struct Stretched<T: Real> {
 }
 
 impl<T: Real> Build<T> for Stretched<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         if self.factor.re() == 0.0 {
             let zero = crate::FieldError::Degenerate { what: "factor: it is 0" };
             return Err(fault(&zero).in_field(Self::FACTOR));

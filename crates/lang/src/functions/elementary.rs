@@ -4,7 +4,7 @@ use crate::value::variables::Called as _;
 use moldloft_num::Real;
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
-    Array, ArrayShape, Body, Class, Context, DefaultValue, Fault, Field, Row, Unit, Value,
+    Array, ArrayShape, Body, CallError, Class, Context, DefaultValue, Field, Row, Unit, Value,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -24,15 +24,15 @@ const fn argument(name: &'static str, help: &'static str) -> Field {
     }
 }
 
-fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> Fault {
+fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> CallError {
     let found = value.called();
-    Fault::new("wrong-class", format!("expected a number or a row of numbers, found {found}"))
+    CallError::new("wrong-class", format!("expected a number or a row of numbers, found {found}"))
         .expected("a number or an farray")
         .found(found)
         .in_field(field_id(position))
 }
 
-fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault> {
+fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, CallError> {
     if let Some(field) = crate::functions::sets::function(name, value) {
         return field;
     }
@@ -46,7 +46,11 @@ fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Val
     }
 }
 
-fn pairs<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Result<Value<T>, Fault> {
+fn pairs<T: Real>(
+    a: &Value<T>,
+    b: &Value<T>,
+    f: impl Fn(T, T) -> T,
+) -> Result<Value<T>, CallError> {
     let array = |shape, items| Ok(Value::Numbers(Arc::new(Array { shape, items })));
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(f(*a, *b))),
@@ -59,10 +63,11 @@ fn pairs<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Result<V
         (Value::Numbers(a), Value::Numbers(b)) if a.shape == b.shape => {
             array(a.shape, a.items.iter().zip(&b.items).map(|(&x, &y)| f(x, y)).collect())
         }
-        (Value::Numbers(a), Value::Numbers(b)) => {
-            Err(Fault::new("shapes-differ", format!("shapes differ: {} and {}", a.shape, b.shape))
-                .expected("equal shapes, or a single number on one side"))
-        }
+        (Value::Numbers(a), Value::Numbers(b)) => Err(CallError::new(
+            "shapes-differ",
+            format!("shapes differ: {} and {}", a.shape, b.shape),
+        )
+        .expected("equal shapes, or a single number on one side")),
         (Value::Number(_) | Value::Numbers(_), other) => Err(not_a_number(other, 1)),
         (other, _) => Err(not_a_number(other, 0)),
     }
@@ -76,7 +81,7 @@ fn reduced<T: Real>(
     name: &str,
     args: &[Value<T>],
     f: impl Fn(T, T) -> T + Copy,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let (axis, args) = args.split_last().expect("the axis is the last argument");
     if let Some(field) = crate::functions::sets::functions(name, args) {
         return field;
@@ -90,7 +95,7 @@ fn reduced<T: Real>(
     if let Value::Number(axis) = axis {
         return match &given[..] {
             [(_, value)] => along_axis(value, axis.re(), f),
-            _ => Err(Fault::new("unused-argument", "an axis goes with one array")
+            _ => Err(CallError::new("unused-argument", "an axis goes with one array")
                 .expected("one array")
                 .in_field(field_id(4))),
         };
@@ -106,17 +111,17 @@ fn reduced<T: Real>(
             .into_iter()
             .reduce(f)
             .map(Value::Number)
-            .ok_or_else(|| Fault::new("empty", "an empty row has no such number"));
+            .ok_or_else(|| CallError::new("empty", "an empty row has no such number"));
     }
     let mut all: Option<Value<T>> = None;
     for (k, value) in given {
-        let place = |fault: Fault| fault.in_field(field_id(k));
+        let place = |fault: CallError| fault.in_field(field_id(k));
         all = Some(match all {
             None => value.into_owned(),
             Some(all) => componentwise(&all, &value, f).map_err(place)?,
         });
     }
-    all.ok_or_else(|| Fault::new("empty", "there are no numbers"))
+    all.ok_or_else(|| CallError::new("empty", "there are no numbers"))
 }
 
 /// As `pairs`, of vectors by component.
@@ -124,7 +129,7 @@ fn componentwise<T: Real>(
     a: &Value<T>,
     b: &Value<T>,
     f: impl Fn(T, T) -> T + Copy,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let parts = |v: &Value<T>| match v {
         Value::Vector(v) => Some(v.to_array()),
         Value::Number(x) => Some([*x; 3]),
@@ -136,7 +141,7 @@ fn componentwise<T: Real>(
                 let c: [T; 3] = std::array::from_fn(|k| f(a[k], b[k]));
                 Ok(Value::Vector(c.into()))
             }
-            _ => Err(Fault::new("wrong-class", "a vector goes with a vector or a number")
+            _ => Err(CallError::new("wrong-class", "a vector goes with a vector or a number")
                 .expected("a number or a vector, or arrays of numbers in all places")),
         },
         _ => pairs(a, b, f),
@@ -148,15 +153,15 @@ fn along_axis<T: Real>(
     value: &Value<T>,
     axis: f64,
     f: impl Fn(T, T) -> T,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let Value::Numbers(a) = value else { return Err(not_a_number(value, 0)) };
     let ArrayShape::Grid(m, n) = a.shape else {
-        return Err(Fault::new("wrong-shape", format!("an farray {} has one axis", a.shape))
+        return Err(CallError::new("wrong-shape", format!("an farray {} has one axis", a.shape))
             .expected("numbers [m,n]")
             .in_field(field_id(0)));
     };
     if axis != 1.0 && axis != 2.0 {
-        return Err(Fault::new("out-of-range", format!("there is no axis {axis}"))
+        return Err(CallError::new("out-of-range", format!("there is no axis {axis}"))
             .expected("1 or 2")
             .found(axis.to_string())
             .in_field(field_id(4)));
@@ -166,7 +171,7 @@ fn along_axis<T: Real>(
     let mut items = Vec::with_capacity(count);
     for k in 0..count {
         let one = (0..length).map(|l| at(k, l)).reduce(&f);
-        items.push(one.ok_or_else(|| Fault::new("empty", "an empty row has no such number"))?);
+        items.push(one.ok_or_else(|| CallError::new("empty", "an empty row has no such number"))?);
     }
     Ok(Value::Numbers(Arc::new(Array { shape: ArrayShape::Row(count), items })))
 }
@@ -239,7 +244,7 @@ pub(crate) fn apply<T: Real>(
     name: &str,
     f: Elementary<T>,
     args: &[Value<T>],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     match f {
         Elementary::Unary(f) => each(name, &args[0], f),
         Elementary::Binary(f) => match crate::functions::sets::functions(name, args) {
@@ -268,14 +273,14 @@ macro_rules! elementary {
         fn elementary_rows() -> Vec<Row> {
             vec![
                 $({
-                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
                         each($u, &args[0], $u_f)
                     }
                     row!($u, $u_doc, vec![argument("x", "A number, a row of numbers or a field.")],
                         "assert sin(0) == 0;", body)
                 },)*
                 $({
-                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
                         apply($b, Elementary::Binary($b_f), args)
                     }
                     let fields =
@@ -347,16 +352,16 @@ fn several() -> Vec<Field> {
 
 /// The rows of this file.
 pub fn rows() -> Vec<Row> {
-    fn least<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+    fn least<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("min", args, T::min)
     }
-    fn greatest<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+    fn greatest<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("max", args, T::max)
     }
-    fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+    fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("sum", args, |a, b| a + b)
     }
-    fn mean<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+    fn mean<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         let gathered = crate::value::ops::gathered(&args[0]);
         let count = match (&*gathered, &args[1]) {
             (Value::Numbers(a), Value::Number(axis)) => match a.shape {

@@ -3,7 +3,7 @@
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Row, Scalar, Value};
+use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Row, Scalar, Value};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -37,21 +37,24 @@ pub struct Text<T>(Arc<str>, PhantomData<T>);
 
 impl<T: Real> FromValue<T> for Text<T> {
     const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         <Arc<str> as FromValue<T>>::from_value(value).map(|text| Text(text, PhantomData))
     }
 }
 
 impl<T: Real> Build<T> for Model<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let letters = &self.symmetry.0;
         let known = letters.chars().all(|c| matches!(c, 'x' | 'y' | 'z'));
         let once = letters.chars().enumerate().all(|(k, c)| letters.find(c) == Some(k));
         if !known || !once {
-            return Err(Fault::new("unknown-plane", format!("there is no symmetry \"{letters}\""))
-                .expected("the letters of the mirror planes, such as \"y\" or \"xy\"")
-                .found(format!("\"{letters}\""))
-                .in_field(Self::SYMMETRY));
+            return Err(CallError::new(
+                "unknown-plane",
+                format!("there is no symmetry \"{letters}\""),
+            )
+            .expected("the letters of the mirror planes, such as \"y\" or \"xy\"")
+            .found(format!("\"{letters}\""))
+            .in_field(Self::SYMMETRY));
         }
         let lines = self.lines.unwrap_or_default();
         let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);

@@ -13,7 +13,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, arrange, many,
+    Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, bind_arguments, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, List, Subscript, Symbol, UnaryOp};
@@ -119,7 +119,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Value::Object(key) => self.forced(key).map_err(|failure| {
                 let root = match failure {
                     Failure::Blocked { by } => by,
-                    Failure::Fault(_) => key,
+                    Failure::CallError(_) => key,
                 };
                 // The first reader of a failed object is told; the others would say the same.
                 if !self.blocked.insert(root) {
@@ -703,7 +703,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         let positional = given.positional.len();
-        let (filled, _) = arrange(&row, given, |_| Class::Any)
+        let (filled, _) = bind_arguments(&row, given, |_| Class::Any)
             .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
         // What is as quick to compute as to look up is not remembered.
         let value = if crate::functions::elementary::is_quick(&row) {

@@ -11,7 +11,7 @@ use crate::source::world::World;
 use crate::value::number_path::NumberPath;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_model::{Applied, Extent, Graph, Object};
-use moldloft_registry::{Fault, Registry, Scalar, Value};
+use moldloft_registry::{CallError, Registry, Scalar, Value};
 use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
 use std::sync::Arc;
 
@@ -149,7 +149,7 @@ pub fn fault_span<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
     object: &Object<T>,
-    fault: &Fault,
+    fault: &CallError,
 ) -> Option<Span> {
     let origin = env.origins.get(object.origin as usize)?;
     let m = modules.get(origin.module as usize);

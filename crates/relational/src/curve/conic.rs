@@ -1,5 +1,5 @@
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A conic section in the plane of three points: C = P1 + f(a) (P2 - P1) + g(a) (P3 - P1), where
 /// a = a1 + t (a2 - a1).
@@ -34,7 +34,7 @@ pub struct Conic<T: Real> {
 }
 
 impl<T: Real> Build<T> for Conic<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { p1, p2, p3, a1, a2, r#type } = self;
         let (first, second) = (p2.xyz - p1.xyz, p3.xyz - p1.xyz);
         let shape = Oblique { centre: p1.xyz, first, second, a1, a2, kind: r#type };

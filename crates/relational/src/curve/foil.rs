@@ -1,7 +1,7 @@
 use super::Ended;
 use crate::foil::foil_kind;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 foil_kind!(
     /// A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
@@ -31,7 +31,7 @@ foil_kind!(
 );
 
 impl<T: Real> Build<T> for FoilCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (points, arguments) = self.parts();
         let places: Vec<_> = points.iter().map(|p| p.xyz).collect();
         let (curve, closed, nesting) = arguments.profile(&places)?;

@@ -1,5 +1,5 @@
-use moldloft_num::{Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{CurveRef, Kind, Mirror};
+use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_registry::{CurveRef, Kind, MirrorArgument};
 use std::sync::Arc;
 
 /// The mirror image of a curve in a plane, line or point, point by point: C(t) = 2 F(t) - P(t),
@@ -16,7 +16,7 @@ pub struct MirrCurve<T: Real> {
     /// The curve to mirror.
     curve: CurveRef<T>,
     /// What to mirror it in.
-    mirror: Mirror<T>,
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Curve<T> for MirrCurve<T> {
@@ -40,7 +40,7 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
         self.curve.joints()
     }
 
-    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }
 }

@@ -1,7 +1,7 @@
 use super::Ended;
 use crate::affine::{Affine, Mapped};
-use moldloft_num::{Axis, Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 use std::sync::Arc;
 
 /// A curve moved to new ends: C(t) = c(t) + (1 - t) (P1 - c(0)) + t (P2 - c(1)).
@@ -24,7 +24,7 @@ pub struct RelCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, p1, p2 } = self;
         let nesting = curve.depth;
         let shape = Moved::new(curve, p1.xyz, p2.xyz);
@@ -74,7 +74,7 @@ impl<T: Real> Curve<T> for Moved<T> {
         self.curve.breaks()
     }
 
-    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }
 }
@@ -107,7 +107,7 @@ pub struct CopyCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopyCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, from, to, sx, sy, sz } = self;
         let nesting = curve.depth;
         let map = Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]);
@@ -134,7 +134,7 @@ pub struct RotatCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for RotatCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let nesting = self.curve.depth;
         let map = Affine::turned(self.line, self.angle);
         Ok(Value::Curve(CurveRef::new(Mapped { curve: self.curve, map }, nesting)))

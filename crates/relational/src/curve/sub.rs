@@ -1,7 +1,7 @@
 use crate::arguments::{Bead, Ring, common_curve};
 use moldloft_num::trace::{Mark, Root, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, find_root};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Value};
 use moldloft_spline::BSplineCurve;
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ pub struct SubCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for SubCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         part(self.bead1, self.bead2, Self::BEAD2)
     }
 }
@@ -44,7 +44,7 @@ pub struct SubSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for SubSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         part(self.ring1.0, self.ring2.0, Self::RING2)
     }
 }
@@ -72,7 +72,7 @@ pub struct BSubCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSubCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         redistributed(self.beads, self.degree, [Self::BEADS, Self::DEGREE])
     }
 }
@@ -97,7 +97,7 @@ pub struct BSubSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSubSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let beads = self.rings.into_iter().map(|ring| ring.0).collect();
         redistributed(beads, self.degree, [Self::RINGS, Self::DEGREE])
     }
@@ -128,7 +128,7 @@ fn like<T: Real>(curve: &CurveRef<T>, shape: impl Curve<T> + 'static) -> CurveRe
     }
 }
 
-fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>, Fault> {
+fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>, CallError> {
     let along = common_curve([&from, &to], field)?;
     let marks = [&from, &to].map(|bead| Mark { t: bead.t, point: bead.key });
     let trace = match (along.trace(), along.key) {
@@ -142,7 +142,7 @@ fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>,
     };
     // Parts of parts are parts of the whole, so that nesting does not grow.
     let ((curve, a), (_, b)) = (whole(&from), whole(&to));
-    let law = Law::Straight([a, b]);
+    let law = SubParameter::Straight([a, b]);
     let mut found = like(&curve, Run { curve: curve.clone(), law, trace });
     found.part_of = Some(Arc::new((curve, [a, b])));
     Ok(Value::Curve(found))
@@ -152,7 +152,7 @@ fn redistributed<T: Real>(
     beads: Vec<Bead<T>>,
     degree: usize,
     [list, number]: [FieldId; 2],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let [first, rest @ ..] = beads.as_slice() else { return Err(too_few(0, list)) };
     let Some(last) = rest.last() else { return Err(too_few(1, list)) };
     for (k, bead) in rest.iter().enumerate() {
@@ -166,30 +166,33 @@ fn redistributed<T: Real>(
     let law = BSplineCurve::uniform(degree.min(beads.len() - 1), coefficients)
         .map_err(|error| crate::faults::of_spline(error, list, number))?;
     let trace = Trace::Own([first.key, last.key]);
-    Ok(Value::Curve(like(&curve, Run { curve: curve.clone(), law: Law::Spline(law), trace })))
+    Ok(Value::Curve(like(
+        &curve,
+        Run { curve: curve.clone(), law: SubParameter::Spline(law), trace },
+    )))
 }
 
-fn too_few(found: usize, field: FieldId) -> Fault {
-    Fault::new("too-few-items", "a law needs at least 2 beads")
+fn too_few(found: usize, field: FieldId) -> CallError {
+    CallError::new("too-few-items", "a law needs at least 2 beads")
         .expected("at least 2 beads")
         .found(found.to_string())
         .in_field(field)
 }
 
 /// The parameter of the curve at that of its run.
-enum Law<T> {
+enum SubParameter<T> {
     /// From the first to the second.
     Straight([T; 2]),
     /// The x of a spline.
     Spline(BSplineCurve<T>),
 }
 
-impl<T: Real> Law<T> {
+impl<T: Real> SubParameter<T> {
     /// The parameter and its derivatives.
     fn at(&self, t: T, order: Order) -> [T; 3] {
         match self {
-            Law::Straight([from, to]) => [between(*from, *to, t), *to - *from, T::zero()],
-            Law::Spline(law) => law.jet(t, order).map(|p| p.x),
+            SubParameter::Straight([from, to]) => [between(*from, *to, t), *to - *from, T::zero()],
+            SubParameter::Spline(law) => law.jet(t, order).map(|p| p.x),
         }
     }
 }
@@ -197,7 +200,7 @@ impl<T: Real> Law<T> {
 /// A curve run by a law.
 struct Run<T: Real> {
     curve: CurveRef<T>,
-    law: Law<T>,
+    law: SubParameter<T>,
     trace: Trace<T>,
 }
 
@@ -219,11 +222,11 @@ impl<T: Real> Curve<T> for Run<T> {
     fn breaks(&self) -> Vec<f64> {
         let of_curve = self.curve.breaks();
         let mut breaks = match &self.law {
-            Law::Straight([from, to]) => {
+            SubParameter::Straight([from, to]) => {
                 let (from, to) = (from.re(), to.re());
                 of_curve.into_iter().map(|b| (b - from) / (to - from)).collect()
             }
-            Law::Spline(law) => {
+            SubParameter::Spline(law) => {
                 let mut breaks = law.breaks();
                 let mut ends = vec![0.0];
                 ends.extend(&breaks);

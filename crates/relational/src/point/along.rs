@@ -1,26 +1,32 @@
 use crate::arguments::{Bead, Magnet, Ring, Snake, Start};
 use moldloft_num::{Order, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, FieldId, Kind, Point, SurfaceRef, Value,
+};
 use moldloft_spline::inv_arclen;
 
-fn on<T: Real>(curve: CurveRef<T>, t: T) -> Result<Value<T>, Fault> {
+fn on<T: Real>(curve: CurveRef<T>, t: T) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::on_curve(curve, t))))
 }
 
 /// The bead at a signed length along a curve.
-fn at_length<T: Real>(start: Start<T>, length: T, fields: [FieldId; 2]) -> Result<Value<T>, Fault> {
+fn at_length<T: Real>(
+    start: Start<T>,
+    length: T,
+    fields: [FieldId; 2],
+) -> Result<Value<T>, CallError> {
     let Start { curve, t } = start;
     let speed = |k: i32| curve.jet(T::from(f64::from(k) / 16.0), Order::First)[1].re().norm();
     let size = (0..=16).map(speed).fold(0.0, f64::max);
     if size == 0.0 {
-        return Err(Fault::new("no-length", "the curve has no length")
+        return Err(CallError::new("no-length", "the curve has no length")
             .expected("a curve with length")
             .related(curve.key, "stands still")
             .in_field(fields[0]));
     }
     let found = inv_arclen(&*curve, t, length, 1e-12 * size);
     let found = found.map_err(|error| {
-        Fault::new("beyond-end", error.to_string())
+        CallError::new("beyond-end", error.to_string())
             .expected(format!("a length up to {} on that side", error.available))
             .found(error.asked.to_string())
             .related(curve.key, "is too short")
@@ -46,7 +52,7 @@ pub struct ArcLenBead<T: Real> {
 }
 
 impl<T: Real> Build<T> for ArcLenBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         at_length(self.start, self.length, [Self::START, Self::LENGTH])
     }
 }
@@ -69,9 +75,9 @@ pub struct ArcLenRing<T: Real> {
 }
 
 impl<T: Real> Build<T> for ArcLenRing<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         if self.start.curve.surface.is_none() {
-            return Err(Fault::new("wrong-class", "expected a snake or a ring on one")
+            return Err(CallError::new("wrong-class", "expected a snake or a ring on one")
                 .expected("a snake, or a ring on one")
                 .found("a curve that lies on no surface")
                 .in_field(Self::START));
@@ -96,7 +102,7 @@ pub struct CopyBead<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopyBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         on(self.curve, self.bead.t)
     }
 }
@@ -118,7 +124,7 @@ pub struct CopyMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopyMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [u, v] = self.magnet.uv;
         Ok(Value::Point(Box::new(Point::on_surface(self.surface, u, v))))
     }
@@ -141,7 +147,7 @@ pub struct CopyRing<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopyRing<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         on(self.snake.curve, self.ring.0.t)
     }
 }

@@ -1,6 +1,6 @@
 use crate::arguments::Bead;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A point on a curve at a given parameter: X = C(t).
 ///
@@ -20,7 +20,7 @@ pub struct AbsBead<T: Real> {
 }
 
 impl<T: Real> Build<T> for AbsBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Point(Box::new(Point::on_curve(self.curve, self.t))))
     }
 }
@@ -44,7 +44,7 @@ pub struct RelBead<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Bead { curve, t, .. } = self.bead;
         Ok(Value::Point(Box::new(Point::on_curve(curve, t + self.dt))))
     }

@@ -3,12 +3,12 @@ use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
 use moldloft_num::{Axis, Order, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, Found, FoundStatus, Kind, Point, SolidRef,
-    SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, Kind, Point, SearchReport, SearchStatus,
+    SolidRef, SurfaceRef, Value,
 };
 use moldloft_spline::{arclen, curve_integral};
 
-fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
+fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::free(xyz))))
 }
 
@@ -31,7 +31,7 @@ pub struct OffsetPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for OffsetPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let n = normal(&self.magnet).map_err(|fault| fault.in_field(Self::MAGNET))?;
         let [u, v] = self.magnet.uv;
         free(self.magnet.surface.jet(u, v, Order::Zero).p + n * self.distance)
@@ -42,9 +42,9 @@ impl<T: Real> Build<T> for OffsetPoint<T> {
 ///
 /// # Errors
 /// `no-tangent`, in `field`, where the curve stands still.
-pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, Fault> {
+pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     bead.curve.jet(bead.t, Order::First)[1].normalized().ok_or_else(|| {
-        Fault::new("no-tangent", "the curve has no tangent there")
+        CallError::new("no-tangent", "the curve has no tangent there")
             .expected("a place where the curve moves on")
             .found(format!("no speed at t = {}", bead.t.re()))
             .related(bead.key, "lies there")
@@ -68,7 +68,7 @@ pub struct TanPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for TanPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let along = tangent(&self.bead, Self::BEAD)?;
         free(self.bead.curve.jet(self.bead.t, Order::Zero)[0] + along * self.distance)
     }
@@ -93,7 +93,7 @@ pub struct RotatPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for RotatPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(self.line.rotated(self.point.xyz, self.angle))
     }
 }
@@ -126,7 +126,7 @@ pub struct CopyPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopyPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { point, from, to, sx, sy, sz } = self;
         free(Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]).point(point.xyz))
     }
@@ -152,12 +152,12 @@ pub struct BlendPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for BlendPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { points, weights } = self;
         let count = points.len();
         let weights = weights.unwrap_or_else(|| vec![T::from(1.0 / count as f64); count]);
         if weights.len() != count {
-            return Err(Fault::new("wrong-length", "each point needs one weight")
+            return Err(CallError::new("wrong-length", "each point needs one weight")
                 .expected(format!("{count} weights"))
                 .found(weights.len().to_string())
                 .in_field(Self::WEIGHTS));
@@ -169,8 +169,8 @@ impl<T: Real> Build<T> for BlendPoint<T> {
         }
         let mut blend = Point::free(sum);
         if (whole - 1.0).abs() > 1e-9 {
-            blend = blend.with_found(Found {
-                status: FoundStatus::Unbalanced { sum: whole },
+            blend = blend.with_found(SearchReport {
+                status: SearchStatus::Unbalanced { sum: whole },
                 residual: (whole - 1.0).abs(),
                 iterations: 0,
                 start: Vec::new(),
@@ -204,7 +204,7 @@ pub struct CentroidPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for CentroidPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         // (size, size times centroid) of all.
         let (mut size, mut moment) = (T::zero(), Vec3::zero());
         let mut first = None;
@@ -215,28 +215,31 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
                 Value::Curve(curve) => ("curves", of_curve(curve)),
                 Value::Surface(surface) => ("surfaces", of_surface(surface)),
                 Value::Solid(solid) => ("solids", of_solid(solid)),
-                Value::Mesh(mesh) => ("solids", (mesh.volume, mesh.centroid * mesh.volume)),
+                Value::Body(mesh) => ("solids", (mesh.volume, mesh.centroid * mesh.volume)),
                 other => {
-                    return Err(Fault::new("wrong-class", "a centroid is of shapes")
+                    return Err(CallError::new("wrong-class", "a centroid is of shapes")
                         .expected("points, curves, surfaces or solids")
-                        .found(other.class().a())
+                        .found(other.class().with_article())
                         .in_item(k)
                         .in_field(Self::OBJECTS));
                 }
             };
             if *first.get_or_insert(kind) != kind {
-                return Err(Fault::new("mixed-classes", "a centroid is of shapes of one class")
-                    .expected(first.unwrap_or(kind))
-                    .found(format!("{kind} as well"))
-                    .help("take the centroids of each class, and blend them")
-                    .in_item(k)
-                    .in_field(Self::OBJECTS));
+                return Err(CallError::new(
+                    "mixed-classes",
+                    "a centroid is of shapes of one class",
+                )
+                .expected(first.unwrap_or(kind))
+                .found(format!("{kind} as well"))
+                .help("take the centroids of each class, and blend them")
+                .in_item(k)
+                .in_field(Self::OBJECTS));
             }
             size += s;
             moment += m;
         }
         if size.re() <= 0.0 {
-            return Err(Fault::new("no-size", "the shapes have no size to weigh them by")
+            return Err(CallError::new("no-size", "the shapes have no size to weigh them by")
                 .expected("curves with length, or surfaces with area")
                 .in_field(Self::OBJECTS));
         }

@@ -1,7 +1,7 @@
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Mirror, Point, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, MirrorArgument, Point, Value};
 
-fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
+fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::free(xyz))))
 }
 
@@ -20,7 +20,7 @@ pub struct AbsPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for AbsPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(Vec3::new(self.x, self.y, self.z))
     }
 }
@@ -47,7 +47,7 @@ pub struct RelPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(self.point.xyz + Vec3::new(self.dx, self.dy, self.dz))
     }
 }
@@ -64,11 +64,11 @@ pub struct MirrPoint<T: Real> {
     /// The point to mirror.
     point: Point<T>,
     /// What to mirror it in.
-    mirror: Mirror<T>,
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Build<T> for MirrPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(self.mirror.image(self.point.xyz))
     }
 }

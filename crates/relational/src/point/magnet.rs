@@ -1,6 +1,6 @@
 use crate::arguments::Magnet;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Value};
 
 /// A point on a surface at given parameters: X = S(u, v).
 ///
@@ -22,7 +22,7 @@ pub struct AbsMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for AbsMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Point(Box::new(Point::on_surface(self.surface, self.u, self.v))))
     }
 }
@@ -49,7 +49,7 @@ pub struct RelMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Magnet { surface, uv: [u, v], .. } = self.magnet;
         Ok(Value::Point(Box::new(Point::on_surface(surface, u + self.du, v + self.dv))))
     }

@@ -1,7 +1,7 @@
 use super::edge_trace;
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
 /// Where a fillet touches one of its two surfaces: a snake of that surface, and the fillet's edge.
 ///
@@ -29,18 +29,19 @@ pub struct ContactSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for ContactSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { fillet, side } = self;
         let touches = fillet.contacts.as_ref().and_then(|both| both.get(side.wrapping_sub(1)));
         let Some(curve) = touches.cloned() else {
-            return Err(Fault::new("no-contact", "the surface is no fillet between two others")
-                .expected("a RollFillet or a FilletSurf, and the side 1 or 2")
-                .found(if fillet.contacts.is_some() { "another side" } else { "another surface" })
-                .help(
-                    "of the image of a fillet, take the contacts of the original and their images",
-                )
-                .related(fillet.key, "touches nothing")
-                .in_field(Self::FILLET));
+            return Err(CallError::new(
+                "no-contact",
+                "the surface is no fillet between two others",
+            )
+            .expected("a RollFillet or a FilletSurf, and the side 1 or 2")
+            .found(if fillet.contacts.is_some() { "another side" } else { "another surface" })
+            .help("of the image of a fillet, take the contacts of the original and their images")
+            .related(fillet.key, "touches nothing")
+            .in_field(Self::FILLET));
         };
         let trace = edge_trace(&fillet, if side == 1 { 0 } else { 2 });
         let surface = curve.surface.as_deref().cloned().expect("a contact lies on a surface");

@@ -3,17 +3,17 @@ use crate::arguments::{EndRule, Magnet, Snake, common_surface};
 use crate::curve::{Moved, Oblique, clamped_ends, spline};
 use crate::faults;
 use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, SurfaceRef, Value};
+use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::InterpolatingSpline;
 
 /// The places of magnets, and the surface that they all lie on; they are the list in `field`.
 fn places<T: Real>(
     magnets: &[Magnet<T>],
     field: FieldId,
-) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), Fault> {
+) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), CallError> {
     if magnets.len() < 2 {
-        return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
+        return Err(CallError::new("too-few-items", "a snake needs at least 2 magnets")
             .expected("at least 2 magnets")
             .found(magnets.len().to_string())
             .in_field(field));
@@ -27,7 +27,7 @@ fn places<T: Real>(
 fn three<T: Real>(
     m: [&Magnet<T>; 3],
     fields: [FieldId; 3],
-) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), Fault> {
+) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), CallError> {
     let items = m.map(|m| (m.key, &m.surface));
     let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
     Ok((surface, m.map(|m| flat(m.uv))))
@@ -56,14 +56,17 @@ pub struct ArcSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for ArcSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, m3, r#type } = self;
         let (surface, places) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let Some(arc) = moldloft_spline::Arc::of_type(r#type, places) else {
-            return Err(Fault::new("out-of-range", format!("there is no arc of type {}", r#type))
-                .expected("a type from 1 to 6")
-                .found(r#type.to_string())
-                .in_field(Self::TYPE));
+            return Err(CallError::new(
+                "out-of-range",
+                format!("there is no arc of type {}", r#type),
+            )
+            .expected("a type from 1 to 6")
+            .found(r#type.to_string())
+            .in_field(Self::TYPE));
         };
         let end = match r#type {
             2 => None,
@@ -103,7 +106,7 @@ pub struct CSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for CSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let level = |slope: Option<Vec3<T>>| slope.map(|d| Vec3::new(d.x, d.y, T::zero()));
         let ends =
@@ -145,7 +148,7 @@ pub struct NURBSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for NURBSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let names = [0, places.len() - 1].map(|k| self.magnets[k].key);
         let fields = [Self::MAGNETS, Self::DEGREE, Self::KNOTS, Self::WEIGHTS];
@@ -185,7 +188,7 @@ pub struct ConicSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for ConicSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, m3, a1, a2, r#type } = self;
         let (surface, [centre, p, q]) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let path = Oblique { centre, first: p - centre, second: q - centre, a1, a2, kind: r#type };
@@ -214,7 +217,7 @@ pub struct RelSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { snake: Snake { curve, surface }, m1, m2 } = self;
         let items = [(curve.key, &surface), (m1.key, &m1.surface), (m2.key, &m2.surface)];
         let fields = [Self::SNAKE, Self::M1, Self::M2];
@@ -243,7 +246,7 @@ pub struct CopySnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopySnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Snake { curve, .. } = self.snake;
         let nesting = curve.depth;
         snake(self.surface, Path(curve), [None, None], nesting)
@@ -266,7 +269,7 @@ impl<T: Real> Curve<T> for Path<T> {
         Trace::own()
     }
 
-    fn law(&self) -> Option<std::sync::Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<std::sync::Arc<dyn Reparametrization<T>>> {
         self.0.law()
     }
 }

@@ -4,7 +4,7 @@ use crate::faults;
 use crate::snake::OnSurface;
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineCurve;
 
 /// The snake of a path on a surface between two point objects, which holds on to shapes nested
@@ -14,7 +14,7 @@ pub(super) fn snake<T: Real>(
     path: impl Curve<T> + 'static,
     ends: [Option<Key>; 2],
     nesting: u32,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let shape = OnSurface { surface: surface.clone(), path, trace: Trace::Own(ends) };
     Ok(Value::Curve(CurveRef::snake(shape, surface, nesting)))
 }
@@ -42,7 +42,7 @@ pub struct LineSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for LineSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2 } = self;
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
         let fields = [Self::M1, Self::M2];
@@ -75,10 +75,10 @@ pub struct BSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { magnets, degree } = self;
         let [first, .., last] = magnets.as_slice() else {
-            return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
+            return Err(CallError::new("too-few-items", "a snake needs at least 2 magnets")
                 .expected("at least 2 magnets")
                 .found(magnets.len().to_string())
                 .in_field(Self::MAGNETS));

@@ -1,7 +1,7 @@
 use super::layers::on;
 use moldloft_num::trace::{Faces, Turn};
 use moldloft_num::{Box3, Jet, Order, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SolidRef, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, SolidRef, SurfaceRef, Value};
 
 /// A solid between six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: their transfinite blend, the three
 /// ruled solids less the three of edges plus that of the corners (Gordon and Hall 1973).
@@ -32,12 +32,15 @@ pub struct BlendSolid<T: Real> {
 }
 
 impl<T: Real> Build<T> for BlendSolid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let six = |found: usize, what: &str, field: FieldId| {
-            Fault::new("wrong-length", format!("a solid has 6 faces, but here are {found} {what}"))
-                .expected(format!("6 {what}"))
-                .found(found.to_string())
-                .in_field(field)
+            CallError::new(
+                "wrong-length",
+                format!("a solid has 6 faces, but here are {found} {what}"),
+            )
+            .expected(format!("6 {what}"))
+            .found(found.to_string())
+            .in_field(field)
         };
         let surfaces: [SurfaceRef<T>; 6] = self
             .surfaces
@@ -47,7 +50,7 @@ impl<T: Real> Build<T> for BlendSolid<T> {
         let given: [usize; 6] =
             given.try_into().map_err(|t: Vec<_>| six(t.len(), "turns", Self::TURNS))?;
         if let Some(k) = given.iter().position(|&t| t > 7) {
-            return Err(Fault::new("out-of-range", format!("there is no turn {}", given[k]))
+            return Err(CallError::new("out-of-range", format!("there is no turn {}", given[k]))
                 .expected("a number from 0 to 7")
                 .found(given[k].to_string())
                 .in_item(k)
@@ -109,7 +112,7 @@ impl<T: Real> Blend<T> {
         worst
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self) -> Result<(), CallError> {
         let corner = |c: usize| {
             let at = [0, 1, 2].map(|axis| T::from((c >> axis & 1) as f64));
             [4 + (c >> 2), 2 + (c >> 1 & 1)].map(|face| self.face(face, at).re())
@@ -129,7 +132,7 @@ impl<T: Real> Blend<T> {
         }
         let name = |face: usize| format!("{} = {}", ["u", "v", "w"][face / 2], face % 2);
         let message = format!("the faces {} and {} do not meet", name(a), name(b));
-        let fault = Fault::new("open-edge", message)
+        let fault = CallError::new("open-edge", message)
             .expected("faces that meet along all edges")
             .found(format!("a gap of {gap:.3e} at (u, v, w) = ({u}, {v}, {w})"))
             .related(self.surfaces[a].key, "is the one face")

@@ -2,7 +2,7 @@ use super::column::{Column, Columns};
 use super::masters::Masters;
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::{Arc, ArcError};
 
 /// Circular arcs by three curves: at each u the arc of the type, as for `Arc`, whose three points are
@@ -37,7 +37,7 @@ pub struct ArcLoftSurf<T: Real> {
 const TRIALS: usize = 64;
 
 impl<T: Real> Build<T> for ArcLoftSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { c1, c2, c3, r#type } = self;
         let loft = ArcLoft { masters: Masters::new(vec![c1, c2, c3], Self::C1)?, kind: r#type };
         let at = |k: usize| k as f64 / TRIALS as f64;
@@ -49,7 +49,7 @@ impl<T: Real> Build<T> for ArcLoftSurf<T> {
             } else {
                 format!("between u = {} and u = {}", at(first), at(last))
             };
-            return Err(Fault::new("collinear-points", format!("{what} {range}"))
+            return Err(CallError::new("collinear-points", format!("{what} {range}"))
                 .expected(expected)
                 .found(format!("no such arc at {} of {} parameters", bad.len(), TRIALS + 1))
                 .help("move the second curve out of the line of the others")

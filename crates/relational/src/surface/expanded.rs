@@ -1,10 +1,10 @@
 use super::column::{Column, Columns};
 use super::inherited;
 use crate::curve::Segment;
-use crate::lifted::{bends, tangents};
+use crate::third_derivatives::{bends, tangents};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Frame, Jet, Order, Real, Vec3, gauss_points};
-use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 
 /// A developable surface laid flat: the plate before it is bent, with all lengths and angles as on the
 /// surface, at equal parameters.
@@ -37,7 +37,7 @@ const PARTS: usize = 12;
 const FLAT: f64 = 1e-4;
 
 impl<T: Real> Build<T> for ExpandedSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, frame } = self;
         let frame = frame.unwrap_or_else(Frame::world);
         let mut places = vec![0.0];
@@ -69,9 +69,9 @@ impl<T: Real> Build<T> for ExpandedSurf<T> {
 }
 
 /// Refuses a surface that cannot be laid flat.
-fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), Fault> {
+fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), CallError> {
     let fault = |message: String, found: String| {
-        Err(Fault::new("not-developable", message)
+        Err(CallError::new("not-developable", message)
             .expected("straight lines u = const with one tangent plane along each")
             .found(found)
             .help("make the plate by DevSurf, or expand a narrower part of the surface")

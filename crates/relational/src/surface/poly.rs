@@ -2,7 +2,7 @@ use crate::arguments::Named;
 use crate::snake::edge_trace;
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
 use moldloft_num::{Order, Real, SurfJet, Surface};
-use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 use smallvec::SmallVec;
 
 /// Surfaces side by side as one: piece k of N is run from u = (k - 1) / N to k / N (from v, with
@@ -33,10 +33,10 @@ pub struct PolySurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for PolySurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surfaces, along, breaks } = self;
         if surfaces.is_empty() {
-            return Err(Fault::new("too-few-items", "a join needs at least 1 surface")
+            return Err(CallError::new("too-few-items", "a join needs at least 1 surface")
                 .expected("at least 1 surface")
                 .found("0")
                 .in_field(Self::SURFACES));
@@ -72,7 +72,7 @@ impl<T: Real> Sides<T> {
         self.surfaces[k].jet(T::from(u), T::from(v), Order::Zero).p.re()
     }
 
-    fn check_seam(&self, k: usize, tolerance: f64) -> Result<(), Fault> {
+    fn check_seam(&self, k: usize, tolerance: f64) -> Result<(), CallError> {
         // The widest gap between an end of one piece and an end of the next, and where.
         let gap = |from: f64, to: f64, turned: bool| {
             let mut widest = (0.0f64, 0.0);
@@ -93,7 +93,7 @@ impl<T: Real> Sides<T> {
         }
         let [along, across] = if self.by_u { ["u", "v"] } else { ["v", "u"] };
         let text = format!("piece {} does not begin where piece {k} ends", k + 1);
-        let fault = Fault::new("gap", text)
+        let fault = CallError::new("gap", text)
             .expected(format!(
                 "edge {along} = 1 of piece {k} to be edge {along} = 0 of piece {}",
                 k + 1

@@ -6,7 +6,7 @@ use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{
     Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
 };
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, SurfaceRef, Value};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
 /// and w a patch of its parameter plane.
@@ -41,10 +41,10 @@ pub struct SubSurf<T: Real> {
 const MEETING: f64 = 1e-6;
 
 impl<T: Real> Build<T> for SubSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let sides = self.sides;
         if !(2..=4).contains(&sides.len()) {
-            return Err(Fault::new("wrong-length", "a sub-surface has 2, 3 or 4 sides")
+            return Err(CallError::new("wrong-length", "a sub-surface has 2, 3 or 4 sides")
                 .expected("2, 3 or 4 snakes and magnets")
                 .found(sides.len().to_string())
                 .in_field(Self::SIDES));
@@ -56,7 +56,7 @@ impl<T: Real> Build<T> for SubSurf<T> {
         let items: Vec<_> = sides.iter().map(|side| (keys(side), side.surface())).collect();
         let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::SIDES))?;
         if sides.iter().all(|side| matches!(side, Side::Magnet(_))) {
-            return Err(Fault::new("no-area", "a sub-surface needs a side with length")
+            return Err(CallError::new("no-area", "a sub-surface needs a side with length")
                 .expected("at least one snake")
                 .found("magnets only")
                 .in_field(Self::SIDES));
@@ -108,7 +108,7 @@ fn end<T: Real>(side: &Side<T>, t: f64) -> Vec3<T> {
     place(side, T::from(t))
 }
 
-fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), Fault> {
+fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), CallError> {
     let ends: Vec<[Vec3<f64>; 2]> =
         sides.iter().map(|side| [0.0, 1.0].map(|t| end(side, t).re())).collect();
     let apart = |p: Vec3<f64>, q: Vec3<f64>| (p.x - q.x).abs().max((p.y - q.y).abs());
@@ -199,7 +199,7 @@ impl<T: Real> Patch<T> {
     }
 
     /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
-    fn check_folds(&self) -> Result<(), Fault> {
+    fn check_folds(&self) -> Result<(), CallError> {
         let mut all = Vec::with_capacity((TRIALS + 1) * (TRIALS + 1));
         let at = |k: usize| T::from(k as f64 / TRIALS as f64);
         let sides: Vec<_> = (0..=TRIALS)
@@ -229,7 +229,7 @@ impl<T: Real> Patch<T> {
         }
         let (u, v) = (worst.1, worst.2);
         let at = self.inside(T::from(u), T::from(v)).re();
-        Err(Fault::new("folded-patch", format!("the sub-surface is folded at u = {u}, v = {v}"))
+        Err(CallError::new("folded-patch", format!("the sub-surface is folded at u = {u}, v = {v}"))
             .expected("sides that run round an area without crossing each other")
             .found(format!(
                 "a Jacobian of {against:.3e} there, at (u, v) = ({}, {}) of the surface, and up to {best:.3e} elsewhere",

@@ -4,7 +4,9 @@ use crate::chebyshev::{NODES, Piece, Way, nodes};
 use crate::curve::swept::{ACCURACY, halved, no_locus, stretches};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingCurve, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, Kind, MovingCurve, SurfaceRef, Value,
+};
 
 /// The surface that a curve describes when a bead that it depends on sweeps its curve: S(u, v) is the
 /// place u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
@@ -39,7 +41,7 @@ pub struct ProcSurf<T: Real> {
 const PROBES: [f64; 6] = [0.0, 0.17, 0.39, 0.61, 0.83, 1.0];
 
 impl<T: Real> Build<T> for ProcSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { bead, curve, t1, t2 } = self;
         let at = |t: f64| {
             let place = t1 * (1.0 - t) + t2 * t;

@@ -6,8 +6,8 @@
 use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{
-    Class, Context, CurveRef, Fault, Given, Point, Registry, Row, Scalar, SurfaceRef, Value,
-    arrange,
+    CallError, Class, Context, CurveRef, Given, Point, Registry, Row, Scalar, SurfaceRef, Value,
+    bind_arguments,
 };
 use std::sync::Arc;
 
@@ -27,12 +27,12 @@ pub fn scene(text: &str) -> Scene<f64> {
 }
 
 /// The scene of a text, or its first fault.
-pub fn attempt(text: &str) -> Result<Scene<f64>, Fault> {
+pub fn attempt(text: &str) -> Result<Scene<f64>, CallError> {
     run(text, &mut |_, x| x)
 }
 
 /// The fault that a text ends with.
-pub fn fault(text: &str) -> Fault {
+pub fn fault(text: &str) -> CallError {
     match attempt(text) {
         Ok(_) => panic!("no fault in {text}"),
         Err(fault) => fault,
@@ -43,7 +43,7 @@ pub fn fault(text: &str) -> Fault {
 pub fn run<T: Scalar>(
     text: &str,
     number: &mut dyn FnMut(usize, f64) -> T,
-) -> Result<Scene<T>, Fault> {
+) -> Result<Scene<T>, CallError> {
     let registry =
         Registry::new(moldloft_relational::rows().into_iter().chain(moldloft_arrays::rows()));
     let tokens = tokens(text);
@@ -56,7 +56,7 @@ pub fn run<T: Scalar>(
         reader.expect("(");
         let given = reader.arguments();
         reader.expect(";");
-        let (args, _) = arrange(&row, given, |_| Class::Any)?;
+        let (args, _) = bind_arguments(&row, given, |_| Class::Any)?;
         let value = T::call(&row, &args, &Context::default())?;
         assert!(value.is_finite(), "{name} is not finite");
         assert!(row.class.accepts(value.class()), "{} made {:?}", row.name, value.class());

@@ -33,7 +33,7 @@ fn expressions(document: &Document) -> (Vec<String>, Vec<String>) {
                 positions.push(format!("{name}({{0, 0.29, 0.5, 0.83, 1}})"));
                 numbers.push(format!("{name}.length"));
             }
-            Some(Value::Mesh(_)) => {
+            Some(Value::Body(_)) => {
                 positions.push(format!("{name}.centroid"));
                 numbers.push(format!("{name}.volume"));
                 numbers.push(format!("{name}.area"));
@@ -86,7 +86,7 @@ fn sample(document: &mut Document, numbers: &[String]) -> Option<Sample> {
             Some(Value::Curve(c)) => {
                 close(&mut sample, xyz(TS.iter().map(|&t| c.jet(t, Order::Zero)[0]).collect()));
             }
-            Some(Value::Mesh(m)) => close(&mut sample, xyz(vec![m.centroid])),
+            Some(Value::Body(m)) => close(&mut sample, xyz(vec![m.centroid])),
             Some(Value::Surface(s)) => {
                 let at = |(&u, &v): (&f64, &f64)| s.jet(u, v, Order::Zero).p;
                 close(&mut sample, xyz(TS.iter().zip(&US).map(at).collect()));

@@ -3,7 +3,7 @@ use moldloft_num::{Real, Vec3};
 
 /// How the knots of an interpolating spline follow from its points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum KnotLaw {
+pub enum Parametrization {
     /// In proportion to the chords.
     #[default]
     Chord,
@@ -16,7 +16,7 @@ pub enum KnotLaw {
 /// Points that are nearer than this share of their size coincide: they have no chord direction.
 const NEAR: f64 = 4.0 * f64::EPSILON;
 
-impl KnotLaw {
+impl Parametrization {
     /// The knots of these points, the first exactly 0 and the last exactly 1.
     ///
     /// # Errors

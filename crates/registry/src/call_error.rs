@@ -34,7 +34,7 @@ pub enum Argument {
 
 /// Which argument a fault is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct ArgumentPlace {
     /// The argument.
     pub argument: Argument,
     /// The item of a list argument, from 0.
@@ -43,11 +43,11 @@ pub struct Place {
 
 /// Why a call failed: the data of a diagnostic, before it knows its place in the text.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fault(Box<FaultData>);
+pub struct CallError(Box<CallErrorData>);
 
-/// The parts of a [`Fault`].
+/// The parts of a [`CallError`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct FaultData {
+pub struct CallErrorData {
     /// Stable kebab-case id.
     pub id: &'static str,
     /// One line that stands alone.
@@ -59,17 +59,17 @@ pub struct FaultData {
     /// How to mend it.
     pub help: Vec<String>,
     /// The argument it is about.
-    pub place: Option<Place>,
+    pub place: Option<ArgumentPlace>,
     /// The item of an argument that is not known yet.
     item: Option<usize>,
     /// Other objects it is about, each with what is to be said of it.
     pub related: Vec<(Key, String)>,
 }
 
-impl Fault {
+impl CallError {
     /// A fault with an id and a message.
     pub fn new(id: &'static str, message: impl Into<String>) -> Self {
-        Fault(Box::new(FaultData {
+        CallError(Box::new(CallErrorData {
             id,
             message: message.into(),
             expected: None,
@@ -83,10 +83,12 @@ impl Fault {
 
     /// A value of the wrong class.
     pub fn wrong_class(expected: Class, found: Class) -> Self {
-        let fault =
-            Self::new("wrong-class", format!("expected {}, found {}", expected.a(), found.a()))
-                .expected(expected.a())
-                .found(found.a());
+        let fault = Self::new(
+            "wrong-class",
+            format!("expected {}, found {}", expected.with_article(), found.with_article()),
+        )
+        .expected(expected.with_article())
+        .found(found.with_article());
         // Arrays of points and shapes with parameters are easily taken for each other.
         match (expected, found) {
             (Class::Curve | Class::Surface, Class::Vectors) => fault
@@ -133,7 +135,7 @@ impl Fault {
     /// Says which argument it is about, unless that is known already.
     pub fn in_argument(mut self, argument: Argument) -> Self {
         let item = self.0.item.take();
-        self.0.place.get_or_insert(Place { argument, item });
+        self.0.place.get_or_insert(ArgumentPlace { argument, item });
         self
     }
 
@@ -158,9 +160,9 @@ impl Fault {
     }
 }
 
-impl std::ops::Deref for Fault {
-    type Target = FaultData;
-    fn deref(&self) -> &FaultData {
+impl std::ops::Deref for CallError {
+    type Target = CallErrorData;
+    fn deref(&self) -> &CallErrorData {
         &self.0
     }
 }

@@ -8,7 +8,7 @@ use smallvec::{SmallVec, smallvec};
 ///
 /// [`crate::BSplineCurve`] is quicker where the knots are plain numbers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MovingSpline<T> {
+pub struct SplineWithKnotDerivatives<T> {
     degree: usize,
     knots: Vec<T>,
     /// The points times their weights, and the weights.
@@ -16,7 +16,7 @@ pub struct MovingSpline<T> {
     rational: bool,
 }
 
-impl<T: Real> MovingSpline<T> {
+impl<T: Real> SplineWithKnotDerivatives<T> {
     /// The curve of these control points; knots over any range (clamped and uniform when none are
     /// given) and weights (all 1).
     ///
@@ -84,7 +84,7 @@ impl<T: Real> MovingSpline<T> {
 
     /// The polynomial curve with these control points in number that comes nearest to the samples
     /// (parameter, position) by least squares, and begins and ends at the first and the last of
-    /// them; knots as for [`MovingSpline::new`], which must be clamped.
+    /// them; knots as for [`SplineWithKnotDerivatives::new`], which must be clamped.
     ///
     /// # Errors
     /// [`SplineError`] for knots that do not fit, [`SplineError::Count`] when the samples leave a
@@ -170,7 +170,7 @@ impl<T: Real> MovingSpline<T> {
     }
 }
 
-impl<T: Real> CurveFormula for MovingSpline<T> {
+impl<T: Real> CurveFormula for SplineWithKnotDerivatives<T> {
     type Scalar = T;
 
     /// De Boor's algorithm (de Boor 1978, ch. X).
@@ -218,7 +218,8 @@ mod tests {
             let plain = BSplineCurve::new(knots.clone(), points(n), Some(weights.clone())).unwrap();
             let shifted = knots.as_slice().iter().map(|k| 3.0 + 2.0 * k).collect();
             let moving =
-                MovingSpline::new(degree, Some(shifted), points(n), Some(weights)).unwrap();
+                SplineWithKnotDerivatives::new(degree, Some(shifted), points(n), Some(weights))
+                    .unwrap();
             assert_eq!(moving.clamped_ends(), [true, true]);
             for t in [-0.1, 0.0, 0.21, 0.5, 0.77, 1.0, 1.05] {
                 let (a, b) = (plain.jet(t, Order::Second), moving.jet(t, Order::Second));
@@ -233,7 +234,7 @@ mod tests {
     fn weights_make_a_quarter_circle() {
         let points = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec3::of(x, y, 0.0));
         let weights = vec![1.0, 0.5f64.sqrt(), 1.0];
-        let arc = MovingSpline::new(2, None, points.to_vec(), Some(weights)).unwrap();
+        let arc = SplineWithKnotDerivatives::new(2, None, points.to_vec(), Some(weights)).unwrap();
         for t in [0.0, 0.3, 0.5, 0.9, 1.0] {
             assert!((arc.jet(t, Order::Zero)[0].norm() - 1.0).abs() < 1e-15);
         }
@@ -247,7 +248,7 @@ mod tests {
             let mut knots: Vec<D> = knots.iter().map(|&k| D::from(k)).collect();
             knots[3] = x;
             let points = points(5).into_iter().map(Vec3::lifted).collect();
-            let curve = MovingSpline::new(2, Some(knots), points, None).unwrap();
+            let curve = SplineWithKnotDerivatives::new(2, Some(knots), points, None).unwrap();
             curve.jet(D::from(0.5), Order::First)
         };
         let (h, exact) = (1e-6, at(D::seeded(0.4, 0)));
@@ -262,12 +263,13 @@ mod tests {
     fn fits_reproduce_what_they_can() {
         // A cubic with a knot where the fit has one.
         let knots = vec![0.0, 0.0, 0.0, 0.0, 0.3, 1.0, 1.0, 1.0, 1.0];
-        let curve = MovingSpline::new(3, Some(knots.clone()), points(5), None).unwrap();
+        let curve =
+            SplineWithKnotDerivatives::new(3, Some(knots.clone()), points(5), None).unwrap();
         let samples: Vec<_> = (0..=40)
             .map(|k| f64::from(k) / 40.0)
             .map(|t| (t, curve.jet(t, Order::Zero)[0]))
             .collect();
-        let fit = MovingSpline::fitted(3, Some(knots), 5, &samples).unwrap();
+        let fit = SplineWithKnotDerivatives::fitted(3, Some(knots), 5, &samples).unwrap();
         for t in [0.0, 0.17, 0.5, 0.99, 1.0] {
             let d = fit.jet(t, Order::Zero)[0].distance(curve.jet(t, Order::Zero)[0]);
             assert!(d < 1e-13, "{t} {d}");
@@ -278,19 +280,25 @@ mod tests {
                 .map(|k| f64::from(k) / 400.0)
                 .map(|t| (t, Vec3::of(Real::sin(3.0 * t), Real::cos(3.0 * t), t)))
                 .collect();
-            let fit = MovingSpline::fitted(3, None, n, &samples).unwrap();
+            let fit = SplineWithKnotDerivatives::fitted(3, None, n, &samples).unwrap();
             let far = |(t, p): &(f64, Vec3)| fit.jet(*t, Order::Zero)[0].distance(*p);
             samples.iter().map(far).fold(0.0, f64::max)
         };
         let ratio = gap(3 + 8) / gap(3 + 16);
         assert!(ratio > 12.0 && ratio < 20.0, "{ratio}");
-        assert!(MovingSpline::fitted(3, None, 40, &samples[..10]).is_err());
+        assert!(SplineWithKnotDerivatives::fitted(3, None, 40, &samples[..10]).is_err());
     }
 
     #[test]
     fn what_does_not_fit_is_refused() {
         let of = |knots: &[f64], weights: &[f64]| {
-            MovingSpline::new(2, Some(knots.to_vec()), points(3), Some(weights.to_vec())).err()
+            SplineWithKnotDerivatives::new(
+                2,
+                Some(knots.to_vec()),
+                points(3),
+                Some(weights.to_vec()),
+            )
+            .err()
         };
         let sound = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         assert_eq!(of(&sound, &[1.0; 3]), None);

@@ -1,17 +1,17 @@
 //! Where a branch goes on, from its last three stations.
 
-use crate::march::{Station, Unknowns};
+use crate::march::{TracePoint, Unknowns};
 use moldloft_num::Vec3;
 
 /// What a branch has at a length along it, side by side: the unknowns and the place.
 type Row = [f64; 8];
 
-fn values(s: &Station) -> Row {
+fn values(s: &TracePoint) -> Row {
     let ([a, b, c, d], x) = (s.q, s.x);
     [a, b, c, d, x.x, x.y, x.z, 0.0]
 }
 
-fn rates(s: &Station, sign: f64) -> Row {
+fn rates(s: &TracePoint, sign: f64) -> Row {
     let ([a, b, c, d], x) = (s.rate, s.tangent);
     [a, b, c, d, x.x, x.y, x.z, 0.0].map(|rate| rate * sign)
 }
@@ -49,7 +49,7 @@ fn bulge(turn: f64) -> f64 {
 /// Newton's form. Its error is of the sixth order in the step, so that two evaluations settle what
 /// takes three from a cubic's guess.
 #[inline(always)]
-pub(crate) fn outlook([a, b, c]: [&Station; 3], step: f64, sign: f64) -> Unknowns {
+pub(crate) fn predict([a, b, c]: [&TracePoint; 3], step: f64, sign: f64) -> Unknowns {
     let turn = b.tangent.distance(c.tangent);
     let chord = b.x.distance(c.x);
     let near = chord * bulge(turn);
@@ -96,11 +96,11 @@ mod tests {
     use super::*;
 
     /// A station of a helix of radius 1, with its length for the first unknown.
-    fn station(s: f64, pitch: f64) -> Station {
+    fn station(s: f64, pitch: f64) -> TracePoint {
         let speed = 1.0_f64.hypot(pitch);
         let a = s / speed;
         let tangent = Vec3::of(-a.sin(), a.cos(), pitch) / speed;
-        Station {
+        TracePoint {
             q: [s, a.cos(), a.sin(), pitch * a],
             rate: [1.0, tangent.x, tangent.y, tangent.z],
             x: Vec3::of(a.cos(), a.sin(), pitch * a),
@@ -115,7 +115,7 @@ mod tests {
             let off = |step: f64| {
                 let at = [-1.9, -0.8, 0.0].map(|s| station(0.7 + sign * s * step, 0.4));
                 let [a, b, c] = &at;
-                let seen = outlook([a, b, c], step, sign);
+                let seen = predict([a, b, c], step, sign);
                 // The helix at the length that was found, which is in the plane across.
                 let real = station(seen[0], 0.4);
                 let across = (real.x - c.x).dot(c.tangent) * sign - step;

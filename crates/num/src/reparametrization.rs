@@ -5,16 +5,16 @@ use crate::shape::Order;
 use std::sync::Arc;
 
 /// Value, first and second derivative of a law; entries above the asked order are zero.
-pub type LawJet<T> = [T; 3];
+pub type ReparametrizationJet<T> = [T; 3];
 
 /// A monotone law R of [0, 1] with R(0) = 0 and R(1) = 1 exactly: it redistributes the parameter of
 /// a curve c to C(t) = c(R(t)). Partial laws run between other values, and take a part of the curve.
 ///
 /// Its slope is positive inside; at the ends it may vanish. Outside [0, 1] it is the natural
 /// continuation of its formula.
-pub trait Law<T: Real>: Send + Sync {
+pub trait Reparametrization<T: Real>: Send + Sync {
     /// Value and derivatives at `t`, to `order`.
-    fn jet(&self, t: T, order: Order) -> LawJet<T>;
+    fn jet(&self, t: T, order: Order) -> ReparametrizationJet<T>;
 
     /// Interior parameters at which a derivative up to the second may jump, ascending.
     fn breaks(&self) -> Vec<f64> {
@@ -29,7 +29,7 @@ pub trait Law<T: Real>: Send + Sync {
 
 /// The law at a parameter that is itself a jet: the chain rule by Taylor's formula.
 #[inline(always)]
-pub fn lift_law<T: Real, J: Jet<T>>(jet: &LawJet<T>, t: J) -> J {
+pub fn lift_reparametrization<T: Real, J: Jet<T>>(jet: &ReparametrizationJet<T>, t: J) -> J {
     if J::ORDER == Order::Zero {
         return J::fixed(jet[0]);
     }
@@ -44,7 +44,7 @@ pub fn lift_law<T: Real, J: Jet<T>>(jet: &LawJet<T>, t: J) -> J {
 /// The law's jet of a formula `at(t)` that is generic over jets, computed to the asked order.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! law_jet_of {
+macro_rules! reparametrization_jet_of {
     ($self:expr, $at:path, $t:expr, $order:expr) => {{
         let (law, t, order) = ($self, $t, $order);
         match order {
@@ -62,7 +62,7 @@ macro_rules! law_jet_of {
 }
 
 /// The parameter t in [0, 1] with R(t) = `r`; 0 and 1 for values beyond the ends.
-pub fn inv_law<T: Real>(law: &dyn Law<T>, r: f64) -> f64 {
+pub fn inv_reparametrization<T: Real>(law: &dyn Reparametrization<T>, r: f64) -> f64 {
     if r <= 0.0 {
         return 0.0;
     }
@@ -75,8 +75,8 @@ pub fn inv_law<T: Real>(law: &dyn Law<T>, r: f64) -> f64 {
 
 /// The same with derivatives: the root in plain numbers, then one Newton step in `T` (implicit
 /// function theorem). Where the slope vanishes the root has none.
-pub fn inv_law_in<T: Real>(law: &dyn Law<T>, r: T) -> T {
-    let t = inv_law(law, r.re());
+pub fn inv_reparametrization_in<T: Real>(law: &dyn Reparametrization<T>, r: T) -> T {
+    let t = inv_reparametrization(law, r.re());
     let [at, slope, _] = law.jet(T::from(t), Order::First);
     if slope.re() == 0.0 {
         return T::from(t);
@@ -88,13 +88,13 @@ pub fn inv_law_in<T: Real>(law: &dyn Law<T>, r: T) -> T {
 /// One law after another: R(t) = `second`(`first`(t)).
 pub struct Composed<T: Real> {
     /// The law that sees t.
-    pub first: Arc<dyn Law<T>>,
+    pub first: Arc<dyn Reparametrization<T>>,
     /// The law that sees its result.
-    pub second: Arc<dyn Law<T>>,
+    pub second: Arc<dyn Reparametrization<T>>,
 }
 
-impl<T: Real> Law<T> for Composed<T> {
-    fn jet(&self, t: T, order: Order) -> LawJet<T> {
+impl<T: Real> Reparametrization<T> for Composed<T> {
+    fn jet(&self, t: T, order: Order) -> ReparametrizationJet<T> {
         let [a, a1, a2] = self.first.jet(t, order);
         let [b, b1, b2] = self.second.jet(a, order);
         [b, b1 * a1, b2 * a1 * a1 + b1 * a2]
@@ -104,7 +104,7 @@ impl<T: Real> Law<T> for Composed<T> {
         let mut all = self.first.breaks();
         let [low, high] = [0.0, 1.0].map(|t| self.first.jet(T::from(t), Order::Zero)[0].re());
         let reached = self.second.breaks().into_iter().filter(|b| low < *b && *b < high);
-        all.extend(reached.map(|b| inv_law(&*self.first, b)));
+        all.extend(reached.map(|b| inv_reparametrization(&*self.first, b)));
         all.sort_by(f64::total_cmp);
         all.dedup();
         all
@@ -115,10 +115,10 @@ impl<T: Real> Law<T> for Composed<T> {
     }
 }
 
-impl<T: Real> dyn Law<T> + '_ {
+impl<T: Real> dyn Reparametrization<T> + '_ {
     /// R at a parameter that is a jet of the caller's own parameters.
     pub fn at<J: Jet<T>>(&self, t: J) -> J {
-        lift_law(&self.jet(t.value(), J::ORDER), t)
+        lift_reparametrization(&self.jet(t.value(), J::ORDER), t)
     }
 }
 
@@ -128,8 +128,8 @@ mod tests {
     use crate::Uni2;
 
     struct Square;
-    impl Law<f64> for Square {
-        fn jet(&self, t: f64, _: Order) -> LawJet<f64> {
+    impl Reparametrization<f64> for Square {
+        fn jet(&self, t: f64, _: Order) -> ReparametrizationJet<f64> {
             [t * t, 2.0 * t, 2.0]
         }
     }
@@ -139,9 +139,12 @@ mod tests {
         let law = Composed { first: Arc::new(Square), second: Arc::new(Square) };
         let [r, d, dd] = law.jet(0.5, Order::Second);
         assert_eq!((r, d, dd), (0.0625, 0.5, 3.0));
-        assert!((inv_law(&law, 0.0625) - 0.5).abs() < 1e-15);
-        assert_eq!((inv_law(&law, 0.0), inv_law(&law, 1.0)), (0.0, 1.0));
-        let lifted = (&law as &dyn Law<f64>).at(Uni2::parameter(0.5));
+        assert!((inv_reparametrization(&law, 0.0625) - 0.5).abs() < 1e-15);
+        assert_eq!(
+            (inv_reparametrization(&law, 0.0), inv_reparametrization(&law, 1.0)),
+            (0.0, 1.0)
+        );
+        let lifted = (&law as &dyn Reparametrization<f64>).at(Uni2::parameter(0.5));
         assert_eq!((lifted.f, lifted.t, lifted.tt), (0.0625, 0.5, 3.0));
     }
 }

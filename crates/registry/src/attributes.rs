@@ -1,4 +1,4 @@
-use crate::{Class, DefaultValue, Fault, Field, Unit, Value};
+use crate::{CallError, Class, DefaultValue, Field, Unit, Value};
 use moldloft_num::Real;
 use std::sync::Arc;
 
@@ -80,7 +80,7 @@ impl Spacing {
 
 /// What a surface says of its panels besides their number.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Panels {
+pub struct PanelAttributes {
     /// The aimed length of panels along u and v, in the model's unit.
     pub size: [Option<f64>; 2],
     /// Their spacing along u and v, where it is stated.
@@ -91,12 +91,12 @@ pub struct Panels {
 }
 
 // No part is ever NaN.
-impl Eq for Panels {}
+impl Eq for PanelAttributes {}
 
 /// What every object carries besides its geometry: how it is drawn and divided. A change here
 /// never evaluates geometry again.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Head {
+pub struct Attributes {
     /// Colour index 0..=255; 0..=15 are the sixteen classic ones.
     pub colour: i32,
     /// Visibility: positive shown, 0 or negative hidden; the magnitude is a display mask that is
@@ -118,7 +118,7 @@ pub struct Head {
     /// True when divisions were given: an image without any is divided like its original.
     pub divided: bool,
     /// What is said of the panels besides their number.
-    pub panels: Option<Arc<Panels>>,
+    pub panels: Option<Arc<PanelAttributes>>,
 }
 
 /// The most panels along one parameter.
@@ -140,7 +140,7 @@ const fn head(name: &'static str, help: &'static str, default: DefaultValue) -> 
 }
 
 /// The named arguments that every kind accepts besides its own.
-pub const HEAD: [Field; 10] = [
+pub const ATTRIBUTES: [Field; 10] = [
     head("colour", "Colour index, 0 to 255.", DefaultValue::Unset),
     head("visible", "Shown when positive, hidden when 0 or negative.", DefaultValue::Number(1.0)),
     head("layer", "Layer, 0 to 255.", DefaultValue::Number(0.0)),
@@ -180,7 +180,7 @@ pub const HEAD: [Field; 10] = [
     },
 ];
 
-impl Head {
+impl Attributes {
     /// The head of an object of `class` that says nothing.
     pub fn of(class: Class) -> Self {
         let (colour, divisions, subdivisions) = match class.dimension() {
@@ -211,28 +211,28 @@ impl Head {
     /// Sets one part by its name; false when `name` is no part of a head.
     ///
     /// # Errors
-    /// A [`Fault`] when the value is not a whole number in range.
-    pub fn set<T: Real>(&mut self, name: &str, value: &Value<T>) -> Result<bool, Fault> {
-        let whole = |low: f64, high: f64, value: &Value<T>| -> Result<f64, Fault> {
+    /// A [`CallError`] when the value is not a whole number in range.
+    pub fn set<T: Real>(&mut self, name: &str, value: &Value<T>) -> Result<bool, CallError> {
+        let whole = |low: f64, high: f64, value: &Value<T>| -> Result<f64, CallError> {
             let Value::Number(x) = value else {
-                return Err(Fault::wrong_class(Class::Integer, value.class()));
+                return Err(CallError::wrong_class(Class::Integer, value.class()));
             };
             let x = x.re();
             if x.fract() == 0.0 && x >= low && x <= high {
                 return Ok(x);
             }
-            Err(Fault::new("out-of-range", format!("{name} = {x} is out of range"))
+            Err(CallError::new("out-of-range", format!("{name} = {x} is out of range"))
                 .expected(format!("a whole number from {low} to {high}"))
                 .found(x.to_string()))
         };
-        let pair = |value: &Value<T>, least: f64, old: [u32; 2]| -> Result<[u32; 2], Fault> {
+        let pair = |value: &Value<T>, least: f64, old: [u32; 2]| -> Result<[u32; 2], CallError> {
             let most = |v: &Value<T>| match v {
                 Value::Text(word) if least == 0.0 && &**word == "auto" => Ok(0),
                 v => whole(least, MOST_DIVISIONS, v).map(|x| x as u32),
             };
             match value {
                 Value::List(items) if items.len() == 2 => Ok([most(&items[0])?, most(&items[1])?]),
-                Value::List(items) => Err(Fault::new(
+                Value::List(items) => Err(CallError::new(
                     "wrong-length",
                     format!("{name} takes one or two whole numbers, found {}", items.len()),
                 )),
@@ -289,7 +289,7 @@ impl Head {
             "orientation" => self.orientation = whole(0.0, 1.0, value)? as i32,
             "attributes" => match value {
                 Value::Text(text) => self.attributes = Some(text.clone()),
-                other => return Err(Fault::wrong_class(Class::Text, other.class())),
+                other => return Err(CallError::wrong_class(Class::Text, other.class())),
             },
             _ => return Ok(false),
         }
@@ -297,7 +297,7 @@ impl Head {
     }
 }
 
-impl Head {
+impl Attributes {
     /// Its divisions, where it leaves them to the neighbours those that its class has by itself.
     pub fn own_divisions(&self) -> [u32; 2] {
         self.divisions.map(|n| if n == 0 { 8 } else { n })
@@ -313,13 +313,13 @@ impl Head {
 fn both<T: Real, R: Copy>(
     name: &str,
     value: &Value<T>,
-    one: impl Fn(&str, &Value<T>) -> Result<R, Fault>,
-) -> Result<[R; 2], Fault> {
+    one: impl Fn(&str, &Value<T>) -> Result<R, CallError>,
+) -> Result<[R; 2], CallError> {
     match value {
         Value::List(items) if items.len() == 2 => {
             Ok([one(name, &items[0])?, one(name, &items[1])?])
         }
-        Value::Vector(_) | Value::List(_) => Err(Fault::new(
+        Value::Vector(_) | Value::List(_) => Err(CallError::new(
             "wrong-length",
             format!("{name} takes one value, or two: one along u and one along v"),
         )),
@@ -328,54 +328,54 @@ fn both<T: Real, R: Copy>(
 }
 
 /// A length of panels; 0 or "auto" for none.
-fn length<T: Real>(name: &str, value: &Value<T>) -> Result<Option<f64>, Fault> {
+fn length<T: Real>(name: &str, value: &Value<T>) -> Result<Option<f64>, CallError> {
     match value {
         Value::Number(x) if x.re() == 0.0 => Ok(None),
         Value::Number(x) if x.re() > 0.0 && x.re().is_finite() => Ok(Some(x.re())),
         Value::Number(x) => {
-            Err(Fault::new("out-of-range", format!("{name} = {} is out of range", x.re()))
+            Err(CallError::new("out-of-range", format!("{name} = {} is out of range", x.re()))
                 .expected("a positive length in the model's unit, or 0 for none")
                 .found(x.re().to_string()))
         }
         Value::Text(word) if &**word == "auto" => Ok(None),
-        other => Err(Fault::wrong_class(Class::Number, other.class())),
+        other => Err(CallError::wrong_class(Class::Number, other.class())),
     }
 }
 
 /// The steepest growth from panel to panel, and its inverse the least.
 const MOST_GROWTH: f64 = 10.0;
 
-fn spacing<T: Real>(name: &str, value: &Value<T>) -> Result<Option<Spacing>, Fault> {
+fn spacing<T: Real>(name: &str, value: &Value<T>) -> Result<Option<Spacing>, CallError> {
     let words = || Spacing::WORDS.map(|(word, _)| word).join(", ");
     match value {
         Value::Number(x) if (1.0 / MOST_GROWTH..=MOST_GROWTH).contains(&x.re()) => {
             Ok(Some(Spacing::Growth(x.re())))
         }
         Value::Number(x) => {
-            Err(Fault::new("out-of-range", format!("{name} = {} is out of range", x.re()))
+            Err(CallError::new("out-of-range", format!("{name} = {} is out of range", x.re()))
                 .expected(format!("a growth from {} to {MOST_GROWTH}", 1.0 / MOST_GROWTH))
                 .found(x.re().to_string()))
         }
         Value::Text(word) if &**word == "auto" => Ok(None),
         Value::Text(word) => match Spacing::WORDS.iter().find(|(w, _)| *w == &**word) {
             Some((_, spacing)) => Ok(Some(*spacing)),
-            None => Err(Fault::new("unknown-word", format!("there is no {name} \"{word}\""))
+            None => Err(CallError::new("unknown-word", format!("there is no {name} \"{word}\""))
                 .expected(format!("{} or a number, the growth from panel to panel", words()))
                 .found(format!("\"{word}\""))),
         },
-        other => Err(Fault::wrong_class(Class::Text, other.class())),
+        other => Err(CallError::wrong_class(Class::Text, other.class())),
     }
 }
 
-fn tags<T: Real>(value: &Value<T>) -> Result<Vec<Arc<str>>, Fault> {
+fn tags<T: Real>(value: &Value<T>) -> Result<Vec<Arc<str>>, CallError> {
     let one = |value: &Value<T>| match value {
         Value::Text(tag) if !tag.is_empty() && !tag.chars().any(char::is_whitespace) => {
             Ok(tag.clone())
         }
-        Value::Text(tag) => Err(Fault::new("out-of-range", format!("\"{tag}\" is no tag"))
+        Value::Text(tag) => Err(CallError::new("out-of-range", format!("\"{tag}\" is no tag"))
             .expected("a word without blanks, such as \"wetted\", \"lid\" or \"keel\"")
             .found(format!("\"{tag}\""))),
-        other => Err(Fault::wrong_class(Class::Text, other.class())),
+        other => Err(CallError::wrong_class(Class::Text, other.class())),
     };
     let mut tags = match value {
         Value::List(items) => items.iter().map(one).collect::<Result<Vec<_>, _>>()?,

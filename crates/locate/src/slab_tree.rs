@@ -6,18 +6,18 @@
 //! apart, or when they meet in one line at most and a branch that was found before is that line.
 
 use crate::cells::{Cells, Flat, MOST_HALVINGS, derivative, patch_powers};
-use crate::march::{Station, Unknowns};
+use crate::march::{TracePoint, Unknowns};
 use moldloft_num::{Box3, Vec3};
 
 /// A branch that passes this share of a plate's half sides beside it passes it: where a line runs
 /// along the border of two plates each of them has it.
-const BESIDE: f64 = 0.15;
+const NEIGHBOUR_MARGIN: f64 = 0.15;
 
 /// Turns are bounded on plates this much larger, so that there is one line at most beside them, too.
-const WIDER: f64 = 1.2;
+const GROWTH_MARGIN: f64 = 1.2;
 
 /// Boxes that overlap by less than this share of the size only touch.
-const HAIR: f64 = 1e-12;
+const TOUCH_TOLERANCE: f64 = 1e-12;
 
 /// Rounding of single precision, several times over, as a share of the numbers that go in.
 const ROUNDING: f64 = 1.0 / (1u32 << 20) as f64;
@@ -217,7 +217,7 @@ impl Plates {
     pub fn new(cells: &mut Cells) -> Self {
         let twigs = std::mem::take(&mut cells.twigs);
         let pieces = cells.pieces.len();
-        let hair = HAIR * cells.tree.size;
+        let hair = TOUCH_TOLERANCE * cells.tree.size;
         let bounds = cells.tree.bounds;
         let (origin, radius) = (bounds.centre(), bounds.low.distance(bounds.high));
         let mut made = Self {
@@ -234,7 +234,7 @@ impl Plates {
             let x = patch_powers(patch);
             let flat = Flat::new(patch, &x);
             // On a plate that is larger by a factor.
-            let powers = [1.0, WIDER, WIDER.powi(2), WIDER.powi(3)];
+            let powers = [1.0, GROWTH_MARGIN, GROWTH_MARGIN.powi(2), GROWTH_MARGIN.powi(3)];
             let wide: [Vec3; 16] = std::array::from_fn(|k| x[k] * (powers[k / 4] * powers[k % 4]));
             let (by_s, by_t) = (derivative(&wide, 0), derivative(&wide, 1));
             // The coefficients of X_s x X_t, by degree.
@@ -349,7 +349,7 @@ impl Trails {
     }
 
     /// Notes a stretch between two neighbouring stations.
-    pub fn note(&mut self, a: &Station, b: &Station) {
+    pub fn note(&mut self, a: &TracePoint, b: &TracePoint) {
         // The cubic's middle, in the direction in which the stations come.
         let chord = b.x - a.x;
         let run = if chord.dot(a.tangent) < 0.0 { -chord.norm() } else { chord.norm() };
@@ -374,7 +374,7 @@ impl Trails {
     pub fn pass(&self, p: &Sight, q: &Sight) -> bool {
         let [p, q] = [p, q].map(|at| at.all.ranges[at.number]);
         let wider = |[a, b]: [f64; 2]| {
-            let more = 0.5 * BESIDE * (b - a);
+            let more = 0.5 * NEIGHBOUR_MARGIN * (b - a);
             [a - more, b + more]
         };
         let ranges = [p[0], p[1], q[0], q[1]].map(wider);

@@ -33,7 +33,7 @@ pub struct Group {
 
 /// A curve that the border of a sheet runs along, from its begin to its end.
 #[derive(Clone, Debug)]
-pub struct Hem<T: Real> {
+pub struct BorderCurve<T: Real> {
     /// The curve.
     pub curve: CurveRef<T>,
     /// Its divisions, where they are stated.
@@ -44,18 +44,18 @@ pub struct Hem<T: Real> {
 
 /// A sheet of triangles whose border runs along curves, so that it can be made anew with the
 /// divisions that its neighbours have there.
-pub trait Hemmed<T: Real>: Send + Sync {
+pub trait TriangulatedBorder<T: Real>: Send + Sync {
     /// The curves of the border.
-    fn hems(&self) -> &[Hem<T>];
+    fn curves(&self) -> &[BorderCurve<T>];
 
     /// The sheet whose border has vertices at these parameters of each curve, ascending from 0 to 1,
     /// and for each curve which of its vertices these are; `None` when such a border crosses itself.
-    fn divided(&self, at: &[Vec<T>]) -> Option<(Facets<T>, Vec<Vec<u32>>)>;
+    fn divided(&self, at: &[Vec<T>]) -> Option<(TriangleBody<T>, Vec<Vec<u32>>)>;
 }
 
 /// The way to make a sheet anew.
 #[derive(Clone)]
-pub struct Border<T: Real>(pub Arc<dyn Hemmed<T>>);
+pub struct Border<T: Real>(pub Arc<dyn TriangulatedBorder<T>>);
 
 impl<T: Real> PartialEq for Border<T> {
     fn eq(&self, o: &Self) -> bool {
@@ -65,7 +65,7 @@ impl<T: Real> PartialEq for Border<T> {
 
 impl<T: Real> std::fmt::Debug for Border<T> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.debug_list().entries(self.0.hems()).finish()
+        f.debug_list().entries(self.0.curves()).finish()
     }
 }
 
@@ -73,7 +73,7 @@ impl<T: Real> std::fmt::Debug for Border<T> {
 ///
 /// For implicit modelling it is the closed mesh from which a set can be made.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Facets<T: Real> {
+pub struct TriangleBody<T: Real> {
     /// The vertices.
     pub points: Vec<Vec3<T>>,
     /// Corners of the triangles, counter-clockwise from outside.
@@ -96,7 +96,7 @@ pub struct Facets<T: Real> {
     pub flaws: Vec<Flaw>,
 }
 
-impl<T: Real> Facets<T> {
+impl<T: Real> TriangleBody<T> {
     /// The triangles with the measures that follow from them (divergence theorem; the sums run about
     /// the mean of the vertices, so that distant bodies keep their digits).
     ///
@@ -165,11 +165,11 @@ mod tests {
         let far = Vec3::of(1e6, -2e6, 3e6);
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let points: Vec<Vec3> = points.iter().map(|&p| Vec3::from(p) + far).collect();
-        let body = Facets::new(points, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+        let body = TriangleBody::new(points, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
         assert!((body.volume - 1.0 / 6.0).abs() < 1e-9);
         assert!((body.area - (1.5 + 0.75f64.sqrt())).abs() < 1e-9);
         assert!((body.centroid - far).distance(Vec3::of(0.25, 0.25, 0.25)) < 1e-6);
-        let sheet = Facets::new(body.points[..3].to_vec(), vec![[0, 1, 2]]);
+        let sheet = TriangleBody::new(body.points[..3].to_vec(), vec![[0, 1, 2]]);
         assert!((sheet.centroid - far).distance(Vec3::of(1.0 / 3.0, 1.0 / 3.0, 0.0)) < 1e-6);
     }
 }

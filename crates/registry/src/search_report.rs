@@ -15,9 +15,9 @@ pub struct Remark {
 /// How a construction that may go more or less well (a projection, an intersection, a fit) came to
 /// its result. Carried by the point or curve; every word of it depends on the model only.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct SearchReport {
     /// How the search ended.
-    pub status: FoundStatus,
+    pub status: SearchStatus,
     /// What is left of the equations, in the unit of length.
     pub residual: f64,
     /// Steps of the iteration.
@@ -34,7 +34,7 @@ pub struct Found {
 
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FoundStatus {
+pub enum SearchStatus {
     /// From the start that was given, or the only solution.
     Ok,
     /// The iteration from the start failed; the nearest of all solutions was taken.
@@ -59,21 +59,21 @@ pub enum FoundStatus {
     },
 }
 
-impl FoundStatus {
+impl SearchStatus {
     /// Its word in the language and in Python.
     pub fn word(self) -> &'static str {
         match self {
-            FoundStatus::Ok => "ok",
-            FoundStatus::Fallback => "fallback",
-            FoundStatus::EdgeClamped => "edge-clamped",
-            FoundStatus::Tangent => "tangent",
-            FoundStatus::Unbalanced { .. } => "unbalanced",
-            FoundStatus::Multiple { .. } => "multiple",
+            SearchStatus::Ok => "ok",
+            SearchStatus::Fallback => "fallback",
+            SearchStatus::EdgeClamped => "edge-clamped",
+            SearchStatus::Tangent => "tangent",
+            SearchStatus::Unbalanced { .. } => "unbalanced",
+            SearchStatus::Multiple { .. } => "multiple",
         }
     }
 }
 
-impl fmt::Display for FoundStatus {
+impl fmt::Display for SearchStatus {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(self.word())
     }
@@ -87,7 +87,7 @@ fn list(parameters: &[f64]) -> String {
     }
 }
 
-impl Found {
+impl SearchReport {
     /// The warning about it; `None` when there is nothing to say.
     pub fn remark(&self) -> Option<Remark> {
         let (id, message) = self.message()?;
@@ -97,26 +97,26 @@ impl Found {
     fn message(&self) -> Option<(&'static str, String)> {
         let at = list(&self.last);
         Some(match self.status {
-            FoundStatus::Ok => return None,
-            FoundStatus::Fallback => (
+            SearchStatus::Ok => return None,
+            SearchStatus::Fallback => (
                 "start-failed",
                 format!(
                     "the start {} leads nowhere; the nearest solution, at {at}, was taken",
                     list(&self.start)
                 ),
             ),
-            FoundStatus::EdgeClamped => {
+            SearchStatus::EdgeClamped => {
                 ("edge-clamped", format!("the solution lies beyond the edge; it was held at {at}"))
             }
-            FoundStatus::Tangent => (
+            SearchStatus::Tangent => (
                 "tangent-contact",
                 format!("the shapes touch at {at}; a small change may part them"),
             ),
-            FoundStatus::Unbalanced { sum } => (
+            SearchStatus::Unbalanced { sum } => (
                 "weight-sum",
                 format!("the weights add up to {sum}: the point depends on where the origin is"),
             ),
-            FoundStatus::Multiple { count, chosen, next } => {
+            SearchStatus::Multiple { count, chosen, next } => {
                 let others: Vec<String> =
                     self.alternatives.iter().take(3).map(|(p, _)| list(p)).collect();
                 let more = if self.alternatives.len() > 3 { ", …" } else { "" };
@@ -133,6 +133,6 @@ impl Found {
 
     /// True when there is something to warn of.
     pub fn warns(&self) -> bool {
-        self.status != FoundStatus::Ok
+        self.status != SearchStatus::Ok
     }
 }
