@@ -149,7 +149,7 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     if ends:
         files = f"files that end in `.{wanted}` may be of several formats"
         raise Error(f"{files}; say which: {' or '.join(ends)}")
-    raise Error(f"there is no format `{name}`; there are: {', '.join(row.name for row in rows)}")
+    raise Error(f"unknown format `{name}`; expected one of: {', '.join(row.name for row in rows)}")
 
 
 def markdown() -> str:

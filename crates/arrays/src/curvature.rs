@@ -16,7 +16,7 @@ fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), CallError
     }
     Err(CallError::new(
         "too-few-items",
-        format!("{} points do not tell how a curve bends", points.len()),
+        format!("{} points do not determine a curvature", points.len()),
     )
     .expected(format!("at least {least} points"))
     .found(points.len().to_string())
@@ -51,7 +51,8 @@ impl<T: Scalar> Build<T> for Curvatures<T> {
             let (a, b, c) = (w[1] - w[0], w[2] - w[1], w[2] - w[0]);
             let product = a.norm_sq() * b.norm_sq() * c.norm_sq();
             if product.re() == 0.0 {
-                let message = format!("points {}, {} and {} are no circle", k + 1, k + 2, k + 3);
+                let message =
+                    format!("points {}, {} and {} do not define a circle", k + 1, k + 2, k + 3);
                 return Err(CallError::new("coincident-points", message)
                     .expected("three different points")
                     .in_item(k + 1)
@@ -150,12 +151,9 @@ fn at_points<T: Real>(
             })
         });
         known.push(value.ok_or_else(|| {
-            CallError::new(
-                "no-direction",
-                format!("there is no normal at point [{},{}]", i + 1, j + 1),
-            )
-            .expected("a surface with a tangent plane at every inner point")
-            .in_field(field)
+            CallError::new("no-direction", format!("no normal at point [{},{}]", i + 1, j + 1))
+                .expected("a surface with a tangent plane at every inner point")
+                .in_field(field)
         })?);
     }
     Ok(known)

@@ -31,7 +31,7 @@ pub fn fault(error: DistributionError, of: Arguments) -> CallError {
         DistributionError::Spacing { spacing } => fault
             .expected("a positive spacing")
             .found(spacing.to_string())
-            .help("spacings are lengths: positive whatever the direction")
+            .help("a spacing is a length: positive in either direction")
             .in_field(of.spacings),
         DistributionError::TwoSided { .. } => fault
             .help("d_tanh, d_tanhx and geometric2 take a spacing at both ends")
@@ -41,7 +41,7 @@ pub fn fault(error: DistributionError, of: Arguments) -> CallError {
             fault
                 .expected(format!("spacings nearer to the mean, {mean}"))
                 .found(format!("{a} and {b}"))
-                .help("ask for another number of points: count_for(length, ds1, ds2, growth)")
+                .help("use another number of points: count_for(length, ds1, ds2, growth)")
                 .in_field(of.spacings)
         }
     }
@@ -62,7 +62,7 @@ pub struct Uniform<T: Real> {
     start: T,
     /// Last number.
     end: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -85,7 +85,7 @@ pub struct Cosine<T: Real> {
     start: T,
     /// Last number.
     end: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -114,7 +114,7 @@ pub struct Geometric<T: Real> {
     end: T,
     /// First step, a positive length.
     ds1: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -149,7 +149,7 @@ pub struct Geometric2<T: Real> {
     ds1: T,
     /// Last step, a positive length.
     ds2: T,
-    /// How many numbers, at least 4.
+    /// Number of values, at least 4.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -184,7 +184,7 @@ pub struct DSinh<T: Real> {
     /// Slope at the end, per index; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -219,7 +219,7 @@ pub struct DTanh<T: Real> {
     /// Slope at the end, per index; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -254,7 +254,7 @@ pub struct DTanhX<T: Real> {
     /// Last step; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers, at least 4.
+    /// Number of values, at least 4.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -277,7 +277,7 @@ impl<T: Real> Build<T> for DTanhX<T> {
 pub struct Redist<T: Scalar> {
     /// The row.
     given: Farray<T>,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }

@@ -32,7 +32,7 @@ fn positions<T: Real>(curve: &CurveRef<T>, parameters: &[T]) -> Vec<Vec3<T>> {
 
 /// The points of a curve at given parameters: C(s[1]), C(s[2]), ...
 ///
-/// Parameters lie in [0, 1]; at 0 and 1 the points are the curve's ends to the bit.
+/// Parameters are in [0, 1]; at 0 and 1 the points are the curve's ends to the bit.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -60,7 +60,7 @@ impl<T: Scalar> Build<T> for Distc<T> {
 /// The points of a surface at given parameters: S(u[i], v[j]) for rows u[m] and v[n], or
 /// S(u[i,j], v[i,j]) for parameters that are arrays [m,n] themselves.
 ///
-/// Parameters lie in [0, 1].
+/// Parameters are in [0, 1].
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -173,7 +173,7 @@ impl<T: Scalar> Build<T> for Derivc<T> {
 
 /// The curvature of a curve, |C' x C''| / |C'|^3, at a parameter or at those of an farray.
 ///
-/// Not signed; where the curve stands still it is refused.
+/// Not signed; a zero tangent is an error.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -196,9 +196,9 @@ impl<T: Scalar> Build<T> for Curvc<T> {
             let [_, d, dd] = curve.jet(t, Order::Second);
             let (square, bend) = (d.norm_sq(), d.cross(dd));
             if square.re() == 0.0 {
-                let message = format!("the curve stands still at u = {}", t.re());
+                let message = format!("zero tangent at u = {}", t.re());
                 return Err(CallError::new("no-direction", message)
-                    .expected("a curve that moves on")
+                    .expected("a curve with a non-zero tangent")
                     .in_item(k)
                     .in_field(Self::U));
             }
@@ -274,10 +274,10 @@ pub struct Derivs<T: Scalar> {
     u: Numbers<T>,
     /// Parameter v, or an farray.
     v: Numbers<T>,
-    /// How many times by u.
+    /// Order of the derivative by u.
     #[field(default = 1, min = 0, max = 2)]
     ku: usize,
-    /// How many times by v.
+    /// Order of the derivative by v.
     #[field(default = 0, min = 0, max = 2)]
     kv: usize,
 }
@@ -287,7 +287,7 @@ impl<T: Scalar> Build<T> for Derivs<T> {
         let Self { surface, u, v, ku, kv } = self;
         paired(&u, &v, Self::V)?;
         if ku + kv > 2 {
-            let message = format!("there is no derivative of order {}", ku + kv);
+            let message = format!("no derivative of order {}", ku + kv);
             return Err(CallError::new("out-of-range", message)
                 .expected("ku + kv of 2 at most")
                 .found((ku + kv).to_string())

@@ -38,23 +38,23 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
             .found(format!("[{m},{n}]"))
             .in_item(face - 1),
         GridError::Folded { count, .. } => with("folded-grid")
-            .expected("cells that are not turned over")
+            .expected("unfolded cells")
             .found(format!("{count} folded cells")),
         GridError::March(failure) => match failure.cause {
             FailureCause::CornerTooTight { fits, .. } => with("tight-corner")
                 .expected(format!("a first cell of at most {fits:.3e}"))
                 .help("make the first cell smaller, or the points beside the corner wider"),
-            _ => with("folded-grid").expected("cells that are not turned over").help(
+            _ => with("folded-grid").expected("unfolded cells").help(
                 "march less far, smooth more, space the wall more evenly there, or take the layers below with \
                  stop = \"keep\"",
             ),
         },
         GridError::Diverged { .. } => with("diverged")
-            .expected("a grid that settles")
-            .help("over-relax less (omega), or ask for less at the walls"),
+            .expected("a converging iteration")
+            .help("reduce omega, or relax the spacing and angle at the walls"),
         GridError::Cancelled => return with("cancelled"),
         GridError::Heights { value, .. } => {
-            with("not-monotone").expected("heights that ascend from 0").found(value.to_string())
+            with("not-monotone").expected("heights that increase from 0").found(value.to_string())
         }
         GridError::NoNormal { .. } => {
             with("no-direction").expected("a surface with a normal at every point")
@@ -64,7 +64,7 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
 }
 
 fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallError {
-    CallError::new("unknown-word", format!("there is no {what} \"{word}\""))
+    CallError::new("unknown-word", format!("unknown {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
         .in_field(field)
@@ -149,7 +149,7 @@ impl<T: Scalar> Build<T> for Tfi<T> {
 }
 
 fn fault_of_count(n: usize, field: FieldId) -> CallError {
-    CallError::new("wrong-shape", format!("nothing is bounded by {n} edges or faces"))
+    CallError::new("wrong-shape", format!("{n} edges or faces do not bound a grid"))
         .expected("a surface, a list of four curves or a list of six surfaces")
         .found(format!("a list of {n}"))
         .in_field(field)
@@ -225,7 +225,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             "allow" => true,
             word => {
                 let expected = "\"refuse\" or \"allow\"".to_string();
-                return Err(unknown(word, "answer to folded cells", expected, Self::FOLDED));
+                return Err(unknown(word, "treatment of folded cells", expected, Self::FOLDED));
             }
         };
         let walls = match (method, &self.walls, self.spacing) {
@@ -379,9 +379,9 @@ fn on_surface<T: Scalar>(
         let (i, j) = (worst / grid.n + 1, worst % grid.n + 1);
         let message = format!("point [{i},{j}] of the grid is {} off the surface", off[worst]);
         return Err(CallError::new("off-surface", message)
-            .expected("a grid whose points lie on the surface")
+            .expected("a grid with all points on the surface")
             .found(format!("a distance of {}", off[worst]))
-            .help("project(s, surface) brings them there")
+            .help("project(s, surface) moves them onto it")
             .in_field(EllipticGrid::<T>::ON));
     }
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
@@ -414,7 +414,7 @@ pub struct HyperbolicGrid<T: Scalar> {
     s: Value<T>,
     /// The distances of the layers, the first 0.
     heights: crate::value::Farray<T>,
-    /// What happens at edges.
+    /// Conditions at the edges.
     #[field(default = "")]
     sides: Arc<str>,
     /// How strongly converging lines are smoothed apart; 0 for not at all.
@@ -579,7 +579,7 @@ fn metric(word: &str, field: FieldId) -> Result<Metric, CallError> {
     })
 }
 
-/// How well shaped the cells of a grid [m,n] are: numbers [m-1,n-1].
+/// The quality of the cells of a grid [m,n]: numbers [m-1,n-1].
 ///
 /// "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
 /// turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
@@ -597,7 +597,7 @@ fn metric(word: &str, field: FieldId) -> Result<Metric, CallError> {
 pub struct QualityOf<T: Scalar> {
     /// The grid.
     s: GridArg<T>,
-    /// What is measured.
+    /// The metric.
     #[field(default = "sj")]
     metric: Arc<str>,
 }

@@ -153,7 +153,7 @@ impl<T: Scalar> Build<T> for Project<T> {
             Value::Text(word) => {
                 return Err(CallError::new(
                     "unknown-word",
-                    format!("there is no direction \"{word}\""),
+                    format!("unknown direction \"{word}\""),
                 )
                 .expected("\"closest\", or a vector")
                 .found(format!("\"{word}\""))
@@ -178,7 +178,7 @@ fn along<T: Scalar>(
 ) -> Result<Vec<Vec3<T>>, CallError> {
     if d.re().norm() == 0.0 {
         return Err(CallError::new("no-direction", "the direction is zero")
-            .expected("a vector other than zero")
+            .expected("a non-zero vector")
             .in_field(Project::<T>::DIR));
     }
     let plain = PlainSurface(&**surface);
@@ -222,7 +222,7 @@ fn nothing<const N: usize>(roots: &Roots<N>, what: &str, field: FieldId) -> Call
     none(what, roots.closest.map_or(f64::INFINITY, |(_, residual)| residual), field)
 }
 
-/// Where two shapes with parameters meet: of two curves, or a curve and a surface, the points, in
+/// The intersection of two shapes with parameters: of two curves, or a curve and a surface, the points, in
 /// the order of the first curve's parameter; of two surfaces a branch of their intersection, as a
 /// curve of points: the longest, or another by its number.
 ///
@@ -241,7 +241,7 @@ pub struct Intersect<T: Scalar> {
     a: Value<T>,
     /// A curve or a surface.
     b: Value<T>,
-    /// Which branch, the longest first; of anything but two surfaces there is one.
+    /// The number of the branch, longest first; shapes other than two surfaces have one.
     #[field(default = 1, min = 1)]
     branch: usize,
 }
@@ -313,7 +313,7 @@ fn meetings<T: Real>(
             .expected("a curve or a surface with parameters")
             .found(found);
             return Err(match other {
-                Value::Vectors(_) => fault.help("makecc(c) or makecs(s) makes one of points"),
+                Value::Vectors(_) => fault.help("makecc(c) or makecs(s) interpolates points"),
                 _ => fault,
             }
             .in_field(fields[second]));

@@ -7,7 +7,7 @@ use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Sc
 fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     v.normalized().ok_or_else(|| {
         CallError::new("no-direction", "the vector has no direction: it is zero")
-            .expected("a vector other than zero")
+            .expected("a non-zero vector")
             .in_field(field)
     })
 }
@@ -21,7 +21,7 @@ fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> 
     example = "vector p = translate({1, 0, 0}, {0, 2, 0}); assert p.y == 2;"
 )]
 pub struct Translate<T: Scalar> {
-    /// What is moved.
+    /// The field or set to move.
     o: Shaped<T>,
     /// By how much.
     v: Vec3<T>,
@@ -43,7 +43,7 @@ impl<T: Scalar> Build<T> for Translate<T> {
     example = "vector p = scale({1, 2, 3}, {1, 1, 2}); assert p.z == 6;"
 )]
 pub struct Scale<T: Scalar> {
-    /// What is scaled, about the origin.
+    /// The points to scale, about the origin.
     o: Shaped<T>,
     /// The three factors, or one.
     by: Value<T>,
@@ -69,7 +69,7 @@ impl<T: Scalar> Build<T> for Scale<T> {
     example = "vector p = mirror({1, 2, 3}, {0, 0, 0}, {0, 1, 0}); assert p.y == -2;"
 )]
 pub struct Mirror<T: Scalar> {
-    /// What is mirrored.
+    /// The field or set to mirror.
     o: Shaped<T>,
     /// A point of the plane.
     p: Vec3<T>,
@@ -99,7 +99,7 @@ impl<T: Scalar> Build<T> for Mirror<T> {
                assert |q - {1, 1, 0}| < 1e-15;"
 )]
 pub struct Rotate<T: Scalar> {
-    /// What is turned.
+    /// The field or set to turn.
     o: Shaped<T>,
     /// A point of the axis, if an angle is the fourth argument; else the direction of the axis.
     p: Vec3<T>,
@@ -155,7 +155,7 @@ pub struct Revolve<T: Scalar> {
     /// Last angle.
     #[field(angle)]
     a1: T,
-    /// How many lines.
+    /// Number of lines.
     #[field(min = 2, max = 1e6)]
     n: usize,
 }
@@ -194,7 +194,7 @@ fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>,
         if d.norm_sq().re() == 0.0 {
             let message = format!("points {k} and {} coincide", k + 1);
             return Err(CallError::new("coincident-points", message)
-                .expected("neighbours at different places")
+                .expected("distinct neighbouring points")
                 .in_item(k)
                 .in_field(field));
         }

@@ -18,7 +18,7 @@ use moldloft_registry::{
 pub struct Reverse<T: Scalar> {
     /// The array.
     a: Items<T>,
-    /// Which index of a grid runs backwards: 1 or 2.
+    /// The index of a grid to reverse: 1 or 2.
     #[field(default = 1, min = 1, max = 2)]
     index: usize,
 }
@@ -148,7 +148,7 @@ fn row_of<T: Real>(a: &Items<T>, field: FieldId) -> Result<usize, CallError> {
 pub struct SpreadI<T: Scalar> {
     /// The row, of numbers or vectors.
     a: Items<T>,
-    /// How often: the second extent.
+    /// The number of columns: the second extent.
     #[field(min = 1, max = 1e6)]
     n: usize,
 }
@@ -172,7 +172,7 @@ impl<T: Scalar> Build<T> for SpreadI<T> {
 pub struct SpreadJ<T: Scalar> {
     /// The row, of numbers or vectors.
     a: Items<T>,
-    /// How often: the first extent.
+    /// The number of rows: the first extent.
     #[field(min = 1, max = 1e6)]
     m: usize,
 }

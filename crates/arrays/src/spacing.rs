@@ -41,7 +41,7 @@ impl<T: Real> Build<T> for CountFor<T> {
         let n = count_for(length, a, b, most, MOST_NUMBERS as usize);
         let n = n.map_err(|error| fault(error, of))?;
         n.map(|n| Value::Number(T::from(n as f64))).ok_or_else(|| {
-            let message = format!("no number of points divides {length} so evenly");
+            let message = format!("no number of points divides {length} with that growth");
             CallError::new("no-distribution", message)
                 .expected(format!("a growth that steps from {a} to {b} allow"))
                 .found(format!("a growth of {most}"))
@@ -68,7 +68,7 @@ pub struct FirstFor<T: Real> {
     /// Ratio of a step to the one before it; below 1 for steps that shrink.
     #[field(min = 1e-6, max = 1e6)]
     growth: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
@@ -109,7 +109,7 @@ impl<T: Scalar> FromValue<T> for Steps<T> {
             }
         };
         if steps.is_empty() {
-            return Err(CallError::new("too-few-items", "one element has no steps")
+            return Err(CallError::new("too-few-items", "one element has no spacing")
                 .expected("at least two elements"));
         }
         Ok(Self(steps))

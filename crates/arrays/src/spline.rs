@@ -18,9 +18,9 @@ pub fn fault(error: InterpolationError, of: &str, [points, ends]: [FieldId; 2]) 
         InterpolationError::Coincident { first, second } => {
             let (a, b) = (first + 1, second + 1);
             CallError::new("coincident-points", format!("{of}s {a} and {b} coincide"))
-                .expected("neighbours at different places")
+                .expected("distinct neighbouring points")
                 .found(format!("no distance between {of}s {a} and {b}"))
-                .help(format!("leave {of} {b} out, or take the basis \"index\""))
+                .help(format!("remove {of} {b}, or use the basis \"index\""))
                 .in_item(second)
                 .in_field(points)
         }
@@ -61,7 +61,7 @@ enum Name {
 }
 
 fn unknown(word: &str, field: FieldId, what: &str, expected: &str) -> CallError {
-    CallError::new("unknown-word", format!("there is no {what} \"{word}\""))
+    CallError::new("unknown-word", format!("unknown {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
         .in_field(field)
@@ -102,7 +102,7 @@ fn condition<T>(name: Name, slope: Vec3<T>) -> End<T> {
         Name::Specified => End::Clamped(slope),
         Name::NotAKnot => End::NotAKnot,
         Name::Bessel => End::Bessel,
-        // Periodic splines are told apart before.
+        // Periodic splines are distinguished before.
         Name::Quadratic | Name::Periodic => End::Quadratic,
     }
 }

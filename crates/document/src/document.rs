@@ -81,7 +81,7 @@ impl Document {
         document
     }
 
-    /// A model from a text; the ending of `name` tells a model file (`.ms2`) from a program, and
+    /// A model from a text; the ending of `name` distinguishes a model file (`.ms2`) from a program;
     /// without one the first word does.
     pub fn from_text(registry: Registry, world: Box<dyn World>, name: &str, text: &str) -> Self {
         let mut document = Self::empty(registry, world);
@@ -232,7 +232,7 @@ impl Document {
         applied
     }
 
-    /// The diagnostics of failed objects; what they block is told with them, once.
+    /// The diagnostics of failed objects; what they block is reported with them, once.
     pub(crate) fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.failed() == 0 {
             return Vec::new();
@@ -417,14 +417,14 @@ impl Document {
         self.run()
     }
 
-    /// Halves the intervals of all numbers that the program declares by `refined` so often, and
+    /// Sets the refinement level: each level halves the spacing of sizes declared by `refined`, and
     /// runs it.
     ///
     /// # Errors
     /// When that is more than [`moldloft_lang::MOST_REFINED`] times.
     pub fn refine(&mut self, times: u32) -> Result<Applied, Diagnostic> {
         if times > moldloft_lang::MOST_REFINED {
-            return Err(Diagnostic::error("out-of-range", "this is too fine")
+            return Err(Diagnostic::error("out-of-range", "the refinement is too fine")
                 .expected(format!("a whole number from 0 to {}", moldloft_lang::MOST_REFINED))
                 .found(times.to_string()));
         }

@@ -138,7 +138,7 @@ fn encoded<T: ?Sized>(
     main: &str,
 ) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
     let Some(encode) = encoder else {
-        let message = format!("{} is no format of {what}", format.name);
+        let message = format!("{} is not a format of {what}", format.name);
         return Err(vec![Diagnostic::error("unknown-format", message)]);
     };
     let files = encode(value, &FileName(main)).map_err(Failure::from);

@@ -43,7 +43,7 @@ const BINS: usize = 48;
 /// A touch is a gap of less than this share of the size.
 const TOUCH: f64 = 1e-9;
 
-/// Planes of cells at a smaller angle than this have no line in common that tells anything.
+/// Planes of cells at a smaller angle than this have no reliable line in common.
 const LEAST_SINE: f64 = 0.02;
 
 /// Steps towards a touch.

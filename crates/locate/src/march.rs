@@ -3,11 +3,11 @@
 //! A point of the intersection has the unknowns (u, v) on the first surface and, on a second
 //! surface, (p, r). A step goes along the tangent n1 x n2 and is corrected by Newton's method in
 //! the plane across it. Branches end at the edges of the surfaces, or come back to their start. An
-//! edge at which a surface is joined to its own opposite edge (the seam of a cylinder) is no end: the
+//! edge at which a surface is joined to its own opposite edge (the seam of a cylinder) is not an end: the
 //! branch goes on from the opposite edge, with two stations at one place there. So it does where a
 //! surface is creased along one of its joints and the branch turns by more than a step may.
 //!
-//! How all branches are found is told in [`crate::branches`].
+//! The search for all branches is in [`crate::branches`].
 
 use crate::cells::{Lanes, Polynomials};
 use crate::implicit::solve;
@@ -144,7 +144,7 @@ const LAST_STEP: f64 = 1e-7;
 /// At a crease the surface, and with it the branch, turns by an angle of at least this cosine.
 const CREASE: f64 = 0.9999;
 
-/// As near to a joint as tells its sides apart.
+/// A distance from a joint that separates its sides.
 const SAME_POINT: f64 = 1e-9;
 
 /// A step may end this share of it away from where the last two stations lead: farther off is another
@@ -522,7 +522,7 @@ impl<'a> Crossing<'a> {
             };
             let x = last.x + tangent * step;
             let near = if since > 0 { MAX_STEP_DEVIATION * step } else { 1.5 * step };
-            // A better guess, but not what tells whether it goes astray: its steps would be others.
+            // A better guess, but not what reports whether it goes astray: its steps would be others.
             let guess = match &all[..] {
                 [.., a, b, c] if since > 1 => predict([a, b, c], step, sign),
                 _ => guess,

@@ -22,7 +22,7 @@ const FARTHEST: f64 = 1e60;
 /// surface are equally near.
 const MOST_LOOKS: [u32; 2] = [4_000, 20_000];
 
-/// The most feet that are told apart.
+/// The most feet that are distinguished.
 const MOST_FEET: usize = 256;
 
 /// The point to which the nearest one is sought.
@@ -236,7 +236,7 @@ pub(crate) fn surface_foot(
 const CREASE_WITHIN: f64 = 1e-4;
 const CREASE: f64 = 0.9999;
 
-/// The least distance from `p` along a crease near `near`, of which no joint tells: where a spline's
+/// The least distance from `p` along a crease near `near`, that is not at a joint: where a spline's
 /// knots move with the other parameter. Descent comes to no end there, for the distance has a kink
 /// across the crease. `None` where there is no crease, or none with such a place.
 ///

@@ -1,3 +1,5 @@
+//! Solutions of searches and reports about how they were found, or why there is none.
+
 use moldloft_num::Vec3;
 use smallvec::SmallVec;
 use std::fmt;
@@ -135,7 +137,7 @@ impl<const N: usize> Roots<N> {
         (0..distances.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)))
     }
 
-    /// The solution that takes root `chosen`; `given` tells that there was a start, from which the
+    /// The solution that takes root `chosen`; `given` states that there was a start, from which the
     /// iteration had failed.
     pub fn choose(&self, chosen: usize, start: &[f64], given: bool) -> Solution<N> {
         let root = &self.roots[chosen];

@@ -41,7 +41,7 @@ struct Plate {
     bend: f32,
     /// The longer side.
     longest: f32,
-    /// A bound of how the normals change beside what [`Turn`] tells.
+    /// A bound of how the normals change beside what [`Turn`] states.
     rest: f32,
 }
 

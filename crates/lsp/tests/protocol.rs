@@ -180,8 +180,8 @@ fn a_session() {
     let edits = client.ask("textDocument/rename", ask)["changes"][URI].clone();
     assert_eq!(edits.as_array().unwrap().len(), 3, "{edits}");
     for (new, says) in [
-        ("1x", "is no name"),
-        ("for", "is no name"),
+        ("1x", "is not a valid name"),
+        ("for", "is not a valid name"),
         ("x", "means something"),
         ("sqrt", "means something"),
     ] {

@@ -1,3 +1,5 @@
+//! Quality of the panels of a patch: aspect ratio, skewness, warp and jumps of area, with the worst panel named.
+
 use crate::half_edge::{edges, half_edges};
 use crate::panel::length;
 use crate::{Mesh, Panel};

@@ -1,3 +1,5 @@
+//! What the sides of faces say of a mesh: closed or open and where, manifold, oriented, outward.
+
 use crate::half_edge::{HalfEdge, Joined, edges, half_edges};
 use crate::sum::chunked_sum;
 use crate::{Mesh, Topology};

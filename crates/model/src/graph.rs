@@ -1,3 +1,7 @@
+//! The graph of named objects: declared, matched with the run before, evaluated rank by rank where something changed.
+//!
+//! An evaluation whose result is bitwise equal to the one before ends the wave there.
+
 use crate::memo::Memo;
 use crate::object::{Failure, Object, State};
 use indexmap::IndexMap;
@@ -148,7 +152,7 @@ impl<T: Scalar> Graph<T> {
         self.context.clone()
     }
 
-    /// Says what ends long evaluations when it is set to true.
+    /// Sets the flag that cancels long evaluations.
     pub fn set_cancel_flag(&mut self, cancel: Arc<AtomicBool>) {
         self.context.cancel = cancel;
     }
@@ -375,7 +379,7 @@ impl<T: Scalar> Graph<T> {
             let named = |field: FieldId| match object.args[field.position()] {
                 Value::Object(key) => Ok(key),
                 _ => Err(CallError::new("constant-point", "a sweep needs names")
-                    .expected("a bead and what follows it, by their names in the model")
+                    .expected("a bead and an object that depends on it, by name")
                     .found("something without a name")
                     .in_field(field)),
             };
@@ -725,7 +729,7 @@ impl<T: Scalar> Run<'_, T> {
     /// The reason why it has none.
     pub fn force(&mut self, key: Key) -> Result<Value<T>, Failure> {
         self.graph.force(key);
-        // What is asked afterwards, in an edit, is no part of the program.
+        // What is asked afterwards, in an edit, is not a part of the program.
         if self.extent == Extent::Whole {
             self.graph.object_mut(key).read_by_program = true;
             self.graph.any_read = true;

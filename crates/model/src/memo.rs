@@ -1,3 +1,5 @@
+//! The memory of anonymous calls: `f(...)` with the same arguments is computed once in a run, and kept for the next.
+
 use moldloft_num::Vec3;
 use moldloft_registry::{CallError, CallRemark, Context, Row, Scalar, Value};
 use std::collections::{HashMap, VecDeque};

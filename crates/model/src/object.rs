@@ -1,3 +1,5 @@
+//! Named objects: a call of a row, its parents and children, and what became of its evaluation.
+
 use moldloft_num::trace::Key;
 use moldloft_registry::{Attributes, CallError, Row, Scalar, Value};
 use smallvec::SmallVec;

@@ -14,7 +14,7 @@ impl<T: Scalar> Graph<T> {
     /// `constant-point` when the one does not depend on the other.
     pub(crate) fn locus(&self, bead: Key, follower: Key) -> Result<LocusRef<T>, CallError> {
         let unrelated = || {
-            CallError::new("constant-point", "what is swept does not depend on the bead")
+            CallError::new("constant-point", "the swept object does not depend on the bead")
                 .expected("an object that moves when the bead does")
                 .found("one that stays")
                 .help("build it on the bead")
@@ -37,7 +37,7 @@ impl<T: Scalar> Graph<T> {
             if object.row.sweep.is_some() {
                 return Err(CallError::new(
                     "nested-sweep",
-                    "what is swept depends on a sweep itself",
+                    "the swept object depends on another sweep",
                 )
                 .expected("an object that depends on no ProcCurve or ProcSurf")
                 .found("one that does")

@@ -1,3 +1,5 @@
+//! Monotone reparametrizations R of [0, 1]: their jets, inverses and composition.
+
 use crate::Real;
 use crate::jet::Jet;
 use crate::roots::find_root;

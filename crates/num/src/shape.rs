@@ -1,3 +1,6 @@
+//! The traits of curves, surfaces and implicit fields: what evaluates, its derivatives by the shape parameters (jets),
+//! its breaks and its evaluation on grids. `grid` gives what `jet` gives point by point.
+
 use crate::jet::{Jet, lift_curve, lift_surface};
 use crate::reparametrization::Reparametrization;
 use crate::trace::{Edges, Key, Trace};

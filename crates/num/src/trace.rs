@@ -40,9 +40,9 @@ pub struct Mark<T> {
 pub struct Piece<T> {
     /// What it is part of.
     pub root: Root,
-    /// Where it begins.
+    /// Start.
     pub from: Mark<T>,
-    /// Where it ends.
+    /// End.
     pub to: Mark<T>,
     /// The share of the alias's own parameter range at which this piece ends (the last: 1).
     pub until: T,
@@ -255,7 +255,7 @@ pub enum LayerLaw {
     /// An interpolating spline with ends of this number.
     Spline(usize),
     /// The first layer moved along a curve object, without a name along nothing known; the number
-    /// tells how.
+    /// states how.
     Along(Option<Key>, u8),
 }
 

@@ -4,7 +4,7 @@
 //! Links make counts equal, sums make a count the sum of others; some counts are stated. What is
 //! stated spreads along links and through sums as intervals; what stays free gets its wish, its
 //! share of a known sum, or the usual count. Contradictions never stop the rest: the chain is cut
-//! between the statements, or the sum is left out, and both are told.
+//! between the statements, or the sum is left out, and both are reported.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -373,7 +373,7 @@ impl CountSolver<'_> {
         }
     }
 
-    /// Mends sums that did not come out because free counts were chosen one by one: a step of one
+    /// Repairs sums that did not come out because free counts were chosen one by one: a step of one
     /// is passed on from sum to sum, along counts that are not stated, to where it changes nothing
     /// else. (Counts of patches are a flow through them, and this its augmenting path: Ford and
     /// Fulkerson 1956.)

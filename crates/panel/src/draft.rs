@@ -69,7 +69,7 @@ impl Draft<'_> {
         }
     }
 
-    /// What tells it from all others, in any graph.
+    /// Its identity, in any graph.
     pub fn identity(&self) -> (Arc<str>, Option<u32>) {
         (self.object.name.clone(), self.border_curve.map(|h| h.index))
     }

@@ -45,7 +45,7 @@ pub enum PanelNote {
         /// Where.
         at: Vec3,
     },
-    /// The corner of a patch lies in the middle of an edge of another and is no vertex of it, or at
+    /// The corner of a patch lies in the middle of an edge of another and is not a vertex of it, or at
     /// a vertex of it that is another one.
     Junction {
         /// The patch, and the edge's patch.
@@ -67,7 +67,7 @@ pub enum PanelNote {
         /// The divisions of the curves that its border runs along.
         divisions: Vec<usize>,
     },
-    /// As many more contradictions as are not told one by one.
+    /// Number of further contradictions.
     More(usize),
 }
 
@@ -84,7 +84,7 @@ impl PanelNote {
         }
     }
 
-    /// How to mend it.
+    /// The remedy.
     pub fn help(&self) -> &'static str {
         match self {
             PanelNote::Divisions { .. } => {
@@ -101,14 +101,14 @@ impl PanelNote {
                  along parts of its curve"
             }
             PanelNote::Junction { .. } => {
-                "build both patches on the same point and the same curves: places are not compared"
+                "build both patches on the same point and the same curves: patches are joined by shared objects, not by coordinates"
             }
             PanelNote::Border { .. } => "give it, or its neighbours, more divisions",
-            PanelNote::More(_) => "mend those that are told first",
+            PanelNote::More(_) => "fix those that are reported first",
         }
     }
 
-    /// The object that it is told with.
+    /// The object that it is reported with.
     pub fn object(&self) -> Option<&str> {
         match self {
             PanelNote::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
@@ -167,13 +167,13 @@ impl std::fmt::Display for PanelNote {
             }
             PanelNote::Apart { patches: [a, b], distance, at } => write!(
                 f,
-                "`{a}` and `{b}` share an edge but lie {distance:.3e} apart at ({}, {}, {})",
+                "`{a}` and `{b}` share an edge but are {distance:.3e} apart at ({}, {}, {})",
                 at.x, at.y, at.z
             ),
             PanelNote::Junction { patches: [a, b], corner: [u, v], edge: (k, t), twin, at } => {
                 let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(*k) % 4];
                 let along = if k % 2 == 0 { 'u' } else { 'v' };
-                let how = if *twin { "meets" } else { "lies in the middle of" };
+                let how = if *twin { "meets" } else { "is in the middle of" };
                 write!(
                     f,
                     "the corner (u, v) = ({u}, {v}) of `{a}` {how} edge {edge} of `{b}` at {along} = \

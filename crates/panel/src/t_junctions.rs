@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 /// same place, found by a projection or typed with few digits.
 const SAME_PLACE: f64 = 1e-7;
 
-/// The most that are told one by one.
+/// The most that are reported one by one.
 const MOST_REPORTED: usize = 20;
 
 /// An open panel edge at the rim of a patch.

@@ -13,7 +13,7 @@ use moldloft_registry::Spacing;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
-/// The most contradictions that are told one by one.
+/// The most contradictions that are reported one by one.
 const MOST_REPORTED: usize = 20;
 
 /// Steps in which the length of an edge is measured, for sizes and shares.

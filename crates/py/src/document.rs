@@ -169,7 +169,7 @@ impl PyDocument {
         let format = match to {
             "sdl" => Format::Sdl,
             "ms2" => Format::ModelFile,
-            _ => return Err(plain_error(format!("there is no form `{to}` but sdl and ms2"))),
+            _ => return Err(plain_error(format!("unknown form `{to}`; expected sdl or ms2"))),
         };
         self.long_checked(py, move |document| document.convert(format))
     }
@@ -265,7 +265,7 @@ impl PyDocument {
         document.written().map(|(name, bytes)| (name.to_owned(), PyBytes::new(py, bytes))).collect()
     }
 
-    /// Halves the intervals of all numbers that the program declares by `refined` so often.
+    /// Halves the intervals of all numbers that the program declares by `refined` that many times.
     fn refine(&self, py: Python<'_>, times: u32) -> PyResult<()> {
         self.long_checked(py, move |d| d.refine(times).map(drop).map_err(|e| vec![e]))
     }
@@ -491,7 +491,7 @@ impl PyDocument {
         Ok(derivatives(py, &columns))
     }
 
-    /// The model afloat: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
+    /// Hydrostatics: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
     /// heel, whether trim and heel are free; a dictionary for each.
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (rows, density, gravity, centre, sides, by))]
@@ -646,7 +646,7 @@ fn object_named<'d>(document: &'d Document, name: &str) -> PyResult<&'d Object<f
     let graph = document.graph();
     graph.find(name).and_then(|key| graph.get(key)).ok_or_else(|| {
         let near = similar(document, name).map(|n| format!("; did you mean `{n}`?"));
-        unknown_name(format!("there is no object `{name}`{}", near.unwrap_or_default()))
+        unknown_name(format!("unknown object `{name}`{}", near.unwrap_or_default()))
     })
 }
 

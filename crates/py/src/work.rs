@@ -44,7 +44,7 @@ fn unseen(
 ) -> PyResult<()> {
     let (sender, receiver) = mpsc::channel();
     let run = move || {
-        // After an interrupt nobody receives; that is no fault.
+        // After an interrupt nobody receives; that is not a fault.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
     };
     std::thread::Builder::new().stack_size(STACK).spawn(run)?;

@@ -1,3 +1,6 @@
+//! Arguments of a call bound to the fields of its row: order, defaults, counts, names and classes are checked here,
+//! so that the kinds need not.
+
 use crate::{Argument, Attributes, CallError, Class, Field, FieldId, Row, Value};
 use moldloft_num::Real;
 use moldloft_num::trace::Key;
@@ -12,7 +15,7 @@ pub struct Given<'a, T: Real> {
 }
 
 /// Puts arguments in the order of the row's fields, fills in defaults and checks count, names,
-/// classes and ranges; `class_of` tells the class of an object that was not read yet. Named
+/// classes and ranges; `class_of` reports the class of an object that was not read yet. Named
 /// arguments that belong to the head go there.
 ///
 /// # Errors
@@ -233,12 +236,9 @@ pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), C
 
 fn range(field: &Field, x: f64) -> Result<(), CallError> {
     if !x.is_finite() {
-        return Err(CallError::new(
-            "not-finite",
-            format!("`{}` is {x}, which is no number", field.name),
-        )
-        .expected("a finite number")
-        .found(x.to_string()));
+        return Err(CallError::new("not-finite", format!("`{}` is {x}, not a number", field.name))
+            .expected("a finite number")
+            .found(x.to_string()));
     }
     let low = field.min.is_some_and(|low| x < low);
     let high = field.max.is_some_and(|high| x > high);

@@ -1,3 +1,6 @@
+//! Attributes that every object has besides its geometry: visibility, colour, orientation, divisions and their
+//! spacing. A change of them does not evaluate the object again.
+
 use crate::{CallError, Class, DefaultValue, Field, Unit, Value};
 use moldloft_num::Real;
 use std::sync::Arc;
@@ -173,7 +176,7 @@ pub const ATTRIBUTES: [Field; 10] = [
             DefaultValue::Unset,
         )
     },
-    head("orientation", "1 turns the normal of a surface's panels round.", DefaultValue::Unset),
+    head("orientation", "1 reverses the normals of a surface's panels.", DefaultValue::Unset),
     Field {
         class: Class::Text,
         ..head("attributes", "Attributes of a model file, kept as they are.", DefaultValue::Unset)
@@ -208,7 +211,7 @@ impl Attributes {
         self.visible > 0
     }
 
-    /// Sets one part by its name; false when `name` is no part of a head.
+    /// Sets one part by its name; false when `name` is not a part of a head.
     ///
     /// # Errors
     /// A [`CallError`] when the value is not a whole number in range.
@@ -359,7 +362,7 @@ fn spacing<T: Real>(name: &str, value: &Value<T>) -> Result<Option<Spacing>, Cal
         Value::Text(word) if &**word == "auto" => Ok(None),
         Value::Text(word) => match Spacing::WORDS.iter().find(|(w, _)| *w == &**word) {
             Some((_, spacing)) => Ok(Some(*spacing)),
-            None => Err(CallError::new("unknown-word", format!("there is no {name} \"{word}\""))
+            None => Err(CallError::new("unknown-word", format!("unknown {name} \"{word}\""))
                 .expected(format!("{} or a number, the growth from panel to panel", words()))
                 .found(format!("\"{word}\""))),
         },
@@ -372,9 +375,11 @@ fn tags<T: Real>(value: &Value<T>) -> Result<Vec<Arc<str>>, CallError> {
         Value::Text(tag) if !tag.is_empty() && !tag.chars().any(char::is_whitespace) => {
             Ok(tag.clone())
         }
-        Value::Text(tag) => Err(CallError::new("out-of-range", format!("\"{tag}\" is no tag"))
-            .expected("a word without blanks, such as \"wetted\", \"lid\" or \"keel\"")
-            .found(format!("\"{tag}\""))),
+        Value::Text(tag) => {
+            Err(CallError::new("out-of-range", format!("\"{tag}\" is not a valid tag"))
+                .expected("a word without blanks, such as \"wetted\", \"lid\" or \"keel\"")
+                .found(format!("\"{tag}\"")))
+        }
         other => Err(CallError::wrong_class(Class::Text, other.class())),
     };
     let mut tags = match value {

@@ -50,13 +50,13 @@ pub struct CallError(Box<CallErrorData>);
 pub struct CallErrorData {
     /// Stable kebab-case id.
     pub id: &'static str,
-    /// One line that stands alone.
+    /// One self-contained line.
     pub message: String,
     /// What was expected.
     pub expected: Option<String>,
     /// What was found.
     pub found: Option<String>,
-    /// How to mend it.
+    /// The remedy.
     pub help: Vec<String>,
     /// The argument it is about.
     pub place: Option<ArgumentPlace>,
@@ -115,7 +115,7 @@ impl CallError {
         self
     }
 
-    /// Adds a way to mend it.
+    /// Adds a remedy.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.0.help.push(text.into());
         self

@@ -1,3 +1,5 @@
+//! Classes: what kind of thing a value is, and which class serves where another is expected.
+
 use std::fmt;
 
 /// What kind of thing a value is, or an argument must be. Classes are data: a bead is a point that

@@ -1,3 +1,5 @@
+//! Arguments read as the types of the fields of a kind: each type says its class and what it refuses.
+
 use crate::{
     CallError, Class, CurveRef, FieldRef, Point, ReparametrizationRef, SetRef, SolidRef,
     SurfaceRef, TriangleBody, Value,
@@ -226,7 +228,7 @@ fn system_plane<T: Real>(text: &str) -> Result<Plane<T>, CallError> {
         "y=0" => Vec3::of(0.0, 1.0, 0.0),
         "z=0" => Vec3::of(0.0, 0.0, 1.0),
         _ => {
-            return Err(CallError::new("unknown-plane", format!("there is no plane \"{text}\""))
+            return Err(CallError::new("unknown-plane", format!("unknown plane \"{text}\""))
                 .expected("\"x=0\", \"y=0\" or \"z=0\", or a plane object")
                 .found(format!("\"{text}\"")));
         }

@@ -1,3 +1,6 @@
+//! Evaluated parents as arguments: located points, curves, surfaces, solids, fields, sets and reparametrizations, with
+//! the identity of their objects.
+
 use crate::SearchReport;
 use moldloft_num::trace::{Key, Piece, Root, Trace};
 use moldloft_num::{
@@ -10,7 +13,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 /// A point in space that may also know its place on a curve and on a surface: so a bead, a magnet
-/// or a ring is a point with more to tell.
+/// or a ring is a point with more data.
 #[derive(Clone, Debug)]
 pub struct Point<T: Real> {
     /// Position.
@@ -243,7 +246,7 @@ impl<T: Real> CurveRef<T> {
         self.shape.jet(T::from(t), Order::Zero)[0]
     }
 
-    /// The roots it runs along; a nameless curve that is no alias has none.
+    /// The roots it runs along; a nameless curve that is not an alias has none.
     pub fn pieces(&self) -> SmallVec<[Piece<T>; 1]> {
         match (self.shape.trace(), self.key) {
             (Trace::Own(_), None) => SmallVec::new(),

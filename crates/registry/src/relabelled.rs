@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// masters.
 pub const RELABEL_FIELD: Field = Field {
     name: "relabel",
-    help: "How the parameter (of a surface: v) is redistributed; by itself as it comes.",
+    help: "Reparametrisation of t (surfaces: v). Default: none.",
     class: Class::Relabel,
     many: false,
     default: Some(DefaultValue::Unset),

@@ -1,3 +1,5 @@
+//! Rows: name, fields, help and evaluation of whatever can be called; and the registry, which finds them by name.
+
 use crate::{CallError, Class, FieldId, FromValue, Kept, Value};
 use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};

@@ -1,3 +1,5 @@
+//! Reports of searches that a value carries, and the remarks that follow from them. They depend on the model only.
+
 use moldloft_num::Vec3;
 use std::fmt;
 
@@ -101,21 +103,20 @@ impl SearchReport {
             SearchStatus::Fallback => (
                 "start-failed",
                 format!(
-                    "the start {} leads nowhere; the nearest solution, at {at}, was taken",
+                    "no convergence from the start {}; the nearest solution, at {at}, was used",
                     list(&self.start)
                 ),
             ),
             SearchStatus::EdgeClamped => {
-                ("edge-clamped", format!("the solution lies beyond the edge; it was held at {at}"))
+                ("edge-clamped", format!("the solution is beyond the edge; it was clamped to {at}"))
             }
             SearchStatus::Tangent => (
                 "tangent-contact",
                 format!("the shapes touch at {at}; a small change may part them"),
             ),
-            SearchStatus::Unbalanced { sum } => (
-                "weight-sum",
-                format!("the weights add up to {sum}: the point depends on where the origin is"),
-            ),
+            SearchStatus::Unbalanced { sum } => {
+                ("weight-sum", format!("the weights sum to {sum}: the point depends on the origin"))
+            }
             SearchStatus::Multiple { count, chosen, next } => {
                 let others: Vec<String> =
                     self.alternatives.iter().take(3).map(|(p, _)| list(p)).collect();

@@ -1,3 +1,5 @@
+//! Points and curves that follow a bead: arguments of the kinds that sweep one along its curve.
+
 use crate::{CallError, Class, CurveRef, FromValue, Value};
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;

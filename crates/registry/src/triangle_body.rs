@@ -1,3 +1,5 @@
+//! Bodies bounded by triangles and open sheets of them, with borders that can be divided anew, and their measures.
+
 use crate::CurveRef;
 use moldloft_num::{Real, Vec3};
 use std::ops::Range;
@@ -101,7 +103,7 @@ impl<T: Real> TriangleBody<T> {
     /// the mean of the vertices, so that distant bodies keep their digits).
     ///
     /// # Panics
-    /// When a corner is no vertex.
+    /// When a corner is not a vertex.
     pub fn new(points: Vec<Vec3<T>>, triangles: Vec<[u32; 3]>) -> Self {
         let n = points.len().max(1) as f64;
         let middle = points.iter().fold(Vec3::<f64>::zero(), |s, p| s + p.re()) / n;

@@ -1,3 +1,5 @@
+//! The values of the language: numbers, text, arrays, located points, shapes, sets, bodies, families of contours.
+
 use crate::{
     Class, CurveRef, FieldRef, LocusRef, Point, Remark, ReparametrizationRef, SearchReport, SetRef,
     SolidRef, SurfaceRef, TriangleBody,

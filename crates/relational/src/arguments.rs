@@ -15,7 +15,7 @@ fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, CallError> {
 pub struct Bead<T: Real> {
     /// The point object.
     pub key: Option<Key>,
-    /// The curve it lies on.
+    /// The curve it is on.
     pub curve: CurveRef<T>,
     /// Its parameter there.
     pub t: T,
@@ -53,7 +53,7 @@ impl<T: Real> FromValue<T> for Ring<T> {
 pub struct Magnet<T: Real> {
     /// The point object.
     pub key: Option<Key>,
-    /// The surface it lies on.
+    /// The surface it is on.
     pub surface: SurfaceRef<T>,
     /// Its parameters (u, v) there.
     pub uv: [T; 2],
@@ -77,7 +77,7 @@ impl<T: Real> FromValue<T> for Magnet<T> {
 pub struct Snake<T: Real> {
     /// The curve.
     pub curve: CurveRef<T>,
-    /// The surface it lies on.
+    /// The surface it is on.
     pub surface: SurfaceRef<T>,
 }
 
@@ -113,7 +113,7 @@ pub enum Side<T: Real> {
 }
 
 impl<T: Real> Side<T> {
-    /// The surface it lies on.
+    /// The surface it is on.
     pub fn surface(&self) -> &SurfaceRef<T> {
         match self {
             Side::Snake(snake) => &snake.surface,
@@ -180,7 +180,7 @@ impl<T: Real> FromValue<T> for EndRule {
         let found = Self::NAMES.iter().find(|(name, _)| *name == &*text);
         found.map(|(_, rule)| *rule).ok_or_else(|| {
             let names = Self::NAMES.map(|(name, _)| format!("\"{name}\"")).join(", ");
-            CallError::new("unknown-ends", format!("there are no ends \"{text}\""))
+            CallError::new("unknown-ends", format!("unknown ends \"{text}\""))
                 .expected(names)
                 .found(format!("\"{text}\""))
         })
@@ -203,14 +203,14 @@ pub fn common_surface<T: Real>(
     let (first_key, first) = items[0];
     for (k, (key, surface)) in items.iter().enumerate() {
         if !same_surface(first, surface) {
-            let message = format!("item {} lies on another surface than item 1", k + 1);
+            let message = format!("item {} is on another surface than item 1", k + 1);
             let fault = CallError::new("wrong-surface", message)
                 .expected("magnets and snakes of one surface")
                 .found("two different surfaces")
                 .help("take magnets of one surface; CopyMagnet and CopySnake take them to another")
-                .related(*key, "lies on one surface")
+                .related(*key, "is on one surface")
                 .related(surface.key, "is the surface of the one")
-                .related(first_key, "lies on another surface")
+                .related(first_key, "is on another surface")
                 .related(first.key, "is the surface of the other");
             return Err(place(fault, k));
         }
@@ -231,12 +231,12 @@ pub fn common_curve<T: Real>(
     if same {
         return Ok(a.curve.clone());
     }
-    Err(CallError::new("wrong-curve", "the two beads lie on different curves")
+    Err(CallError::new("wrong-curve", "the two beads are on different curves")
         .expected("two beads of one curve")
         .found("beads of two curves")
-        .related(a.key, "lies on one curve")
+        .related(a.key, "is on one curve")
         .related(a.curve.key, "is the curve of the one")
-        .related(b.key, "lies on another curve")
+        .related(b.key, "is on another curve")
         .related(b.curve.key, "is the curve of the other")
         .in_field(field))
 }
@@ -298,7 +298,7 @@ impl<T: Real> FromValue<T> for AxisName {
             Named::Number(k) => k.checked_sub(1).filter(|k| *k < 3),
         };
         at.map(Self).ok_or_else(|| {
-            CallError::new("unknown-axis", "there is no such axis")
+            CallError::new("unknown-axis", "unknown axis")
                 .expected("\"x\", \"y\" or \"z\", or 1, 2 or 3")
         })
     }

@@ -18,13 +18,10 @@ fn values<T: Real>(
 ) -> Result<Vec<T>, CallError> {
     let count = i64::from(last) - i64::from(first) + 1;
     if count < 1 {
-        return Err(CallError::new(
-            "empty-range",
-            format!("there is no section from {first} to {last}"),
-        )
-        .expected(format!("a last index of at least {first}"))
-        .found(last.to_string())
-        .in_field(field));
+        return Err(CallError::new("empty-range", format!("no section from {first} to {last}"))
+            .expected(format!("a last index of at least {first}"))
+            .found(last.to_string())
+            .in_field(field));
     }
     if count > MOST_SECTIONS {
         return Err(CallError::new("out-of-range", format!("{count} sections are too many"))
@@ -230,14 +227,11 @@ impl<T: Real> Build<T> for AngleContours<T> {
         };
         let Some(zero) = toward.normalized() else {
             let key = self.zero.as_ref().and_then(|p| p.key);
-            return Err(CallError::new(
-                "coincident-points",
-                "the point of angle 0 lies on the axis",
-            )
-            .expected("a point off the axis")
-            .found("no direction from the axis to it")
-            .related(key, "lies on the axis")
-            .in_field(Self::ZERO));
+            return Err(CallError::new("coincident-points", "the point of angle 0 is on the axis")
+                .expected("a point off the axis")
+                .found("no direction from the axis to it")
+                .related(key, "is on the axis")
+                .in_field(Self::ZERO));
         };
         let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
         contours(OBLIQUE, Family::Angles { axis, zero }, values, self.surfaces, Self::SURFACES)

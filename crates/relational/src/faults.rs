@@ -31,7 +31,7 @@ pub fn of_interpolation(
         InterpolationError::Coincident { first, second } => {
             let message = format!("{noun}s {} and {} coincide", first + 1, second + 1);
             CallError::new("coincident-points", message)
-                .expected("neighbours at different places")
+                .expected("distinct neighbouring points")
                 .found(format!("no distance between {noun}s {} and {}", first + 1, second + 1))
                 .help(format!("move one of the two, or leave {noun} {} out", second + 1))
                 .in_item(second)

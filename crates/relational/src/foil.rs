@@ -124,7 +124,7 @@ pub struct Arguments<T: Real> {
     pub section: Option<CurveRef<T>>,
     pub ordinates: Option<Vec<Vec3<T>>>,
     pub metric: Option<Vec3<T>>,
-    /// Where faults are told.
+    /// Where faults are reported.
     pub fields: Fields,
 }
 
@@ -292,7 +292,7 @@ fn of_foil(error: FoilError, fields: Fields) -> CallError {
             .found(actual.to_string())
             .in_field(fields.points),
         FoilError::NoChord => CallError::new("coincident-points", text)
-            .expected("a nose away from the tail")
+            .expected("a nose distinct from the tail")
             .found("no chord between them")
             .in_field(fields.points),
         FoilError::Metric => CallError::new("out-of-range", text)

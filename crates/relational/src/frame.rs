@@ -30,7 +30,7 @@ impl<T: Real> Build<T> for ThreePointFrame<T> {
         let flat = a.cross(b).norm() <= 8.0 * f64::EPSILON * a.norm() * b.norm();
         match Frame::through(o, x, xy) {
             Some(frame) if !flat => Ok(Value::Frame(Arc::new(frame))),
-            _ => Err(CallError::new("collinear-points", "the three points lie on a line")
+            _ => Err(CallError::new("collinear-points", "the three points are collinear")
                 .expected("three points that span a plane")
                 .found("three points in line")
                 .help("move the third point off the line through the others")

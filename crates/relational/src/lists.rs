@@ -4,7 +4,7 @@ use moldloft_num::Real;
 use moldloft_registry::{Array, Build, CallError, Context, Kind, Value};
 use std::sync::Arc;
 
-/// A list of numbers under a name; it stands wherever a list of numbers is asked for.
+/// A list of numbers under a name, for use wherever a list of numbers is expected.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -23,10 +23,10 @@ impl<T: Real> Build<T> for RealList<T> {
     }
 }
 
-/// A list of knots under a name: numbers that never descend. It stands wherever a list of numbers is
+/// A list of knots under a name: non-decreasing numbers, for use wherever a list of numbers is
 /// asked for.
 ///
-/// Which knots a spline takes (how many, repeated how often) is said by the spline.
+/// The spline determines the number of knots and their multiplicity.
 #[derive(Kind)]
 #[kind(class = Numbers, columns = "values", example = "KnotList k({0, 0, 0, 0.4, 1, 1, 1});")]
 pub struct KnotList<T: Real> {
@@ -50,7 +50,7 @@ impl<T: Real> Build<T> for KnotList<T> {
     }
 }
 
-/// Objects under a common name; it stands wherever a list of such objects is asked for: the wetted
+/// Objects under a common name, for use wherever a list of such objects is expected: the wetted
 /// surfaces, the points of a curve.
 ///
 /// A list among the objects adds its own.

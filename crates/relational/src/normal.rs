@@ -21,7 +21,7 @@ pub fn normal<T: Real>(magnet: &Magnet<T>) -> Result<Vec3<T>, CallError> {
             .expected("a place where the surface has a tangent plane")
             .found(format!("none at (u, v) = ({}, {})", u.re(), v.re()))
             .help("move the magnet off the pole or crease")
-            .related(magnet.key, "lies there")
+            .related(magnet.key, "is there")
     })
 }
 

@@ -92,7 +92,7 @@ impl<T: Real> Build<T> for ThreePointPlane<T> {
         let flat = normal.re().norm() <= 8.0 * f64::EPSILON * size;
         match Plane::new(self.p1.xyz, normal) {
             Some(p) if !flat => plane(p),
-            _ => Err(CallError::new("collinear-points", "the three points lie on a line")
+            _ => Err(CallError::new("collinear-points", "the three points are collinear")
                 .expected("three points that span a plane")
                 .found("three points in line")
                 .help("move the third point off the line through the others")
@@ -159,7 +159,7 @@ impl<T: Real> Build<T> for PlaneThroughPoint<T> {
                TanPlane t(p);"
 )]
 pub struct TanPlane<T: Real> {
-    /// Where it touches the surface.
+    /// The point of contact.
     magnet: Magnet<T>,
 }
 
@@ -181,7 +181,7 @@ impl<T: Real> Build<T> for TanPlane<T> {
                AbsBead b(c, 0.25); NormalPlane across(b);"
 )]
 pub struct NormalPlane<T: Real> {
-    /// Where it crosses the curve.
+    /// The point of intersection with the curve.
     bead: Bead<T>,
 }
 

@@ -1,7 +1,7 @@
 //! Derivatives of shapes as functions of the parameters: what fillets, sweeps and offsets are made
 //! of.
 //!
-//! A shape tells derivatives up to the second. First derivatives of a shape made of tangents are
+//! A shape has derivatives up to the second. First derivatives of a shape made of tangents are
 //! exact, therefore; its second derivatives need third ones of its parents, which are differences
 //! of their second derivatives: five points, fourth order, never across a break. Their error is
 //! about 1e-11 of the size of the seventh derivative; positions and panels never need them.

@@ -198,7 +198,7 @@ fn chains_run_along_their_pieces() {
     assert_eq!((gap.id, gap.field().map(|field| (field, gap.item()))), ("gap", Some((0, Some(1)))));
     assert_eq!(gap.related.len(), 2);
     let turned = fault(&format!("{text} BCurve r({{D, B, C}}); PolyCurve c2({{c, r}});"));
-    assert_eq!(turned.help, ["piece 2 ends there: let it run the other way"]);
+    assert_eq!(turned.help, ["piece 2 ends there: reverse it"]);
 }
 
 #[test]

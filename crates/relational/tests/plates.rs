@@ -262,7 +262,7 @@ fn joined_surfaces_are_run_through_in_turn() {
     };
     assert_eq!((pieces.len(), pieces[0].until), (2, 0.5));
     for (old, new, help) in [
-        ("Line c(B, C); Line d(E, F)", "Line c(C, B); Line d(F, E)", "run the other way"),
+        ("Line c(B, C); Line d(E, F)", "Line c(C, B); Line d(F, E)", "reverse"),
         ("Line c(B, C); Line d(E, F)", "Line c(E, F); Line d(B, C)", "v of piece 2"),
         ("Line c(B, C)", "Line c(A, C)", "common curve"),
     ] {

@@ -92,7 +92,7 @@ fn messages_name_the_items() {
     let loft = fault(&format!("{POINTS} CLoftSurf c({{m, l, l}});"));
     assert_eq!(loft.message, "curves 2 and 3 coincide");
     let flipped = fault(&format!("{POINTS} SubSurf c({{pq, qr, rs, ps}});"));
-    assert_eq!(flipped.help[0], "they do when these sides run the other way: 3");
+    assert_eq!(flipped.help[0], "they do when these sides are reversed: 3");
     let surfaces = fault(&format!("{POINTS} LineSnake c(p, x);"));
     let keys: Vec<Key> = surfaces.related.iter().map(|(key, _)| *key).collect();
     // Objects are numbered in order: S and T, p and x.

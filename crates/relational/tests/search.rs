@@ -432,7 +432,7 @@ fn several_branches_are_told_and_another_can_be_chosen() {
     assert_eq!(other.found.as_ref().unwrap().status, SearchStatus::Ok);
     let (p, q) = (c.end(0.5), other.end(0.5));
     assert!((p.y + q.y).abs() < 1e-11 && (p.y - q.y).abs() > 3.0, "{p:?} {q:?}");
-    // A touch is no intersection, and is told.
+    // A touch is not an intersection, and is reported.
     let touch = "AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 2); AbsPoint C(4, 0, 0); AbsPoint D(0, 2, 2); AbsPoint E(2, 2, 4);
         AbsPoint F(4, 2, 2); AbsPoint G(0, 4, 0); AbsPoint H(2, 4, 2); AbsPoint I(4, 4, 0);
         BCurve k({A, B, C}, 2); BCurve l({D, E, F}, 2); BCurve n({G, H, I}, 2); BLoftSurf S({k, l, n}, 2);

@@ -325,7 +325,7 @@ fn coons_patches_must_meet_at_their_corners() {
     let open = fault(&format!("{base} BlendSurf S({{ab, bc, dc, ae}});"));
     assert_eq!((open.id, open.item()), ("open-corner", Some(3)));
     let turned = fault(&format!("{base} BlendSurf S({{ab, bc, cd, ad}});"));
-    assert_eq!(turned.help[0], "they do when these sides run the other way: 3");
+    assert_eq!(turned.help[0], "they do when these sides are reversed: 3");
     assert_eq!(fault(&format!("{base} BlendSurf S({{ab, bc, cd, ad, ab}});")).id, "wrong-length");
     assert_eq!(fault(&format!("{base} BlendSurf S({{ab, bc}});")).id, "too-few-items");
 }
@@ -356,7 +356,7 @@ fn folded_sub_surfaces_are_refused() {
          LineSnake pq(p, q); LineSnake sr(s, r); LineSnake rs(r, s); LineSnake qr(q, r); LineSnake ps(p, s);";
     let crossed = fault(&format!("{base} SubSurf c({{pq, rs}});"));
     assert_eq!(crossed.id, "folded-patch", "{crossed:?}");
-    // Against the run of the surface all over is no fold.
+    // Against the run of the surface all over is not a fold.
     scene(&format!(
         "{base} SubSurf c({{sr, pq}}); SubSurf d({{ps, sr, qr, pq}}); SubSurf e({{pq, r}});"
     ));

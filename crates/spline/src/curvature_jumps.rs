@@ -1,3 +1,5 @@
+//! Points of a row at which a curve through them should have a corner or a jump of curvature.
+
 use moldloft_num::Vec3;
 
 /// How many times what the curvature does beside it a jump must be.

@@ -1,3 +1,5 @@
+//! Interpolating splines: twice differentiable piecewise cubics through points, open or closed, with end conditions.
+
 use crate::{Parametrization, PiecewiseCubic};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use smallvec::{SmallVec, smallvec};

@@ -1,3 +1,5 @@
+//! Parametrizations of points to interpolate: by chord length, centripetal, uniform.
+
 use crate::InterpolationError;
 use moldloft_num::{Real, Vec3};
 

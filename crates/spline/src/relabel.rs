@@ -1,10 +1,13 @@
+//! Closed forms of reparametrizations: B-spline, cosine, geometric, hyperbolic tangent, tables. Each is monotone and
+//! runs from 0 to 1 exactly, or is refused.
+
 use crate::even_functions::{cos_of_sq, sinc_of_sq};
 use crate::{KnotError, KnotVector};
 use moldloft_num::{Jet, Order, Real, Reparametrization, ReparametrizationJet};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
-/// Why a law is no relabelling.
+/// Why a law is not a relabelling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RelabelError {
     /// The values do not begin with 0 and end with 1.
@@ -23,7 +26,7 @@ pub enum RelabelError {
         /// The value.
         value: f64,
     },
-    /// The law stands still inside (0, 1).
+    /// The law has a zero tangent inside (0, 1).
     ZeroSlope {
         /// Where.
         at: f64,
@@ -70,10 +73,10 @@ impl fmt::Display for RelabelError {
                 write!(f, "expected a {name} from {min} to {max}, found {value}")
             }
             Self::ZeroSlope { at } => {
-                write!(f, "a relabelling must not stand still inside, as it does at t = {at}")
+                write!(f, "a relabel must increase strictly inside; its slope is zero at t = {at}")
             }
             Self::Unordered { index } => {
-                write!(f, "the parameters must ascend, which number {} does not", index + 1)
+                write!(f, "the parameters must increase; number {} does not", index + 1)
             }
             Self::Lengths { parameters, values } => {
                 write!(f, "{parameters} parameters do not go with {values} values")
@@ -156,7 +159,7 @@ impl<T: Real> ReparametrizationForm<T> {
     ///
     /// # Errors
     /// [`RelabelError`] when the values run back, do not run from 0 to 1, are too few, or so many
-    /// are equal that R stands still inside.
+    /// are equal that R has a zero tangent inside.
     pub fn spline(degree: usize, mut values: Vec<T>) -> Result<Self, RelabelError> {
         if let [first, .., last] = values.as_mut_slice() {
             let ends = (first.re(), last.re());

@@ -1,3 +1,5 @@
+//! Rational B-spline curves whose knots are scalars, so that derivatives by the knots are known.
+
 use crate::curve::SplineError;
 use crate::{KnotError, KnotVector, MAX_DEGREE};
 use moldloft_num::{Banded, CurveFormula, Jet, Real, Vec3};

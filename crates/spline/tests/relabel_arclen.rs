@@ -10,7 +10,7 @@ fn all() -> Vec<ReparametrizationForm<f64>> {
         ReparametrizationForm::identity(),
         ReparametrizationForm::spline(3, vec![0.0, 0.1, 0.2, 0.9, 1.0]).unwrap(),
         ReparametrizationForm::spline(1, vec![0.0, 0.4, 1.0]).unwrap(),
-        // The ends may stand still, the inside may not.
+        // The ends may stay fixed, the inside may not.
         ReparametrizationForm::spline(3, vec![0.0, 0.0, 0.4, 1.0, 1.0]).unwrap(),
         ReparametrizationForm::table(vec![0.0, 1.0], vec![0.0, 1.0]).unwrap(),
         ReparametrizationForm::table(vec![0.0, 0.1, 0.5, 0.6, 1.0], vec![0.0, 0.5, 0.51, 0.9, 1.0])

@@ -132,7 +132,7 @@ def read_numbers(path: str | os.PathLike[str]) -> list[float]:
     Raises
     ------
     FairingError
-        With the line of a word that is no number.
+        With the line of a word that is not a number.
     FileError
         When the file cannot be read.
     """
@@ -224,7 +224,7 @@ def read_grids(path: str | os.PathLike[str]) -> GridFile:
     Raises
     ------
     FairingError
-        When it is no such file, or holds volumes.
+        When it is not such a file, or holds volumes.
     """
     path = Path(path)
     try:

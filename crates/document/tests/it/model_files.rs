@@ -498,7 +498,7 @@ fn variables_and_formulas_are_computed() {
         let (a, b) = (number(&mut document, text), number(&mut converted, text));
         assert!((a - b).abs() < 1e-14, "{text}");
     }
-    // Faults: a word in place of a number, a cycle, what is no number.
+    // Faults: a word in place of a number, a cycle, what is not a number.
     for (from, to, id) in [
         ("[beam/2]", "[beam/]", "bad-formula"),
         ("[beam/2]", "[A.z]", "cycle"),

@@ -38,7 +38,7 @@ fn a_sketch_becomes_parameters_and_objects() {
     let mut m = model("load \"dam.skt\"; AbsPoint top(dam.p4.x, 0, dam.p4.z + dam.CREST);");
     fine(&m);
     let names: Vec<&str> = m.params().iter().map(|p| p.name.as_str()).collect();
-    // RUN is an expression, so it is no parameter but has a value.
+    // RUN is an expression, so it is not a parameter but has a value.
     assert_eq!(names, ["dam.CREST", "dam.LENGTH1", "dam.HEIGHT", "dam.PARAPET"]);
     assert_eq!(m.params()[0].range, Some((10.0, 30.0)));
     assert_eq!(number(&mut m, "dam.RUN"), 54.0);

@@ -214,7 +214,7 @@ pub fn format_named(name: &str) -> Result<&'static Format, Diagnostic> {
     let ends = FORMATS.iter().filter(|f| [f.suffix, f.other_suffix].contains(&wanted.as_str()));
     let ends: Vec<String> = ends.map(|f| format!("`{}`", f.name)).collect();
     let names = FORMATS.iter().map(|f| f.name);
-    let error = Diagnostic::error("unknown-format", format!("there is no format `{name}`"));
+    let error = Diagnostic::error("unknown-format", format!("unknown format `{name}`"));
     Err(match &ends[..] {
         [] => error.expected(names.clone().collect::<Vec<_>>().join(", ")).suggest(name, names),
         codes => error.expected(codes.join(" or ")),

@@ -26,14 +26,14 @@ pub struct FairCurve<T: Real> {
     /// Points, at least degree + 2 of them (closed: 2 degree + 2).
     #[field(min_items = 3)]
     points: Vec<Point<T>>,
-    /// How far the curve may be from the one through the points; 0 leaves it alone.
+    /// Largest distance from the curve through the points; 0 leaves it unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of: "second", "third", "jumps", "jump-lengths", "bending" or
+    /// The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
     /// "variation".
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the points are: "fit" (the curve passes through them before it is faired), "control"
+    /// Meaning of the points: "fit" (the curve passes through them before it is faired), "control"
     /// (its control points) or "points" (they are faired and then interpolated).
     #[field(default = "fit")]
     r#as: Arc<str>,
@@ -42,7 +42,7 @@ pub struct FairCurve<T: Real> {
     /// first of them.
     #[field(default)]
     breaks: Option<Vec<usize>>,
-    /// What open ends keep: "free", "position", "tangent" or "curvature".
+    /// Kept at open ends: "free", "position", "tangent" or "curvature".
     #[field(default = "tangent")]
     ends: Arc<str>,
     /// "optimum" or "faithful".
@@ -62,8 +62,8 @@ pub struct FairCurve<T: Real> {
     /// they are. They count as constants: derivatives do not go through them.
     #[field(default)]
     weights: Option<Vec<T>>,
-    /// Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of them, which
-    /// do not fall; constants too.
+    /// Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of them,
+    /// non-decreasing; constants too.
     #[field(default)]
     knots: Option<Vec<T>>,
 }

@@ -22,10 +22,10 @@ pub struct Fair<T: Real> {
     /// Points, five or more (closed: eight or more).
     #[field(min_items = 5)]
     points: Vec<Vec3<T>>,
-    /// How far each point may move.
+    /// Largest move of each point.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
     /// "optimum" or "faithful".
@@ -61,7 +61,7 @@ impl<T: Real> Build<T> for Fair<T> {
     }
 }
 
-/// How unfair a row of points is: the length of the jump of the third derivative at each knot of
+/// The unfairness of a row of points: the length of the jump of the third derivative at each knot of
 /// the uniform cubic with these control points, `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|`.
 ///
 /// An open row has four fewer jumps than points.
@@ -134,9 +134,9 @@ impl<T: Real> Build<T> for Curvature<T> {
             if speed.re() == 0.0 {
                 return Err(CallError::new(
                     "stands-still",
-                    format!("the curve stands still at t = {}", t.re()),
+                    format!("zero tangent at t = {}", t.re()),
                 )
-                .expected("a parameter at which the curve moves on")
+                .expected("a parameter with a non-zero tangent")
                 .in_field(Self::T));
             }
             let cross = d1.cross(d2);

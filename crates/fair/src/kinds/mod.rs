@@ -115,7 +115,7 @@ pub(crate) struct Places {
 
 fn unknown(noun: &str, found: &str, all: &[&str], field: FieldId) -> CallError {
     let all: Vec<_> = all.iter().map(|n| format!("\"{n}\"")).collect();
-    CallError::new("unknown-name", format!("there is no {noun} \"{found}\""))
+    CallError::new("unknown-name", format!("unknown {noun} \"{found}\""))
         .expected(all.join(", "))
         .found(format!("\"{found}\""))
         .in_field(field)

@@ -26,7 +26,7 @@ impl<T: Real> FromValue<T> for Row<T> {
 /// Curves that share points, faired together within a tolerance: the stations, waterlines and
 /// buttocks of a hull.
 ///
-/// Each curve is a list of points; a point object that stands in several lists is one point of all
+/// Each curve is a list of points; a point object in several lists is one point of all
 /// these curves. All points move at once, none by more than the tolerance, so that the sum of the
 /// measure over all curves is the least; each curve then passes through its moved points, so that
 /// curves still meet where they did. A list that ends with its first point is a closed curve. The
@@ -45,17 +45,17 @@ pub struct FairNet<T: Real> {
     /// The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
     #[field(min_items = 1)]
     curves: Vec<Row<T>>,
-    /// How far each point may move; 0 leaves all alone.
+    /// Largest move of each point; 0 leaves all unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
     /// Points that are intended breaks: they stay, nothing is smoothed across them, and curves have
     /// corners there.
     #[field(default)]
     breaks: Option<Vec<Point<T>>>,
-    /// Which ends of open curves stay: "corners" (the points at which every curve that has them
+    /// Kept ends of open curves: "corners" (the points at which every curve that has them
     /// ends), "ends" or "none".
     #[field(default = "corners")]
     keep: Arc<str>,
@@ -145,11 +145,14 @@ impl<T: Real> Build<T> for FairNet<T> {
         for (k, b) in breaks.iter().enumerate() {
             let found = joined.points.iter().position(|p| p.key.is_some() && p.key == b.key);
             let Some(at) = found else {
-                return Err(CallError::new("not-a-parent", "a break is no point of the network")
-                    .expected("points that stand in the lists of the curves")
-                    .related(b.key, "is in none of them")
-                    .in_item(k)
-                    .in_field(Self::BREAKS));
+                return Err(CallError::new(
+                    "not-a-parent",
+                    "a break is not a point of the network",
+                )
+                .expected("points in the lists of the curves")
+                .related(b.key, "is in none of them")
+                .in_item(k)
+                .in_field(Self::BREAKS));
             };
             marked.push(at);
         }
@@ -176,7 +179,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
                 return Err(CallError::new("point-twice", "a curve passes twice through a point")
                     .expected("different points; only the first may come again, at the end")
-                    .related(joined.points[own[twice]].key, "stands twice in the list")
+                    .related(joined.points[own[twice]].key, "is listed twice")
                     .in_item(k)
                     .in_field(Self::CURVES));
             }

@@ -32,22 +32,22 @@ pub struct FairPatches<T: Real> {
     /// Grids of points, each at least degree + 2 in each direction.
     #[field(min_items = 1)]
     surfaces: Vec<Grid<T>>,
-    /// How far control points may move; 0 leaves all alone.
+    /// Largest move of control points; 0 leaves all unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the points are: "fit" or "control".
+    /// Meaning of the points: "fit" or "control".
     #[field(default = "fit")]
     r#as: Arc<str>,
     /// Polynomial degree in both directions.
     #[field(default = 3, min = 2, max = 9)]
     degree: usize,
-    /// What is continuous across seams: "position", "tangent" or "curvature".
+    /// Continuity across seams: "position", "tangent" or "curvature".
     #[field(default = "curvature")]
     seams: Arc<str>,
-    /// What rims that are no seams keep; see `FairSurf`.
+    /// Kept at rims that are not seams; see `FairSurf`.
     #[field(default = "corners")]
     rims: Rims,
 }

@@ -43,13 +43,13 @@ pub struct FairSnake<T: Real> {
     /// Magnets of one surface, at least degree + 2 of them.
     #[field(min_items = 3)]
     magnets: Vec<Magnet<T>>,
-    /// How far the path may be from the one through the magnets, in u and v.
+    /// Largest distance from the path through the magnets, in u and v.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the ends keep: "position", "tangent" or "curvature".
+    /// Kept at the ends: "position", "tangent" or "curvature".
     #[field(default = "tangent")]
     ends: Arc<str>,
     /// "optimum" or "faithful".
@@ -76,11 +76,11 @@ impl<T: Real> Build<T> for FairSnake<T> {
                 surface.same(&magnet.surface)
             };
             if !same {
-                let message = format!("magnet {} lies on another surface than magnet 1", k + 1);
+                let message = format!("magnet {} is on another surface than magnet 1", k + 1);
                 return Err(CallError::new("wrong-surface", message)
                     .expected("magnets of one surface")
                     .found("two different surfaces")
-                    .related(magnet.point.key, "lies on another surface")
+                    .related(magnet.point.key, "is on another surface")
                     .in_item(k)
                     .in_field(Self::MAGNETS));
             }

@@ -41,13 +41,13 @@ impl<T: Real> FromValue<T> for Grid<T> {
 pub struct FairSurf<T: Real> {
     /// A grid of points, at least degree + 2 in each direction.
     points: Grid<T>,
-    /// How far the surface may be from the one through the points; 0 leaves it alone.
+    /// Largest distance from the surface through the points; 0 leaves it unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the points are: "fit" or "control".
+    /// Meaning of the points: "fit" or "control".
     #[field(default = "fit")]
     r#as: Arc<str>,
     /// Polynomial degree in both directions.
@@ -66,7 +66,7 @@ pub struct FairSurf<T: Real> {
     /// Passes of the faithful mode.
     #[field(default = 1, min = 1, max = 100)]
     passes: usize,
-    /// What the rims keep, so that neighbours still fit: "corners" (only these), "position",
+    /// Kept at the rims, so that neighbours still fit: "corners" (only these), "position",
     /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
     #[field(default = "corners")]
     rims: Rims,
@@ -74,8 +74,8 @@ pub struct FairSurf<T: Real> {
     /// it rational and stay as they are. They count as constants: derivatives do not go through them.
     #[field(default)]
     weights: Option<Weights>,
-    /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, which do not
-    /// fall; constants too.
+    /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
+    /// decreasing; constants too.
     #[field(default)]
     knots_u: Option<Vec<T>>,
     /// The same along v.

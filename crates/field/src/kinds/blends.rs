@@ -11,7 +11,7 @@ use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, Value};
 ///
 /// After Liming (1944). With a rail, `contact = n` gives contact G^n by lambda L1 L2 -
 /// (1 - lambda) |L3|^(n + 1). The rail must cut each body outside the other; with a box `low`, `high` that
-/// is proved, or the place is told where it fails.
+/// is proved, or the place where it fails is reported.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -64,7 +64,7 @@ fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), CallEr
 /// (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
 ///
 /// After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; with a box `low`, `high` that is proved,
-/// or the place is told where it fails.
+/// or the place where it fails is reported.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -139,7 +139,7 @@ macro_rules! corner_blend {
         #[doc = $doc]
         ///
         /// With distances the widths are lengths. With a box `low`, `high` the contact is proved over it, or the
-        /// place is told where it fails.
+        /// place where it fails is reported.
         #[derive(Kind)]
         #[kind(class = Set, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {

@@ -34,14 +34,14 @@ pub struct SetBody<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How often the longest side of the box is halved: cells of its 2^depth-th part. 6 when no accuracy
+    /// Number of halvings of the longest side of the box: cells of its 2^depth-th part. 6 when no accuracy
     /// is asked.
     #[field(default, min = 1, max = 16)]
     depth: Option<u32>,
-    /// How far the middles of triangles are from the surface at most: estimated by refining.
+    /// Largest distance of triangle centres from the surface: estimated by refining.
     #[field(default)]
     accuracy: Option<T>,
-    /// How far triangles may be from the surface when fewer are made of them; none are merged by default.
+    /// Largest distance from the surface when triangles are merged; none are merged by default.
     #[field(default)]
     simplify: Option<T>,
 }

@@ -80,10 +80,13 @@ impl<T: Real> Build<T> for FaceSet<T> {
         let vectors = self.rounds.unwrap_or_default();
         if !vectors.len().is_multiple_of(5) {
             let n = vectors.len();
-            return Err(CallError::new("wrong-count", format!("{n} vectors make no round faces"))
-                .expected("five vectors for each")
-                .found(n.to_string())
-                .in_field(Self::ROUNDS));
+            return Err(CallError::new(
+                "wrong-count",
+                format!("{n} vectors do not define round faces"),
+            )
+            .expected("five vectors for each")
+            .found(n.to_string())
+            .in_field(Self::ROUNDS));
         }
         let round = |(k, v): (usize, &[Vec3<T>])| {
             let (sweep, scale, side) = (v[4].x, v[4].y, v[4].z.re());

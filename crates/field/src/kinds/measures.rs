@@ -220,7 +220,7 @@ fn area<T: Real>(
     let lifter = Lifter::of(set, &plain, region.corners);
     let own = |facets: &Facets| -> Result<T, FieldError> {
         let (positions, primitives) = (lifter.positions(facets)?, lifter.primitives(facets)?);
-        // A face of the box is no surface of the set.
+        // A face of the box is not a surface of the set.
         let counts = |leaf: u32| (leaf as usize) < facets.own_leaves;
         Ok(Curved::new(&facets.flat()).area(&positions, &primitives, counts))
     };
@@ -269,7 +269,7 @@ pub struct VolumeBracket<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How often the box is halved.
+    /// Number of halvings of the box.
     #[field(default = 6, min = 1, max = 12)]
     depth: u32,
 }
@@ -284,7 +284,7 @@ impl<T: Real> Build<T> for VolumeBracket<T> {
     }
 }
 
-/// Where a point lies: "solid", "surface" or "air".
+/// The position of a point: "solid", "surface" or "air".
 #[derive(Kind)]
 #[kind(
     class = Text,
@@ -297,7 +297,7 @@ pub struct Member<T: Real> {
     set: Solid<T>,
     /// The point.
     point: Point<T>,
-    /// How near to a surface counts as on it.
+    /// Distance from a surface that counts as on it.
     #[field(default = 1e-9, min = 0)]
     tolerance: T,
 }
@@ -458,7 +458,7 @@ pub struct NearestPoint<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How much nearer another point may be; by default 1e-6 of the box.
+    /// Error bound of the distance; by default 1e-6 of the box.
     #[field(default)]
     accuracy: Option<T>,
 }
@@ -481,7 +481,7 @@ impl<T: Real> Build<T> for NearestPoint<T> {
     }
 }
 
-/// How far along a ray, in lengths of its direction, it first meets the surface of a set.
+/// The first intersection of a ray with the surface of a set, in lengths of its direction.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -492,11 +492,11 @@ impl<T: Real> Build<T> for NearestPoint<T> {
 pub struct FirstHit<T: Real> {
     /// The set.
     set: Solid<T>,
-    /// Where the ray begins.
+    /// Start of the ray.
     start: Point<T>,
-    /// Where it goes.
+    /// Its image.
     direction: Point<T>,
-    /// How far it goes; by default through the box of the set.
+    /// Its length; by default through the box of the set.
     #[field(default, min = 0)]
     length: Option<T>,
 }
@@ -534,7 +534,7 @@ impl<T: Real> Build<T> for FirstHit<T> {
     }
 }
 
-/// How far two sets are apart; 0 where they overlap or touch.
+/// The distance between two sets; 0 where they overlap or touch.
 ///
 /// The box is found when it is not given.
 #[derive(Kind)]
@@ -555,7 +555,7 @@ pub struct Distance<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How much nearer they may be; by default 1e-5 of the box.
+    /// Error bound of the distance; by default 1e-5 of the box.
     #[field(default)]
     accuracy: Option<T>,
 }
@@ -580,7 +580,7 @@ impl<T: Real> Build<T> for Distance<T> {
     }
 }
 
-/// How many bodies a set is of, those that only touch counted apart: by facets.
+/// The number of bodies of a set, those that only touch counted separately: by facets.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -597,7 +597,7 @@ pub struct Components<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How often the longest side of the box is halved.
+    /// Number of halvings of the longest side of the box.
     #[field(default = 6, min = 1, max = 10)]
     depth: u32,
 }
@@ -627,7 +627,7 @@ impl<T: Real> Build<T> for Components<T> {
 pub struct Bounds<T: Real> {
     /// The set.
     set: Solid<T>,
-    /// How much wider than the set it may be.
+    /// Largest excess over the set.
     #[field(default = 1e-3, min = 0)]
     accuracy: T,
 }

@@ -170,7 +170,7 @@ pub struct Cyclide<T: Real> {
     /// Mean radius of the tube.
     #[field(min = 0)]
     minor: T,
-    /// How much thinner the tube is there, and thicker opposite; below the major radius.
+    /// Variation of the tube's radius: thinner there, thicker opposite; below the major radius.
     change: T,
 }
 

@@ -112,7 +112,7 @@ impl<T: Real> FromValue<T> for Solid<T> {
     }
 }
 
-/// The error as a fault that says how to mend it.
+/// The error as a fault that says how to fix it.
 pub fn fault(error: &FieldError) -> CallError {
     let id = match error {
         FieldError::NotFinite { .. } => "not-finite",
@@ -140,14 +140,14 @@ pub fn fault(error: &FieldError) -> CallError {
             fault.expected("a whole number from 0 to 1000").help("roots are sqrt() and s_sqrt()")
         }
         FieldError::Lambda { .. } => fault.expected("a number above 0 and below 1"),
-        FieldError::RailsMeet { .. } => fault.help("set the rails apart, or look at a smaller box"),
+        FieldError::RailsMeet { .. } => fault.help("separate the rails, or use a smaller box"),
         FieldError::RailInside { .. } => {
             fault.help("a rail must cut each body outside the other: move it outward")
         }
         FieldError::Unbounded { .. } => {
             fault.expected("a box: {low corner}, {high corner}").help("or cut it with planes")
         }
-        FieldError::TooFine { .. } => fault.help("ask for a coarser accuracy, or a smaller box"),
+        FieldError::TooFine { .. } => fault.help("use a coarser accuracy, or a smaller box"),
         FieldError::ThinBox { depth, .. } => {
             fault.expected(format!("a depth of {depth} or more, or a thicker box"))
         }

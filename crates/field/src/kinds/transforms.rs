@@ -45,7 +45,7 @@ impl<T: Real> Movable<T> {
     example = "set ball = translated(set(sphere({0, 0, 0}, 1)), {3, 0, 0});"
 )]
 pub struct Translated<T: Real> {
-    /// What is moved.
+    /// The field or set to move.
     shape: Movable<T>,
     /// By how much.
     by: Point<T>,
@@ -66,7 +66,7 @@ impl<T: Real> Build<T> for Translated<T> {
     example = "AbsPoint a(0, 0, 0); AbsPoint b(0, 0, 1); Line axis(a, b); set s = turned(cuboid({0, 0, 0}, {2, 1, 1}), axis, 0.5);"
 )]
 pub struct Turned<T: Real> {
-    /// What is turned.
+    /// The field or set to turn.
     shape: Movable<T>,
     /// The axis, right-handed.
     axis: Axis<T>,
@@ -90,7 +90,7 @@ impl<T: Real> Build<T> for Turned<T> {
     example = "set both = set(sphere({0, 2, 0}, 1)); both = both | mirrored(both, \"y=0\");"
 )]
 pub struct Mirrored<T: Real> {
-    /// What is mirrored.
+    /// The field or set to mirror.
     shape: Movable<T>,
     /// A plane, line or point.
     mirror: MirrorArgument<T>,
@@ -120,7 +120,7 @@ fn unit<T: Real>(plane: &Plane<T>) -> Plane<T> {
     example = "set half = scaled(cuboid({0, 0, 0}, {2, 1, 1}), 0.5);"
 )]
 pub struct Scaled<T: Real> {
-    /// What is scaled.
+    /// The field or set to scale.
     shape: Movable<T>,
     /// The factor, not 0.
     factor: T,
@@ -146,7 +146,7 @@ impl<T: Real> Build<T> for Scaled<T> {
     example = "AbsPoint a(0, 0, 0); AbsPoint b(0, 0, 1); Line axis(a, b); set egg = stretched(set(sphere({0, 0, 0}, 1)), axis, 1.5);"
 )]
 pub struct Stretched<T: Real> {
-    /// What is stretched.
+    /// The field or set to stretch.
     shape: Movable<T>,
     /// The line.
     axis: Axis<T>,

@@ -283,7 +283,7 @@ impl Tree {
         number
     }
 
-    /// The triangle nearest to `p`, the weights of its corners and the normal that tells the side.
+    /// The triangle nearest to `p`, the weights of its corners and the normal that determines the side.
     fn nearest(&self, points: &[Vec3], triangles: &[[u32; 3]], p: Vec3) -> (u32, [f64; 3], Vec3) {
         let reach = |b: &Box3| {
             (0..3).map(|k| (b.low[k] - p[k]).max(p[k] - b.high[k]).max(0.0).powi(2)).sum::<f64>()

@@ -79,8 +79,8 @@ fn of_fields<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<
             } else {
                 "multiply out, or divide by a number: f / g = 0 is f = 0"
             };
-            Diagnostic::error("field-division", "a field is divided by numbers other than 0 only")
-                .expected("a number other than 0")
+            Diagnostic::error("field-division", "a field can only be divided by a non-zero number")
+                .expected("a non-zero number")
                 .found(b.called())
                 .help(help)
         })?,
@@ -297,7 +297,7 @@ pub(crate) fn at<T: Real>(shape: &Value<T>, place: &Value<T>) -> Result<Value<T>
         Value::Vectors(a) => {
             Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: values(&a.points()) })))
         }
-        other => Err(Diagnostic::error("wrong-type", "a field is asked at a point")
+        other => Err(Diagnostic::error("wrong-type", "a field is evaluated at a point")
             .expected("a point, a vector, or a row or grid of vectors")
             .found(other.called())),
     }

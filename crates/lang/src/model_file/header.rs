@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// The name of the kind below.
 pub const KIND: &str = "Model";
 
-/// What the model says of itself: the planes it is mirrored in, its unit, and the header of the
+/// The model's properties: the planes it is mirrored in, its unit, and the header of the
 /// model file that it came from.
 ///
 /// A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
@@ -48,13 +48,10 @@ impl<T: Real> Build<T> for Model<T> {
         let known = letters.chars().all(|c| matches!(c, 'x' | 'y' | 'z'));
         let once = letters.chars().enumerate().all(|(k, c)| letters.find(c) == Some(k));
         if !known || !once {
-            return Err(CallError::new(
-                "unknown-plane",
-                format!("there is no symmetry \"{letters}\""),
-            )
-            .expected("the letters of the mirror planes, such as \"y\" or \"xy\"")
-            .found(format!("\"{letters}\""))
-            .in_field(Self::SYMMETRY));
+            return Err(CallError::new("unknown-plane", format!("unknown symmetry \"{letters}\""))
+                .expected("the letters of the mirror planes, such as \"y\" or \"xy\"")
+                .found(format!("\"{letters}\""))
+                .in_field(Self::SYMMETRY));
         }
         let lines = self.lines.unwrap_or_default();
         let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);

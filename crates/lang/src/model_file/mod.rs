@@ -39,7 +39,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// More diagnostics of one run than this are counted, not listed.
 const MOST_DIAGNOSTICS: usize = 100;
 
-/// More cycles than this are not told: their paths may be long.
+/// More cycles than this are not reported: their paths may be long.
 const MOST_CYCLES: usize = 20;
 
 /// A parsed model file and the places of its objects.
@@ -89,7 +89,7 @@ struct Root {
     diagnostics: Vec<Diagnostic>,
     /// The objects that could not be built for want of it.
     blocked: Vec<String>,
-    /// For a root that is no error by itself: where it was asked for first.
+    /// For a root that is not an error by itself: where it was asked for first.
     first_use: Option<(Span, String)>,
 }
 
@@ -430,7 +430,7 @@ impl ModelFileSource {
             Err(expected) => {
                 let ends = fields.first().zip(fields.last());
                 let place = ends.map_or(end, |(first, last)| first.span.to(last.span));
-                let message = format!("these are no divisions of {}", class.with_article());
+                let message = format!("invalid divisions of {}", class.with_article());
                 let found = format!("`{}`", self.model.slice(place));
                 let diagnostic = Diagnostic::error("wrong-field", message).at(place);
                 errors.push(diagnostic.expected(expected).found(found));
@@ -566,7 +566,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         let source = self.source;
         let name = |at: usize| source.model.slice(source.lines[at].name);
         let round = cycle.iter().chain(cycle.first()).map(|&at| name(at));
-        // A long way round is told by its ends.
+        // A long way round is identified by its ends.
         let mut shown: Vec<&str> = round.collect();
         let left_out = shown.len().saturating_sub(1000);
         let text = if left_out > 0 {
@@ -622,10 +622,10 @@ impl<T: Scalar> Producer<'_, '_, T> {
             }
             let kinds = self.registry.rows().filter(|r| r.kind && r.columns.is_some());
             let diagnostic =
-                Diagnostic::warning("unknown-entity", format!("there is no entity `{entity}`"))
+                Diagnostic::warning("unknown-entity", format!("unknown entity `{entity}`"))
                     .at(line.entity)
                     .suggest(entity, kinds.map(|r| &*r.name))
-                    .note(format!("`{name}` is kept as it stands, and not built"))
+                    .note(format!("`{name}` is kept unchanged, but not built"))
                     .object(name);
             self.outcomes[at] = Some(self.root(vec![diagnostic]));
             return;
@@ -867,7 +867,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
             return Ok(Value::text(text));
         }
         let mut diagnostic =
-            Diagnostic::error("unknown-object", format!("there is no object `{text}`"))
+            Diagnostic::error("unknown-object", format!("unknown object `{text}`"))
                 .at(written.span)
                 .expected(field.class.with_article());
         if self.suggestions < 20 {

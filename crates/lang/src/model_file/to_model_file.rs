@@ -190,7 +190,8 @@ impl<'a> ToModelFile<'a> {
     }
 
     fn refuse(&mut self, object: &Object<f64>, found: &str, help: &str) {
-        let message = format!("{} `{}` cannot stand in a model file", object.row.name, object.name);
+        let message =
+            format!("{} `{}` cannot be written to a model file", object.row.name, object.name);
         let diagnostic = Diagnostic::error("not-in-model-files", message)
             .found(found)
             .help(help)

@@ -10,7 +10,7 @@ use moldloft_syntax::model_file::{Field as Written, FieldKind, ItemKind, Object 
 use moldloft_syntax::number;
 use std::fmt::Write;
 
-/// A line of a model file that is no object of ours stands in a program as a comment.
+/// A line of a model file that is not an object of ours stands in a program as a comment.
 pub(crate) const VERBATIM: &str = "#ms2 ";
 
 /// The relabel of the object that follows.

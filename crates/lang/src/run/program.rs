@@ -21,13 +21,13 @@ pub struct Program<'a> {
     pub world: &'a dyn World,
     pub registry: &'a Registry,
     pub sources: &'a mut Sources,
-    /// The sketch that is the model, when it is no program.
+    /// The sketch that is the model, when it is not a program.
     pub sketch: Option<Arc<SketchFile>>,
     /// The program of a model file that is loaded.
     pub converted: Convert,
 }
 
-/// Why a number of an object is no literal of the text.
+/// Why a number of an object is not a literal of the text.
 pub enum NotLiteral {
     /// It is computed from these names.
     Expression { span: Span, names: Vec<String> },

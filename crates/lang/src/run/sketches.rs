@@ -140,7 +140,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let [drawn] = &file.objects[..] else {
             file.faults.iter().for_each(|fault| self.report(fault.clone()));
             let found = format!("{} objects in `{path}`", file.objects.len());
-            return Err(Diagnostic::error("wrong-count", "a sketch under a name is one object")
+            return Err(Diagnostic::error("wrong-count", "a named sketch must have one object")
                 .at(span)
                 .expected("a file with one object")
                 .found(found)
@@ -413,7 +413,7 @@ fn fault_text(fault: &DimensionFault) -> Option<String> {
     Some(match fault {
         DimensionFault::Redundant { .. } => return None,
         DimensionFault::Contradictory { name, asked, measured, .. } => {
-            format!("{name} asks {asked}, but the others make it {measured}")
+            format!("{name} requires {asked}, but the others give {measured}")
         }
         DimensionFault::NoValue { name, reads } => {
             format!("{name} reads {reads}, which has no value")

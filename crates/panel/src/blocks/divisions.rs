@@ -188,7 +188,7 @@ fn contradiction(
     let name = |at: usize| &drafts[at / 3].object.name;
     let axis = |at: usize| ["u", "v", "w"][at % 3];
     let message = format!(
-        "`{}` has {n} cells along {} but `{}` has {m} along {}, and shared faces and edges make them one number",
+        "`{}` has {n} cells along {} but `{}` has {m} along {}, and shared faces and edges require equal counts",
         name(a),
         axis(a),
         name(b),

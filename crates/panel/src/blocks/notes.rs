@@ -47,7 +47,7 @@ impl std::fmt::Display for BlockNote {
             ),
             BlockNote::Apart { blocks: [a, b], distance, at } => write!(
                 f,
-                "`{a}` and `{b}` share a face or edge but lie {distance:.3e} apart at ({}, {}, {})",
+                "`{a}` and `{b}` share a face or edge but are {distance:.3e} apart at ({}, {}, {})",
                 at.x, at.y, at.z
             ),
         }

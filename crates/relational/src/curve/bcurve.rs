@@ -1,3 +1,5 @@
+//! B-spline curves.
+
 use crate::curve::Ended;
 use crate::faults;
 use moldloft_num::Real;

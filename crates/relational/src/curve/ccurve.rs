@@ -1,3 +1,5 @@
+//! Interpolating splines through points.
+
 use super::bcurve;
 use crate::arguments::EndRule;
 use crate::curve::Ended;

@@ -1,3 +1,5 @@
+//! Conic sections by three points and a shape factor.
+
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
@@ -18,14 +20,14 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value}
 pub struct Conic<T: Real> {
     /// Centre, or vertex of a parabola.
     p1: Point<T>,
-    /// Where a = 0 is on an ellipse or hyperbola.
+    /// The point of a = 0 on an ellipse or hyperbola.
     p2: Point<T>,
     /// The end of the conjugate half diameter.
     p3: Point<T>,
-    /// Where the curve begins.
+    /// Start of the curve.
     #[field(angle, default = 0)]
     a1: T,
-    /// Where it ends; a full turn when not given.
+    /// End; a full turn when not given.
     #[field(angle, default = std::f64::consts::TAU)]
     a2: T,
     /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.
@@ -50,9 +52,9 @@ pub struct Oblique<T> {
     pub first: Vec3<T>,
     /// P3 - P1.
     pub second: Vec3<T>,
-    /// Where it begins.
+    /// Start.
     pub a1: T,
-    /// Where it ends.
+    /// End.
     pub a2: T,
     /// Its type, 1 to 3.
     pub kind: u32,

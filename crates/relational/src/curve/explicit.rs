@@ -1,3 +1,5 @@
+//! Explicit splines: two coordinates as functions of the third.
+
 use super::{Ended, bcurve};
 use crate::arguments::{AxisName, EndRule};
 use crate::faults;

@@ -1,3 +1,5 @@
+//! B-splines fitted to curves by least squares. A fit that comes no nearer than asked is refused.
+
 use super::Ended;
 use moldloft_num::{Curve, Order, Real};
 use moldloft_registry::{

@@ -1,3 +1,5 @@
+//! Foil sections as curves.
+
 use super::Ended;
 use crate::foil::foil_kind;
 use moldloft_num::Real;
@@ -13,7 +15,7 @@ foil_kind!(
     /// the camber. These run from the tail along the upper side to the nose, at t = 1/2, and back. Only
     /// the distance of a thickness point from the chord counts: it is half the nominal thickness.
     ///
-    /// The parameter is the square root of the way along the chord, so that the nose is smooth; the
+    /// The parameter is the square root of the position along the chord, so that the nose is smooth; the
     /// speed vanishes nowhere. Forms: NACA Reports 460, 492, 537 and 824, TM X-3069 (6-series, for the
     /// thickness ratio that the points have), Brockett 1966 (66tmb).
     #[derive(Kind)]

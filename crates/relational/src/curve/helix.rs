@@ -1,3 +1,5 @@
+//! Helices.
+
 use super::Ended;
 use moldloft_num::{Axis, CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
@@ -13,7 +15,7 @@ use std::f64::consts::PI;
                Helix h(A, axis, 9.5, 0.75);"
 )]
 pub struct Helix<T: Real> {
-    /// Where it begins.
+    /// Start.
     point: Point<T>,
     /// Its axis, from the line's first end to its last.
     line: Axis<T>,

@@ -1,3 +1,5 @@
+//! Straight lines.
+
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};

@@ -1,3 +1,5 @@
+//! Mirror images of curves, which know their originals.
+
 use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
 use moldloft_registry::{CurveRef, Kind, MirrorArgument};
 use std::sync::Arc;
@@ -15,7 +17,7 @@ use std::sync::Arc;
 pub struct MirrCurve<T: Real> {
     /// The curve to mirror.
     curve: CurveRef<T>,
-    /// What to mirror it in.
+    /// The mirror: a plane, line or point.
     mirror: MirrorArgument<T>,
 }
 

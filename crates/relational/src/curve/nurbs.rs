@@ -1,3 +1,5 @@
+//! Rational B-spline curves.
+
 use super::{Ended, bcurve};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};

@@ -1,8 +1,10 @@
+//! Curves at a distance from others in a plane.
+
 use moldloft_num::{Curve, CurveJet, Order, Plane, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 
 /// A curve at a distance from another, sideways in a plane: C(t) = c(t) + d T x n / |T x n|, with T
-/// the tangent and n the normal of the plane; to the right of the way for one who stands on the
+/// the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
 /// positive side, if d is positive.
 ///
 /// It is refused where the distance exceeds the radius of curvature on that side, since the offset
@@ -15,7 +17,7 @@ use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
                OffsetCurve outside(c, -0.5, \"z=0\"); OffsetCurve inside(c, 0.25, \"z=0\");"
 )]
 pub struct OffsetCurve<T: Real> {
-    /// The curve it runs beside.
+    /// The curve that is offset.
     curve: CurveRef<T>,
     /// The distance.
     distance: T,

@@ -1,3 +1,5 @@
+//! Curves and snakes end to end as one.
+
 use crate::arguments::{Snake, common_surface};
 use moldloft_num::trace::{Key, Piece, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real};
@@ -143,7 +145,7 @@ fn check_joint<T: Real>(
     let gap = gap_of(1.0, 0.0);
     let fault = |text: String, found: String| {
         CallError::new("gap", text)
-            .expected("each piece to begin where the one before ends")
+            .expected("pieces that start where the previous one ends")
             .found(found)
             .related(before.key, "ends on one side of the gap")
             .related(after.key, "begins on the other")
@@ -156,9 +158,9 @@ fn check_joint<T: Real>(
         let found = format!("a gap of {gap}, with a tolerance of {tolerance}");
         let fault = fault(text, found);
         return Err(if gap_of(1.0, 1.0) <= tolerance {
-            fault.help(format!("piece {} ends there: let it run the other way", k + 1))
+            fault.help(format!("piece {} ends there: reverse it", k + 1))
         } else if gap_of(0.0, 0.0) <= tolerance && k == 1 {
-            fault.help("piece 1 begins there: let it run the other way")
+            fault.help("piece 1 begins there: reverse it")
         } else {
             fault.help("let neighbouring pieces end in common points")
         });

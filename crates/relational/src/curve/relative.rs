@@ -1,3 +1,5 @@
+//! Copies of curves: moved to new ends, scaled, turned.
+
 use super::Ended;
 use crate::affine::{Affine, Mapped};
 use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Reparametrization, Vec3};
@@ -17,9 +19,9 @@ use std::sync::Arc;
 pub struct RelCurve<T: Real> {
     /// The curve it is relative to.
     curve: CurveRef<T>,
-    /// Where it begins.
+    /// Start.
     p1: Point<T>,
-    /// Where it ends.
+    /// End.
     p2: Point<T>,
 }
 
@@ -91,9 +93,9 @@ impl<T: Real> Curve<T> for Moved<T> {
 pub struct CopyCurve<T: Real> {
     /// The curve to copy.
     curve: CurveRef<T>,
-    /// A point that goes to `to`.
+    /// A point that is moved to `to`.
     from: Point<T>,
-    /// Where `from` goes.
+    /// The image of `from`.
     to: Point<T>,
     /// Scale along x.
     #[field(default = 1)]

@@ -1,3 +1,5 @@
+//! Parts of curves and snakes between beads and rings; divisions of a part are those of the whole.
+
 use crate::arguments::{Bead, Ring, common_curve};
 use moldloft_num::trace::{Mark, Root, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, find_root};
@@ -15,9 +17,9 @@ use std::sync::Arc;
                BCurve c({A, B, C, D}); AbsBead b(c, 0.9); AbsBead d(c, 0.2); SubCurve part(b, d);"
 )]
 pub struct SubCurve<T: Real> {
-    /// Where it begins.
+    /// Start.
     bead1: Bead<T>,
-    /// Where it ends, on the same curve.
+    /// End, on the same curve.
     bead2: Bead<T>,
 }
 
@@ -37,9 +39,9 @@ impl<T: Real> Build<T> for SubCurve<T> {
                AbsRing r(s, 0.9); AbsRing q(s, 0.25); SubSnake part(r, q);"
 )]
 pub struct SubSnake<T: Real> {
-    /// Where it begins.
+    /// Start.
     ring1: Ring<T>,
-    /// Where it ends, on the same snake.
+    /// End, on the same snake.
     ring2: Ring<T>,
 }
 
@@ -133,7 +135,7 @@ fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>,
     let marks = [&from, &to].map(|bead| Mark { t: bead.t, point: bead.key });
     let trace = match (along.trace(), along.key) {
         (Trace::Point(point), _) => Trace::Point(point),
-        // A nameless curve is no root that others could share.
+        // A nameless curve is not a root that others could share.
         (Trace::Own(_), None) => Trace::Own([from.key, to.key]),
         (trace, key) => {
             let root = key.map_or(Root::Curve(moldloft_num::trace::Key(u32::MAX)), Root::Curve);

@@ -1,9 +1,11 @@
+//! The locus of a point whose bead runs along its curve.
+
 use crate::arguments::Bead;
 use crate::chebyshev::{DEEPEST, MOST_PIECES, NODES, Piece, Way, nodes};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, MovingPoint, Value};
 
-/// The way of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
+/// The locus of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
 /// `bead` at the parameter t1 + t (t2 - t1).
 ///
 /// Everything between bead and point is evaluated anew at each place. The curve is a chain of
@@ -24,10 +26,10 @@ pub struct ProcCurve<T: Real> {
     bead: Bead<T>,
     /// The point that follows.
     point: MovingPoint<T>,
-    /// Where the bead begins.
+    /// Start of the bead.
     #[field(default = 0)]
     t1: T,
-    /// Where it ends.
+    /// End.
     #[field(default = 1)]
     t2: T,
 }

@@ -1,3 +1,5 @@
+//! Beads and rings at a length along curves, and copies of beads and magnets.
+
 use crate::arguments::{Bead, Magnet, Ring, Snake, Start};
 use moldloft_num::{Order, Real};
 use moldloft_registry::{
@@ -21,7 +23,7 @@ fn at_length<T: Real>(
     if size == 0.0 {
         return Err(CallError::new("no-length", "the curve has no length")
             .expected("a curve with length")
-            .related(curve.key, "stands still")
+            .related(curve.key, "has a zero tangent")
             .in_field(fields[0]));
     }
     let found = inv_arclen(&*curve, t, length, 1e-12 * size);
@@ -79,7 +81,7 @@ impl<T: Real> Build<T> for ArcLenRing<T> {
         if self.start.curve.surface.is_none() {
             return Err(CallError::new("wrong-class", "expected a snake or a ring on one")
                 .expected("a snake, or a ring on one")
-                .found("a curve that lies on no surface")
+                .found("a curve that is not on a surface")
                 .in_field(Self::START));
         }
         at_length(self.start, self.length, [Self::START, Self::LENGTH])
@@ -95,9 +97,9 @@ impl<T: Real> Build<T> for ArcLenRing<T> {
                Line l(A, C); AbsBead b(c, 0.25); CopyBead d(b, l);"
 )]
 pub struct CopyBead<T: Real> {
-    /// The bead whose parameter is taken.
+    /// The bead whose parameter is copied.
     bead: Bead<T>,
-    /// The curve it is taken to.
+    /// The target curve.
     curve: CurveRef<T>,
 }
 
@@ -117,9 +119,9 @@ impl<T: Real> Build<T> for CopyBead<T> {
                AbsMagnet p(S, 0.25, 0.375); CopyMagnet q(p, T);"
 )]
 pub struct CopyMagnet<T: Real> {
-    /// The magnet whose parameters are taken.
+    /// The magnet whose parameters are copied.
     magnet: Magnet<T>,
-    /// The surface they are taken to.
+    /// The target surface.
     surface: SurfaceRef<T>,
 }
 
@@ -140,9 +142,9 @@ impl<T: Real> Build<T> for CopyMagnet<T> {
                UVSnake t(S, \"v\", 0.3); AbsRing r(s, 0.3); CopyRing q(r, t);"
 )]
 pub struct CopyRing<T: Real> {
-    /// The ring whose parameter is taken.
+    /// The ring whose parameter is copied.
     ring: Ring<T>,
-    /// The snake it is taken to.
+    /// The target snake.
     snake: Snake<T>,
 }
 

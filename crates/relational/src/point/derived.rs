@@ -1,3 +1,5 @@
+//! Points off surfaces, on tangents, turned, copied, blended, and centroids.
+
 use crate::affine::Affine;
 use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
@@ -14,7 +16,7 @@ fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, CallError> {
 
 /// A point off a surface: X = S(u, v) + d n, with n the unit normal along S_u x S_v.
 ///
-/// At a pole the normal is the limit along the parameter line that leads there.
+/// At a pole the normal is the limit along the parameter line that ends there.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -24,7 +26,7 @@ fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, CallError> {
                OffsetPoint q(p, 0.75);"
 )]
 pub struct OffsetPoint<T: Real> {
-    /// Where on the surface.
+    /// The magnet on the surface.
     magnet: Magnet<T>,
     /// The distance, on the side of the natural normal if positive.
     distance: T,
@@ -41,13 +43,13 @@ impl<T: Real> Build<T> for OffsetPoint<T> {
 /// The unit tangent of a curve at a bead.
 ///
 /// # Errors
-/// `no-tangent`, in `field`, where the curve stands still.
+/// `no-tangent`, in `field`, where the curve has a zero tangent.
 pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     bead.curve.jet(bead.t, Order::First)[1].normalized().ok_or_else(|| {
         CallError::new("no-tangent", "the curve has no tangent there")
-            .expected("a place where the curve moves on")
+            .expected("a place with a non-zero tangent")
             .found(format!("no speed at t = {}", bead.t.re()))
-            .related(bead.key, "lies there")
+            .related(bead.key, "is there")
             .in_field(field)
     })
 }
@@ -61,7 +63,7 @@ pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, CallE
                AbsBead b(c, 0.25); TanPoint p(b, 1.5);"
 )]
 pub struct TanPoint<T: Real> {
-    /// Where on the curve.
+    /// The bead on the curve.
     bead: Bead<T>,
     /// The distance, in the direction of increasing parameter if positive.
     distance: T,
@@ -110,9 +112,9 @@ impl<T: Real> Build<T> for RotatPoint<T> {
 pub struct CopyPoint<T: Real> {
     /// The point to copy.
     point: Point<T>,
-    /// A point that goes to `to`.
+    /// A point that is moved to `to`.
     from: Point<T>,
-    /// Where `from` goes.
+    /// The image of `from`.
     to: Point<T>,
     /// Scale along x.
     #[field(default = 1)]

@@ -1,3 +1,5 @@
+//! Points in the axes of frames, Cartesian and polar.
+
 use moldloft_num::{Frame, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 

@@ -1,3 +1,5 @@
+//! Points by coordinates, by offsets and by mirroring.
+
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, Kind, MirrorArgument, Point, Value};
 
@@ -63,7 +65,7 @@ impl<T: Real> Build<T> for RelPoint<T> {
 pub struct MirrPoint<T: Real> {
     /// The point to mirror.
     point: Point<T>,
-    /// What to mirror it in.
+    /// The mirror: a plane, line or point.
     mirror: MirrorArgument<T>,
 }
 

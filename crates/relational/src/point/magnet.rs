@@ -1,10 +1,12 @@
+//! Magnets: points on surfaces by their parameters.
+
 use crate::arguments::Magnet;
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Value};
 
 /// A point on a surface at given parameters: X = S(u, v).
 ///
-/// Outside [0, 1] it lies on the natural continuation of the surface's formula.
+/// Outside [0, 1] it is on the natural continuation of the surface's formula.
 #[derive(Kind)]
 #[kind(
     class = Magnet,
@@ -13,7 +15,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Valu
                Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5);"
 )]
 pub struct AbsMagnet<T: Real> {
-    /// The surface it lives on.
+    /// The surface it is on.
     surface: SurfaceRef<T>,
     /// Its first parameter.
     u: T,

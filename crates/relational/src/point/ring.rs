@@ -1,3 +1,5 @@
+//! Rings: points on snakes by their parameter.
+
 use crate::arguments::{Bead, Ring, Snake};
 use moldloft_num::Real;
 use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};

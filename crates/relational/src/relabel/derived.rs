@@ -1,3 +1,5 @@
+//! Reparametrizations from others: by arc length, copied, inverted.
+
 use moldloft_num::{
     Composed, Order, Real, Reparametrization, ReparametrizationJet, inv_reparametrization_in,
 };
@@ -37,7 +39,7 @@ impl<T: Real> Build<T> for ArcLenRelabel<T> {
         let rough = spline::arclen(&*curve, T::zero(), T::one(), 1e-6).re();
         let slope = |t: f64| curve.jet(T::from(t), Order::First)[1].re().norm();
         if !rough.is_finite() || slope(0.0).min(slope(1.0)) <= NO_SLOPE * rough || rough == 0.0 {
-            return Err(CallError::new("zero-slope", "the curve stands still at an end")
+            return Err(CallError::new("zero-slope", "zero tangent at an end")
                 .expected("a curve that moves at t = 0 and t = 1")
                 .found(format!("the speeds {} and {}", slope(0.0), slope(1.0)))
                 .related(curve.key, "is the curve")
@@ -179,7 +181,7 @@ impl<T: Real> Reparametrization<T> for ByLength<T> {
                BCurve c({A, B, C}, relabel = cosine); CopyRelabel r(c); Line l(A, C, relabel = r);"
 )]
 pub struct CopyRelabel<T: Real> {
-    /// The curve whose law is taken over.
+    /// The curve whose relabel is copied.
     curve: CurveRef<T>,
 }
 

@@ -1,3 +1,5 @@
+//! Reparametrizations by formulas: B-spline, cosine, geometric, hyperbolic tangent.
+
 use moldloft_num::Real;
 use moldloft_registry::{
     Build, CallError, Class, Context, FromValue, Kind, ReparametrizationRef, Value,
@@ -18,7 +20,7 @@ impl<T: Real> FromValue<T> for DenseAt {
             "start" => Dense::Start,
             "end" => Dense::End,
             other => {
-                return Err(CallError::new("unknown-end", format!("there is no end \"{other}\""))
+                return Err(CallError::new("unknown-end", format!("unknown end \"{other}\""))
                     .expected("\"both\", \"start\" or \"end\"")
                     .found(format!("\"{other}\"")));
             }
@@ -46,7 +48,7 @@ fn law<T: Real>(
                 RelabelError::ZeroSlope { at } => CallError::new("zero-slope", message)
                     .expected("values that ascend everywhere inside")
                     .found(format!("no slope at t = {at}"))
-                    .help("set neighbouring values apart"),
+                    .help("separate neighbouring values"),
                 RelabelError::Range { value, min, max, .. } => {
                     CallError::new("out-of-range", message)
                         .expected(format!("a number from {min} to {max}"))
@@ -118,7 +120,7 @@ impl<T: Real> Build<T> for Relabel<T> {
     example = "CosRelabel r(); CosRelabel s(\"start\", 0.8);"
 )]
 pub struct CosRelabel<T: Real> {
-    /// Where it is dense: "both", "start" or "end".
+    /// Dense end: "both", "start" or "end".
     #[field(default = "both")]
     dense: DenseAt,
     /// Share w of the cosine, 0 to 1.
@@ -165,7 +167,7 @@ pub struct TanhRelabel<T: Real> {
     /// Strength d, 0 to 100; 0 changes nothing.
     #[field(min = 0, max = 100)]
     strength: T,
-    /// Where it is dense: "both", "start" or "end".
+    /// Dense end: "both", "start" or "end".
     #[field(default = "both")]
     dense: DenseAt,
 }

@@ -158,7 +158,7 @@ fn axis_plane<T: Real>(axis: &str, value: T, field: FieldId) -> Result<LevelOf<T
 /// 0, 1, 2 for "x", "y", "z".
 pub(super) fn axis_number(axis: &str, field: FieldId) -> Result<usize, CallError> {
     ["x", "y", "z"].iter().position(|name| *name == axis).ok_or_else(|| {
-        CallError::new("unknown-axis", format!("there is no axis \"{axis}\""))
+        CallError::new("unknown-axis", format!("unknown axis \"{axis}\""))
             .expected("\"x\", \"y\" or \"z\"")
             .found(format!("\"{axis}\""))
             .in_field(field)
@@ -242,7 +242,7 @@ bead_and_ring!(
      iteration; without one, of all such points the one nearest to t = 0.5 is taken.",
     "curve axis value", "snake axis value",
     [
-        /// Which coordinate: "x", "y" or "z".
+        /// The coordinate: "x", "y" or "z".
         axis: Arc<str>,
         /// Its value.
         value: T,

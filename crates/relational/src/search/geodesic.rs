@@ -31,7 +31,7 @@ const MOST_STEPS: usize = 60;
 /// How far outside of the surface a path may run, in u and v.
 const OUTSIDE: f64 = 1e-9;
 
-/// The shortest way on a surface between two magnets, or more exactly a geodesic: a curve that turns
+/// The shortest path on a surface between two magnets, or more exactly a geodesic: a curve that turns
 /// neither left nor right on the surface. It is run evenly, so t is the share of its length.
 ///
 /// Of several geodesics it is the one that Newton's method leads to from the straight line of the
@@ -51,11 +51,11 @@ const OUTSIDE: f64 = 1e-9;
                AbsMagnet b(R, 0.9, 0.9); GeoSnake g(a, b); GeoSnake round(a, b, turns_v = 1);"
 )]
 pub struct GeoSnake<T: Real> {
-    /// Where it begins.
+    /// Start.
     m1: Magnet<T>,
-    /// Where it ends, on the same surface.
+    /// End, on the same surface.
     m2: Magnet<T>,
-    /// How often it runs over the seam u = 0 forwards, or less than 0 backwards. Not given: 0, or 1 or
+    /// Number of forward crossings of the seam u = 0; negative: backward. Not given: 0, or 1 or
     /// -1 where that is shorter.
     #[field(min = -10, max = 10)]
     turns_u: Option<i32>,

@@ -88,7 +88,7 @@ impl<T: Real> Build<T> for IntPoint<T> {
 fn parallel() -> CallError {
     CallError::new("parallel-planes", "the planes have no one point in common")
         .expected("three planes of which no two are parallel, nor all to one line")
-        .found("normals that lie in one plane")
+        .found("coplanar normals")
         .help("turn one of them")
 }
 

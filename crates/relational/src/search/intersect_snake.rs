@@ -43,9 +43,9 @@ pub struct IntSnake<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
     target: Target<T>,
-    /// Where it begins: a magnet or ring of the intersection.
+    /// Start: a magnet or ring of the intersection.
     start: Option<Magnet<T>>,
-    /// Where it ends.
+    /// End.
     end: Option<Magnet<T>>,
     /// For a plane: the parallel plane through this point is meant.
     point: Option<Point<T>>,
@@ -61,7 +61,7 @@ impl<T: Real> Build<T> for IntSnake<T> {
 }
 
 /// The curve in space along which a surface meets a plane, another surface or the zero set of a
-/// field, as [`IntSnake`], for where it is no matter on which surface it lies.
+/// field, as [`IntSnake`], where the surface it is on does not matter.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -75,9 +75,9 @@ pub struct IntCurve<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
     target: Target<T>,
-    /// Where it begins: a magnet or ring of the intersection.
+    /// Start: a magnet or ring of the intersection.
     start: Option<Magnet<T>>,
-    /// Where it ends.
+    /// End.
     end: Option<Magnet<T>>,
     /// For a plane: the parallel plane through this point is meant.
     point: Option<Point<T>>,
@@ -162,10 +162,10 @@ fn cut<T: Real>(
                 magnet.surface.same(&surface.surface)
             };
             if !same {
-                return Err(CallError::new("wrong-surface", "the end lies on another surface")
+                return Err(CallError::new("wrong-surface", "the end is on another surface")
                     .expected("a magnet or ring of the surface that is cut")
                     .found("one of another surface")
-                    .related(magnet.key, "lies on another surface")
+                    .related(magnet.key, "is on another surface")
                     .related(magnet.surface.key, "is its surface")
                     .in_field(field));
             }
@@ -238,13 +238,10 @@ fn edge_point<T: Real>(
 }
 
 fn touching(x: Vec3) -> CallError {
-    CallError::new(
-        "tangent-contact",
-        "the shapes touch without crossing: there is no intersection curve",
-    )
-    .expected("shapes that cross at an angle")
-    .found(format!("a touch at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z))
-    .help("move one of them until they cross")
+    CallError::new("tangent-contact", "the shapes touch without crossing: no intersection curve")
+        .expected("shapes that cross at an angle")
+        .found(format!("a touch at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z))
+        .help("move one of them until they cross")
 }
 
 fn lost(why: &str) -> CallError {

@@ -100,7 +100,7 @@ pub(super) fn on_ray<T: Real>(
 /// perpendicular), along a direction, or away from a point.
 ///
 /// From a magnet it is what Newton's method leads to; without one the nearest of all. A foot that
-/// would lie beyond an edge is held at the edge and reported.
+/// beyond an edge is clamped to the edge and reported.
 #[derive(Kind)]
 #[kind(
     class = Magnet,

@@ -33,10 +33,10 @@ impl<T: Real> FromValue<T> for MirrorOrSurface<T> {
 /// The foot of the perpendicular from a point to a plane, line, surface or the zero set of a field; for a
 /// mirror that is a point, that point.
 ///
-/// On the zero set of a field it is the foot that the way down the field leads to.
+/// On the zero set of a field it is the foot found by descent along the field.
 ///
 /// On a surface it is the nearest foot; from a magnet of the surface the one that descent from
-/// there leads to. A foot that would lie beyond an edge is held at the edge and reported.
+/// there leads to. A foot beyond an edge is clamped to the edge and reported.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -48,7 +48,7 @@ impl<T: Real> FromValue<T> for MirrorOrSurface<T> {
 pub struct ProjPoint<T: Real> {
     /// The point to project.
     point: Point<T>,
-    /// What to project it to.
+    /// The target of the projection.
     mirror: MirrorOrSurface<T>,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn foot_on_level<T: Real>(
         }
     }
     let lost = |x: Vec3| {
-        CallError::new("no-solution", "the way down the field leads to no foot of the point")
+        CallError::new("no-solution", "descent along the field finds no foot of the point")
             .expected("a field with a surface near the point")
             .found(format!("({}, {}, {}) after {STEPS} steps", x.x, x.y, x.z))
     };

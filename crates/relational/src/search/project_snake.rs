@@ -33,7 +33,7 @@ const TABLE_ACCURACY: f64 = 1e-13;
 /// normals, along a direction, or away from a point.
 ///
 /// The foot of the start of the curve is found first, near the magnet if one is given; from there
-/// the projection follows the curve without a jump. Each point of it lies on the surface and is
+/// the projection follows the curve without a jump. Each point of it is on the surface and is
 /// the projection to rounding. Where the projection leaves the surface or grazes it, there is no
 /// snake.
 #[derive(Kind)]
@@ -85,7 +85,7 @@ impl<T: Real> Build<T> for ProjSnake<T> {
 pub struct ProjCurve<T: Real> {
     /// The curve to project.
     curve: CurveRef<T>,
-    /// What to project it to.
+    /// The target of the projection.
     mirror: MirrorOrSurface<T>,
 }
 

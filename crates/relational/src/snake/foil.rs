@@ -1,3 +1,5 @@
+//! Foil sections in the parameter plane of a surface.
+
 use super::through::{flat, snake};
 use crate::arguments::{Magnet, common_surface};
 use crate::foil::foil_kind;
@@ -23,7 +25,7 @@ foil_kind!(
     FoilSnake {
         /// Three, four or five magnets of one surface.
         magnets (MAGNETS): Magnet<T>,
-        /// How lengths are measured in the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
+        /// Metric of the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
         metric (METRIC): Option<Vec3<T>>,
     }
 );

@@ -1,3 +1,5 @@
+//! Edges and parameter lines of surfaces as snakes.
+
 use crate::curve::Segment;
 use crate::snake::OnSurface;
 use moldloft_num::trace::{Edge, Mark, Piece, Root, Trace};
@@ -39,7 +41,7 @@ fn own_edge<T: Real>(surface: &SurfaceRef<T>, k: u8) -> Trace<T> {
                EdgeSnake s(2, S);"
 )]
 pub struct EdgeSnake<T: Real> {
-    /// Which edge: 1 is v = 0, 2 is u = 1, 3 is v = 1, 4 is u = 0.
+    /// The edge: 1 is v = 0, 2 is u = 1, 3 is v = 1, 4 is u = 0.
     #[field(min = 1, max = 4)]
     edge: usize,
     /// The surface.
@@ -54,7 +56,7 @@ impl<T: Real> Build<T> for EdgeSnake<T> {
             3 => [(0.0, 1.0), (1.0, 1.0)],
             4 => [(0.0, 0.0), (0.0, 1.0)],
             other => {
-                return Err(CallError::new("out-of-range", format!("there is no edge {other}"))
+                return Err(CallError::new("out-of-range", format!("no edge {other}"))
                     .expected("an edge from 1 to 4")
                     .found(other.to_string())
                     .in_field(Self::EDGE));

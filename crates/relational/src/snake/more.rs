@@ -1,3 +1,5 @@
+//! Arcs, interpolating splines, NURBS and conics in the parameter plane of a surface.
+
 use super::through::{flat, snake};
 use crate::arguments::{EndRule, Magnet, Snake, common_surface};
 use crate::curve::{Moved, Oblique, clamped_ends, spline};
@@ -50,7 +52,7 @@ pub struct ArcSnake<T: Real> {
     m2: Magnet<T>,
     /// Third magnet, on the same surface.
     m3: Magnet<T>,
-    /// Which of the six types.
+    /// One of the six types.
     #[field(default = 1, min = 1, max = 6)]
     r#type: u32,
 }
@@ -60,13 +62,10 @@ impl<T: Real> Build<T> for ArcSnake<T> {
         let Self { m1, m2, m3, r#type } = self;
         let (surface, places) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let Some(arc) = moldloft_spline::Arc::of_type(r#type, places) else {
-            return Err(CallError::new(
-                "out-of-range",
-                format!("there is no arc of type {}", r#type),
-            )
-            .expected("a type from 1 to 6")
-            .found(r#type.to_string())
-            .in_field(Self::TYPE));
+            return Err(CallError::new("out-of-range", format!("unknown arc type {}", r#type))
+                .expected("a type from 1 to 6")
+                .found(r#type.to_string())
+                .in_field(Self::TYPE));
         };
         let end = match r#type {
             2 => None,
@@ -172,14 +171,14 @@ impl<T: Real> Build<T> for NURBSnake<T> {
 pub struct ConicSnake<T: Real> {
     /// Centre, or vertex of a parabola.
     m1: Magnet<T>,
-    /// Where the angle is 0 on an ellipse or hyperbola, on the same surface.
+    /// The point of angle 0 on an ellipse or hyperbola, on the same surface.
     m2: Magnet<T>,
     /// The end of the conjugate half diameter, on the same surface.
     m3: Magnet<T>,
-    /// Where the snake begins.
+    /// Start of the snake.
     #[field(angle, default = 0)]
     a1: T,
-    /// Where it ends; a full turn when not given.
+    /// End; a full turn when not given.
     #[field(angle, default = std::f64::consts::TAU)]
     a2: T,
     /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.
@@ -210,9 +209,9 @@ impl<T: Real> Build<T> for ConicSnake<T> {
 pub struct RelSnake<T: Real> {
     /// The snake it is relative to.
     snake: Snake<T>,
-    /// Where it begins, on the same surface.
+    /// Start, on the same surface.
     m1: Magnet<T>,
-    /// Where it ends, on the same surface.
+    /// End, on the same surface.
     m2: Magnet<T>,
 }
 
@@ -239,9 +238,9 @@ impl<T: Real> Build<T> for RelSnake<T> {
                LineSnake s(p, q); CopySnake t(s, T);"
 )]
 pub struct CopySnake<T: Real> {
-    /// The snake whose path is taken.
+    /// The snake whose path is copied.
     snake: Snake<T>,
-    /// The surface it is taken to.
+    /// The target surface.
     surface: SurfaceRef<T>,
 }
 

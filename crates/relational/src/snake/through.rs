@@ -1,3 +1,5 @@
+//! Snakes through magnets: straight and B-spline in the parameter plane.
+
 use crate::arguments::{Magnet, common_surface};
 use crate::curve::Segment;
 use crate::faults;
@@ -35,9 +37,9 @@ pub(super) fn flat<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
                AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.8); LineSnake s(p, q);"
 )]
 pub struct LineSnake<T: Real> {
-    /// Where it begins.
+    /// Start.
     m1: Magnet<T>,
-    /// Where it ends, on the same surface.
+    /// End, on the same surface.
     m2: Magnet<T>,
 }
 

@@ -1,3 +1,5 @@
+//! Solids by transfinite blending of six faces.
+
 use super::layers::on;
 use moldloft_num::trace::{Faces, Turn};
 use moldloft_num::{Box3, Jet, Order, Real, SolidFormula, Vec3};
@@ -27,7 +29,7 @@ pub struct BlendSolid<T: Real> {
     /// The six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1.
     #[field(min_items = 6)]
     surfaces: Vec<SurfaceRef<T>>,
-    /// How each surface is turned, 0 to 7; all 0 if not given.
+    /// Orientation of each surface, 0 to 7; all 0 if not given.
     turns: Option<Vec<usize>>,
 }
 
@@ -50,7 +52,7 @@ impl<T: Real> Build<T> for BlendSolid<T> {
         let given: [usize; 6] =
             given.try_into().map_err(|t: Vec<_>| six(t.len(), "turns", Self::TURNS))?;
         if let Some(k) = given.iter().position(|&t| t > 7) {
-            return Err(CallError::new("out-of-range", format!("there is no turn {}", given[k]))
+            return Err(CallError::new("out-of-range", format!("no turn {}", given[k]))
                 .expected("a number from 0 to 7")
                 .found(given[k].to_string())
                 .in_item(k)

@@ -1,3 +1,5 @@
+//! Faces of solids as surfaces.
+
 use crate::third_derivatives::slope;
 use moldloft_num::trace::{Edges, Face, Key};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};

@@ -1,3 +1,5 @@
+//! Solids between and through surfaces.
+
 use super::layers::{edges_of, on};
 use crate::arguments::EndRule;
 use crate::faults;

@@ -1,3 +1,5 @@
+//! Solids of surfaces that are translated or swept.
+
 use super::layers::{edges_of, on};
 use crate::surface::{Mode, Moving};
 use moldloft_num::trace::{Face, Faces, LayerLaw, Layers, Turn};
@@ -66,7 +68,7 @@ pub struct SweepSolid<T: Real> {
     surface: SurfaceRef<T>,
     /// The curve along which it is carried.
     path: CurveRef<T>,
-    /// How the frame moves: "minimal", "up" or "fixed".
+    /// Motion of the frame: "minimal", "up" or "fixed".
     #[field(default = "minimal")]
     frame: std::sync::Arc<str>,
     /// The direction that stays upright with frame = "up"; z if not given.

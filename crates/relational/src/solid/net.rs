@@ -1,3 +1,5 @@
+//! B-spline solids of nets of points.
+
 use crate::faults;
 use moldloft_num::trace::Faces;
 use moldloft_num::{Jet, Order, Real, SolidFormula, Vec3};

@@ -1,3 +1,5 @@
+//! Lofts of circular arcs through three curves.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use moldloft_num::trace::{Edge, Edges};
@@ -28,7 +30,7 @@ pub struct ArcLoftSurf<T: Real> {
     c2: CurveRef<T>,
     /// The curve of the third points.
     c3: CurveRef<T>,
-    /// Which of the six types of `Arc`.
+    /// One of the six types of `Arc`.
     #[field(default = 1, min = 1, max = 6)]
     r#type: u32,
 }
@@ -74,9 +76,7 @@ impl<T: Real> ArcLoft<T> {
             return None;
         }
         match Arc::of_type(self.kind, [p, q, r])? {
-            Err(ArcError::AtCentre) => {
-                Some(("a point lies at the centre", "points off the centre"))
-            }
+            Err(ArcError::AtCentre) => Some(("a point is at the centre", "points off the centre")),
             Err(ArcError::Collinear) => {
                 Some(("the three points are in line", "points that span a plane"))
             }

@@ -1,3 +1,5 @@
+//! B-spline lofts: attracted by their master curves.
+
 use super::linear::Blend;
 use super::masters::Masters;
 use crate::faults;

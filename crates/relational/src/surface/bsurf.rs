@@ -1,3 +1,5 @@
+//! B-spline and NURBS surfaces of nets of points.
+
 use super::free_knots::{FreeKnots, FreeNet};
 use crate::faults;
 use moldloft_num::trace::{Edges, Key};

@@ -1,3 +1,5 @@
+//! Interpolating lofts: through their master curves. A grid of points builds the loft of each column once.
+
 use super::chunk::{Chunk, LANES, Part, Plane, widest};
 use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
@@ -145,7 +147,7 @@ impl<T: Real> Build<T> for XLoftSurf<T> {
                 ));
             };
             let values: Vec<String> = points.iter().map(|p| p[axis - 1].re().to_string()).collect();
-            let message = format!("{name} does not go one way from curve to curve at u = {u}");
+            let message = format!("{name} is not monotone from curve to curve at u = {u}");
             return Err(CallError::new("not-monotone", message)
                 .expected(format!(
                     "{name} increasing, or decreasing, from the first curve to the last"
@@ -205,7 +207,7 @@ impl<T: Real> Loft<T> {
                 let share = |p: &Vec3<S>| (p[axis] - first) / (last - first);
                 let mut knots: Vec<S> = points.iter().map(share).collect();
                 if first.re() == last.re() {
-                    // Which two masters are wrong is told by the knots.
+                    // Which two masters are wrong is identified by the knots.
                     knots = points.iter().map(|p| p[axis] - first).collect();
                 }
                 InterpolatingSpline::with_knots(&knots, points, ends)
@@ -301,7 +303,7 @@ impl<T: Real> Surface<T> for Loft<T> {
     }
 
     /// The knots across the masters move with u, so no line v = const is one at which only
-    /// derivatives jump; of those lines none is told.
+    /// derivatives jump; of those lines none is reported.
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.masters.breaks(), Vec::new()]
     }

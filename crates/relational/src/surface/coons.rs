@@ -12,7 +12,7 @@ use moldloft_registry::{
 /// parameter: the bilinear Coons patch P_u + P_v - P_uv (Coons 1967).
 ///
 /// Of three curves the edge u = 0 is the point where the first and the third begin. Curves that do
-/// not meet at the corners are refused, never turned round.
+/// not meet at the corners are errors; they are never reversed.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -37,7 +37,7 @@ impl<T: Real> Build<T> for BlendSurf<T> {
 }
 
 /// A patch between four curves that passes through a point in its middle: the Coons patch plus
-/// 16 u (1 - u) v (1 - v) times the way from its own middle to the point.
+/// 16 u (1 - u) v (1 - v) times the vector from its own middle to the point.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -51,7 +51,7 @@ pub struct BlendCenter<T: Real> {
     /// The four (or three) boundary curves.
     #[field(min_items = 3)]
     curves: Vec<CurveRef<T>>,
-    /// Where the surface is at u = v = 0.5.
+    /// The point at u = v = 0.5.
     centre: Point<T>,
 }
 

@@ -46,7 +46,7 @@ pub fn check(
         Some(mask) => {
             let sides = (0..ends.len()).filter(|k| mask >> k & 1 == 1);
             let list = sides.map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ");
-            fault.help(format!("they do when these sides run the other way: {list}"))
+            fault.help(format!("they do when these sides are reversed: {list}"))
         }
         None => fault.help("let neighbouring sides end in common points"),
     })

@@ -1,3 +1,5 @@
+//! Developable surfaces between two curves, by rulings of equal tangent planes.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use super::rulings::{Pairing, pair};
@@ -9,7 +11,7 @@ use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Order, Real, Vec3, find_root, lift_reparametrization};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
-/// A developable surface between two curves, a plate that is bent without stretching: straight
+/// A developable surface between two curves, a plate bent without stretching: straight
 /// rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
 /// = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
 ///
@@ -108,7 +110,7 @@ impl<T: Real> Plate<T> {
             let which = if end < 0.5 { "start" } else { "end" };
             return Err(CallError::new("fan-needed", format!("the plate has a fan about the {which} of curve {curve}"))
                 .expected("rulings that move along that curve from end to end")
-                .found(format!("a cone about its {which}, where u would stand still"))
+                .found(format!("a cone about its {which}, where u would be degenerate"))
                 .help("leave `along` out, and build the neighbour on an EdgeSnake of this surface; or move the ends of the curves")
                 .related(masters.curves()[curve - 1].key, "has the fan at its end")
                 .in_field(DevSurf::<T>::ALONG));

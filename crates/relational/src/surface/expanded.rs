@@ -1,3 +1,5 @@
+//! Developable surfaces laid flat, lengths and angles kept.
+
 use super::column::{Column, Columns};
 use super::inherited;
 use crate::curve::Segment;
@@ -25,7 +27,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 pub struct ExpandedSurf<T: Real> {
     /// The surface to lay flat.
     surface: SurfaceRef<T>,
-    /// Where it is laid.
+    /// The frame in which it is laid.
     frame: Option<Frame<T>>,
 }
 
@@ -196,7 +198,7 @@ impl<T: Real> Column for Plate<T> {
         let plain = u.re();
         let k = self.stations.partition_point(|s| s.u <= plain).clamp(1, self.stations.len() - 1);
         let at = self.carried(&self.stations[k - 1], plain);
-        // What of u is no plain number is small: the midpoint rule is exact to its square.
+        // What of u is not a plain number is small: the midpoint rule is exact to its square.
         let du = u - plain;
         let angle_at =
             |share: f64| J::fixed(at.angle) + du * share * self.turning(du * (0.5 * share) + plain);

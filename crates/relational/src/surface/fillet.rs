@@ -1,3 +1,5 @@
+//! Fillets between snakes, tangent to their surfaces.
+
 use super::column::{Bezier, Column, Columns};
 use super::masters::{Points, along};
 use super::ribbon::{Along, ribbon, unit};
@@ -41,10 +43,10 @@ pub struct FilletSurf<T: Real> {
     /// 1 for common tangent planes, 2 for common curvature across, too.
     #[field(default = 1, min = 1, max = 2)]
     continuity: usize,
-    /// How it leaves the first surface: "perpendicular", "chord", "u" or "v".
+    /// Direction at the first surface: "perpendicular", "chord", "u" or "v".
     #[field(default = "perpendicular")]
     direction1: Direction,
-    /// How it meets the second surface: "perpendicular", "chord", "u" or "v".
+    /// Direction at the second surface: "perpendicular", "chord", "u" or "v".
     #[field(default = "perpendicular")]
     direction2: Direction,
     /// 1 when the edges u = 0 and u = 1 are one line.
@@ -73,7 +75,7 @@ impl<T: Real> FromValue<T> for Direction {
             "u" => Direction::Line(0),
             "v" => Direction::Line(1),
             _ => {
-                let message = format!("there is no direction \"{text}\"");
+                let message = format!("unknown direction \"{text}\"");
                 return Err(CallError::new("unknown-direction", message)
                     .expected("\"perpendicular\", \"chord\", \"u\" or \"v\"")
                     .found(format!("\"{text}\"")));
@@ -153,7 +155,7 @@ impl<T: Real> Fillet<T> {
                     let (what, help) = if ends[k].normal.re().norm() == 0.0 {
                         ("the surface has no tangent plane", "move the snake off its pole")
                     } else {
-                        ("there is no such direction", "choose another direction")
+                        ("no such direction", "choose another direction")
                     };
                     let message = format!("{what} at u = {u} of snake {}", k + 1);
                     return Err(CallError::new("no-tangent", message)
@@ -188,9 +190,9 @@ impl<T: Real> Fillet<T> {
                     let angle = cosine.max(-1.0).acos().to_degrees();
                     let message = format!("the fillet turns back at snake {}, u = {u}", k + 1);
                     return Err(CallError::new("fillet-turns-back", message)
-                        .expected("a tangent within 90 degrees of the way to the other snake")
+                        .expected("a tangent within 90 degrees of the direction to the other snake")
                         .found(format!("{angle:.1} degrees"))
-                        .help("move the snakes apart, let both run the same way, or choose another direction")
+                        .help("move the snakes apart, run both in the same direction, or choose another direction")
                         .in_field([FilletSurf::<T>::SNAKE1, FilletSurf::<T>::SNAKE2][k]));
                 }
             }
@@ -215,7 +217,7 @@ impl<T: Real> Fillet<T> {
                 "coincident-points",
                 "both snakes of the fillet are one line",
             )
-            .expected("two snakes with a way from the one to the other")
+            .expected("two snakes with a path from one to the other")
             .found("no distance between them")
             .help("choose another snake for one of the two")
             .in_field(FilletSurf::<T>::SNAKE2));

@@ -1,3 +1,5 @@
+//! Lofts of foil sections.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use crate::foil::{Arguments, foil_kind};

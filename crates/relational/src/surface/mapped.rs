@@ -114,7 +114,7 @@ impl<T: Real> Surface<T> for Image<T> {
 
 /// The mirror image of a surface in a plane, line or point, point by point.
 ///
-/// A plane or point turns the natural normal round; panels keep the side of the original's all the
+/// A plane or point reverses the natural normal; panels keep the side of the original's all the
 /// same.
 #[derive(Kind)]
 #[kind(
@@ -127,7 +127,7 @@ impl<T: Real> Surface<T> for Image<T> {
 pub struct MirrSurf<T: Real> {
     /// The surface to mirror.
     surface: SurfaceRef<T>,
-    /// What to mirror it in.
+    /// The mirror: a plane, line or point.
     mirror: MirrorArgument<T>,
 }
 
@@ -169,7 +169,7 @@ impl<T: Real> Build<T> for RotatSurf<T> {
 
 /// A copy of a surface, shifted and stretched: p goes to `to` + diag(sx, sy, sz) (p - `from`).
 ///
-/// A negative product of the three factors turns the natural normal round; panels keep the side of
+/// A negative product of the three factors reverses the natural normal; panels keep the side of
 /// the original's all the same.
 #[derive(Kind)]
 #[kind(
@@ -182,9 +182,9 @@ impl<T: Real> Build<T> for RotatSurf<T> {
 pub struct CopySurf<T: Real> {
     /// The surface to copy.
     surface: SurfaceRef<T>,
-    /// The point that goes to `to`.
+    /// The point that is moved to `to`.
     from: Point<T>,
-    /// Where it goes.
+    /// Its image.
     to: Point<T>,
     /// Stretch along x.
     #[field(default = 1)]
@@ -216,7 +216,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
 
 /// A surface projected to a plane, along its normal: each point goes to its foot.
 ///
-/// The image of a surface that stands on the plane is folded flat; where it does, panels overlap.
+/// The image of a surface perpendicular to the plane degenerates; panels overlap there.
 #[derive(Kind)]
 #[kind(
     class = Surface,

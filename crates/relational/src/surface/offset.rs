@@ -1,3 +1,5 @@
+//! Parallel surfaces. A distance beyond a radius of curvature is refused.
+
 use super::inherited;
 use super::ribbon::unit;
 use crate::faults::{digits, parameter};
@@ -9,7 +11,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 /// A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
 /// n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
 ///
-/// At a pole the normal is the limit along the parameter line that leads there. The offset is refused
+/// At a pole the normal is the limit along the parameter line that ends there. The offset is an error
 /// where the distance exceeds a radius of curvature on that side, since it is folded there, and where
 /// the surface has no normal.
 #[derive(Kind)]
@@ -21,7 +23,7 @@ use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
                RuledSurf S(l, m); OffsetSurf plate(S, 0.25); OffsetSurf inside(S, -0.5);"
 )]
 pub struct OffsetSurf<T: Real> {
-    /// The surface it runs beside.
+    /// The surface that is offset.
     surface: SurfaceRef<T>,
     /// The distance, on the side of the natural normal if positive.
     distance: T,

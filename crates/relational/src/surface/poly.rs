@@ -1,3 +1,5 @@
+//! Surfaces side by side as one.
+
 use crate::arguments::Named;
 use crate::snake::edge_trace;
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
@@ -9,7 +11,7 @@ use smallvec::SmallVec;
 /// `along` = "v"), or between the breaks given.
 ///
 /// Each piece begins where the one before ends: edge u = 1 of the one is edge u = 0 of the other,
-/// point by point at equal v, within the model's tolerance. A piece is never turned round. Meshes join
+/// point by point at equal v, within the model's tolerance. A piece is never reversed. Meshes join
 /// along the pieces' own edges.
 #[derive(Kind)]
 #[kind(
@@ -105,9 +107,9 @@ impl<T: Real> Sides<T> {
             .in_field(PolySurf::<T>::SURFACES);
         let meets = |from: f64, to: f64, turned: bool| gap(from, to, turned).0 <= tolerance;
         Err(if meets(1.0, 0.0, true) {
-            fault.help(format!("they meet when {across} of piece {} runs the other way", k + 1))
+            fault.help(format!("they meet when {across} of piece {} is reversed", k + 1))
         } else if meets(1.0, 1.0, false) || meets(1.0, 1.0, true) {
-            fault.help(format!("piece {} ends there: let its {along} run the other way", k + 1))
+            fault.help(format!("piece {} ends there: reverse its {along}", k + 1))
         } else {
             fault.help("make the pieces from a common curve")
         })

@@ -1,3 +1,5 @@
+//! Surfaces of revolution.
+
 use super::masters::{along, is_closed};
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Axis, Jet, Order, Real, SurfaceFormula, Vec3};

@@ -1,3 +1,5 @@
+//! Rolling-ball fillets between two surfaces: a spine, and arcs about it.
+
 use super::column::{Column, Columns};
 use super::law::law;
 use super::offset::{beside, curvatures, parallel};
@@ -49,7 +51,7 @@ pub struct RollFillet<T: Real> {
     /// The radius of the ball.
     #[field(min = 0)]
     radius: T,
-    /// Where the ball lies: 1 on the side of the natural normal of the first surface, -1 on the other.
+    /// Side of the ball: 1 on the side of the natural normal of the first surface, -1 on the other.
     #[field(default = 1, min = -1, max = 1)]
     side1: i32,
     /// The same for the second surface.
@@ -71,13 +73,10 @@ impl<T: Scalar> Build<T> for RollFillet<T> {
         let Self { surface1, surface2, radius, side1, side2, radii } = self;
         for (field, side) in [(Self::SIDE1, side1), (Self::SIDE2, side2)] {
             if side == 0 {
-                return Err(CallError::new(
-                    "out-of-range",
-                    "a ball lies on one side or on the other",
-                )
-                .expected("1 or -1")
-                .found("0")
-                .in_field(field));
+                return Err(CallError::new("out-of-range", "a ball is on one side or the other")
+                    .expected("1 or -1")
+                    .found("0")
+                    .in_field(field));
             }
         }
         let least = radii.iter().flatten().map(|r| r.re()).fold(f64::INFINITY, f64::min);
@@ -138,7 +137,7 @@ fn spine<T: Scalar>(
         let found = fault.found.clone().unwrap_or_else(|| fault.message.clone());
         if fault.id == "tangent-contact" {
             // Offsets that are folded touch one another where they turn.
-            return CallError::new("fillet-turns-back", "the way of the ball's centre turns back")
+            return CallError::new("fillet-turns-back", "the path of the ball's centre reverses")
                 .expected("a radius less than the radius of curvature of both surfaces where it rolls")
                 .found(format!("{radius}, and {found}"))
                 .help("choose a smaller radius, or give magnets where the ball is meant to roll")

@@ -1,3 +1,5 @@
+//! Ruled surfaces between two curves.
+
 use super::linear::Blend;
 use super::masters::Masters;
 use moldloft_num::Real;

@@ -174,7 +174,7 @@ impl<T: Real> Search<'_, T> {
         let [a, b] = self.curves;
         let fault = match crossed {
             Some([s, t]) => CallError::new("rulings-cross", "the rulings cross between the curves")
-                .expected("curves between which a plate passes without folding back")
+                .expected("curves that a plate can connect without folding back")
                 .found(format!(
                     "a ruling from s = {s:.4} to t = {t:.4} past the edge of regression"
                 ))
@@ -185,7 +185,7 @@ impl<T: Real> Search<'_, T> {
                 } else {
                     format!("none that go on from u = {:.4}", (level as f64 - 1.0) * RISE)
                 };
-                CallError::new("no-rulings", "there are no rulings of a developable surface")
+                CallError::new("no-rulings", "no rulings of a developable surface")
                     .expected("places of both curves with a common tangent plane")
                     .found(at)
                     .help(

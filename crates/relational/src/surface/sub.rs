@@ -1,3 +1,5 @@
+//! Parts of surfaces between snakes and magnets.
+
 use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
@@ -220,7 +222,7 @@ impl<T: Real> Patch<T> {
         else {
             return Ok(());
         };
-        // Turned against the run of the surface is no fold: then all signs are negative.
+        // Turned against the run of the surface is not a fold: then all signs are negative.
         let sum: f64 = all.iter().map(|x| x.0).sum();
         let (worst, best) = if sum < 0.0 { (high, -low.0) } else { (low, high.0) };
         let against = if sum < 0.0 { -worst.0 } else { worst.0 };
@@ -230,12 +232,12 @@ impl<T: Real> Patch<T> {
         let (u, v) = (worst.1, worst.2);
         let at = self.inside(T::from(u), T::from(v)).re();
         Err(CallError::new("folded-patch", format!("the sub-surface is folded at u = {u}, v = {v}"))
-            .expected("sides that run round an area without crossing each other")
+            .expected("sides that bound an area without crossing each other")
             .found(format!(
                 "a Jacobian of {against:.3e} there, at (u, v) = ({}, {}) of the surface, and up to {best:.3e} elsewhere",
                 at.x, at.y
             ))
-            .help("let opposite sides run the same way, and none cross another")
+            .help("run opposite sides in the same direction, without crossings")
             .in_field(SubSurf::<T>::SIDES))
     }
 }

@@ -1,3 +1,5 @@
+//! Curves swept along paths by a moving frame.
+
 use super::law::law;
 use super::masters::{along, is_closed};
 use crate::third_derivatives::tangent;
@@ -33,7 +35,7 @@ pub struct SweepSurf<T: Real> {
     profile: CurveRef<T>,
     /// The curve along which it is carried.
     path: CurveRef<T>,
-    /// How the frame moves: "minimal", "up" or "fixed".
+    /// Motion of the frame: "minimal", "up" or "fixed".
     #[field(default = "minimal")]
     frame: std::sync::Arc<str>,
     /// The direction that stays upright with frame = "up"; z if not given.
@@ -86,7 +88,7 @@ impl<T: Real> Mode<T> {
                     .in_field(fields[1]))
             }
             "up" => Ok(Mode::Up(up.unwrap_or(Vec3::of(0.0, 0.0, 1.0)))),
-            other => Err(CallError::new("unknown-frame", format!("there is no frame \"{other}\""))
+            other => Err(CallError::new("unknown-frame", format!("unknown frame \"{other}\""))
                 .expected("\"minimal\", \"up\" or \"fixed\"")
                 .found(format!("\"{other}\""))
                 .in_field(fields[0])),
@@ -135,9 +137,9 @@ impl<T: Real> Moving<T> {
             let d = self.path.jet(T::from(v), Order::First)[1].re();
             d.normalized().filter(|t| t.is_finite()).ok_or_else(|| {
                 CallError::new("zero-tangent", format!("the path has no tangent at v = {v}"))
-                    .expected("a path that moves on everywhere")
+                    .expected("a path with a non-zero tangent everywhere")
                     .found("a derivative of zero")
-                    .help("move points of the path that coincide apart")
+                    .help("separate the coincident points of the path")
             })
         };
         for k in 0..=32 {

@@ -1,3 +1,5 @@
+//! The surface that a curve describes while the bead it depends on runs along its curve.
+
 use super::column::{Column, Columns};
 use crate::arguments::Bead;
 use crate::chebyshev::{NODES, Piece, Way, nodes};
@@ -29,10 +31,10 @@ pub struct ProcSurf<T: Real> {
     bead: Bead<T>,
     /// The curve that follows.
     curve: MovingCurve<T>,
-    /// Where the bead begins.
+    /// Start of the bead.
     #[field(default = 0)]
     t1: T,
-    /// Where it ends.
+    /// End.
     #[field(default = 1)]
     t2: T,
 }

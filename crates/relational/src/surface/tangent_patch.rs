@@ -1,3 +1,5 @@
+//! Patches between four curves that are tangent to the surfaces of their neighbours.
+
 use super::coons::Boundary;
 use super::ribbon::{Along, ribbon, unit};
 use crate::arguments::Snake;
@@ -45,7 +47,7 @@ impl<T: Real> Build<T> for TanBoundary<T> {
         let Self { sides, free } = self;
         let free = free.unwrap_or_default();
         if let Some(k) = free.iter().position(|side| !(1..=sides.len()).contains(side)) {
-            return Err(CallError::new("out-of-range", format!("there is no side {}", free[k]))
+            return Err(CallError::new("out-of-range", format!("no side {}", free[k]))
                 .expected(format!("a number from 1 to {}", sides.len()))
                 .found(free[k].to_string())
                 .in_item(k)
@@ -127,7 +129,7 @@ impl<T: Real> Patch<T> {
             let still = at.along.re().norm() == 0.0;
             if still || at.normal.re().norm() == 0.0 {
                 let what = if still {
-                    "the snake stands still"
+                    "zero tangent of the snake"
                 } else {
                     "its surface has no tangent plane"
                 };

@@ -1,3 +1,5 @@
+//! Parts of surfaces within loops of snakes, as triangles whose borders divide as their neighbours do.
+
 use crate::arguments::{Snake, common_surface};
 use crate::curve::Segment;
 use crate::snake::{OnSurface, edge_trace};
@@ -13,14 +15,14 @@ use std::sync::Arc;
 ///
 /// Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
 /// itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
-/// one is the boundary of the surface and all loops are holes. Inside stand the points of the surface's
+/// one is the boundary of the surface and all loops are holes. The interior contains points of the surface's
 /// own nu x nv divisions that are not too near the border; the triangles between are Delaunay's (in
-/// parameters scaled to lengths). All vertices lie on the surface.
+/// parameters scaled to lengths). All vertices are on the surface.
 ///
 /// Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
 /// fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
 /// by identity. Divisions flow over such edges from the one to the other; `rim` states those of each
-/// snake, and a contradiction is told.
+/// snake, and a contradiction is reported.
 ///
 /// Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of panels.
 #[derive(Kind)]
@@ -47,7 +49,7 @@ pub struct TrimSurf<T: Real> {
     /// Divisions of each snake. Not given: as its neighbours have them, or 12.
     #[field(min = 1, max = 10_000)]
     rim: Option<usize>,
-    /// Divisions of the surface along u, whose points stand inside.
+    /// Divisions along u of the surface's grid inside the border.
     #[field(default = 12, min = 1, max = 1000)]
     nu: usize,
     /// Divisions of the surface along v.
@@ -226,7 +228,7 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Call
             Some((_, _, at)) if meet(*at, from) => false,
             Some((_, _, at)) if meet(*at, to) => true,
             Some((_, _, at)) => {
-                let text = format!("snake {} does not go on where snake {k} ends", k + 1);
+                let text = format!("snake {} does not start where snake {k} ends", k + 1);
                 return gap(k, text, *at, from);
             }
             // The first of a loop runs so that it ends where the next one goes on.

@@ -40,7 +40,7 @@ fn around<T: Real>(at: &[Vec3<T>]) -> Result<[Vec3<T>; 4], CallError> {
     let flat = || {
         CallError::new("no-plane", "the corners span no plane")
             .expected("corners of a plane polygon, the first two of them apart")
-            .help("give corners that do not lie on one line")
+            .help("give corners that are not collinear")
             .in_field(FacePatch::<T>::CORNERS)
     };
     let n = at.len();
