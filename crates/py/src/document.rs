@@ -6,10 +6,10 @@ use crate::diagnostics::Diagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
 use crate::mesh::PyMesh;
-use crate::search::Searches;
 use crate::value::to_python;
 use crate::work::{interruptible, interruptible_shared};
 use moldloft_diag::Sources;
+use moldloft_document::searches::Searches;
 use moldloft_document::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
 use moldloft_export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft_host::FileWorld;
@@ -42,7 +42,7 @@ pub struct PyDocument {
     /// True once the model may call Python: a run then needs Python's lock on another thread.
     calls_python: AtomicBool,
     /// Shapes prepared for searches.
-    searches: Mutex<Searches>,
+    searches: Arc<Searches>,
 }
 
 /// A B-spline patch: name, degrees, spans, control points, deviation.
@@ -54,7 +54,7 @@ impl PyDocument {
     fn new(document: Document) -> Self {
         let cancel = document.cancel_handle();
         let inner = Arc::new(Mutex::new(document));
-        Self { inner, cancel, calls_python: AtomicBool::new(false), searches: Mutex::default() }
+        Self { inner, cancel, calls_python: AtomicBool::new(false), searches: Arc::default() }
     }
 
     fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Document> {
@@ -97,7 +97,7 @@ impl PyDocument {
         }
     }
 
-    pub(crate) fn searches(&self) -> &Mutex<Searches> {
+    pub(crate) fn searches(&self) -> &Arc<Searches> {
         &self.searches
     }
 

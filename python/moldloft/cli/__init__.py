@@ -22,6 +22,7 @@ COMMANDS = {
     "new": "write a starter model",
     "fmt": "format as canonical text",
     "convert": "convert between programs, model files, tables of offsets and sketches",
+    "formats": "print the table of file formats",
     "graph": "draw the dependency graph as SVG",
     "render": "render a picture without a display",
     "sketch": "run a sketch file, or open a sketch prompt",

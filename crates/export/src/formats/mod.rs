@@ -11,6 +11,7 @@ mod hydrostar;
 mod model_file;
 mod nemoh;
 mod obj;
+mod off;
 mod p3d;
 mod ply;
 mod png;
@@ -42,6 +43,7 @@ pub static FORMATS: &[Format] = &[
     stl::FORMAT,
     threemf::FORMAT,
     obj::FORMAT,
+    off::FORMAT,
     ply::FORMAT,
     glb::FORMAT,
     vtp::FORMAT,

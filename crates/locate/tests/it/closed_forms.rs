@@ -1,8 +1,6 @@
 //! Searches against what geometry knows.
 
-mod common;
-
-use common::{Circle, Cylinder, Line, Random, Sphere, brute, bumpy};
+use crate::common::{Circle, Cylinder, Line, Random, Sphere, brute, bumpy};
 use moldloft_locate::roots::{
     all_curve_curve, all_curve_surface, all_on_level, curve_curve, curve_level, curve_surface,
     line_surface,

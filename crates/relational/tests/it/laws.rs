@@ -1,9 +1,7 @@
 //! Laws that every row of this crate obeys, tried on its own example: a new kind without docs, help
 //! or example fails here, and so does one whose derivatives, grid or edges are wrong.
 
-mod common;
-
-use common::{Scene, run, scene};
+use crate::common::{Scene, run, scene};
 use moldloft_num::trace::{Edge, Key, Piece, Root, Trace};
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{Class, Row, Scalar, SurfaceRef, Value};
@@ -291,7 +289,7 @@ fn grids_equal_jets() {
             grid_equals_jets(&row.name, s, 1e-12);
         }
     }
-    let hull = scene(common::HULL);
+    let hull = scene(crate::common::HULL);
     grid_equals_jets("hull", hull.surface("hull"), 1e-13);
 }
 
@@ -391,7 +389,7 @@ fn curves_run_where_they_say() {
 #[test]
 fn edges_run_along_the_boundary() {
     let more = [
-        common::HULL,
+        crate::common::HULL,
         // A full turn with a pole at each end.
         "AbsPoint O(0, 0, 0); AbsPoint X(3, 0, 0); Line axis(O, X); AbsPoint M(1, 2, 0);
          BCurve c({O, M, X}, degree = 2); RevSurf egg(c, axis);",

@@ -1,9 +1,7 @@
 //! Surfaces beside others, plates, foil lofts, tangent patches, joins and fits whose numbers are
 //! known, and what they refuse.
 
-mod common;
-
-use common::{fault, scene};
+use crate::common::{fault, scene};
 use moldloft_num::trace::{Edge, Root};
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{SurfaceRef, Value};
@@ -138,7 +136,7 @@ fn tangent_patches_keep_the_tangent_planes() {
     let fault = fault(&text.replace("BCurve west({C, I, E}, 2)", "Line west(C, E)"));
     assert_eq!((fault.id, fault.item()), ("not-tangent", Some(0)));
     assert!(fault.help[0].contains("TanPoint"), "{fault:?}");
-    assert_eq!(common::fault(&text.replace("free = {1}", "free = {5}")).id, "out-of-range");
+    assert_eq!(crate::common::fault(&text.replace("free = {1}", "free = {5}")).id, "out-of-range");
 }
 
 /// A tangent patch is the plane or the cubic that it is bounded by.
@@ -230,14 +228,14 @@ fn plates_that_do_not_exist_are_refused() {
     let text = "AbsPoint G(0, 0, 0); AbsPoint H(2, 0.2, 0); AbsPoint I(6, 2.5, 0.5);
          AbsPoint J(-0.5, 0.3, 2); AbsPoint K(3.5, 0.2, 2); AbsPoint L(6.5, 2.2, 2.5); BCurve c({G, H, I});
          BCurve d({J, K, L}); DevSurf side(c, d, ALONG);";
-    let refused = common::fault(&text.replace("ALONG", "\"c1\""));
+    let refused = crate::common::fault(&text.replace("ALONG", "\"c1\""));
     assert_eq!(refused.id, "fan-needed");
-    let made = common::scene(&text.replace("ALONG", "\"c2\""));
+    let made = crate::common::scene(&text.replace("ALONG", "\"c2\""));
     for u in GRID {
         near(at(made.surface("side"), u, 1.0), made.curve("d").jet(u, Order::Zero)[0], 1e-15);
     }
     // Curves that bend against each other: rulings would have to run back along one of them.
-    let back = common::fault(
+    let back = crate::common::fault(
         "AbsPoint G(0, 0, 0); AbsPoint H(3, 0.4, -0.2); AbsPoint I(6, 2.5, 0.5);
          AbsPoint J(-0.5, 0.3, 2); AbsPoint K(3, 2.3, 1.8); AbsPoint L(6.5, 3.2, 2.5); BCurve c({G, H, I});
          BCurve d({J, K, L}); DevSurf side(c, d);",
@@ -294,7 +292,7 @@ fn fits_reproduce_what_they_can() {
     assert_eq!(scene.surface("fit").edges().corners[2], Some(scene.key("H")));
     let fault = fault(&text.replace("coarse(R, 3, 1, 4, 2)", "coarse(R, 3, 1, 4, 2, 0.000001)"));
     assert_eq!(fault.id, "no-fit");
-    let few = common::fault(&text.replace("fit(S, 3, 1, 5, 2)", "fit(S, 3, 1, 3, 2)"));
+    let few = crate::common::fault(&text.replace("fit(S, 3, 1, 5, 2)", "fit(S, 3, 1, 3, 2)"));
     assert!(["no-spline", "out-of-range", "no-fit"].contains(&few.id), "{few:?}");
 }
 
@@ -369,8 +367,10 @@ fn a_ball_rolls_round_a_mast() {
     }
     assert_eq!(fillet.edges().edges[1], Edge::SameAs(3));
     // Where it touches: on the deck a circle of radius 1.5, on the mast one half above the deck.
-    let touching =
-        common::scene(&format!("{} ContactSnake ring(S, 1); ContactSnake foot(S, 2);", make(0.5)));
+    let touching = crate::common::scene(&format!(
+        "{} ContactSnake ring(S, 1); ContactSnake foot(S, 2);",
+        make(0.5)
+    ));
     for k in 0..=20 {
         let t = f64::from(k) / 20.0;
         for (name, v) in [("ring", 0.0), ("foot", 1.0)] {
@@ -388,7 +388,7 @@ fn a_ball_rolls_round_a_mast() {
     // Inside the mast a ball larger than it cannot roll.
     let inside =
         format!("{text} RollFillet S(deck, mast, 0.4, side1 = {first}, side2 = {});", -second);
-    assert!(common::attempt(&inside).is_ok());
+    assert!(crate::common::attempt(&inside).is_ok());
     let fault = fault(&inside.replace("0.4", "1.2"));
     assert!(["fillet-turns-back", "no-ball"].contains(&fault.id), "{fault:?}");
 }
@@ -425,7 +425,7 @@ fn partial_relabels_take_a_part() {
     let fault = fault(&text.replace("1, partial = 1", "1"));
     assert_eq!(fault.id, "wrong-ends");
     assert!(fault.help.iter().any(|h| h.contains("partial")));
-    assert_eq!(common::fault(&format!("{text} InvRelabel i(r);")).id, "wrong-ends");
+    assert_eq!(crate::common::fault(&format!("{text} InvRelabel i(r);")).id, "wrong-ends");
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! What makes no shape is refused with an id and a place.
 
-mod common;
-
-use common::{attempt, fault};
+use crate::common::{attempt, fault};
 use moldloft_num::trace::Key;
 
 const POINTS: &str = "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(2, 0, 0);
@@ -101,7 +99,7 @@ fn messages_name_the_items() {
 
 #[test]
 fn lofts_may_end_in_a_point() {
-    let scene = common::scene(
+    let scene = crate::common::scene(
         "AbsPoint O(0, 0, 0); AbsPoint A(3, 0, 0); AbsPoint B(3, 2, 0); AbsPoint C(2, 3, 1);
          Line a(O, A); Line b(O, B); Line c(O, C); CLoftSurf fan({a, b, c}); float u = length(a);",
     );
@@ -117,7 +115,7 @@ fn lofts_may_end_in_a_point() {
 
 #[test]
 fn a_parameter_that_is_no_number_gives_no_panic() {
-    let hull = common::scene(common::HULL);
+    let hull = crate::common::scene(crate::common::HULL);
     let surface = hull.surface("hull");
     let p = surface.jet(f64::NAN, 0.5, moldloft_num::Order::First).p;
     assert!(p.x.is_nan());

@@ -1,6 +1,4 @@
 //! Random texts with a fixed seed.
-#![allow(dead_code)] // each test program uses a part of it
-
 use moldloft_testing::Random;
 use std::fmt::Write;
 

@@ -1,8 +1,6 @@
 //! Laws of circular arcs.
 
-mod common;
-
-use common::{Random, close, curve_laws, point_derivative_law};
+use crate::common::{Random, close, curve_laws, point_derivative_law};
 use moldloft_num::{Curve, Dual, Order, Vec3};
 use moldloft_spline::{Arc, ArcError};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

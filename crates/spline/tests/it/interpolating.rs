@@ -1,8 +1,6 @@
 //! Laws of interpolating splines, and the hull of Letcher and Shook 1995.
 
-mod common;
-
-use common::{Random, close, curve_laws, point_derivative_law};
+use crate::common::{Random, close, curve_laws, point_derivative_law};
 use moldloft_num::{Curve, Dual, Order, Uni2, Vec3};
 use moldloft_spline::{BSplineCurve, End, Ends, InterpolatingSpline, InterpolationError};
 
@@ -210,12 +208,12 @@ fn a_loft_carries_the_derivatives_of_its_masters() {
             close(jet[k].map(|x| x.tt), alone[k].map(|x| x.tt), 1e-11);
         }
         let value = |u: f64| loft(u).pieces().eval(v.into());
-        let su = common::ridders_vector(|u| value(u).map(|x| x.f), u, 0.01);
-        let suu = common::ridders_vector(|u| value(u).map(|x| x.t), u, 0.01);
+        let su = crate::common::ridders_vector(|u| value(u).map(|x| x.f), u, 0.01);
+        let suu = crate::common::ridders_vector(|u| value(u).map(|x| x.t), u, 0.01);
         let v_slope = |u: f64| loft(u).jet(v.into(), Order::First)[1].map(|x| x.f);
         close(jet[0].map(|x| x.t), su, 1e-9);
         close(jet[0].map(|x| x.tt), suu, 1e-8);
-        close(jet[1].map(|x| x.t), common::ridders_vector(v_slope, u, 0.01), 1e-8);
+        close(jet[1].map(|x| x.t), crate::common::ridders_vector(v_slope, u, 0.01), 1e-8);
     }
 }
 

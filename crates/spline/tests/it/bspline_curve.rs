@@ -1,8 +1,6 @@
 //! Laws of B-spline curves.
 
-mod common;
-
-use common::{Random, close, curve_laws, point_derivative_law};
+use crate::common::{Random, close, curve_laws, point_derivative_law};
 use moldloft_num::{Curve, Dual, Order, Vec3};
 use moldloft_spline::{BSplineCurve, KnotError, KnotVector, SplineError};
 
@@ -57,7 +55,7 @@ fn moves_with_points_and_parameter() {
         |p| BSplineCurve::uniform(3, p.to_vec()).unwrap().jet(Dual::from(0.37), Order::Zero)[0],
         1e-10,
     );
-    let dual = common::seeded(&points, &[Vec3::zero(); 6]);
+    let dual = crate::common::seeded(&points, &[Vec3::zero(); 6]);
     let along = BSplineCurve::uniform(3, dual).unwrap().jet(t, Order::Zero)[0];
     let jet = plain.jet(0.37, Order::First);
     close(along.map(|x| x.eps[0]), jet[1] * 0.8, 1e-14);

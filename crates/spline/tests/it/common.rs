@@ -1,6 +1,4 @@
 //! Laws that every shape obeys.
-#![allow(dead_code, unused_imports)]
-
 use moldloft_num::{Curve, Dual, Order, SurfJet, Surface, Vec3};
 pub use moldloft_testing::{Random, close, ridders_vector};
 

@@ -1,8 +1,6 @@
 //! Lofts, sweeps, fillets and patches whose numbers are known, and what they refuse.
 
-mod common;
-
-use common::{fault, scene};
+use crate::common::{fault, scene};
 use moldloft_num::trace::Edge;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::SurfaceRef;

@@ -2,9 +2,7 @@
 //!
 //! `MOLDLOFT_ACCEPT=1 cargo test -p moldloft-syntax --test corpus` writes the present output into the files.
 
-mod ebnf;
-
-use ebnf::Grammar;
+use crate::ebnf::Grammar;
 use moldloft_diag::{FileId, Sources};
 use moldloft_syntax::sdl;
 use std::fmt::Write;

@@ -1,8 +1,6 @@
 //! Shapes whose numbers are known: the paper's hull, circles, spheres, cylinders, mirror images.
 
-mod common;
-
-use common::{HULL, scene};
+use crate::common::{HULL, scene};
 use moldloft_num::{Order, Vec3, find_root, gauss_legendre};
 use moldloft_registry::{SurfaceRef, Value};
 use std::f64::consts::PI;

@@ -1,8 +1,6 @@
 //! Points, curves, snakes and frames whose numbers are known.
 
-mod common;
-
-use common::{fault, scene};
+use crate::common::{fault, scene};
 use moldloft_num::trace::{Root, Trace};
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{CurveRef, Value};

@@ -1,8 +1,6 @@
 //! Many nearest points at once: none wrong.
 
-mod common;
-
-use common::{Random, Sphere, brute, bumpy};
+use crate::common::{Random, Sphere, brute, bumpy};
 use moldloft_locate::{
     LocateStatus, NearestCurve, NearestSurface, by_place, nearest_on_curve, nearest_on_surface,
 };

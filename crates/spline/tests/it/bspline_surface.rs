@@ -1,8 +1,6 @@
 //! Laws of B-spline surfaces.
 
-mod common;
-
-use common::{Random, close, point_derivative_law, surface_laws};
+use crate::common::{Random, close, point_derivative_law, surface_laws};
 use moldloft_num::{Dual, Order, SurfJet, Surface, Vec3};
 use moldloft_spline::{BSplineSurface, KnotVector, SplineError};
 
@@ -60,7 +58,7 @@ fn moves_with_points_and_parameters() {
         },
         1e-10,
     );
-    let fixed = common::seeded(&points, &[Vec3::zero(); 16]);
+    let fixed = crate::common::seeded(&points, &[Vec3::zero(); 16]);
     let dual = BSplineSurface::new(knots.clone(), knots.clone(), fixed, None).unwrap();
     let plain = BSplineSurface::new(knots.clone(), knots, points, None).unwrap();
     let (u, v) = (Dual::<1> { re: 0.3, eps: [2.0] }, Dual::<1> { re: 0.8, eps: [-1.0] });
@@ -129,7 +127,7 @@ fn batches_carry_the_derivatives_by_the_points() {
     let mut random = Random::new(24);
     let knots = KnotVector::clamped_uniform(3, 6).unwrap();
     let (points, directions) = (random.points(36), random.points(36));
-    let net = common::seeded(&points, &directions);
+    let net = crate::common::seeded(&points, &directions);
     let s = BSplineSurface::new(knots.clone(), knots, net, None).unwrap();
     let (us, vs) = ([0.1, 0.62], [0.2, 0.5, 0.95]);
     let mut grid = [Vec3::zero(); 6];

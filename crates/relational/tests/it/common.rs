@@ -1,8 +1,6 @@
 //! A minimal reader of declarations, so that kinds can be tried without the language and the graph:
 //! `Kind name(arguments);` and `type name = function(arguments);` with literals and names only.
 
-#![allow(dead_code)]
-
 use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
 use moldloft_registry::{

@@ -1,8 +1,6 @@
 //! Projections and intersections: closed forms, reports, faults, derivatives.
 
-mod common;
-
-use common::{attempt, fault, run, scene};
+use crate::common::{attempt, fault, run, scene};
 use moldloft_num::{Dual4, Order, Vec3};
 use moldloft_registry::{Point, Scalar, SearchStatus, Value};
 
@@ -260,7 +258,7 @@ fn derivatives_are_exact() {
     attempt(text).unwrap();
 }
 
-fn curve(scene: &common::Scene<f64>, name: &str) -> moldloft_registry::CurveRef<f64> {
+fn curve(scene: &crate::common::Scene<f64>, name: &str) -> moldloft_registry::CurveRef<f64> {
     match &scene.0.iter().find(|o| o.name == name).unwrap().value {
         Value::Curve(c) => c.clone(),
         other => panic!("{other:?}"),

@@ -1,9 +1,7 @@
 //! Nearest points from very far away, where all of a shape is nearly equally near, and from where all of
 //! it is equally near exactly.
 
-mod common;
-
-use common::{Circle, Random, Sphere, bumpy};
+use crate::common::{Circle, Random, Sphere, bumpy};
 use moldloft_locate::{
     LocateStatus, NearestCurve, NearestSurface, nearest_on_curve, nearest_on_surface,
 };

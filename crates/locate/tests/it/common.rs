@@ -1,7 +1,5 @@
 //! Shapes with closed forms, and random numbers.
 
-#![allow(dead_code, unused_imports)]
-
 use moldloft_num::{Curve, CurveFormula, Jet, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineSurface, KnotVector};
 pub use moldloft_testing::Random;
@@ -119,8 +117,4 @@ pub fn brute(surface: &dyn Surface<f64>, p: Vec3, n: usize) -> (f64, [f64; 2]) {
         }
     }
     best
-}
-
-pub fn curve(c: &dyn Curve<f64>) -> &dyn Curve<f64> {
-    c
 }

@@ -1,10 +1,8 @@
 //! Whole programs: speed of parsing, edits of literals, odd shapes, and random programs through the formatter.
 
-mod random;
-
+use crate::random::RandomText;
 use moldloft_diag::FileId;
 use moldloft_syntax::sdl::{self, Grouping, Step, StmtKind};
-use random::RandomText;
 
 fn parse(text: &str) -> sdl::Program {
     let (program, faults) = sdl::parse(text, FileId(0));
@@ -65,7 +63,7 @@ fn random_edits_reparse_to_the_same_tree() {
 #[test]
 fn random_programs_format_to_the_same_meaning() {
     let mut random = RandomText::new(12);
-    for _ in 0..random::rounds(20_000) {
+    for _ in 0..crate::random::rounds(20_000) {
         let text = random.program(8);
         let program = parse(&text);
         let once = sdl::format(&text).unwrap();

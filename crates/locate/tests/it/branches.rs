@@ -1,8 +1,6 @@
 //! All branches of intersections, on shapes of which their number is known.
 
-mod common;
-
-use common::{Cylinder, Random, Sphere, bumpy};
+use crate::common::{Cylinder, Random, Sphere, bumpy};
 use moldloft_locate::branches::{Branches, CutSurface};
 use moldloft_locate::march::{Branch, Crossing, End, Other};
 use moldloft_num::{Box3, Jet, Order, Plane, Surface, SurfaceFormula, Vec3};

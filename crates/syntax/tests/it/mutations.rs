@@ -2,11 +2,9 @@
 //!
 //! Two per cent of a long run by default; all of it with `MOLDLOFT_SOAK=1`.
 
-mod random;
-
+use crate::random::{RandomText, rounds};
 use moldloft_diag::{FileId, Sources, render};
 use moldloft_syntax::{model_file, sdl};
-use random::{RandomText, rounds};
 
 const PIECES: [&str; 60] = [
     "(",
