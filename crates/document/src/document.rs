@@ -4,8 +4,9 @@ use moldloft_diag::{Diagnostic, Sources};
 use moldloft_lang::World;
 use moldloft_lang::run::interpreter::{Inputs, Settings};
 use moldloft_lang::run::program::{self, Program};
-use moldloft_lang::source::env::{Binding, Evaluation, Param, Seed};
+use moldloft_lang::source::env::{Evaluation, Param, Seed};
 use moldloft_lang::source::module::Modules;
+use moldloft_lang::source::scope::Binding;
 use moldloft_lang::source::sketch_file::{self, SketchFile};
 use moldloft_mesh::Mesh;
 use moldloft_model::{Applied, Extent, Graph};
@@ -456,7 +457,9 @@ impl Document {
         let names = (0..self.modules.name_count() as u32).map(moldloft_lang::source::module::Name);
         let mut found = Vec::new();
         for name in names {
-            let Some(Some(bound)) = self.plain.env.globals.get(name.0 as usize) else { continue };
+            let Some(Some(bound)) = self.plain.env.scope.globals.get(name.0 as usize) else {
+                continue;
+            };
             let Binding::Variable { value, .. } = &bound.what else { continue };
             let modules = (0..self.modules.len()).map(|k| self.modules.get(k));
             let of_library =

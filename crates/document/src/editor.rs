@@ -4,8 +4,8 @@
 use crate::document::Document;
 use moldloft_diag::{FileId, Span};
 use moldloft_lang::functions::context::BUILTINS;
-use moldloft_lang::source::env::Binding;
 use moldloft_lang::source::module::{Module, RoutineAt};
+use moldloft_lang::source::scope::Binding;
 use moldloft_lang::value::variables::shape_text;
 use moldloft_registry::{Class, Row, Value};
 use moldloft_syntax::sdl::{
@@ -306,10 +306,10 @@ impl Document {
             return Some(first.span);
         }
         let name = m.names[mention.symbol.0 as usize];
-        if let Some(&RoutineAt { module, routine }) = self.plain.env.routines.get(&name) {
+        if let Some(&RoutineAt { module, routine }) = self.plain.env.scope.routines.get(&name) {
             return Some(self.modules.get(module).program[routine].name.span);
         }
-        let bound = self.plain.env.globals.get(name.0 as usize)?.as_ref()?;
+        let bound = self.plain.env.scope.globals.get(name.0 as usize)?.as_ref()?;
         bound.span.is_known().then_some(bound.span)
     }
 
@@ -372,7 +372,7 @@ impl Document {
             let text = self.sources.line(first.file, line)?.trim().to_string();
             return Some((format!("```sdl\n{text}\n```\nlocal to its routine"), mention.span));
         }
-        let bound = self.plain.env.globals.get(name.0 as usize).and_then(Option::as_ref);
+        let bound = self.plain.env.scope.globals.get(name.0 as usize).and_then(Option::as_ref);
         if let Some(bound) = bound {
             let text = match &bound.what {
                 Binding::Variable { value: Value::Unset, .. } => {
@@ -404,7 +404,7 @@ impl Document {
             };
             return Some((text, mention.span));
         }
-        if let Some(&RoutineAt { module, routine }) = self.plain.env.routines.get(&name) {
+        if let Some(&RoutineAt { module, routine }) = self.plain.env.scope.routines.get(&name) {
             let m = self.modules.get(module);
             let routine = m.program[routine];
             let mut text = format!("```sdl\n{}\n```", signature(m, &routine));
@@ -470,8 +470,9 @@ impl Document {
             let here = mention.local_to.is_none() || mention.local_to == inside;
             if mention.declares && here && !mention.span.touches(offset) {
                 let name = m.names[mention.symbol.0 as usize];
-                let routine = self.plain.env.routines.contains_key(&name);
-                let bound = self.plain.env.globals.get(name.0 as usize).and_then(Option::as_ref);
+                let routine = self.plain.env.scope.routines.contains_key(&name);
+                let bound =
+                    self.plain.env.scope.globals.get(name.0 as usize).and_then(Option::as_ref);
                 let (kind, detail) = match bound.map(|b| &b.what) {
                     Some(Binding::Variable { value, .. }) => {
                         (CompletionKind::Variable, shape_text(value))
@@ -483,14 +484,14 @@ impl Document {
                 add(m.program.name(mention.symbol), kind, detail);
             }
         }
-        let mut routines: Vec<_> = self.plain.env.routines.iter().collect();
+        let mut routines: Vec<_> = self.plain.env.scope.routines.iter().collect();
         routines.sort_by_key(|(name, _)| name.0);
         for (&name, &RoutineAt { module, routine }) in routines {
             let of = self.modules.get(module);
             let detail = signature(of, &of.program[routine]);
             add(self.modules.text(name), CompletionKind::Function, detail);
         }
-        for (k, bound) in self.plain.env.globals.iter().enumerate() {
+        for (k, bound) in self.plain.env.scope.globals.iter().enumerate() {
             if let Some(bound) = bound
                 && let Binding::Variable { value, .. } = &bound.what
             {
@@ -522,7 +523,8 @@ impl Document {
         all.into_iter()
             .map(|o| {
                 let name = m.names[o.symbol.0 as usize];
-                let bound = self.plain.env.globals.get(name.0 as usize).and_then(Option::as_ref);
+                let bound =
+                    self.plain.env.scope.globals.get(name.0 as usize).and_then(Option::as_ref);
                 let kind = match bound.map(|b| &b.what) {
                     _ if routine(o.symbol) => CompletionKind::Function,
                     Some(Binding::Object(_) | Binding::Turn { .. }) => CompletionKind::Object,

@@ -28,14 +28,22 @@ pub enum Src {
     Reg(u16),
 }
 
+/// The operation of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
+    /// The sum of two numbers.
     Add,
+    /// The difference of two numbers.
     Sub,
+    /// The product of two numbers.
     Mul,
+    /// The quotient of two numbers.
     Div,
+    /// The negative of a number.
     Neg,
+    /// The absolute value of a number.
     Abs,
+    /// The square root of a number.
     Sqrt,
     /// A function of one number, by its place in the tape's list.
     Unary(u16),
@@ -43,8 +51,10 @@ pub enum Code {
     Binary(u16),
 }
 
+/// One operation on one component, carried out for every element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instr {
+    /// The operation.
     pub code: Code,
     /// Its operands; of those with one, twice the same.
     pub of: [Src; 2],
@@ -89,7 +99,9 @@ impl Cell {
 /// Where a source or constant of a tape comes from: a component of a cell, or the number itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Origin {
+    /// The entry of the recording.
     pub cell: Cell,
+    /// The component of its value.
     pub part: u8,
 }
 
@@ -109,6 +121,7 @@ pub struct Tape<T: Real> {
     planes: Vec<Plane<T>>,
     /// Where the sources and the constants come from.
     pub plane_origins: Vec<Origin>,
+    /// The origin of each constant.
     pub const_origins: Vec<Origin>,
     /// Cells that were the same array when the tape was made.
     pub aliases: Vec<[Cell; 2]>,
@@ -178,6 +191,7 @@ impl<T: Real> Tape<T> {
         }
     }
 
+    /// A source of numbers; the same array is one source.
     pub fn numbers(&mut self, array: &Arc<Array<T>>, cell: Cell) -> Src {
         let same = |p: &Plane<T>| matches!(p, Plane::Numbers(a) if Arc::ptr_eq(a, array));
         if let Some(at) = self.planes.iter().position(same) {
@@ -189,6 +203,7 @@ impl<T: Real> Tape<T> {
         Src::Plane((self.planes.len() - 1) as u16)
     }
 
+    /// The sources of the three components of a row or grid of vectors.
     pub fn vectors(&mut self, array: &Arc<Vectors<T>>, cell: Cell) -> [Src; 3] {
         let same = |p: &Plane<T>| matches!(p, Plane::Component(a, 0) if Arc::ptr_eq(a, array));
         let at = match self.planes.iter().position(same) {
@@ -224,10 +239,12 @@ impl<T: Real> Tape<T> {
         Src::Reg((self.code.len() - 1) as u16)
     }
 
+    /// The result of an operation on two operands; the same operation is recorded once.
     pub fn op(&mut self, code: Code, a: Src, b: Src) -> Src {
         self.push(Instr { code, of: [a, b] })
     }
 
+    /// The result of an operation on one operand.
     pub fn op1(&mut self, code: Code, a: Src) -> Src {
         self.push(Instr { code, of: [a, a] })
     }

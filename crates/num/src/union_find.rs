@@ -89,7 +89,9 @@ mod tests {
     #[test]
     fn the_smallest_member_stands_for_the_set() {
         let mut sets = UnionFind::new(6);
-        [(5, 3), (4, 5), (3, 4)].map(|(a, b)| sets.join(a, b));
+        for (a, b) in [(5, 3), (4, 5), (3, 4)] {
+            sets.join(a, b);
+        }
         assert_eq!([0, 1, 2, 3, 4, 5].map(|k| sets.find(k)), [0, 1, 2, 3, 3, 3]);
         sets.join(4, 1);
         assert!(sets.same(1, 3) && !sets.same(0, 1));

@@ -108,3 +108,39 @@ fn a_registry_finds_rows_by_name() {
     let registry = Registry::new([Segment::<f64>::row()]);
     assert!(registry.get("Segment").is_some() && registry.get("segment").is_none());
 }
+
+/// Fails for its radius.
+macro_rules! fails_for_its_radius {
+    ($name:ident { $($field:ident),* }) => {
+        /// A kind that refuses its radius.
+        #[derive(Kind)]
+        #[kind(class = Number, function, name = "refuses", example = "")]
+        struct $name<T: Real> {
+            $(
+                /// An argument.
+                $field: T,
+            )*
+        }
+
+        impl<T: Real> Build<T> for $name<T> {
+            fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+                let _ = ($(self.$field),*);
+                Err(CallError::new("out-of-range", "the radius").in_field(Self::RADIUS))
+            }
+        }
+    };
+}
+fails_for_its_radius!(Before { radius, height });
+fails_for_its_radius!(After { height, radius });
+
+#[test]
+fn a_field_that_moves_takes_its_faults_along() {
+    let call = |row: moldloft_registry::Row| {
+        let args = [Value::Number(1.0), Value::Number(2.0)];
+        let fault = f64::call(&row, &args, &Context::default()).unwrap_err();
+        let field = fault.field().expect("an argument is named");
+        (field, row.fields[field].name)
+    };
+    assert_eq!(call(<Before<f64> as StaticRow>::row()), (0, "radius"));
+    assert_eq!(call(<After<f64> as StaticRow>::row()), (1, "radius"));
+}

@@ -4,24 +4,24 @@
 //! needed. Kinds and shapes are compared when an operator is met, so faults come in the order of the
 //! text and before any element is touched; what has no array in it is computed at once.
 
-use crate::array::cache::{Course, Key, Kind, Recorder};
+use crate::array::lanes::{Calls, Lanes, What, not_finite};
+use crate::array::recipe::{Course, Key, Kind, Recorder};
 use crate::functions::elementary;
 use crate::run::interpreter::{Interpreter, silent};
-use crate::source::env::Binding;
 use crate::source::module::Module;
+use crate::source::scope::Binding;
 use crate::value::ops;
 use crate::value::variables::Called as _;
 use crate::value::variables::{self, shape_text};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_elementwise::{Cell, Code, Origin, Src, Tape};
 use moldloft_num::Real;
-use moldloft_registry::{Array, ArrayShape, Body, Scalar, Value, Vectors};
+use moldloft_registry::{ArrayShape, Body, Scalar, Value};
 use moldloft_syntax::sdl::{
     Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, List, Step, Symbol, UnaryOp,
 };
 use smallvec::SmallVec;
 use std::collections::VecDeque;
-use std::sync::Arc;
 
 /// An operand: a value and where a recording finds it again, or rows of a tape.
 #[derive(Clone, Debug)]
@@ -29,63 +29,6 @@ pub(crate) enum Operand<T: Real> {
     Value(Value<T>, Cell),
     Lanes(Lanes),
 }
-
-/// A row or grid that a tape computes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes {
-    pub shape: ArrayShape,
-    what: What,
-}
-
-impl Lanes {
-    /// The results of a tape that make up its elements.
-    pub fn roots(&self) -> SmallVec<[Src; 3]> {
-        match self.what {
-            What::Number(a) => SmallVec::from_slice(&[a]),
-            What::Vector(v) => SmallVec::from_slice(&v),
-        }
-    }
-
-    /// The rows of a value of this kind and shape that nothing else holds.
-    pub fn rows_of<'v, T: Real>(
-        &self,
-        value: &'v mut Value<T>,
-    ) -> Option<SmallVec<[&'v mut Vec<T>; 3]>> {
-        let mut rows = SmallVec::new();
-        match (value, self.what) {
-            (Value::Numbers(a), What::Number(_)) if a.shape == self.shape => {
-                rows.push(&mut Arc::get_mut(a)?.items);
-            }
-            (Value::Vectors(a), What::Vector(_)) if a.shape == self.shape => {
-                rows.extend(&mut Arc::get_mut(a)?.planes);
-            }
-            _ => return None,
-        }
-        Some(rows)
-    }
-
-    /// The array of the rows of its roots.
-    pub fn value<T: Real>(&self, rows: SmallVec<[Vec<T>; 3]>) -> Value<T> {
-        let shape = self.shape;
-        let mut rows = rows.into_iter();
-        let mut next = || rows.next().expect("a row for each root");
-        match self.what {
-            What::Number(_) => Value::Numbers(Arc::new(Array { shape, items: next() })),
-            What::Vector(_) => {
-                Value::Vectors(Arc::new(Vectors { shape, planes: [next(), next(), next()] }))
-            }
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-enum What {
-    Number(Src),
-    Vector([Src; 3]),
-}
-
-/// The functions whose results a tape checks, by the number of the check.
-pub(crate) type Calls = Vec<(Span, &'static str)>;
 
 type Operated<T> = Result<Operand<T>, Diagnostic>;
 
@@ -126,7 +69,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Course::Tree { read, record } => (read, record),
         };
         let mut work = Work {
-            tape: self.tapes.pop().unwrap_or_default(),
+            tape: self.arrays.tapes.pop().unwrap_or_default(),
             calls: Vec::new(),
             ready: read.into(),
             recorder: record.map(|_| self.recorder()),
@@ -160,7 +103,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             self.keep_recipe(key, misfits, lanes.filter(|_| value.is_ok()), &mut work);
         }
         work.tape.clear();
-        self.tapes.push(work.tape);
+        self.arrays.tapes.push(work.tape);
         value
     }
 
@@ -168,7 +111,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn computed(&mut self, lanes: &Lanes, work: &mut Work<T>) -> Result<Value<T>, Diagnostic> {
         let (roots, count) = (lanes.roots(), lanes.shape.count());
         let mut rows: SmallVec<[Vec<T>; 3]> =
-            roots.iter().map(|_| self.spare.take(count)).collect();
+            roots.iter().map(|_| self.arrays.spare.take(count)).collect();
         match work.tape.run(&roots, lanes.shape, &mut rows) {
             Ok(()) => Ok(lanes.value(rows)),
             Err(check) => {
@@ -196,7 +139,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         };
         let kind = Kind::of(&value).filter(|_| !object);
-        let depth = self.depth;
+        let depth = self.budget.depth;
         let cell = work.noted(|r| r.leaf(m, (id, read), depth, kind));
         Ok(Operand::Value(value, cell))
     }
@@ -217,7 +160,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     /// True when an expression names a variable that holds vectors.
     fn names_vectors(&self, m: &Module, id: ExprId) -> bool {
-        let bound = m.program.as_name(id).and_then(|s| self.lookup(m.names[s.0 as usize]));
+        let bound =
+            m.program.as_name(id).and_then(|s| self.env.scope.lookup(m.names[s.0 as usize]));
         let what = bound.map(|bound| &bound.what);
         matches!(what, Some(Binding::Variable { value: Value::Vectors(_), .. }))
     }
@@ -231,7 +175,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             | ExprKind::Unary { op: UnaryOp::Minus | UnaryOp::Plus, .. }
             | ExprKind::Chain(_)
             | ExprKind::List(_) => true,
-            ExprKind::Binary { op, .. } => is_elementwise(op),
+            ExprKind::Binary { op, .. } => ops::is_elementwise(op),
             ExprKind::Member { base, name, .. } => {
                 // A component of an expression or of rows; of other names it is read as it stands.
                 axis(m.program.name(name)).is_some()
@@ -250,10 +194,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !self.deeper(expr.span) {
             return Err(silent());
         }
-        let depth = self.depth;
+        let depth = self.budget.depth;
         work.noting(|r| r.at_depth(depth));
         let operand = self.operator(m, expr.kind, expr.span, work);
-        self.depth -= 1;
+        self.budget.depth -= 1;
         operand.map_err(|d| d.or_at(expr.span))
     }
 
@@ -268,7 +212,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Paren(inner) => self.operated(m, inner, work),
             ExprKind::Magnitude(inner) => {
                 let operand = self.operated(m, inner, work)?;
-                let plain = self.plain_operators;
+                let plain = self.arrays.plain_operators;
                 Ok(match operand {
                     Operand::Value(ref value, cell) => match work.lanes(value, cell, !plain) {
                         Some(lanes) => Operand::Lanes(work.magnitude(lanes)),
@@ -299,7 +243,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     Operand::Lanes(Lanes { shape, what: What::Vector(v) }) => {
                         Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
                     }
-                    Operand::Value(value @ Value::Vectors(_), cell) if !self.plain_operators => {
+                    Operand::Value(value @ Value::Vectors(_), cell)
+                        if !self.arrays.plain_operators =>
+                    {
                         match work.lanes(&value, cell, true) {
                             Some(Lanes { shape, what: What::Vector(v) }) => {
                                 Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
@@ -353,7 +299,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let lanes = match &operand {
             Operand::Lanes(lanes) => Some(*lanes),
-            Operand::Value(value, cell) => work.lanes(value, *cell, !self.plain_operators),
+            Operand::Value(value, cell) => work.lanes(value, *cell, !self.arrays.plain_operators),
         };
         Ok(match (lanes, operand) {
             (Some(lanes), _) => Operand::Lanes(work.mapped(lanes, Code::Neg)),
@@ -391,8 +337,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     let signed = match (op, operand) {
                         (UnaryOp::Not, operand) => {
                             let value = self.value_of(operand, work)?;
-                            let value =
-                                crate::run::expr::unary(op, &value).map_err(|d| d.or_at(span))?;
+                            let value = ops::unary(op, &value).map_err(|d| d.or_at(span))?;
                             Operand::Value(value, Cell::NONE)
                         }
                         (op, operand) => {
@@ -426,7 +371,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 false => self.leaf(m, item, false, work)?,
             });
         }
-        if values.len() == 3 && !self.plain_operators && !work.tape.is_long() {
+        if values.len() == 3 && !self.arrays.plain_operators && !work.tape.is_long() {
             let lanes: Vec<Lanes> = values
                 .iter()
                 .filter_map(|value| match value {
@@ -476,7 +421,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Operand::Lanes(_) => true,
             Operand::Value(value, _) => matches!(value, Value::Numbers(_) | Value::Vectors(_)),
         });
-        if !self.plain_operators && arrays.contains(&true) && !work.tape.is_long() {
+        if !self.arrays.plain_operators && arrays.contains(&true) && !work.tape.is_long() {
             let operands = [&a, &b].map(|o| work.operand(o));
             if let [Some(x), Some(y)] = operands {
                 if let (Some(s), Some(t)) = (x.0, y.0)
@@ -547,7 +492,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
         for word in words.filter(|w| !w.is_empty()) {
             let Some(symbol) = m.program.symbol(word) else { continue };
-            let Some(bound) = self.lookup(m.names[symbol.0 as usize]) else { continue };
+            let Some(bound) = self.env.scope.lookup(m.names[symbol.0 as usize]) else { continue };
             let value = self.peek(bound)?;
             if matches!(value, Value::Numbers(_) | Value::Vectors(_)) {
                 return Some((word.to_string(), bound.span, shape_text(&value)));
@@ -583,7 +528,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// True when a name means something of the program's own.
     pub fn hides_function(&self, m: &Module, symbol: Symbol) -> bool {
         let name = m.names[symbol.0 as usize];
-        self.lookup(name).is_some() || self.env.routines.contains_key(&name)
+        self.env.scope.lookup(name).is_some() || self.env.scope.routines.contains_key(&name)
     }
 
     fn elementwise(
@@ -600,7 +545,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             operands.push(self.operated(m, arg, work)?);
         }
         let mut all: Vec<_> = operands.iter().map(|o| work.operand(o)).collect();
-        if self.plain_operators {
+        if self.arrays.plain_operators {
             all.clear();
             all.push(None);
         }
@@ -651,33 +596,15 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 }
 
-pub(crate) fn not_finite(name: &str) -> Diagnostic {
-    Diagnostic::error("not-finite", format!("the result of {name} is not a finite number"))
-        .expected("arguments inside the function's domain")
-}
-
 fn axis(word: &str) -> Option<usize> {
     ["x", "y", "z"].iter().position(|c| *c == word)
-}
-
-pub(crate) fn is_elementwise(op: BinaryOp) -> bool {
-    matches!(
-        op,
-        BinaryOp::Add
-            | BinaryOp::Sub
-            | BinaryOp::Mul
-            | BinaryOp::Div
-            | BinaryOp::Caret
-            | BinaryOp::Dot
-            | BinaryOp::Cross
-    )
 }
 
 /// True when the outermost part of an expression is an operator, so that it is not an object.
 fn is_operator(m: &Module, id: ExprId) -> bool {
     match m.program[m.program.bare(id)].kind {
         ExprKind::Chain(_) | ExprKind::Magnitude(_) | ExprKind::Unary { .. } => true,
-        ExprKind::Binary { op, .. } => is_elementwise(op),
+        ExprKind::Binary { op, .. } => ops::is_elementwise(op),
         ExprKind::Call { .. } => true,
         _ => false,
     }
@@ -917,59 +844,5 @@ impl<T: Real> Work<T> {
             _ => return None,
         };
         Some(Lanes { shape, what })
-    }
-}
-
-/// Rows of memory that are not in use: a statement that makes an array of the size of one that was
-/// replaced takes its memory.
-#[derive(Debug)]
-pub(crate) struct Spare<T> {
-    rows: Vec<Vec<T>>,
-}
-
-impl<T> Default for Spare<T> {
-    fn default() -> Self {
-        Self { rows: Vec::new() }
-    }
-}
-
-/// The most rows that are kept, and the most elements of all.
-const MOST_SPARE: usize = 12;
-const MOST_SPARE_ELEMENTS: usize = 16_000_000;
-
-impl<T: Real> Spare<T> {
-    /// A row of `n` elements of any content.
-    pub fn take(&mut self, n: usize) -> Vec<T> {
-        match self.rows.iter().rposition(|row| row.len() == n) {
-            Some(at) => self.rows.swap_remove(at),
-            None => vec![T::zero(); n],
-        }
-    }
-
-    /// Keeps the memory of a value that nobody else holds.
-    pub fn give(&mut self, value: Value<T>) {
-        match value {
-            Value::Numbers(a) => {
-                if let Ok(array) = Arc::try_unwrap(a) {
-                    self.keep(array.items);
-                }
-            }
-            Value::Vectors(a) => {
-                if let Ok(array) = Arc::try_unwrap(a) {
-                    array.planes.into_iter().for_each(|plane| self.keep(plane));
-                }
-            }
-            _ => {}
-        }
-    }
-
-    fn keep(&mut self, row: Vec<T>) {
-        if self.rows.len() >= MOST_SPARE {
-            self.rows.remove(0);
-        }
-        let held: usize = self.rows.iter().map(Vec::len).sum();
-        if held + row.len() <= MOST_SPARE_ELEMENTS {
-            self.rows.push(row);
-        }
     }
 }

@@ -4,8 +4,8 @@
 use crate::functions::files::{Mode, STANDARD_OUTPUT};
 use crate::functions::format::{self, Item};
 use crate::run::interpreter::{Interpreter, silent};
-use crate::source::env::{Binding, Passed};
 use crate::source::module::Module;
+use crate::source::scope::{Binding, Passed};
 use crate::value::subarray::{Place, Section};
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
@@ -389,7 +389,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         &self,
         place: &Place,
     ) -> Result<(Type, &Value<T>, &crate::value::initialised::Known), Diagnostic> {
-        match self.root(place).map(|b| &b.what) {
+        match self.env.scope.root(place).map(|b| &b.what) {
             Some(Binding::Variable { ty, value, known, .. }) => Ok((*ty, value, known)),
             Some(Binding::Poisoned) | None => Err(silent()),
             _ => Err(Diagnostic::error("not-assignable", "this is not a variable")
@@ -451,7 +451,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// `count(c)`, `next(c)`, `more(c)`, `rewind(c)`.
     fn sequence(&mut self, m: &Module, builtin: &Builtin, arg: ExprId) -> Evaluated<T> {
         let name = m.program.as_name(arg).map(|symbol| m.names[symbol.0 as usize]);
-        let multiple = name.and_then(|name| match &self.lookup(name)?.what {
+        let multiple = name.and_then(|name| match &self.env.scope.lookup(name)?.what {
             Binding::Multiple(multiple) => Some((name, multiple.items.len(), multiple.read)),
             _ => None,
         });
@@ -480,7 +480,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             _ => {
                 let text = self.modules.text(name).clone();
-                let Some(Binding::Multiple(multiple)) = self.lookup(name).map(|b| &b.what) else {
+                let Some(Binding::Multiple(multiple)) =
+                    self.env.scope.lookup(name).map(|b| &b.what)
+                else {
                     return Err(silent());
                 };
                 let Some(item) = multiple.items.get(read) else {
@@ -499,7 +501,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     fn set_read(&mut self, name: crate::source::module::Name, read: usize) {
-        let frame = self.frames.last_mut().expect("there is always a frame");
+        let frame = self.env.scope.frame_mut();
         let local = frame.locals.iter_mut().find(|(n, _)| *n == name);
         if let Some(Binding::Multiple(multiple)) = local.map(|(_, b)| &mut b.what) {
             multiple.read = read;

@@ -33,7 +33,7 @@ fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> CallError {
 }
 
 fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, CallError> {
-    if let Some(field) = crate::functions::sets::function(name, value) {
+    if let Some(field) = crate::value::implicit::function(name, value) {
         return field;
     }
     match value {
@@ -83,7 +83,7 @@ fn reduced<T: Real>(
     f: impl Fn(T, T) -> T + Copy,
 ) -> Result<Value<T>, CallError> {
     let (axis, args) = args.split_last().expect("the axis is the last argument");
-    if let Some(field) = crate::functions::sets::functions(name, args) {
+    if let Some(field) = crate::value::implicit::functions(name, args) {
         return field;
     }
     let given: Vec<(usize, Cow<'_, Value<T>>)> = args
@@ -247,7 +247,7 @@ pub(crate) fn apply<T: Real>(
 ) -> Result<Value<T>, CallError> {
     match f {
         Elementary::Unary(f) => each(name, &args[0], f),
-        Elementary::Binary(f) => match crate::functions::sets::functions(name, args) {
+        Elementary::Binary(f) => match crate::value::implicit::functions(name, args) {
             Some(field) => field,
             None => pairs(&args[0], &args[1], f),
         },

@@ -12,6 +12,7 @@ use std::sync::Arc;
 /// The units of the terminal.
 const STANDARD_ERROR: u32 = 0;
 const STANDARD_INPUT: u32 = 5;
+/// Unit 6, FORTRAN's standard output.
 pub const STANDARD_OUTPUT: u32 = 6;
 
 /// Units that `open` gives out begin here.
@@ -50,12 +51,16 @@ enum Open {
 /// How a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
+    /// An existing file, read from its beginning.
     Read,
+    /// A new file, or an existing one emptied.
     Write,
+    /// An existing file, written at its end.
     Append,
 }
 
 impl Mode {
+    /// The mode of the word `read`, `write` or `append`.
     pub fn parse(word: &str) -> Result<Self, Diagnostic> {
         match word {
             "r" => Ok(Mode::Read),
@@ -197,6 +202,7 @@ impl Files {
         self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks.as_slice()))
     }
 
+    /// Closes a unit; a unit that is not open is an error.
     pub fn close(&mut self, unit: u32) -> Result<(), Diagnostic> {
         self.open.remove(&unit).map(drop).ok_or_else(|| not_open(unit))
     }

@@ -6,4 +6,3 @@ pub(crate) mod elementary;
 pub mod files;
 pub(crate) mod format;
 mod grid_files;
-pub(crate) mod sets;

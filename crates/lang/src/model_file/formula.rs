@@ -2,7 +2,8 @@
 
 use crate::model_file::names::{bare, words};
 use crate::model_file::{Outcome, Producer, Sorted, Trouble, wrong};
-use crate::source::env::{Binding, Bound, Param};
+use crate::source::env::Param;
+use crate::source::scope::{Binding, Bound};
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
@@ -99,8 +100,8 @@ impl<T: Scalar> Producer<'_, '_, T> {
         let modules = &mut *self.host.modules;
         let at = modules.add_expression(program, self.registry);
         let module = modules.get(at).clone();
-        self.env.globals.clear();
-        self.env.globals.resize_with(modules.name_count(), || None);
+        self.env.scope.globals.clear();
+        self.env.scope.make_room(modules.name_count());
         for &name in &module.names {
             let Some(&line) = source.names.get(&**modules.text(name)) else { continue };
             let what = match self.outcomes[line] {
@@ -111,7 +112,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 ),
                 _ => continue,
             };
-            self.env.globals[name.0 as usize] = Some(Bound { span: Span::UNKNOWN, what });
+            self.env.scope.globals[name.0 as usize] = Some(Bound { span: Span::UNKNOWN, what });
         }
         let mut told = Vec::new();
         let loader = crate::source::module::Loader {
@@ -135,7 +136,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         let value = if nests { crate::run::program::with_stack(evaluate) } else { evaluate() };
         drop(module);
         self.host.modules.remove_expression(at);
-        self.env.globals.clear();
+        self.env.scope.globals.clear();
         match value {
             Ok(Value::Number(x)) if x.is_finite() => Ok(x),
             Ok(other) => Err(bad(format!("it is {}, not a finite number", other.called()))),

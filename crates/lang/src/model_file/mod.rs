@@ -77,6 +77,7 @@ pub struct Sorted {
 /// What became of an object in a run.
 #[derive(Clone, Copy)]
 pub enum Outcome {
+    /// An object of the graph.
     Built(Key),
     /// A `Variable` or `Formula`: a number without an object.
     Real,
@@ -98,9 +99,15 @@ pub enum Trouble {
     /// What is wrong with it.
     Wrong(Box<Diagnostic>),
     /// It refers to an object that is missing because of this root.
-    Blocked { root: usize, span: Span },
+    Blocked {
+        /// The root, by its number.
+        root: usize,
+        /// The place of the reference.
+        span: Span,
+    },
 }
 
+/// A field with an error of its own.
 pub fn wrong(diagnostic: Diagnostic) -> Trouble {
     Trouble::Wrong(Box::new(diagnostic))
 }
@@ -276,6 +283,7 @@ impl ModelFileSource {
         sorted
     }
 
+    /// The text of a field.
     pub fn written(&self, field: &Written) -> &str {
         self.model.slice(field.span)
     }
@@ -541,13 +549,19 @@ impl ModelFileSource {
 
 /// Makes the objects of an [`Extent::Whole`] application.
 pub struct Producer<'a, 'g, T: Scalar> {
+    /// The parsed file.
     pub source: &'a ModelFileSource,
+    /// The rows of all kinds.
     pub registry: &'a Registry,
+    /// The program that loads the file, with its host.
     pub host: Program<'a>,
+    /// The environment that the run leaves behind.
     pub env: &'a mut Environment<T>,
     /// The numbers of variables and formulas, by their place in the file.
     pub reals: HashMap<usize, T>,
+    /// Values of parameters and literals for this run.
     pub inputs: Inputs<'a, T>,
+    /// The run of the graph that declarations go to.
     pub run: &'a mut Run<'g, T>,
     /// By the place of the object in the file.
     pub outcomes: Vec<Option<Outcome>>,

@@ -9,8 +9,8 @@
 //! `keel.span`.
 
 use crate::run::interpreter::{Flow, Interpreter, silent};
-use crate::source::env::{Binding, Bound, Frame};
 use crate::source::module::{Module, Name};
+use crate::source::scope::{Binding, Bound, Scope};
 use crate::value::variables;
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
@@ -95,42 +95,25 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some((family, _)) => family,
             None => full.clone(),
         };
-        self.bind(name_id, name.span, Binding::Instance(family));
+        self.env.scope.bind(name_id, name.span, Binding::Instance(family));
         replace_parents(&inner, &mut names);
 
         // The file is a program of its own for the time being.
-        let frame = Frame::new(true, format!("{full}.").into());
-        let outer_globals = std::mem::take(&mut self.env.globals);
-        let outer_routines = std::mem::take(&mut self.env.routines);
-        let outer_frames = std::mem::replace(&mut self.frames, vec![frame]);
-        let outer_executed = std::mem::take(&mut self.executed);
-        let outer_sketches = std::mem::take(&mut self.sketches_done);
-        let outer_given = std::mem::replace(&mut self.given, names);
-        self.env.globals.resize_with(self.modules.name_count(), || None);
+        let mut scope = Scope::of_file(format!("{full}.").into(), self.modules.name_count());
         for (name, bound) in globals {
-            self.env.globals[name.0 as usize] = Some(bound);
+            scope.globals[name.0 as usize] = Some(bound);
         }
+        scope.given = names;
+        let outer = std::mem::replace(&mut self.env.scope, scope);
         self.components.push(module);
         let flow = self.module(module);
         self.components.pop();
-        self.given = outer_given;
-        self.executed = outer_executed;
-        self.sketches_done = outer_sketches;
-        self.frames = outer_frames;
-        self.env.routines = outer_routines;
-        self.env.globals = outer_globals;
-        self.env.globals.resize_with(self.modules.name_count(), || None);
+        self.env.scope = outer;
+        self.env.scope.make_room(self.modules.name_count());
         match flow {
             Flow::Stop => Err(silent()),
             _ => Ok(()),
         }
-    }
-
-    /// True for a name of the component under way that its user has given.
-    pub fn is_given(&self, name: Name) -> bool {
-        !self.given.is_empty()
-            && self.frames.last().is_some_and(|frame| frame.global)
-            && self.given.contains(&name)
     }
 }
 

@@ -1,17 +1,16 @@
 //! Runs a program: expressions.
 
-use crate::array::lower::is_elementwise;
 use crate::run::interpreter::{Interpreter, silent};
-use crate::source::env::{Binding, Bound, Passed};
 use crate::source::fault_location;
 use crate::source::module::Module;
+use crate::source::scope::{Binding, Bound, Passed};
 use crate::value::ops;
 use crate::value::subarray::{Place, Section, Selection};
 use crate::value::variables;
 use crate::value::variables::Called as _;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
-use moldloft_num::{Order, Real, Vec3};
+use moldloft_num::{Order, Vec3};
 use moldloft_registry::{
     Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, bind_arguments, many,
 };
@@ -20,6 +19,9 @@ use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, List, Subscript, Sym
 use std::sync::Arc;
 
 type Evaluated<T> = Result<Value<T>, Diagnostic>;
+
+/// Arithmetic on numbers that nests no deeper than this is computed at once.
+const SHALLOW: u32 = 4;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The value of an expression; an object comes as [`Value::Object`], unread.
@@ -33,7 +35,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return Err(silent());
                 }
                 let value = self.compound(m, id, expr.kind, expr.span);
-                self.depth -= 1;
+                self.budget.depth -= 1;
                 let value = value.map_err(|d| d.or_at(expr.span))?;
                 self.charge(&value, expr.span)?;
                 Ok(value)
@@ -52,7 +54,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             | ExprKind::Unary { op: UnaryOp::Minus | UnaryOp::Plus, .. } => self.arithmetic(m, id),
             ExprKind::Unary { op, operand } => {
                 let value = self.operand(m, operand)?;
-                unary(op, &value)
+                ops::unary(op, &value)
             }
             ExprKind::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
                 let first = self.operand(m, left)?;
@@ -78,7 +80,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let holds = if op == BinaryOp::And { first && second } else { first || second };
                 Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
             }
-            ExprKind::Binary { op, .. } if is_elementwise(op) => self.arithmetic(m, id),
+            ExprKind::Binary { op, .. } if ops::is_elementwise(op) => {
+                match self.scalar(m, id, SHALLOW) {
+                    Some(x) => Ok(Value::Number(x)),
+                    None => self.arithmetic(m, id),
+                }
+            }
             ExprKind::Binary { op, left, right } => {
                 let (a, b) = (self.operand(m, left)?, self.operand(m, right)?);
                 ops::binary(op, &a, &b)
@@ -90,6 +97,28 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             ExprKind::Call { callee, args } => self.call(m, callee, args, span),
             ExprKind::Error => Err(silent()),
+        }
+    }
+
+    /// The value of arithmetic on numbers alone, at most so many levels deep: literals, variables and
+    /// parameters, whose reading changes nothing and cannot fail.
+    fn scalar(&self, m: &Module, id: ExprId, levels: u32) -> Option<T> {
+        match m.program[id].kind {
+            ExprKind::Number(literal) => Some(T::from(m.program[literal].value)),
+            ExprKind::Name(symbol) => {
+                let name = m.names[symbol.0 as usize];
+                match self.env.scope.lookup(name)?.what {
+                    Binding::Variable { value: Value::Number(x), .. } => Some(x),
+                    Binding::Param(number) => Some(self.env.param_values[number]),
+                    _ => None,
+                }
+            }
+            ExprKind::Binary { op, left, right } => {
+                let levels = levels.checked_sub(1).filter(|_| ops::is_elementwise(op))?;
+                let (a, b) = (self.scalar(m, left, levels)?, self.scalar(m, right, levels)?);
+                ops::of_numbers(op, a, b)
+            }
+            _ => None,
         }
     }
 
@@ -148,7 +177,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     fn name(&mut self, m: &Module, symbol: Symbol, span: Span) -> Evaluated<T> {
         let name = m.names[symbol.0 as usize];
-        let Some(bound) = self.lookup(name) else {
+        let Some(bound) = self.env.scope.lookup(name) else {
             if let Some(unit) = crate::functions::files::predeclared(m.program.name(symbol)) {
                 return Ok(Value::Number(T::from(unit)));
             }
@@ -165,7 +194,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Binding::Variable { value, .. } => Ok(value.clone()),
             Binding::Reference(place) => {
                 let text = m.program.name(symbol);
-                let root = self.root(place);
+                let root = self.env.scope.root(place);
                 let Some(Binding::Variable { value, .. }) = root.map(|b| &b.what) else {
                     return Err(silent());
                 };
@@ -188,7 +217,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             Binding::Param(number) => Ok(Value::Number(self.env.param_values[*number])),
             Binding::Turn { now, turn, family } => {
-                let frame = self.frames.last().expect("there is always a frame");
+                let frame = self.env.scope.frame();
                 if frame.loops.iter().any(|t| t.id == *turn) {
                     return Ok(Value::Object(*now));
                 }
@@ -208,7 +237,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn passed(&self, item: &Passed<T>) -> Evaluated<T> {
         match item {
             Passed::Value(value) => Ok(value.clone()),
-            Passed::Place(place) => match self.root(place).map(|b| &b.what) {
+            Passed::Place(place) => match self.env.scope.root(place).map(|b| &b.what) {
                 Some(Binding::Variable { value, .. }) => variables::at_place(value, place),
                 _ => Err(silent()),
             },
@@ -249,7 +278,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn spelled(&mut self, m: &Module, id: ExprId) -> Result<Option<String>, Diagnostic> {
         Ok(match m.program[id].kind {
             ExprKind::Paren(inner) => self.spelled(m, inner)?,
-            ExprKind::Name(symbol) => match self.lookup(m.names[symbol.0 as usize]) {
+            ExprKind::Name(symbol) => match self.env.scope.lookup(m.names[symbol.0 as usize]) {
                 Some(bound) => match &bound.what {
                     Binding::Turn { family, .. } | Binding::Instance(family) => {
                         Some(family.to_string())
@@ -308,11 +337,13 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         // A part of what was passed by reference is read where it stands.
         if let Some(symbol) = m.program.as_name(base)
-            && let Some(place) = self.place_of(m.names[symbol.0 as usize])
+            && let Some(place) = self.env.scope.place_of(m.names[symbol.0 as usize])
             && place.section.is_some()
         {
             let place = self.indexed(m, place, base, subs)?;
-            let Some(Binding::Variable { value, .. }) = self.root(&place).map(|b| &b.what) else {
+            let Some(Binding::Variable { value, .. }) =
+                self.env.scope.root(&place).map(|b| &b.what)
+            else {
                 return Err(silent());
             };
             return variables::at_place(value, &place);
@@ -360,7 +391,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         base: ExprId,
         subs: List<Subscript>,
     ) -> Result<Place, Diagnostic> {
-        let Some(Binding::Variable { value, .. }) = self.root(&place).map(|b| &b.what) else {
+        let Some(Binding::Variable { value, .. }) = self.env.scope.root(&place).map(|b| &b.what)
+        else {
             return Err(silent());
         };
         let (extents, shape) = match place.section {
@@ -372,7 +404,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Some(extents) => (extents, variables::shape_text(value)),
                 None if matches!(value, Value::Unset) => {
                     let text = m.program.slice(m.program[base].span).to_string();
-                    let declared = self.root(&place).map_or(Span::UNKNOWN, |b| b.span);
+                    let declared = self.env.scope.root(&place).map_or(Span::UNKNOWN, |b| b.span);
                     let message = format!("`{text}` has no value yet");
                     return Err(
                         Diagnostic::error("no-value", message).note_at(declared, "declared here")
@@ -444,7 +476,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     return d;
                 }
                 let name = m.program.as_name(base).and_then(|symbol| {
-                    let bound = self.lookup(m.names[symbol.0 as usize])?;
+                    let bound = self.env.scope.lookup(m.names[symbol.0 as usize])?;
                     Some((m.program.name(symbol), bound.span))
                 });
                 match name {
@@ -512,7 +544,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             ExprKind::Paren(inner) => self.place(m, inner),
             ExprKind::Name(symbol) => {
                 let name = m.names[symbol.0 as usize];
-                self.place_of(name).ok_or_else(|| self.unknown_name(m, symbol, span))
+                self.env.scope.place_of(name).ok_or_else(|| self.unknown_name(m, symbol, span))
             }
             ExprKind::Member { base, name, .. } => {
                 let place = self.place(m, base)?;
@@ -528,7 +560,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             ExprKind::Index { base, subs } => {
                 let place = self.place(m, base)?;
-                match self.root(&place).map(|bound| (&bound.what, bound.span)) {
+                match self.env.scope.root(&place).map(|bound| (&bound.what, bound.span)) {
                     Some((Binding::Variable { .. }, _)) => {
                         self.indexed(m, place, base, subs).map_err(|d| d.or_at(span))
                     }
@@ -563,7 +595,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let word = m.program.name(name).to_string();
         // The extents of what was passed by reference are known without reading it.
         if let Some(symbol) = m.program.as_name(base)
-            && let Some(place) = self.place_of(m.names[symbol.0 as usize])
+            && let Some(place) = self.env.scope.place_of(m.names[symbol.0 as usize])
             && let Some(section) = place.section
             && let Some(d) = ["d1", "d2"].iter().position(|d| *d == word)
         {
@@ -585,7 +617,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     Binding::Variable { value: Value::Vector(_) | Value::Vectors(_), .. }
                 )
             };
-            if or_dot && self.lookup(m.names[name.0 as usize]).is_some_and(vector) {
+            if or_dot && self.env.scope.lookup(m.names[name.0 as usize]).is_some_and(vector) {
                 self.report(
                     Diagnostic::remark("two-readings", format!("`.{word}` is the member here"))
                         .at(m.program.member_span(id))
@@ -601,7 +633,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         {
             return member;
         }
-        if or_dot && self.lookup(m.names[name.0 as usize]).is_some() {
+        if or_dot && self.env.scope.lookup(m.names[name.0 as usize]).is_some() {
             let span = m.program.member_span(id);
             let right = self.name(m, name, span)?;
             let right = self.read(right, span)?;
@@ -670,12 +702,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return self.call_value(m, value, args, m.program[callee].span);
         };
         let name = m.names[symbol.0 as usize];
-        if self.lookup(name).is_some() {
+        if self.env.scope.lookup(name).is_some() {
             let value = self.name(m, symbol, m.program[callee].span)?;
             let value = self.read(value, m.program[callee].span)?;
             return self.call_value(m, value, args, m.program[callee].span);
         }
-        if let Some(&routine) = self.env.routines.get(&name) {
+        if let Some(&routine) = self.env.scope.routines.get(&name) {
             let errors = self.error_count();
             let value = self.call_routine(m, routine, args, None, span)?;
             if value.is_none() && self.error_count() > errors {
@@ -766,20 +798,6 @@ fn not_a_variable(m: &Module, base: ExprId, declared: Span) -> Diagnostic {
         .help("objects are named once; change their data, or use a variable")
 }
 
-pub(crate) fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Evaluated<T> {
-    match op {
-        UnaryOp::Plus => Ok(value.clone()),
-        UnaryOp::Minus => ops::negated(value),
-        UnaryOp::Not => match value {
-            Value::Number(x) => Ok(Value::Number(T::from(f64::from(u8::from(x.re() == 0.0))))),
-            Value::Numbers(a) => Ok(ops::not(a)),
-            other => Err(Diagnostic::error("wrong-operand", "`not` takes a condition")
-                .expected("a comparison or a number")
-                .found(other.called())),
-        },
-    }
-}
-
 /// A curve at t, a surface at (u, v), a field at a point; rows of parameters give rows.
 pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evaluated<T> {
     let parameters = |arg: &Value<T>| -> Result<Option<Vec<T>>, Diagnostic> {
@@ -854,7 +872,7 @@ pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evalua
             Ok(row((0..n).map(at).collect()))
         }
         (Value::Solid(_), _) => Err(count("three parameters u, v and w, as in s(0.5, 0.25, 0.75)")),
-        (Value::Field(_) | Value::Set(_), [p]) => crate::functions::sets::at(value, p),
+        (Value::Field(_) | Value::Set(_), [p]) => crate::value::implicit::at(value, p),
         (Value::Field(_) | Value::Set(_), _) => Err(count("one point, as in f({1, 2, 3})")),
         (other, _) => {
             let class = other.called();

@@ -1,16 +1,18 @@
 //! Runs a program: statements.
 
-use crate::array::cache::{Key as ExprKey, Slots};
-use crate::array::lower::Spare;
-use crate::source::env::{Binding, Bound, Environment, Frame, Param, Seed};
+use crate::array::machine::ArrayMachine;
+use crate::array::recipe::Key as ExprKey;
+use crate::run::budget::Budget;
+use crate::run::read_log::ReadLog;
+use crate::source::env::{Environment, Param, Seed};
 use crate::source::module::{Loader, Module, Modules, Name, RoutineAt};
+use crate::source::scope::{Binding, Bound};
 use crate::value::initialised::Known;
 use crate::value::subarray::Place;
 use crate::value::variables::Called as _;
 use crate::value::variables::{self, Taken};
 use indexmap::IndexMap;
 use moldloft_diag::{Diagnostic, Span, nearest};
-use moldloft_elementwise::Tape;
 use moldloft_model::{Extent, Run};
 use moldloft_num::trace::Key;
 use moldloft_registry::{Scalar, Value};
@@ -92,44 +94,25 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub run: &'a mut Run<'g, T>,
     pub env: &'a mut Environment<T>,
     pub inputs: Inputs<'a, T>,
-    pub frames: Vec<Frame<T>>,
-    pub depth: u32,
-    steps: u64,
+    pub budget: Budget,
     pub turns: u64,
-    errors: usize,
-    /// Elements of the declared arrays.
-    pub held: usize,
-    /// The components under way, by module, and the names that the innermost was given.
+    /// The components under way, by module.
     pub components: Vec<usize>,
-    pub given: HashSet<Name>,
     /// What was reported already: a statement that is executed often reports each fault once.
     told: HashSet<(Cow<'static, str>, Span)>,
     /// Failed objects that were reported to the program when it read them.
     pub blocked: HashSet<Key>,
-    pub executed: HashSet<usize>,
-    /// Sketch files that were brought in.
-    pub sketches_done: HashSet<String>,
     /// Objects that the expression under way has read, while that is to be noted.
-    pub reads: Vec<Key>,
-    pub noting_reads: bool,
+    pub reads: ReadLog,
     /// The names that statements of a module assign to, by module.
     pub assigned: HashMap<usize, HashSet<Symbol>>,
     /// Names that are declared somewhere in the main file: for hints at what comes later.
     pub(crate) current: usize,
-    /// Tapes and memory that are not in use.
-    pub tapes: Vec<Tape<T>>,
-    pub spare: Spare<T>,
-    /// What is known of expressions that are executed again.
-    pub recipes: Slots<T>,
-    /// The expression that is assigned to a whole variable, and its target.
-    pub assigning: Option<(ExprKey, ExprId)>,
-    pub plain_operators: bool,
+    pub arrays: ArrayMachine<T>,
     /// True once the note on the misprint of 1992 was given.
     pub misprint_told: bool,
     /// True while a library routine is left because of an error in it.
     pub abandoned: bool,
-    /// Bytes that were printed.
-    printed: usize,
 }
 
 pub(crate) fn silent() -> Diagnostic {
@@ -144,7 +127,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         env: &'a mut Environment<T>,
         inputs: Inputs<'a, T>,
     ) -> Self {
-        env.globals.resize_with(modules.name_count(), || None);
+        env.scope.enter(modules.name_count());
         let plain_operators = inputs.settings.plain_operators;
         Self {
             modules,
@@ -152,41 +135,28 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             run,
             env,
             inputs,
-            frames: vec![Frame::new(true, "".into())],
-            depth: 0,
-            steps: 0,
+            budget: Budget::default(),
             turns: 0,
-            errors: 0,
-            held: 0,
             components: Vec::new(),
-            given: HashSet::new(),
             told: HashSet::new(),
             blocked: HashSet::new(),
-            executed: HashSet::new(),
-            sketches_done: HashSet::new(),
-            reads: Vec::new(),
-            noting_reads: false,
+            reads: ReadLog::default(),
             assigned: HashMap::new(),
             current: 0,
-            tapes: Vec::new(),
-            spare: Spare::default(),
-            recipes: Slots::default(),
-            assigning: None,
-            plain_operators,
+            arrays: ArrayMachine { plain_operators, ..ArrayMachine::default() },
             misprint_told: false,
             abandoned: false,
-            printed: 0,
         }
     }
 
     /// Runs a module from its first statement to its last, once.
     pub fn module(&mut self, at: usize) -> Flow<T> {
-        if !self.executed.insert(at) {
+        if !self.env.scope.executed.insert(at) {
             return Flow::Next;
         }
         let module = self.modules.get(at).clone();
         module.faults.iter().for_each(|fault| self.report(fault.clone()));
-        self.env.globals.resize_with(self.modules.name_count(), || None);
+        self.env.scope.make_room(self.modules.name_count());
         self.declare_routines(&module, at);
         let outer = std::mem::replace(&mut self.current, at);
         let flow = self.statements(&module, module.program.body());
@@ -203,12 +173,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return;
         }
         let diagnostic = self.at_call(diagnostic);
-        self.errors += usize::from(diagnostic.is_error());
+        self.budget.errors += usize::from(diagnostic.is_error());
         let span = diagnostic.span();
         if self.told.insert((diagnostic.id.clone(), span)) {
             self.loader.diagnostics.push(diagnostic);
         }
-        if self.errors >= MOST_ERRORS && !self.env.stopped {
+        if self.budget.errors >= MOST_ERRORS && !self.env.stopped {
             self.stop(
                 Diagnostic::error("too-many-errors", "the run was given up: too many errors")
                     .at(span)
@@ -226,7 +196,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         if !inside.is_known() || !of_library(self.modules.get(self.current)) {
             return diagnostic;
         }
-        let calls = self.frames.iter().rev().filter_map(|frame| frame.called);
+        let calls = self.env.scope.frames.iter().rev().filter_map(|frame| frame.called);
         let Some((call, _)) = calls.into_iter().find(|(_, module)| !library(*module)) else {
             return diagnostic;
         };
@@ -243,13 +213,13 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         // Large arrays count for the memory they take, small ones for the time, that of a few
         // statements on numbers; lists are read item by item.
         let of_array = |n: usize| 3 + n / if n > 100_000 { 4 } else { 16 };
-        self.steps += match value {
+        self.budget.steps += match value {
             Value::Numbers(a) => of_array(a.items.len()),
             Value::Vectors(a) => of_array(a.len()),
             Value::List(items) => 4 * items.len(),
             _ => return Ok(()),
         } as u64;
-        if self.steps > MOST_STEPS && self.step(span) {
+        if self.budget.steps > MOST_STEPS && self.step(span) {
             return Err(silent());
         }
         Ok(())
@@ -257,12 +227,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// True when the elements of another value will not stop the run.
     pub fn has_room(&self, count: usize) -> bool {
-        self.steps + count as u64 <= MOST_STEPS
+        self.budget.steps + count as u64 <= MOST_STEPS
     }
 
     /// Counts a call of a function that takes longer than a statement: about as long as so many.
     pub fn charge_call(&mut self) {
-        self.steps += 40;
+        self.budget.steps += 40;
     }
 
     fn declare_routines(&mut self, module: &Module, at: usize) {
@@ -270,7 +240,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             let name = module.names[routine.name.symbol.0 as usize];
             let here = RoutineAt { module: at, routine: moldloft_syntax::sdl::RoutineId(k as u32) };
             let text = self.modules.text(name).clone();
-            match self.env.routines.get(&name) {
+            match self.env.scope.routines.get(&name) {
                 Some(known) if known.module == at => {
                     let first = module.program[known.routine].name.span;
                     self.report(
@@ -290,18 +260,18 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                         .at(first),
                     );
                 }
-                _ => drop(self.env.routines.insert(name, here)),
+                _ => drop(self.env.scope.routines.insert(name, here)),
             }
         }
     }
 
     /// Counts a step; true when the run must stop.
     pub fn step(&mut self, span: Span) -> bool {
-        self.steps += 1;
+        self.budget.steps += 1;
         if self.env.stopped {
             return true;
         }
-        if self.steps > MOST_STEPS {
+        if self.budget.steps > MOST_STEPS {
             return self.stop(
                 Diagnostic::error("too-many-steps", "the program does not come to an end")
                     .at(span)
@@ -325,7 +295,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// Goes one level deeper; false when that is too deep.
     pub fn deeper(&mut self, span: Span) -> bool {
-        if self.depth >= DEEPEST {
+        if self.budget.depth >= DEEPEST {
             self.stop(
                 Diagnostic::error("nested-too-deep", "calls nest too deep")
                     .at(span)
@@ -334,78 +304,15 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             );
             return false;
         }
-        self.depth += 1;
+        self.budget.depth += 1;
         true
-    }
-
-    pub fn frame(&mut self) -> &mut Frame<T> {
-        self.frames.last_mut().expect("there is always a frame")
-    }
-
-    pub fn bind(&mut self, name: Name, span: Span, what: Binding<T>) {
-        let bound = Bound { span, what };
-        let frame = self.frames.last_mut().expect("there is always a frame");
-        if frame.global {
-            let at = name.0 as usize;
-            if at >= self.env.globals.len() {
-                self.env.globals.resize_with(at + 1, || None);
-            }
-            self.env.globals[at] = Some(bound);
-            return;
-        }
-        match frame.locals.iter_mut().find(|(n, _)| *n == name) {
-            Some((_, old)) => *old = bound,
-            None => frame.locals.push((name, bound)),
-        }
-    }
-
-    pub fn lookup(&self, name: Name) -> Option<&Bound<T>> {
-        let frame = self.frames.last().expect("there is always a frame");
-        let local = frame.locals.iter().find(|(n, _)| *n == name).map(|(_, bound)| bound);
-        local.or_else(|| self.env.globals.get(name.0 as usize)?.as_ref())
-    }
-
-    /// The variable that a place is in.
-    pub fn root(&self, place: &Place) -> Option<&Bound<T>> {
-        match place.frame {
-            None => self.env.globals.get(place.name.0 as usize)?.as_ref(),
-            Some(frame) => {
-                let locals = &self.frames.get(frame as usize)?.locals;
-                locals.iter().find(|(n, _)| *n == place.name).map(|(_, bound)| bound)
-            }
-        }
-    }
-
-    pub fn root_mut(&mut self, place: &Place) -> Option<&mut Bound<T>> {
-        match place.frame {
-            None => self.env.globals.get_mut(place.name.0 as usize)?.as_mut(),
-            Some(frame) => {
-                let locals = &mut self.frames.get_mut(frame as usize)?.locals;
-                locals.iter_mut().find(|(n, _)| *n == place.name).map(|(_, bound)| bound)
-            }
-        }
-    }
-
-    /// The whole of what a name means, as a place; that of the caller for one passed by reference.
-    pub fn place_of(&self, name: Name) -> Option<Place> {
-        let at = self.frames.len() - 1;
-        let frame = &self.frames[at];
-        let local = frame.locals.iter().find(|(n, _)| *n == name).map(|(_, bound)| bound);
-        let (bound, frame) = match local {
-            Some(bound) => (bound, Some(at as u32)),
-            None => (self.env.globals.get(name.0 as usize)?.as_ref()?, None),
-        };
-        Some(match &bound.what {
-            Binding::Reference(place) => *place,
-            _ => Place::whole(frame, name),
-        })
     }
 
     /// The value that a variable has now, read through references.
     pub fn peek(&self, bound: &Bound<T>) -> Option<Value<T>> {
         match &bound.what {
             Binding::Variable { value, .. } => Some(value.clone()),
-            Binding::Reference(place) => match &self.root(place)?.what {
+            Binding::Reference(place) => match &self.env.scope.root(place)?.what {
                 Binding::Variable { value, .. } => variables::at_place(value, place).ok(),
                 _ => None,
             },
@@ -435,7 +342,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             self.abandoned |= m.library;
             Flow::Next
         });
-        self.depth -= 1;
+        self.budget.depth -= 1;
         match flow {
             _ if self.env.stopped => Flow::Stop,
             _ if self.abandoned && m.library => Flow::Return(None),
@@ -455,7 +362,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             StmtKind::Block(list) => return Ok(self.statements(m, list)),
             StmtKind::Declare { global, ty, items } => {
                 for item in &m.program[items] {
-                    if self.is_given(m.names[item.name.symbol.0 as usize]) {
+                    if self.env.scope.is_given(m.names[item.name.symbol.0 as usize]) {
                         continue;
                     }
                     if let Err(diagnostic) = self.declare(m, id, global, ty, item) {
@@ -464,7 +371,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     }
                 }
             }
-            StmtKind::Param { name, .. } if self.is_given(m.names[name.symbol.0 as usize]) => {}
+            StmtKind::Param { name, .. }
+                if self.env.scope.is_given(m.names[name.symbol.0 as usize]) => {}
             StmtKind::Param { ty, name, value, range } => {
                 if let Err(diagnostic) = self.param(m, ty, name, value, range) {
                     self.poison(m, name);
@@ -540,8 +448,8 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     /// # Errors
     /// When the program has printed too much; that was reported, and the run is over.
     pub fn print(&mut self, line: String, span: Span) -> Result<(), Diagnostic> {
-        self.printed += line.len() + 24;
-        if self.printed > MOST_PRINTED {
+        self.budget.printed += line.len() + 24;
+        if self.budget.printed > MOST_PRINTED {
             self.stop(
                 Diagnostic::error("too-much-output", "the program prints too much")
                     .at(span)
@@ -622,7 +530,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     true => variables::converted(ty, value).map_err(|d| d.or_at(span))?,
                     false => value,
                 };
-                Some(crate::functions::sets::called(ty, value, m.program.name(item.name.symbol)))
+                Some(crate::value::implicit::called(ty, value, m.program.name(item.name.symbol)))
             }
             None => None,
         };
@@ -631,11 +539,11 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
         if !dims.is_empty() {
             let count = dims.iter().fold(1usize, |count, &n| count.saturating_mul(n));
-            let held = self.held.saturating_add(count);
+            let held = self.budget.held.saturating_add(count);
             if held > MOST_HELD {
                 return Err(variables::too_many(held as f64, MOST_HELD as f64));
             }
-            self.held = held;
+            self.budget.held = held;
         }
         let known = match (&value, &dims[..]) {
             (Some(_), _) | (_, []) => Known::default(),
@@ -659,10 +567,10 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let what = Binding::Variable { ty, value, fixed: !dims.is_empty(), known };
         let name = m.names[item.name.symbol.0 as usize];
         self.check_free(name, item.name.span, true)?;
-        if global && !self.frame().global {
-            self.env.globals[name.0 as usize] = Some(Bound { span: item.name.span, what });
+        if global && !self.env.scope.frame().global {
+            self.env.scope.globals[name.0 as usize] = Some(Bound { span: item.name.span, what });
         } else {
-            self.bind(name, item.name.span, what);
+            self.env.scope.bind(name, item.name.span, what);
         }
         Ok(())
     }
@@ -677,21 +585,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .help("an object is declared with its data in parentheses: AbsPoint P(0, 0, 1);")
     }
 
-    /// The binding of a name in the innermost frame.
-    fn own(&self, name: Name) -> Option<&Bound<T>> {
-        let frame = self.frames.last().expect("there is always a frame");
-        if frame.global {
-            return self.env.globals.get(name.0 as usize)?.as_ref();
-        }
-        frame.locals.iter().find(|(n, _)| *n == name).map(|(_, b)| b)
-    }
-
     /// Marks the name of a failed declaration, so that its uses stay silent; a name that something
     /// else has by right keeps its meaning.
     pub fn poison(&mut self, m: &Module, ident: Ident) {
         let name = m.names[ident.symbol.0 as usize];
-        let turn = self.frame().loops.last().map(|turn| turn.id);
-        let kept = self.own(name).is_some_and(|known| match known.what {
+        let turn = self.env.scope.frame().loops.last().map(|turn| turn.id);
+        let kept = self.env.scope.own(name).is_some_and(|known| match known.what {
             Binding::Turn { turn: made, .. } => turn == Some(made),
             Binding::Object(_) | Binding::Param(_) | Binding::Instance(_) => true,
             Binding::Variable { .. }
@@ -700,14 +599,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             | Binding::Poisoned => false,
         });
         if !kept {
-            self.bind(name, ident.span, Binding::Poisoned);
+            self.env.scope.bind(name, ident.span, Binding::Poisoned);
         }
     }
 
     /// An object must not take a name that is already in use; a variable may be declared
     /// again in another turn of a loop.
     pub fn check_free(&self, name: Name, span: Span, variable: bool) -> Result<(), Diagnostic> {
-        let Some(known) = self.own(name) else { return Ok(()) };
+        let Some(known) = self.env.scope.own(name) else { return Ok(()) };
         let clash = match &known.what {
             Binding::Poisoned => false,
             Binding::Variable { .. } | Binding::Reference(_) | Binding::Multiple(_) => !variable,
@@ -732,7 +631,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         value: ExprId,
         range: Option<(ExprId, ExprId)>,
     ) -> Result<(), Diagnostic> {
-        if !self.frame().global || !self.frame().loops.is_empty() {
+        if !self.env.scope.frame().global || !self.env.scope.frame().loops.is_empty() {
             return Err(Diagnostic::error(
                 "misplaced-param",
                 "a parameter belongs at file level, outside loops and subroutines",
@@ -749,7 +648,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             }
         };
         let text = self.modules.text(m.names[name.symbol.0 as usize]);
-        let text = format!("{}{text}", self.frames.last().map_or("", |f| &*f.prefix));
+        let text = format!("{}{text}", self.env.scope.frames.last().map_or("", |f| &*f.prefix));
         let name_id = m.names[name.symbol.0 as usize];
         self.check_free(name_id, name.span, false)?;
         let default = self.number(m, value)?;
@@ -797,7 +696,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             span: name.span,
         });
         self.env.param_values.push(value);
-        self.bind(name_id, name.span, Binding::Param(number));
+        self.env.scope.bind(name_id, name.span, Binding::Param(number));
         Ok(())
     }
 
@@ -810,9 +709,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     ) -> Result<(), Diagnostic> {
         let right = match op {
             AssignOp::Set => {
-                self.assigning = Some((ExprKey::of(m, value), target));
+                self.arrays.assigning = Some((ExprKey::of(m, value), target));
                 let right = self.expr(m, value);
-                self.assigning = None;
+                self.arrays.assigning = None;
                 self.read(right?, m.program[value].span)?
             }
             AssignOp::With(op) => self.updated(m, target, op, value)?,
@@ -821,7 +720,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         let shape = variables::shape_of(&right);
         self.store(place, right).map_err(|d| {
             let spans = [target, value].map(|e| m.program[e].span);
-            let to = match self.root(&place).map(|bound| &bound.what) {
+            let to = match self.env.scope.root(&place).map(|bound| &bound.what) {
                 Some(Binding::Variable { value, .. }) if d.id == "shapes-differ" => {
                     variables::shape_at(value, &place)
                 }
@@ -834,7 +733,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     fn call_statement(&mut self, m: &Module, expr: ExprId) -> Result<Flow<T>, Diagnostic> {
         if let ExprKind::Call { callee, args } = m.program[expr].kind
             && let Some(symbol) = m.program.as_name(callee)
-            && let Some(&routine) = self.env.routines.get(&m.names[symbol.0 as usize])
+            && let Some(&routine) = self.env.scope.routines.get(&m.names[symbol.0 as usize])
         {
             self.call_routine(m, routine, args, None, m.program[expr].span)?;
             return Ok(if self.env.stopped { Flow::Stop } else { Flow::Next });
@@ -846,7 +745,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     pub fn unknown_kind(&self, word: &str) -> Diagnostic {
         let kinds = self.loader.registry.rows().filter(|r| r.kind).map(|r| &*r.name);
-        let routines = self.env.routines.keys().map(|&name| &**self.modules.text(name));
+        let routines = self.env.scope.routines.keys().map(|&name| &**self.modules.text(name));
         Diagnostic::error("unknown-entity", format!("unknown kind `{word}`"))
             .expected("the name of an entity kind or of a subroutine")
             .suggest(word, kinds.chain(routines))
@@ -855,12 +754,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
 
     /// How many errors there are so far.
     pub fn error_count(&self) -> usize {
-        self.errors
+        self.budget.errors
     }
 
     /// True while hints are worth a search.
     pub fn hints(&self) -> bool {
-        self.errors < MOST_HINTS
+        self.budget.errors < MOST_HINTS
     }
 
     /// The most alike of the names that mean something here.
@@ -868,9 +767,9 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         if !self.hints() {
             return None;
         }
-        let frame = self.frames.last().expect("there is always a frame");
+        let frame = self.env.scope.frame();
         let locals = frame.locals.iter().map(|(name, _)| *name);
-        let globals = self.env.globals.iter().enumerate();
+        let globals = self.env.scope.globals.iter().enumerate();
         let globals = globals.filter(|(_, b)| b.is_some()).map(|(k, _)| Name(k as u32));
         let variables = locals.chain(globals).map(|name| &**self.modules.text(name));
         let functions = self.loader.registry.rows().filter(|r| !r.kind).map(|r| &*r.name);
@@ -887,14 +786,14 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             .expected("an expression that reads the program's variables")
             .help("put the statement into the program"));
         }
-        let Some(bound) = self.root_mut(&place) else { return Err(silent()) };
+        let Some(bound) = self.env.scope.root_mut(&place) else { return Err(silent()) };
         match &mut bound.what {
             Binding::Variable { ty, value: old, fixed, known } => {
                 let taken = Taken { ty: *ty, fixed: *fixed, name: &text };
                 let replaced = variables::store(taken, old, &place, value)?;
                 known.give(place.section, old);
                 if let Some(replaced) = replaced {
-                    self.spare.give(replaced);
+                    self.arrays.spare.give(replaced);
                 }
                 Ok(())
             }

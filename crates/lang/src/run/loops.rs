@@ -1,8 +1,8 @@
 //! Runs a program: loops.
 
 use crate::run::interpreter::{Flow, Interpreter};
-use crate::source::env::{Binding, Passed, Turn};
 use crate::source::module::Module;
+use crate::source::scope::{Binding, Passed, Turn};
 use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_registry::{Scalar, Value};
@@ -16,9 +16,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         self.turns += 1;
         let id = self.turns;
-        self.frame().loops.push(Turn { label, id });
+        self.env.scope.frame_mut().loops.push(Turn { label, id });
         let flow = self.statement(m, body);
-        self.frame().loops.pop();
+        self.env.scope.frame_mut().loops.pop();
         flow
     }
 
@@ -51,7 +51,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         while k <= count {
             let value = from + step * k;
             let what = Binding::variable(Type::Float, Value::Number(value));
-            self.bind(name, variable.span, what);
+            self.env.scope.bind(name, variable.span, what);
             match self.turn(m, Some(value.re()), body, span) {
                 Flow::Break => break,
                 Flow::Next | Flow::Continue => {}
@@ -87,11 +87,12 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             {
                 return Ok(Flow::Next);
             }
-            let label =
-                variable.and_then(|symbol| match &self.lookup(m.names[symbol.0 as usize])?.what {
+            let label = variable.and_then(|symbol| {
+                match &self.env.scope.lookup(m.names[symbol.0 as usize])?.what {
                     Binding::Variable { value: Value::Number(x), .. } => Some(x.re()),
                     _ => None,
-                });
+                }
+            });
             match self.turn(m, label, body, span) {
                 Flow::Break => return Ok(Flow::Next),
                 Flow::Next | Flow::Continue => {}
@@ -116,7 +117,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         span: Span,
     ) -> Result<Flow<T>, Diagnostic> {
         if let Some(symbol) = m.program.as_name(list)
-            && let Some(bound) = self.lookup(m.names[symbol.0 as usize])
+            && let Some(bound) = self.env.scope.lookup(m.names[symbol.0 as usize])
             && let Binding::Multiple(multiple) = &bound.what
         {
             let (items, ty) = (multiple.items.clone(), multiple.ty);
@@ -145,7 +146,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Value::Object(key) => Binding::Object(key),
                 value => Binding::variable(variables::type_of(&value), value),
             };
-            self.bind(name, variable.span, what);
+            self.env.scope.bind(name, variable.span, what);
             match self.turn(m, Some((k + 1) as f64), body, span) {
                 Flow::Break => break,
                 Flow::Next | Flow::Continue => {}
@@ -172,7 +173,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Passed::Value(Value::Object(key)) => Binding::Object(key),
                 Passed::Value(value) => Binding::variable(ty, value),
             };
-            self.bind(name, variable.span, what);
+            self.env.scope.bind(name, variable.span, what);
             match self.turn(m, Some((k + 1) as f64), body, span) {
                 Flow::Break => break,
                 Flow::Next | Flow::Continue => {}

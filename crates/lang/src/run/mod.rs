@@ -1,12 +1,15 @@
 //! The interpreter: statements, expressions, objects, loops, calls, components, sketches and solve sets.
 
+mod budget;
 mod component;
 pub(crate) mod expr;
 pub(crate) mod forward_reference;
+mod implicit_objects;
 pub mod interpreter;
 mod loops;
 mod objects;
 pub mod program;
+mod read_log;
 mod routine;
 mod sketches;
 pub(crate) mod solve_set;

@@ -1,8 +1,9 @@
 //! Runs a program: declarations of objects, and the names they get.
 
 use crate::run::interpreter::Interpreter;
-use crate::source::env::{Binding, Bound, Origin};
+use crate::source::env::Origin;
 use crate::source::module::{Module, RoutineAt};
+use crate::source::scope::{Binding, Bound};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::trace::Key;
@@ -21,7 +22,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         args: List<Arg>,
         span: Span,
     ) -> Result<(), Diagnostic> {
-        if self.is_given(m.names[name.symbol.0 as usize]) {
+        if self.env.scope.is_given(m.names[name.symbol.0 as usize]) {
             return Ok(());
         }
         let outcome = self.object_of(m, id, kind, name, args, span);
@@ -51,12 +52,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
             Some(row) if row.kind => row,
             None if word == "Sketch"
-                && !self.env.routines.contains_key(&m.names[kind.symbol.0 as usize]) =>
+                && !self.env.scope.routines.contains_key(&m.names[kind.symbol.0 as usize]) =>
             {
                 return self.sketch_object(m, id, name, args, span);
             }
             other => {
-                if let Some(&routine) = self.env.routines.get(&m.names[kind.symbol.0 as usize]) {
+                if let Some(&routine) =
+                    self.env.scope.routines.get(&m.names[kind.symbol.0 as usize])
+                {
                     return self.instance(m, routine, name, args, span);
                 }
                 if word == crate::run::component::WORD {
@@ -127,7 +130,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 None => diagnostic,
             }
         })?;
-        let frame = self.frames.last().expect("there is always a frame");
+        let frame = self.env.scope.frame();
         let repeated = !frame.global || !frame.loops.is_empty() || !frame.prefix.is_empty();
         self.env.origins.push(Origin { module: self.current as u32, stmt: id, repeated });
         let what = match turn {
@@ -135,7 +138,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some((family, turn)) => Binding::Turn { now: key, turn, family },
         };
         self.enter_families(full, key);
-        self.bind(name_id, name.span, what);
+        self.env.scope.bind(name_id, name.span, what);
         Ok(())
     }
 
@@ -143,7 +146,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn with_parent(&self, m: &Module, diagnostic: Diagnostic) -> Diagnostic {
         let text = m.program.slice(diagnostic.span());
         let symbol = m.program.symbol(text).filter(|_| diagnostic.id == "wrong-class");
-        match symbol.and_then(|symbol| self.lookup(m.names[symbol.0 as usize])) {
+        match symbol.and_then(|symbol| self.env.scope.lookup(m.names[symbol.0 as usize])) {
             Some(Bound { span, what: Binding::Object(_) }) => {
                 diagnostic.note_at(*span, format!("`{text}` is declared here"))
             }
@@ -160,7 +163,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         name: Ident,
     ) -> Result<(Option<String>, Option<(Arc<str>, u64)>), Diagnostic> {
         let text = m.program.name(name.symbol);
-        let frame = self.frames.last().expect("there is always a frame");
+        let frame = self.env.scope.frame();
         let family =
             if frame.prefix.is_empty() { None } else { Some(format!("{}{text}", frame.prefix)) };
         let Some(turn) = frame.loops.last() else { return Ok((family, None)) };
@@ -223,7 +226,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some((family, _)) => family,
             None => full.clone(),
         };
-        self.bind(name_id, name.span, Binding::Instance(family));
+        self.env.scope.bind(name_id, name.span, Binding::Instance(family));
         Ok(full)
     }
 }

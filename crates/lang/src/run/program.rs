@@ -3,9 +3,10 @@
 use crate::model_file::names::plain_name;
 use crate::run::interpreter::{Inputs, Interpreter, STACK_BYTES};
 use crate::run::sketches::Site;
-use crate::source::env::{Binding, Bound, Environment, Evaluation};
+use crate::source::env::{Environment, Evaluation};
 use crate::source::fault_location;
 use crate::source::module::{Convert, Loader, Module, Modules};
+use crate::source::scope::{Binding, Bound};
 use crate::source::sketch_file::SketchFile;
 use crate::source::world::World;
 use crate::value::number_path::NumberPath;
@@ -17,9 +18,13 @@ use std::sync::Arc;
 
 /// What running a program needs.
 pub struct Program<'a> {
+    /// The modules parsed up to now.
     pub modules: &'a mut Modules,
+    /// The files that may be read.
     pub world: &'a dyn World,
+    /// The rows of everything that can be called.
     pub registry: &'a Registry,
+    /// The source texts, for places in diagnostics.
     pub sources: &'a mut Sources,
     /// The sketch that is the model, when it is not a program.
     pub sketch: Option<Arc<SketchFile>>,
@@ -30,9 +35,17 @@ pub struct Program<'a> {
 /// Why a number of an object is not a literal of the text.
 pub enum NotLiteral {
     /// It is computed from these names.
-    Expression { span: Span, names: Vec<String> },
+    Expression {
+        /// The place of the expression.
+        span: Span,
+        /// The names that it reads.
+        names: Vec<String>,
+    },
     /// Several objects are made by the statement it stands in.
-    Shared { span: Span },
+    Shared {
+        /// The place of the statement.
+        span: Span,
+    },
     /// It is a default.
     Default,
 }
@@ -226,10 +239,10 @@ fn bind_objects<T: Scalar>(
     graph: &Graph<T>,
     env: &mut Environment<T>,
 ) {
-    env.globals.resize_with(modules.name_count(), || None);
+    env.scope.make_room(modules.name_count());
     for &name in &expression.names {
         let text = modules.text(name);
-        let known = &mut env.globals[name.0 as usize];
+        let known = &mut env.scope.globals[name.0 as usize];
         if known.is_none()
             && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
         {

@@ -1,8 +1,8 @@
 //! Runs a program: calls of subroutines and functions.
 
 use crate::run::interpreter::{Flow, Interpreter, silent};
-use crate::source::env::{Binding, Bound, Frame, Multiple, Passed};
 use crate::source::module::{Module, RoutineAt};
+use crate::source::scope::{Binding, Bound, Frame, Multiple, Passed};
 use crate::value::subarray::Place;
 use crate::value::variables;
 use moldloft_diag::{Diagnostic, Span};
@@ -27,10 +27,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let given: Vec<Arg> = m.program[args].to_vec();
         let ordered = self.order_arguments(m, &callee, &name, &formals, &given, span)?;
 
-        let prefix = instance.clone().unwrap_or_else(|| self.frame().prefix.clone());
+        let prefix = instance.clone().unwrap_or_else(|| self.env.scope.frame().prefix.clone());
         let mut frame = Frame::new(false, prefix);
         if instance.is_none() {
-            frame.loops = self.frame().loops.clone();
+            frame.loops = self.env.scope.frame().loops.clone();
         }
         frame.called = Some((span, self.current as u32));
         let mut returned: Vec<(Place, Span)> = Vec::new();
@@ -84,14 +84,14 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if !self.deeper(span) {
             return Err(silent());
         }
-        let held = self.held;
-        self.frames.push(frame);
+        let held = self.budget.held;
+        self.env.scope.frames.push(frame);
         let outer = std::mem::replace(&mut self.current, at.module);
         let flow = self.statements(&callee, routine.body);
         self.current = outer;
-        self.frames.pop();
-        self.depth -= 1;
-        self.held = held;
+        self.env.scope.frames.pop();
+        self.budget.depth -= 1;
+        self.budget.held = held;
         if callee.library && std::mem::take(&mut self.abandoned) {
             // Told already; a caller in the library is left as well.
             self.abandoned = m.library;
@@ -118,7 +118,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     /// The arguments that a name stands for, when it is a multiple argument.
     pub fn multiple(&self, m: &Module, expr: ExprId) -> Option<Vec<Passed<T>>> {
         let symbol = m.program.as_name(expr)?;
-        match &self.lookup(m.names[symbol.0 as usize])?.what {
+        match &self.env.scope.lookup(m.names[symbol.0 as usize])?.what {
             Binding::Multiple(multiple) => Some(multiple.items.clone()),
             _ => None,
         }
@@ -145,7 +145,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .note_at(formal.name.span, "declared as returned here"),
             _ => d,
         })?;
-        let Some(bound) = self.root(&place) else { return Err(silent()) };
+        let Some(bound) = self.env.scope.root(&place) else { return Err(silent()) };
         let (ty, value) = match &bound.what {
             Binding::Variable { ty, value, .. } => (*ty, value),
             Binding::Poisoned => return Err(silent()),

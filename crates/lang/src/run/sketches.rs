@@ -1,8 +1,9 @@
 //! Runs a program: the objects of loaded sketches.
 
 use crate::run::interpreter::Interpreter;
-use crate::source::env::{Binding, Bound, Origin, Param};
+use crate::source::env::{Origin, Param};
 use crate::source::module::Module;
+use crate::source::scope::{Binding, Bound};
 use crate::source::sketch_file::{Drawn, SketchFile};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_mesh::Mesh;
@@ -28,10 +29,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     pub fn load_sketch(&mut self, path: &str, id: StmtId, span: Span) -> Result<(), Diagnostic> {
         let file = self.modules.load_sketch(self.current, path, span, &mut self.loader)?;
         // The parser has told that it stands in a loop or subroutine.
-        if !self.frame().global || !self.frame().loops.is_empty() {
+        if !self.env.scope.frame().global || !self.env.scope.frame().loops.is_empty() {
             return Ok(());
         }
-        if !self.sketches_done.insert(file.path.clone()) {
+        if !self.env.scope.sketches_done.insert(file.path.clone()) {
             return Ok(());
         }
         let origin = self.sketch_origin(id);
@@ -66,10 +67,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let own = crate::model_file::names::identifier(&drawn.object.name);
             for alias in [&prefix, &prefix.to_ascii_lowercase(), &own] {
                 let name = self.modules.name(alias);
-                self.env.globals.resize_with(self.modules.name_count(), || None);
-                if self.lookup(name).is_none() {
+                self.env.scope.make_room(self.modules.name_count());
+                if self.env.scope.lookup(name).is_none() {
                     let what = Binding::Instance(prefix.as_str().into());
-                    self.env.globals[name.0 as usize] = Some(Bound { span: site.span, what });
+                    self.env.scope.globals[name.0 as usize] = Some(Bound { span: site.span, what });
                 }
             }
         }

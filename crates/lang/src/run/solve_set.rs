@@ -1,9 +1,10 @@
 //! Solve sets in a run: their kind, and what a statement that declares one notes for the solver.
 
 use crate::run::interpreter::Interpreter;
-use crate::source::env::{Binding, Solve};
+use crate::source::env::Solve;
 use crate::source::fault_location;
 use crate::source::module::Module;
+use crate::source::scope::Binding;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
@@ -64,7 +65,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         full: &str,
         span: Span,
     ) -> Result<(), Diagnostic> {
-        if !self.frame().global || !self.frame().loops.is_empty() {
+        if !self.env.scope.frame().global || !self.env.scope.frame().loops.is_empty() {
             return Err(Diagnostic::error(
                 "misplaced-param",
                 "a solve set belongs at file level, outside loops and subroutines",
@@ -80,7 +81,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let mut unknowns: Vec<usize> = Vec::new();
         for item in items {
             let name = m.program.as_name(item).map(|symbol| m.names[symbol.0 as usize]);
-            let bound = name.and_then(|name| self.lookup(name));
+            let bound = name.and_then(|name| self.env.scope.lookup(name));
             let at = m.program[item].span;
             let number = match bound.map(|b| &b.what) {
                 Some(Binding::Param(number)) => *number,

@@ -1,94 +1,15 @@
+//! What a run leaves behind: the names, parameters, solve sets and printed lines that expressions refer to afterwards.
+
 use crate::functions::files::Files;
-use crate::source::module::{Name, RoutineAt};
-use crate::value::initialised::Known;
-use crate::value::subarray::Place;
+use crate::source::scope::Scope;
 use indexmap::IndexMap;
 use moldloft_diag::Span;
 use moldloft_model::Graph;
 use moldloft_num::trace::Key;
 use moldloft_registry::{Context, Scalar, Value};
-use moldloft_syntax::sdl::{StmtId, Type};
+use moldloft_syntax::sdl::StmtId;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// What a name means.
-#[derive(Clone, Debug)]
-pub enum Binding<T: Scalar> {
-    /// A variable of a type; `fixed` when its dimensions were declared.
-    Variable { ty: Type, value: Value<T>, fixed: bool, known: Known },
-    /// A part of a variable of a caller, passed by reference.
-    Reference(Place),
-    /// The arguments that a multiple argument takes.
-    Multiple(Box<Multiple<T>>),
-    /// A design parameter, by its number.
-    Param(usize),
-    /// An object.
-    Object(Key),
-    /// Something made in loops: in the turn `turn` it means `now`, afterwards all of them.
-    Turn { now: Key, turn: u64, family: Arc<str> },
-    /// A named call of a subroutine: the family of the objects in it.
-    Instance(Arc<str>),
-    /// Its declaration failed and was reported; what uses it stays silent.
-    Poisoned,
-}
-
-impl<T: Scalar> Binding<T> {
-    /// A variable whose dimensions follow what is assigned.
-    pub fn variable(ty: Type, value: Value<T>) -> Self {
-        Binding::Variable { ty, value, fixed: false, known: Known::default() }
-    }
-}
-
-/// A multiple argument, read one after the other.
-#[derive(Clone, Debug)]
-pub struct Multiple<T: Scalar> {
-    pub ty: Type,
-    pub items: Vec<Passed<T>>,
-    /// How many were read by `next`.
-    pub read: usize,
-}
-
-/// An argument as it was passed.
-#[derive(Clone, Debug)]
-pub enum Passed<T: Scalar> {
-    Value(Value<T>),
-    Place(Place),
-}
-
-/// A binding and where it was made.
-#[derive(Clone, Debug)]
-pub struct Bound<T: Scalar> {
-    pub span: Span,
-    pub what: Binding<T>,
-}
-
-/// The variables of a routine's call, or of the file level of a load.
-#[derive(Debug)]
-pub struct Frame<T: Scalar> {
-    pub locals: Vec<(Name, Bound<T>)>,
-    /// True at file level, where names are global.
-    pub global: bool,
-    /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
-    pub prefix: Arc<str>,
-    pub loops: Vec<Turn>,
-    /// The call that the frame belongs to, and the module it stands in.
-    pub called: Option<(Span, u32)>,
-}
-
-/// A turn of a loop under way.
-#[derive(Clone, Debug)]
-pub struct Turn {
-    /// The loop variable's value as it stands in names; `None` in a `while`.
-    pub label: Option<f64>,
-    /// Unique among the turns of a run.
-    pub id: u64,
-}
-
-impl<T: Scalar> Frame<T> {
-    pub fn new(global: bool, prefix: Arc<str>) -> Self {
-        Self { locals: Vec::new(), global, prefix, loops: Vec::new(), called: None }
-    }
-}
 
 /// Gives the number of that name its derivatives.
 pub type Seed<'a, T> = &'a (dyn Fn(&str, T) -> T + Sync);
@@ -113,7 +34,9 @@ pub struct Param {
 /// Where an object was declared.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin {
+    /// The module, by its number.
     pub module: u32,
+    /// The statement of the module.
     pub stmt: StmtId,
     /// True when the statement may be executed more than once: in a loop or a subroutine.
     pub repeated: bool,
@@ -121,7 +44,9 @@ pub struct Origin {
 
 /// A graph and what the run that made it left behind.
 pub struct Evaluation<T: Scalar> {
+    /// The objects.
     pub graph: Graph<T>,
+    /// The names, parameters and results of the run.
     pub env: Environment<T>,
 }
 
@@ -165,7 +90,9 @@ impl SolveStatus {
 /// A solve set as a run found it.
 #[derive(Clone, Debug)]
 pub struct Solve<T> {
+    /// The name of the set.
     pub name: Arc<str>,
+    /// The place of its declaration.
     pub span: Span,
     /// Parameters, by their numbers.
     pub unknowns: Vec<usize>,
@@ -178,18 +105,23 @@ pub struct Solve<T> {
 /// All that a run leaves behind: what expressions may refer to afterwards.
 #[derive(Debug)]
 pub struct Environment<T: Scalar> {
-    pub globals: Vec<Option<Bound<T>>>,
-    pub routines: HashMap<Name, RoutineAt>,
+    /// What names mean at the end of the run.
+    pub scope: Scope<T>,
+    /// The design parameters, in the order of their declaration.
     pub params: Vec<Param>,
+    /// Their values, by the same numbers.
     pub param_values: Vec<T>,
     /// Objects made in loops and subroutines, by the name without its last index.
     pub families: IndexMap<Arc<str>, Vec<Key>>,
+    /// The place of declaration of each object, by its key.
     pub origins: Vec<Origin>,
     /// Variables and formulas of a model file.
     pub numbers: IndexMap<String, T>,
+    /// The solve sets, in the order of the text.
     pub solves: Vec<Solve<T>>,
     /// Steps and status of the solve sets, once they are solved.
     pub solved: IndexMap<String, (usize, SolveStatus)>,
+    /// The lines printed.
     pub printed: Vec<String>,
     /// Files that were opened, and what was written.
     pub files: Files,
@@ -204,8 +136,7 @@ pub struct Environment<T: Scalar> {
 impl<T: Scalar> Default for Environment<T> {
     fn default() -> Self {
         Self {
-            globals: Vec::new(),
-            routines: HashMap::new(),
+            scope: Scope::default(),
             params: Vec::new(),
             param_values: Vec::new(),
             families: IndexMap::new(),

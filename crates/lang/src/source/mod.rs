@@ -4,6 +4,7 @@ pub mod env;
 pub mod fault_location;
 pub(crate) mod library;
 pub mod module;
+pub mod scope;
 pub mod sketch_file;
 pub(crate) mod world;
 

@@ -1,3 +1,5 @@
+//! Parsed files with their names resolved: every module of a model has one numbering of names.
+
 use crate::World;
 use crate::source::sketch_file::SketchFile;
 use moldloft_diag::{Diagnostic, Sources, Span};
@@ -13,7 +15,9 @@ pub struct Name(pub u32);
 /// A routine of a module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RoutineAt {
+    /// The module, by its number.
     pub module: usize,
+    /// The routine, by its number in the module.
     pub routine: RoutineId,
 }
 
@@ -22,6 +26,7 @@ pub struct RoutineAt {
 pub struct Module {
     /// The name that the world gave it.
     pub path: String,
+    /// The syntax tree.
     pub program: Program,
     /// The model-wide name of each symbol.
     pub names: Vec<Name>,
@@ -47,6 +52,7 @@ pub struct Modules {
 }
 
 impl Modules {
+    /// The module of that number.
     pub fn get(&self, module: usize) -> &Arc<Module> {
         &self.modules[module]
     }
@@ -56,10 +62,12 @@ impl Modules {
         Arc::get_mut(&mut self.modules[module]).expect("no run holds on to a module")
     }
 
+    /// The number of modules.
     pub fn len(&self) -> usize {
         self.modules.len()
     }
 
+    /// The model-wide number of a name; a new one for a new name.
     pub fn name(&mut self, text: &str) -> Name {
         if let Some(&name) = self.texts.get(text) {
             return name;
@@ -71,10 +79,12 @@ impl Modules {
         name
     }
 
+    /// The text of a name.
     pub fn text(&self, name: Name) -> &Arc<str> {
         &self.names[name.0 as usize]
     }
 
+    /// The number of names.
     pub fn name_count(&self) -> usize {
         self.names.len()
     }
@@ -243,9 +253,13 @@ impl Modules {
 
 /// What loading a file needs.
 pub struct Loader<'a> {
+    /// The files that may be read.
     pub world: &'a dyn World,
+    /// The rows of everything that can be called.
     pub registry: &'a Registry,
+    /// The source texts, for places in diagnostics.
     pub sources: &'a mut Sources,
+    /// Diagnostics of the texts read.
     pub diagnostics: &'a mut Vec<Diagnostic>,
     /// The program of a model file.
     pub converted: Convert,

@@ -22,7 +22,7 @@ pub fn plain<T: Real>(value: &Value<T>) -> String {
         Value::Plane(p) => {
             format!("plane through {} with normal {}", vector(p.point), vector(p.normal))
         }
-        other => crate::functions::sets::described(other)
+        other => crate::value::implicit::described(other)
             .unwrap_or_else(|| other.class().with_article().to_string()),
     }
 }

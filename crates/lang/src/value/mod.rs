@@ -1,6 +1,7 @@
 //! Values of the language: what variables hold, parts of arrays, members, operators, and their display.
 
 pub mod display;
+pub(crate) mod implicit;
 pub(crate) mod initialised;
 pub mod member;
 pub mod number_path;

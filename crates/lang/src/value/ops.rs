@@ -1,9 +1,10 @@
 //! Operators on values: element by element over rows and grids of equal shape, or with a scalar.
 
+use crate::value::variables::Called as _;
 use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Value, Vectors as Planes};
-use moldloft_syntax::sdl::BinaryOp;
+use moldloft_syntax::sdl::{BinaryOp, UnaryOp};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -295,7 +296,7 @@ pub(crate) fn binary<T: Real>(
     b: &Value<T>,
 ) -> Result<Value<T>, Diagnostic> {
     use Elements::*;
-    if let Some(outcome) = crate::functions::sets::binary(op, a, b) {
+    if let Some(outcome) = crate::value::implicit::binary(op, a, b) {
         return outcome;
     }
     let (a, b) = (&*gathered(a), &*gathered(b));
@@ -407,7 +408,7 @@ fn unsupported(op: BinaryOp, what: &str) -> Diagnostic {
 
 /// `-a`.
 pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
-    if let Some(value) = crate::functions::sets::negated(a) {
+    if let Some(value) = crate::value::implicit::negated(a) {
         return Ok(value);
     }
     Ok(match elements(&gathered(a), "-")? {
@@ -420,7 +421,7 @@ pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
 
 /// `|a|`: the length of vectors, the absolute value of numbers.
 pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
-    if let Some(value) = crate::functions::sets::magnitude(a) {
+    if let Some(value) = crate::value::implicit::magnitude(a) {
         return Ok(value);
     }
     Ok(match elements(a, "|")? {
@@ -442,4 +443,36 @@ pub(crate) fn braces<T: Real>(items: Vec<Value<T>>) -> Result<Value<T>, Diagnost
         return Ok(vectors(zipped(&xy, &**z, |(x, y), z| Vec3::new(x, y, z))?));
     }
     Ok(Value::list(items))
+}
+
+pub(crate) fn is_elementwise(op: BinaryOp) -> bool {
+    matches!(
+        op,
+        BinaryOp::Add
+            | BinaryOp::Sub
+            | BinaryOp::Mul
+            | BinaryOp::Div
+            | BinaryOp::Caret
+            | BinaryOp::Dot
+            | BinaryOp::Cross
+    )
+}
+
+pub(crate) fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    match op {
+        UnaryOp::Plus => Ok(value.clone()),
+        UnaryOp::Minus => negated(value),
+        UnaryOp::Not => match value {
+            Value::Number(x) => Ok(Value::Number(T::from(f64::from(u8::from(x.re() == 0.0))))),
+            Value::Numbers(a) => Ok(not(a)),
+            other => Err(Diagnostic::error("wrong-operand", "`not` takes a condition")
+                .expected("a comparison or a number")
+                .found(other.called())),
+        },
+    }
+}
+
+/// The value of `a op b` for two numbers; `None` where it is not a number.
+pub(crate) fn of_numbers<T: Real>(op: BinaryOp, a: T, b: T) -> Option<T> {
+    rules::<T>(op)?.nn.map(|f| f(a, b))
 }

@@ -12,8 +12,11 @@ const MOST_ELEMENTS: f64 = 1e7;
 
 /// What is known of the variable that a value is stored into.
 pub struct Taken<'a> {
+    /// The declared type.
     pub ty: Type,
+    /// True when the dimensions were declared.
     pub fixed: bool,
+    /// The name, for messages.
     pub name: &'a str,
 }
 
@@ -37,6 +40,7 @@ pub use moldloft_arrays::type_name as a;
 
 /// [`a`] as a method.
 pub trait Called {
+    /// The name of the value's type, with its article.
     fn called(&self) -> &'static str;
 }
 
@@ -473,9 +477,13 @@ pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
 /// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `number`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
+    /// Numbers, and their extents.
     Numbers(ArrayShape),
+    /// Vectors, and their extents.
     Vectors(ArrayShape),
+    /// A list, and its length.
     List(usize),
+    /// A value of another class.
     Other(Class),
 }
 

@@ -1,6 +1,6 @@
 //! Shapes with closed forms, and random numbers.
 
-use moldloft_num::{Curve, CurveFormula, Jet, Surface, SurfaceFormula, Vec3};
+use moldloft_num::{CurveFormula, Jet, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineSurface, KnotVector};
 pub use moldloft_testing::Random;
 

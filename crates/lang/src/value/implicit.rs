@@ -1,17 +1,12 @@
-//! Operators and functions on fields and sets, and what their declarations make.
+//! Operators and functions on fields and sets.
 
-use crate::run::interpreter::{Interpreter, silent};
-use crate::source::env::{Binding, Origin};
-use crate::source::module::Module;
 use crate::value::variables::Called as _;
 use moldloft_diag::Diagnostic;
 use moldloft_field::{Primitive, field_value, primitive_of, set_of, set_value};
-use moldloft_model::{Declaration, Extent, Failure};
-use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::field_id;
-use moldloft_registry::{Array, Attributes, CallError, Class, Scalar, Value};
-use moldloft_syntax::sdl::{BinaryOp, Declarator, StmtId, StmtKind, Symbol, Type};
+use moldloft_registry::{Array, CallError, Class, Value};
+use moldloft_syntax::sdl::{BinaryOp, Type};
 use std::sync::Arc;
 
 fn is_implicit<T: Real>(value: &Value<T>) -> bool {
@@ -177,15 +172,6 @@ pub(crate) fn functions<T: Real>(
     })))
 }
 
-/// The class of objects that a declaration of this type makes.
-fn row_of(ty: Type) -> Option<&'static str> {
-    match ty {
-        Type::Field => Some("Field"),
-        Type::Set => Some("Set"),
-        _ => None,
-    }
-}
-
 /// A set or field with the name that it is declared under, for its faces; one that was given by
 /// `attributes` stays.
 pub(crate) fn called<T: Real>(ty: Type, value: Value<T>, name: &str) -> Value<T> {
@@ -196,86 +182,6 @@ pub(crate) fn called<T: Real>(ty: Type, value: Value<T>, name: &str) -> Value<T>
             _ => value,
         },
         (_, value) => value,
-    }
-}
-
-impl<T: Scalar> Interpreter<'_, '_, T> {
-    /// The names that statements of the module under way give another value: they are variables.
-    fn is_assigned(&mut self, m: &Module, symbol: Symbol) -> bool {
-        let names = self.assigned.entry(self.current).or_insert_with(|| {
-            let target = |k: u32| match m.program[StmtId(k)].kind {
-                StmtKind::Assign { target, .. } => m.program.as_name(target),
-                _ => None,
-            };
-            (0..m.program.stmt_count() as u32).filter_map(target).collect()
-        });
-        names.contains(&symbol)
-    }
-
-    /// Runs `work`, noting what it reads if that is asked.
-    pub fn noting<R>(&mut self, asked: bool, work: impl FnOnce(&mut Self) -> R) -> R {
-        if asked {
-            self.reads.clear();
-        }
-        self.noting_reads = asked;
-        let result = work(self);
-        self.noting_reads = false;
-        result
-    }
-
-    /// True when a declaration names an object: of a field or set at file level, once and for all.
-    pub fn makes_object(&mut self, m: &Module, ty: Type, item: &Declarator) -> bool {
-        if row_of(ty).is_none() || item.value.is_none() || self.is_assigned(m, item.name.symbol) {
-            return false;
-        }
-        let frame = self.frames.last().expect("there is always a frame");
-        frame.global
-            && frame.loops.is_empty()
-            && frame.prefix.is_empty()
-            && self.components.is_empty()
-            && self.run.extent() == Extent::Whole
-    }
-
-    /// Declares the object of `field f = ...;` or `set s = ...;`. What the expression read becomes its
-    /// parents.
-    pub fn implicit_object(
-        &mut self,
-        m: &Module,
-        id: StmtId,
-        ty: Type,
-        item: &Declarator,
-        value: Value<T>,
-    ) -> Result<(), Diagnostic> {
-        let row = row_of(ty).and_then(|name| self.loader.registry.get(name)).ok_or_else(silent)?;
-        let name = m.names[item.name.symbol.0 as usize];
-        self.check_free(name, item.name.span, false)?;
-        let mut parents = std::mem::take(&mut self.reads);
-        parents.sort_unstable();
-        parents.dedup();
-        let parents = match parents.is_empty() {
-            true => Value::Unset,
-            false => Value::list(parents.into_iter().map(Value::Object)),
-        };
-        let text = m.program.name(item.name.symbol);
-        let origin = self.env.origins.len() as u32;
-        let (args, head) = (vec![value, parents], Attributes::of(row.class));
-        let declaration = Declaration { name: text, row, args, head, origin };
-        let key = self
-            .run
-            .declare(declaration)
-            .map_err(|fault| crate::source::fault_location::unplaced(&fault).at(item.name.span))?;
-        let module = self.current as u32;
-        self.env.origins.push(Origin { module, stmt: id, repeated: false });
-        self.bind(name, item.name.span, Binding::Object(key));
-        Ok(())
-    }
-
-    /// The value of an object, noted as read.
-    pub fn forced(&mut self, key: Key) -> Result<Value<T>, Failure> {
-        if self.noting_reads {
-            self.reads.push(key);
-        }
-        self.run.force(key)
     }
 }
 

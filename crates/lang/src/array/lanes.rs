@@ -1,0 +1,70 @@
+//! Rows and grids that a tape computes.
+
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_elementwise::Src;
+use moldloft_num::Real;
+use moldloft_registry::{Array, ArrayShape, Value, Vectors};
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// A row or grid that a tape computes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lanes {
+    pub shape: ArrayShape,
+    pub(super) what: What,
+}
+
+impl Lanes {
+    /// The results of a tape that make up its elements.
+    pub fn roots(&self) -> SmallVec<[Src; 3]> {
+        match self.what {
+            What::Number(a) => SmallVec::from_slice(&[a]),
+            What::Vector(v) => SmallVec::from_slice(&v),
+        }
+    }
+
+    /// The rows of a value of this kind and shape that nothing else holds.
+    pub fn rows_of<'v, T: Real>(
+        &self,
+        value: &'v mut Value<T>,
+    ) -> Option<SmallVec<[&'v mut Vec<T>; 3]>> {
+        let mut rows = SmallVec::new();
+        match (value, self.what) {
+            (Value::Numbers(a), What::Number(_)) if a.shape == self.shape => {
+                rows.push(&mut Arc::get_mut(a)?.items);
+            }
+            (Value::Vectors(a), What::Vector(_)) if a.shape == self.shape => {
+                rows.extend(&mut Arc::get_mut(a)?.planes);
+            }
+            _ => return None,
+        }
+        Some(rows)
+    }
+
+    /// The array of the rows of its roots.
+    pub fn value<T: Real>(&self, rows: SmallVec<[Vec<T>; 3]>) -> Value<T> {
+        let shape = self.shape;
+        let mut rows = rows.into_iter();
+        let mut next = || rows.next().expect("a row for each root");
+        match self.what {
+            What::Number(_) => Value::Numbers(Arc::new(Array { shape, items: next() })),
+            What::Vector(_) => {
+                Value::Vectors(Arc::new(Vectors { shape, planes: [next(), next(), next()] }))
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum What {
+    Number(Src),
+    Vector([Src; 3]),
+}
+
+/// The functions whose results a tape checks, by the number of the check.
+pub(crate) type Calls = Vec<(Span, &'static str)>;
+
+pub(crate) fn not_finite(name: &str) -> Diagnostic {
+    Diagnostic::error("not-finite", format!("the result of {name} is not a finite number"))
+        .expected("arguments inside the function's domain")
+}

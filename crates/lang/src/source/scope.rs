@@ -1,0 +1,252 @@
+//! What names mean at a place of a run.
+
+use crate::source::module::{Name, RoutineAt};
+use crate::value::initialised::Known;
+use crate::value::subarray::Place;
+use moldloft_diag::Span;
+use moldloft_num::trace::Key;
+use moldloft_registry::{Scalar, Value};
+use moldloft_syntax::sdl::Type;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+/// What a name means.
+#[derive(Clone, Debug)]
+pub enum Binding<T: Scalar> {
+    /// A variable of a type; `fixed` when its dimensions were declared.
+    Variable {
+        /// The declared type.
+        ty: Type,
+        /// The value now.
+        value: Value<T>,
+        /// True when the dimensions were declared.
+        fixed: bool,
+        /// The elements that have a value, and whether edges meet.
+        known: Known,
+    },
+    /// A part of a variable of a caller, passed by reference.
+    Reference(Place),
+    /// The arguments that a multiple argument takes.
+    Multiple(Box<Multiple<T>>),
+    /// A design parameter, by its number.
+    Param(usize),
+    /// An object.
+    Object(Key),
+    /// Something made in loops: in the turn `turn` it means `now`, afterwards all of them.
+    Turn {
+        /// The object of the turn.
+        now: Key,
+        /// The turn, by its number.
+        turn: u64,
+        /// The name of all turns' objects.
+        family: Arc<str>,
+    },
+    /// A named call of a subroutine: the family of the objects in it.
+    Instance(Arc<str>),
+    /// Its declaration failed and was reported; what uses it stays silent.
+    Poisoned,
+}
+
+impl<T: Scalar> Binding<T> {
+    /// A variable whose dimensions follow what is assigned.
+    pub fn variable(ty: Type, value: Value<T>) -> Self {
+        Binding::Variable { ty, value, fixed: false, known: Known::default() }
+    }
+}
+
+/// A multiple argument, read one after the other.
+#[derive(Clone, Debug)]
+pub struct Multiple<T: Scalar> {
+    /// The declared type of every argument.
+    pub ty: Type,
+    /// The arguments, in order.
+    pub items: Vec<Passed<T>>,
+    /// How many were read by `next`.
+    pub read: usize,
+}
+
+/// An argument as it was passed.
+#[derive(Clone, Debug)]
+pub enum Passed<T: Scalar> {
+    /// A value, copied.
+    Value(Value<T>),
+    /// A variable of the caller, by reference.
+    Place(Place),
+}
+
+/// A binding and where it was made.
+#[derive(Clone, Debug)]
+pub struct Bound<T: Scalar> {
+    /// The place of the declaration.
+    pub span: Span,
+    /// The meaning of the name.
+    pub what: Binding<T>,
+}
+
+/// The variables of a routine's call, or of the file level of a load.
+#[derive(Debug)]
+pub struct Frame<T: Scalar> {
+    /// The variables, in the order of their declaration.
+    pub locals: Vec<(Name, Bound<T>)>,
+    /// True at file level, where names are global.
+    pub global: bool,
+    /// Goes before the names of objects: "fore." in the call `leg fore(...)`.
+    pub prefix: Arc<str>,
+    /// The loops under way, outermost first.
+    pub loops: Vec<Turn>,
+    /// The call that the frame belongs to, and the module it stands in.
+    pub called: Option<(Span, u32)>,
+}
+
+/// A turn of a loop under way.
+#[derive(Clone, Debug)]
+pub struct Turn {
+    /// The loop variable's value as it stands in names; `None` in a `while`.
+    pub label: Option<f64>,
+    /// Unique among the turns of a run.
+    pub id: u64,
+}
+
+impl<T: Scalar> Frame<T> {
+    /// A frame without variables.
+    pub fn new(global: bool, prefix: Arc<str>) -> Self {
+        Self { locals: Vec::new(), global, prefix, loops: Vec::new(), called: None }
+    }
+
+    /// The variable of that name.
+    pub fn local(&self, name: Name) -> Option<&Bound<T>> {
+        self.locals.iter().find(|(n, _)| *n == name).map(|(_, bound)| bound)
+    }
+}
+
+/// All that a file has of its own while it runs: a component runs in another scope than its user.
+#[derive(Debug)]
+pub struct Scope<T: Scalar> {
+    /// What names mean at file level, by their numbers.
+    pub globals: Vec<Option<Bound<T>>>,
+    /// Subroutines and functions.
+    pub routines: HashMap<Name, RoutineAt>,
+    /// The calls under way; the first is the file itself.
+    pub frames: Vec<Frame<T>>,
+    /// The modules that were run.
+    pub executed: HashSet<usize>,
+    /// Sketch files that were brought in.
+    pub sketches_done: HashSet<String>,
+    /// The names that the user of a component has given.
+    pub given: HashSet<Name>,
+}
+
+impl<T: Scalar> Default for Scope<T> {
+    fn default() -> Self {
+        Self::of_file("".into(), 0)
+    }
+}
+
+impl<T: Scalar> Scope<T> {
+    /// The scope of a file of which nothing was run yet: `prefix` goes before the names of its objects, and
+    /// `names` are known.
+    pub fn of_file(prefix: Arc<str>, names: usize) -> Self {
+        let mut globals = Vec::new();
+        globals.resize_with(names, || None);
+        Self {
+            globals,
+            routines: HashMap::new(),
+            frames: vec![Frame::new(true, prefix)],
+            executed: HashSet::new(),
+            sketches_done: HashSet::new(),
+            given: HashSet::new(),
+        }
+    }
+
+    /// Makes ready for statements, or for an expression, that are run at file level: what names mean stays.
+    pub fn enter(&mut self, names: usize) {
+        let Self { globals, routines, .. } = std::mem::take(self);
+        *self = Self { globals, routines, ..Self::default() };
+        self.make_room(names);
+    }
+
+    /// Makes room for so many names.
+    pub fn make_room(&mut self, names: usize) {
+        self.globals.resize_with(names, || None);
+    }
+
+    /// The innermost frame.
+    pub fn frame(&self) -> &Frame<T> {
+        self.frames.last().expect("there is always a frame")
+    }
+
+    /// The innermost frame, to change.
+    pub fn frame_mut(&mut self) -> &mut Frame<T> {
+        self.frames.last_mut().expect("there is always a frame")
+    }
+
+    /// Gives a name a meaning in the innermost frame.
+    pub fn bind(&mut self, name: Name, span: Span, what: Binding<T>) {
+        let bound = Bound { span, what };
+        if self.frame().global {
+            let at = name.0 as usize;
+            if at >= self.globals.len() {
+                self.make_room(at + 1);
+            }
+            self.globals[at] = Some(bound);
+            return;
+        }
+        let locals = &mut self.frame_mut().locals;
+        match locals.iter_mut().find(|(n, _)| *n == name) {
+            Some((_, old)) => *old = bound,
+            None => locals.push((name, bound)),
+        }
+    }
+
+    /// What a name means at file level.
+    pub fn global(&self, name: Name) -> Option<&Bound<T>> {
+        self.globals.get(name.0 as usize)?.as_ref()
+    }
+
+    /// What a name means here.
+    pub fn lookup(&self, name: Name) -> Option<&Bound<T>> {
+        self.frame().local(name).or_else(|| self.global(name))
+    }
+
+    /// What a name means in the innermost frame alone.
+    pub fn own(&self, name: Name) -> Option<&Bound<T>> {
+        if self.frame().global { self.global(name) } else { self.frame().local(name) }
+    }
+
+    /// The variable that a place is in.
+    pub fn root(&self, place: &Place) -> Option<&Bound<T>> {
+        match place.frame {
+            None => self.global(place.name),
+            Some(frame) => self.frames.get(frame as usize)?.local(place.name),
+        }
+    }
+
+    /// The variable that a place is in, to change.
+    pub fn root_mut(&mut self, place: &Place) -> Option<&mut Bound<T>> {
+        match place.frame {
+            None => self.globals.get_mut(place.name.0 as usize)?.as_mut(),
+            Some(frame) => {
+                let locals = &mut self.frames.get_mut(frame as usize)?.locals;
+                locals.iter_mut().find(|(n, _)| *n == place.name).map(|(_, bound)| bound)
+            }
+        }
+    }
+
+    /// The whole of what a name means, as a place; that of the caller for one passed by reference.
+    pub fn place_of(&self, name: Name) -> Option<Place> {
+        let at = self.frames.len() - 1;
+        let (bound, frame) = match self.frames[at].local(name) {
+            Some(bound) => (bound, Some(at as u32)),
+            None => (self.global(name)?, None),
+        };
+        Some(match &bound.what {
+            Binding::Reference(place) => *place,
+            _ => Place::whole(frame, name),
+        })
+    }
+
+    /// True for a name at file level that the user of a component has given.
+    pub fn is_given(&self, name: Name) -> bool {
+        !self.given.is_empty() && self.frame().global && self.given.contains(&name)
+    }
+}
