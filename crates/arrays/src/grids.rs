@@ -2,9 +2,9 @@
 
 use crate::value::{GridArg, Points, surface};
 use moldloft_grid::{
-    Blend, Edge, Elliptic, Faces, GridError, Hyperbolic, Method, Metric, Side, SurfaceGrid, Wall,
-    elliptic_until, folded_cells, framed, hyperbolic, hyperbolic_curve, quality, transfinite,
-    transfinite_block,
+    Blend, Edge, Elliptic, Faces, FailureCause, GridError, Hyperbolic, Method, Metric, Side,
+    Smoothed, Stop, Support, SurfaceGrid, Wall, elliptic_until, folded_cells, framed,
+    hyperbolic_curve_until, hyperbolic_until, quality, transfinite, transfinite_block,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
@@ -27,7 +27,7 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
         GridError::TooFew { expected, actual: [m, n] } => with("too-few-items")
             .expected(format!("at least {expected} points each way"))
             .found(format!("[{m},{n}]")),
-        GridError::NotFinite { .. } => with("not-finite").expected("finite points"),
+        GridError::NotFinite { .. } | GridError::PointNotFinite { .. } => with("not-finite").expected("finite points"),
         GridError::EdgesApart { corner, gap } => {
             let [i, j] = corner.at;
             with("edges-apart")
@@ -43,9 +43,18 @@ pub fn fault(error: GridError, field: FieldId) -> CallError {
             .expected(format!("[{a},{b}]"))
             .found(format!("[{m},{n}]"))
             .in_item(face - 1),
-        GridError::Folded { count, .. } => {
-            with("folded-grid").expected("unfolded cells").found(format!("{count} folded cells"))
-        }
+        GridError::Folded { count, .. } => with("folded-grid")
+            .expected("unfolded cells")
+            .found(format!("{count} folded cells")),
+        GridError::March(failure) => match failure.cause {
+            FailureCause::CornerTooTight { fits, .. } => with("tight-corner")
+                .expected(format!("a first cell of at most {fits:.3e}"))
+                .help("make the first cell smaller, or the points beside the corner wider"),
+            _ => with("folded-grid").expected("unfolded cells").help(
+                "march less far, smooth more, space the wall more evenly there, or take the layers below with \
+                 stop = \"keep\"",
+            ),
+        },
         GridError::Diverged { .. } => with("diverged")
             .expected("a converging iteration")
             .help("reduce omega, or relax the spacing and angle at the walls"),
@@ -161,9 +170,10 @@ const EDGES: [(&str, Edge); 4] =
 ///
 /// `method`: "laplace" (p = q = 0: Winslow 1966), "middlecoff" (the spacing of the edges is carried
 /// inward: Thomas and Middlecoff 1980), "sorenson" (spacing and angle at walls: Steger and Sorenson
-/// 1979). A plane grid is smoothed in its plane; a curved one on the surface `on`, or, if that is not
-/// given, on the spline surface through its own points. `n` sweeps are done at most, fewer when no
-/// point moves by more than `tol` of the size. For "sorenson" `walls` names edges, "i1", "im", "j1",
+/// 1979, by the iteration of Hilgenstock 1988). A plane grid is smoothed in its plane; a curved one on the
+/// surface `on`, or, if that is not given, on the spline surface through its own points. `n` sweeps are done
+/// at most, fewer when no point moves by more than `tol` of the size and walls have what is asked; when they
+/// are not enough, a remark says how far off the grid is. For "sorenson" `walls` names edges, "i1", "im", "j1",
 /// "jn", blank-separated, `spacing` is the first cell there, `angle` the angle of the grid lines to
 /// the wall. A result with folded cells is refused, unless `folded` is "allow".
 #[derive(Kind)]
@@ -179,7 +189,7 @@ pub struct EllipticGrid<T: Scalar> {
     /// The grid.
     s: GridArg<T>,
     /// The most sweeps.
-    #[field(default = 200, min = 0, max = 1e6)]
+    #[field(default = 5000, min = 0, max = 1e6)]
     n: usize,
     /// Stops when no point moves by more than this share of the size.
     #[field(default = 1e-8, min = 0)]
@@ -271,9 +281,16 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             walls,
             on,
         };
-        let smoothed = elliptic_until(&grid, &options, &context.cancel)
-            .map_err(|error| fault(error, Self::S))?
-            .grid;
+        let done = elliptic_until(&grid, &options, &context.cancel)
+            .map_err(|error| fault(error, Self::S))?;
+        if !done.converged && self.n > 0 {
+            context.remark(
+                "not-converged",
+                unsettled(&done),
+                "allow more sweeps, or a wider tolerance",
+            );
+        }
+        let smoothed = done.grid;
         let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
         if let Some(&[i, j]) = folded.first() {
             let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };
@@ -283,6 +300,25 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
         }
         Ok(surface(smoothed))
     }
+}
+
+/// What a smoothing that has not converged came to.
+fn unsettled<T: Real>(done: &Smoothed<T>) -> String {
+    use std::fmt::Write;
+    let Smoothed { sweeps, change, walls, .. } = done;
+    let mut text = format!(
+        "the grid has not settled: sweep {sweeps} still moves points by {change:.2e} of its size"
+    );
+    for wall in walls {
+        let [low, high] = wall.cells;
+        let edge = EDGES.iter().find(|(_, edge)| *edge == wall.edge).map_or("", |(name, _)| name);
+        let angle = wall.angle.to_degrees();
+        let _ = write!(
+            text,
+            "; at {edge} cells are {low:.4} to {high:.4} of the spacing, angles {angle:.2} degrees off"
+        );
+    }
+    text
 }
 
 fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, CallError> {
@@ -360,13 +396,17 @@ fn on_surface<T: Scalar>(
 /// A grid marched off a surface or a curve by the hyperbolic equations (Steger and Chaussee 1980; Chan
 /// and Steger 1992): lines leave it at right angles, with the layers at given heights.
 ///
-/// Off a surface, along s_i x s_j: the value is the list of layers, the surface first. Off a curve in a
-/// plane, to the left of its direction as seen against `normal`: the value is the surface whose line
-/// g[k,] is layer k. `sides` says what happens at edges, as "i1 pole, j1 symmetry z, jn symmetry z":
-/// "pole" for an edge that is one point, "symmetry x", "y" or "z" for one that stays in a plane of
-/// constant x, y or z, "periodic" for two that are one line; edges that are not named are free. The
-/// ends of a curve are "i1" and "im". A layer with folded cells is refused: allow more smoothing, or
-/// march less far.
+/// Off a surface, along s_i x s_j: the value is the list of layers, the surface first. Off a curve, to the
+/// left of its direction as seen against `normal`: the value is the surface whose line g[k,] is layer k; it
+/// lies in the plane of the curve, or on the surface `on` (a collar). The first layer has its height
+/// everywhere, at corners and sharp tails too; heights farther out are means. `sides` says what happens at
+/// edges, as "i1 pole, j1 symmetry z, jn symmetry z": "pole" for an edge that is one point, "symmetry x", "y"
+/// or "z" for one in a plane of symmetry of constant x, y or z, "constant x", "y" or "z" for one that only
+/// keeps that coordinate, "periodic" for two that are one line; edges that are not named are free. The ends of
+/// a curve are "i1" and "im". Every cell is tested; what would fold is marched with less constraint and more
+/// smoothing, or refused with the layer, the place and the cause. `stop` ends a march early: "keep" (below the
+/// layer that cannot be marched), "jacobian 0.1", "skew 0.9", "growth 1.5" (below the first layer with a worse
+/// cell), "isotropic" (with the first layer whose cells are as high as long).
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -378,50 +418,133 @@ fn on_surface<T: Scalar>(
 pub struct HyperbolicGrid<T: Scalar> {
     /// The surface, or the curve.
     s: Value<T>,
-    /// The distances of the layers, the first 0; kept on plane surfaces, less where they are convex.
+    /// The distances of the layers, the first 0.
     heights: crate::value::Farray<T>,
     /// Conditions at the edges.
     #[field(default = "")]
     sides: Arc<str>,
-    /// Smoothing: 0 for none, 1 for as much as keeps most concave surfaces from folding.
-    #[field(default = 0.3, min = 0, max = 10)]
+    /// How strongly converging lines are smoothed apart; 0 for not at all.
+    #[field(default = 1, min = 0, max = 10)]
     smoothing: T,
-    /// Normal of the plane of a curve; z if not given.
+    /// Normal of the plane of a curve, z if not given; with `on`, the side of the surface that is seen.
     normal: Option<Vec3<T>>,
+    /// When the march ends early.
+    #[field(default = "")]
+    stop: Arc<str>,
+    /// The surface that a grid off a curve stays on.
+    on: Option<SurfaceRef<T>>,
 }
 
 impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let heights = self.heights.row().map_err(|fault| fault.in_field(Self::HEIGHTS))?;
         let is_curve =
             matches!(&self.s, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
-        let sides = sides(&self.sides, is_curve, Self::SIDES)?;
-        let smoothing = self.smoothing.re();
-        let place = |error: GridError| {
-            let heights = matches!(error, GridError::Heights { .. });
-            let folded = matches!(error, GridError::Folded { .. });
-            let fault = fault(error, Self::S);
-            if heights {
-                crate::spline::moved(fault, Self::HEIGHTS)
-            } else if folded {
-                fault.help("more smoothing, smaller heights, or sides at the edges keep cells from folding")
-            } else {
-                fault
-            }
+        let options = Hyperbolic {
+            heights,
+            sides: sides(&self.sides, is_curve, Self::SIDES)?,
+            smoothing: self.smoothing.re(),
+            stop: stop(&self.stop, Self::STOP)?,
         };
-        if is_curve {
+        let marched = if is_curve {
             let Points(curve) =
                 Points::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
-            let normal = self.normal.unwrap_or_else(|| Vec3::of(0.0, 0.0, 1.0));
-            let ends = [sides[0], sides[1]];
-            let grid = hyperbolic_curve(&curve, normal, &heights, ends, smoothing);
-            return grid.map(surface).map_err(place);
+            let support: Box<dyn Support<T>> = match &self.on {
+                Some(surface) => {
+                    let side = self.normal.map(|normal| normal.re());
+                    Box::new(OnSurface { surface: surface.clone(), side })
+                }
+                None => {
+                    let normal = self.normal.unwrap_or_else(|| Vec3::of(0.0, 0.0, 1.0));
+                    let unit = normal.normalized().ok_or_else(|| {
+                        CallError::new("no-direction", "the normal has no length")
+                            .expected("a vector that is not zero")
+                            .in_field(Self::NORMAL)
+                    })?;
+                    Box::new(InPlane { normal: unit })
+                }
+            };
+            hyperbolic_curve_until(&curve, &*support, &options, &context.cancel)
+        } else {
+            if self.on.is_some() {
+                return Err(CallError::new("unused-argument", "`on` is for grids off curves")
+                    .expected("a curve to march from")
+                    .in_field(Self::ON));
+            }
+            let GridArg(grid) =
+                GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+            hyperbolic_until(&grid, &options, &context.cancel)
+        };
+        let marched = marched.map_err(|error| match error {
+            GridError::Heights { .. } => fault(error, Self::HEIGHTS),
+            error => fault(error, Self::S),
+        })?;
+        if let Some(reason) = &marched.report.stopped {
+            let layers = marched.report.layers;
+            context.remark(
+                "stopped-early",
+                format!("the march ends with layer {layers}: {reason}"),
+                "the value has the layers up to there",
+            );
         }
-        let GridArg(grid) =
-            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
-        let layers = hyperbolic(&grid, &Hyperbolic { heights, sides, smoothing }).map_err(place)?;
-        Ok(Value::list(layers.into_iter().map(surface)))
+        let mut layers = marched.layers.into_iter().map(surface);
+        Ok(if is_curve {
+            layers.next().expect("one grid off a curve")
+        } else {
+            Value::list(layers)
+        })
     }
+}
+
+/// The plane of a curve.
+struct InPlane<T> {
+    normal: Vec3<T>,
+}
+
+impl<T: Real> Support<T> for InPlane<T> {
+    fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
+        points.iter().map(|p| (*p, self.normal)).collect()
+    }
+}
+
+/// A surface of the language, seen from the side of a vector.
+struct OnSurface<T: Scalar> {
+    surface: SurfaceRef<T>,
+    side: Option<Vec3>,
+}
+
+impl<T: Scalar> Support<T> for OnSurface<T> {
+    fn project(&self, points: &[Vec3<T>]) -> Vec<(Vec3<T>, Vec3<T>)> {
+        let (uv, _) = crate::locate::nearest_parameters(&self.surface, points);
+        let foot = |[u, v]: [T; 2]| {
+            let jet = self.surface.jet(u, v, Order::First);
+            let unit = jet.u.cross(jet.v).normalized().unwrap_or_else(Vec3::zero);
+            let away = self.side.is_some_and(|side| unit.re().dot(side) < 0.0);
+            (jet.p, if away { -unit } else { unit })
+        };
+        uv.into_iter().map(foot).collect()
+    }
+}
+
+fn stop(text: &str, field: FieldId) -> Result<Stop, CallError> {
+    let mut stop = Stop::default();
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let words: Vec<&str> = part.split_whitespace().collect();
+        let number = words.get(1).and_then(|word| word.parse::<f64>().ok());
+        match (words[0], number, words.len()) {
+            ("keep", None, 1) => stop.keep = true,
+            ("isotropic", None, 1) => stop.isotropic = true,
+            ("jacobian", Some(x), 2) if (0.0..1.0).contains(&x) => stop.jacobian = x,
+            ("skew", Some(x), 2) if x > 0.0 && x <= 1.0 => stop.skewness = x,
+            ("growth", Some(x), 2) if x > 1.0 && x.is_finite() => stop.growth = x,
+            _ => {
+                let expected =
+                    "\"keep\", \"isotropic\", \"jacobian 0.1\", \"skew 0.9\" or \"growth 1.5\"";
+                return Err(unknown(part, "criterion", expected.to_string(), field));
+            }
+        }
+    }
+    Ok(stop)
 }
 
 fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], CallError> {
@@ -435,13 +558,13 @@ fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], CallEr
         };
         let at = EDGES.iter().position(|(name, _)| Some(name) == words.first());
         let at = at.filter(|at| !is_curve || *at < 2).ok_or_else(bad)?;
+        let axis = |word: &str| ["x", "y", "z"].iter().position(|axis| *axis == word);
         sides[at] = match words[1..] {
             ["free"] => Side::Free,
-            ["pole"] => Side::Pole,
+            ["pole"] if !is_curve => Side::Pole,
             ["periodic"] => Side::Periodic,
-            ["symmetry", "x"] => Side::Symmetry(0),
-            ["symmetry", "y"] => Side::Symmetry(1),
-            ["symmetry", "z"] => Side::Symmetry(2),
+            ["symmetry", word] => Side::Symmetry(axis(word).ok_or_else(bad)?),
+            ["constant", word] => Side::Constant(axis(word).ok_or_else(bad)?),
             _ => return Err(bad()),
         };
     }
@@ -500,7 +623,7 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
     }
 }
 
-/// The number of folded cells of a grid.
+/// The number of folded cells of a grid, or of a block given as the list of its layers.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -510,18 +633,25 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
                assert folds(s) == 0;"
 )]
 pub struct Folds<T: Scalar> {
-    /// The grid.
-    s: GridArg<T>,
+    /// The grid, or the layers.
+    s: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        Ok(Value::Number(T::from(folded_cells(&self.s.0).len() as f64)))
+        if let Value::List(layers) = &self.s {
+            let count = crate::volumes::folded(&crate::volumes::volume(layers, Self::S)?);
+            return Ok(Value::Number(T::from(count as f64)));
+        }
+        let GridArg(grid) =
+            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+        Ok(Value::Number(T::from(folded_cells(&grid).len() as f64)))
     }
 }
 
 /// A table of the quality of a grid, to be printed: of each metric the least, mean and greatest
-/// value and the cell that is worst.
+/// value and the cell that is worst; of a block, given as the list of its layers, the figures of
+/// OpenFOAM's checkMesh and the least scaled Jacobian.
 #[derive(Kind)]
 #[kind(
     class = Text,
@@ -531,14 +661,20 @@ impl<T: Scalar> Build<T> for Folds<T> {
                print report(s);"
 )]
 pub struct Report<T: Scalar> {
-    /// The grid.
-    s: GridArg<T>,
+    /// The grid, or the layers.
+    s: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         use std::fmt::Write;
-        let grid = self.s.0.re();
+        if let Value::List(layers) = &self.s {
+            let block = crate::volumes::volume(layers, Self::S)?;
+            return Ok(Value::text(&crate::volumes::report(&block)));
+        }
+        let GridArg(grid) =
+            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+        let grid = grid.re();
         if grid.m.min(grid.n) < 2 {
             return Err(fault(
                 GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },

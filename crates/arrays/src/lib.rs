@@ -19,12 +19,14 @@ mod distribution;
 mod evaluate;
 mod grids;
 mod locate;
+mod masks;
 mod moves;
 mod reduce;
 mod shape;
 mod spacing;
 mod spline;
 mod value;
+mod volumes;
 
 pub use value::type_name;
 
@@ -85,6 +87,15 @@ pub fn rows() -> Vec<Row> {
         reduce::Centroid,
         reduce::BboxMin,
         reduce::BboxMax,
+        masks::Where,
+        masks::Clamp,
+        masks::Any,
+        masks::All,
+        masks::Find,
+        masks::Sort,
+        masks::CumSum,
+        masks::Diff,
+        masks::Interp,
         shape::List,
         shape::PointsOf,
         shape::Join,
@@ -114,6 +125,9 @@ pub fn rows() -> Vec<Row> {
         grids::Tfi,
         grids::EllipticGrid,
         grids::HyperbolicGrid,
+        volumes::EllipticBlock,
+        volumes::OGrid,
+        volumes::CGrid,
         grids::QualityOf,
         grids::Folds,
         grids::Report,

@@ -492,15 +492,3 @@ impl<T: Scalar> Build<T> for Makels<T> {
         Ok(Value::Surface(SurfaceRef::new(surface, 0)))
     }
 }
-
-/// The same fault about another field.
-pub fn moved(fault: CallError, field: FieldId) -> CallError {
-    let mut other = CallError::new(fault.id, fault.message.clone());
-    if let Some(expected) = &fault.expected {
-        other = other.expected(expected.clone());
-    }
-    if let Some(found) = &fault.found {
-        other = other.found(found.clone());
-    }
-    fault.help.iter().fold(other, |other, help| other.help(help.clone())).in_field(field)
-}

@@ -43,18 +43,39 @@ pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
 }
 
 /// How far from its wall a term falls to 1/e, in cells.
-const REACH: f64 = 6.0;
+const REACH: f64 = 1.0 / 0.3;
 
-/// The terms may not grow beyond this: central differences lose their sense at 2.
-const MOST: f64 = 1.5;
+/// Terms, with those of the edges, may not grow beyond this: central differences lose their sense at 2.
+const MOST: f64 = 1.9;
 
-/// What of a newly found term is taken over in one step.
-const SHARE: f64 = 0.05;
+/// What of an error, as an angle, goes into a term in one sweep.
+const SHARE: f64 = 0.2;
 
-/// The terms of Steger and Sorenson (Sorenson 1980, NASA TM-81198) at the walls, found as the grid
-/// develops.
+/// How far a wall is from what is asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallReport {
+    /// The edge.
+    pub edge: Edge,
+    /// The least and the greatest first cell, as shares of the one asked for.
+    pub cells: [f64; 2],
+    /// The largest deviation from the angle asked for, in radians.
+    pub angle: f64,
+}
+
+impl WallReport {
+    /// The largest relative error of a cell, or error of an angle.
+    pub fn error(&self) -> f64 {
+        (self.cells[1] - 1.0).max(1.0 - self.cells[0]).max(self.angle)
+    }
+}
+
+/// The terms of Hilgenstock (1988) at the walls, found as the grid develops: each sweep adds to them what the first
+/// cells and angles are off.
+///
+/// Unlike those of Steger and Sorenson (1979), which solve for them, they give the cell itself, and two walls
+/// converge.
 pub struct WallTerms<T> {
-    /// Of each wall, at each of its points: the terms across and along.
+    /// Of each wall, at each of its points: the terms along and away from it.
     terms: Vec<Vec<[T; 2]>>,
 }
 
@@ -64,66 +85,31 @@ impl<T: Real> WallTerms<T> {
         Self { terms }
     }
 
-    /// One step towards the terms with which the grid meets the walls as asked.
-    ///
-    /// At a wall the derivative into the grid is given: of the asked length, at the asked angle to the
-    /// wall in the surface. With it, one-sided second differences of the grid and the equations, the
-    /// two terms follow as the components of what is left over along both derivatives.
-    pub fn update(&mut self, grid: &SurfaceGrid<T>, walls: &[Wall<T>]) {
-        for (wall, terms) in walls.iter().zip(&mut self.terms) {
+    /// One step towards the terms with which the grid meets the walls as asked, and how far off it is.
+    pub fn update(&mut self, grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Vec<WallReport> {
+        let each = walls.iter().zip(&mut self.terms).map(|(wall, terms)| {
             let view = View { grid, edge: wall.edge };
             let count = view.count();
-            let depth = view.depth();
-            if depth < 3 {
-                continue;
-            }
-            let asked = |k: usize| -> Option<Vec3<T>> {
-                let tangent = view.tangent(k);
-                let inward = view.at(k, 1) - view.at(k, 0);
-                let unit = tangent.normalized()?;
-                let across = inward - unit * inward.dot(unit);
-                let normal = across.normalized()?;
-                let angle = wall.angle;
-                let spacing = wall.spacing[k.min(wall.spacing.len() - 1)];
-                Some((unit * angle.cos() + normal * angle.sin()) * spacing)
-            };
+            let mut report =
+                WallReport { edge: wall.edge, cells: [f64::INFINITY, 0.0], angle: 0.0 };
             for k in 1..count - 1 {
-                let Some(inward) = asked(k) else { continue };
-                let (Some(before), Some(after)) = (asked(k - 1), asked(k + 1)) else { continue };
-                let two = T::from(2.0);
-                let tangent = view.tangent(k);
-                let along = view.at(k + 1, 0) + view.at(k - 1, 0) - view.at(k, 0) * two;
-                let deep =
-                    (view.at(k, 1) * T::from(8.0) - view.at(k, 0) * T::from(7.0) - view.at(k, 2))
-                        * T::from(0.5)
-                        - inward * T::from(3.0);
-                let mixed = if k == 1 || k + 2 == count {
-                    Vec3::zero()
-                } else {
-                    (after - before) * T::from(0.5)
-                };
-                let (alpha, beta, gamma) =
-                    (inward.norm_sq(), tangent.dot(inward), tangent.norm_sq());
-                let left = -(along * alpha - mixed * (beta * 2.0) + deep * gamma);
-                // left = alpha p tangent + gamma q inward, in the least squares sense.
-                let whole = alpha * gamma - beta * beta;
-                if whole.re() <= 1e-12 * (alpha * gamma).re() {
-                    continue;
-                }
-                let (t, s) = (left.dot(tangent), left.dot(inward));
-                let p = (t * alpha - s * beta) / whole / alpha;
-                let q = (s * gamma - t * beta) / whole / gamma;
-                for (term, new) in terms[k].iter_mut().zip([p, q]) {
-                    let step = (new - *term) * SHARE;
-                    let limit = T::from(MOST);
-                    *term = (*term + step).min(limit).max(-limit);
-                }
+                let Some((length, angle)) = view.cell(k) else { continue };
+                let spacing = wall.spacing[k.min(wall.spacing.len() - 1)];
+                let share = length.re() / spacing.re();
+                report.cells = [report.cells[0].min(share), report.cells[1].max(share)];
+                let off = angle - wall.angle;
+                report.angle = report.angle.max(off.re().abs());
+                let [p, q] = &mut terms[k];
+                *p += (off * std::f64::consts::FRAC_2_PI).atan() * SHARE;
+                *q += ((spacing - length) / spacing).atan() * SHARE;
             }
             // The terms of the ends are their neighbours'.
             if count > 2 {
                 (terms[0], terms[count - 1]) = (terms[1], terms[count - 2]);
             }
-        }
+            report
+        });
+        each.collect()
     }
 
     /// The terms in the whole grid, fading away from the walls.
@@ -157,8 +143,25 @@ impl<T: Real> WallTerms<T> {
                 }
             }
         }
+        let limit = T::from(MOST);
+        for term in control.along.iter_mut().chain(&mut control.across) {
+            *term = term.min(limit).max(-limit);
+        }
         control
     }
+}
+
+/// How far the walls of a grid are from what is asked.
+pub fn wall_reports<T: Real>(grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Vec<WallReport> {
+    WallTerms::new(grid, walls).update(grid, walls)
+}
+
+/// The first cell off each point of an edge, and its angle to the edge; of points without one, zeros.
+pub fn wall_cells<T: Real>(grid: &SurfaceGrid<T>, edge: Edge) -> Vec<[T; 2]> {
+    let view = View { grid, edge };
+    (0..view.count())
+        .map(|k| view.cell(k).map_or([T::zero(); 2], |(length, angle)| [length, angle]))
+        .collect()
 }
 
 /// A grid seen from an edge: point k along it, d cells deep.
@@ -193,6 +196,16 @@ impl<T: Real> View<'_, T> {
     fn at(&self, k: usize, d: usize) -> Vec3<T> {
         let [i, j] = self.index(k, d);
         self.grid.at(i, j)
+    }
+
+    /// The length of the first cell off a point of the edge, and its angle to the edge.
+    fn cell(&self, k: usize) -> Option<(T, T)> {
+        let (tangent, inward) = (self.tangent(k), self.at(k, 1) - self.at(k, 0));
+        let (across, square) = (tangent.cross(inward), inward.norm_sq());
+        if !(across.norm_sq().re() > 0.0) {
+            return None;
+        }
+        Some((square.sqrt(), across.norm().atan2(tangent.dot(inward))))
     }
 
     /// The derivative along the edge.

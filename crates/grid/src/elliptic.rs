@@ -2,7 +2,7 @@
 //!
 //! Holds: edges stay to the bit; the same bits at any number of threads.
 
-use crate::control::{WallTerms, middlecoff};
+use crate::control::{WallReport, WallTerms, middlecoff, wall_reports};
 use crate::lines::{Change, Control, Rows, larger, transposed_control};
 use crate::zebra::Banks;
 use crate::{Edge, GridError, SurfaceGrid};
@@ -18,7 +18,8 @@ pub enum Method {
     Laplace,
     /// The spacing of the edges, carried inward (Thomas and Middlecoff 1980).
     Middlecoff,
-    /// Spacings and angles at walls (Steger and Sorenson 1979), on top of Middlecoff's terms.
+    /// Spacings and angles at walls (Steger and Sorenson 1979, with the update of Hilgenstock 1988), on top of
+    /// Middlecoff's terms.
     Sorenson,
 }
 
@@ -63,7 +64,16 @@ pub struct Smoothed<T> {
     pub sweeps: usize,
     /// The greatest step of the last sweep, as a share of the size.
     pub change: f64,
+    /// That of each sweep.
+    pub history: Vec<f64>,
+    /// How far the walls are from what is asked.
+    pub walls: Vec<WallReport>,
+    /// True when no point moves any more and the walls have what is asked.
+    pub converged: bool,
 }
+
+/// Walls count as met when their cells, relatively, and angles, in radians, are off by no more.
+const WALL_ACCURACY: f64 = 1e-6;
 
 /// The grid with its inner points moved towards a solution of
 /// a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0, a = |r_y|^2, b = r_x . r_y, c = |r_x|^2,
@@ -146,15 +156,18 @@ fn smoothed<T: Real, const L: usize>(
         ([control.clone(), turned], banks)
     };
     let mut control = base.as_ref().map(both);
-    let mut change = f64::INFINITY;
+    let mut history = Vec::new();
     let mut done = 0;
+    let mut converged = false;
     while done < options.sweeps {
         if cancel.load(Ordering::Relaxed) {
             return Err(GridError::Cancelled);
         }
+        let mut met = true;
         if let (Some(terms), Some(base)) = (&mut terms, &base) {
             let now = merged(&points, turned);
-            terms.update(&now, &options.walls);
+            met =
+                terms.update(&now, &options.walls).iter().all(|wall| wall.error() <= WALL_ACCURACY);
             control = Some(both(&terms.control(&now, &options.walls, base)));
         }
         let way = usize::from(turned);
@@ -176,8 +189,10 @@ fn smoothed<T: Real, const L: usize>(
         if !square.is_finite() {
             return Err(GridError::Diverged { step: done });
         }
-        change = square.sqrt() / size;
-        if change <= options.tolerance {
+        let change = square.sqrt() / size;
+        history.push(change);
+        if change <= options.tolerance && met {
+            converged = true;
             break;
         }
         if done % TURN == 0 && done < options.sweeps {
@@ -185,7 +200,10 @@ fn smoothed<T: Real, const L: usize>(
             turned = !turned;
         }
     }
-    Ok(Smoothed { grid: merged(&points, turned), sweeps: done, change })
+    let grid = merged(&points, turned);
+    let walls = wall_reports(&grid, &options.walls);
+    let change = history.last().copied().unwrap_or(f64::INFINITY);
+    Ok(Smoothed { grid, sweeps: done, change, history, walls, converged })
 }
 
 /// The points under way, as rows along j, or along i when they are turned.

@@ -1,6 +1,7 @@
 //! What can be wrong with a grid, with the place.
 
 use crate::Edge;
+use crate::MarchFailure;
 use std::fmt;
 
 /// A corner of a grid.
@@ -63,6 +64,13 @@ pub enum GridError {
         /// The layer, from 1, of a marched grid.
         layer: Option<usize>,
     },
+    /// A point of a volume grid is NaN or infinite.
+    PointNotFinite {
+        /// Its indices, from 1.
+        at: [usize; 3],
+    },
+    /// A grid cannot be marched farther.
+    March(Box<MarchFailure>),
     /// The iteration grew beyond bounds.
     Diverged {
         /// The sweep or layer, from 1.
@@ -108,6 +116,10 @@ impl fmt::Display for GridError {
                 write!(f, "{count} cells are folded, the first at [{i},{j}]")?;
                 layer.map_or(Ok(()), |layer| write!(f, " of layer {layer}"))
             }
+            Self::PointNotFinite { at: [i, j, k] } => {
+                write!(f, "point [{i},{j},{k}] is not finite")
+            }
+            Self::March(failure) => write!(f, "{failure}"),
             Self::Diverged { step } => write!(f, "the grid grew beyond bounds in step {step}"),
             Self::Cancelled => write!(f, "the run was cancelled"),
             Self::Heights { at, value } => {

@@ -1,7 +1,7 @@
 //! Structured grids: interpolation from their edges, smoothing, marching, and their quality.
 //!
-//! A surface grid is a [`SurfaceGrid`] of m by n points kept as three component planes; a volume grid is
-//! a list of grids. All functions are generic over the scalar, so a grid carries its derivatives;
+//! A surface grid is a [`SurfaceGrid`] of m by n points kept as three component planes; a volume grid
+//! a [`VolumeGrid`]. All functions are generic over the scalar, so a grid carries its derivatives;
 //! all give the same bits at any number of threads.
 //!
 //! `edges -> transfinite -> elliptic -> quality`, `surface, heights -> hyperbolic -> layers`
@@ -16,16 +16,28 @@ mod block;
 mod control;
 mod elliptic;
 mod error;
-mod hyperbolic;
+mod hex_mesh;
 mod lines;
+mod marching;
 mod quality;
 mod surface_grid;
+mod volume_elliptic;
+mod volume_grid;
 mod zebra;
 
 pub use blend::{Blend, transfinite};
 pub use block::{Faces, transfinite_block};
+pub use control::{WallReport, wall_cells};
 pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
-pub use hyperbolic::{Hyperbolic, Side, hyperbolic, hyperbolic_curve};
+pub use hex_mesh::{FaceNames, HEX_FACES, HexMesh, MeshCheck, Patch};
+pub use marching::{
+    FailureCause, Hyperbolic, MarchFailure, MarchReport, Marched, Side, Stop, StopReason, Support,
+    hyperbolic, hyperbolic_curve, hyperbolic_curve_until, hyperbolic_until,
+};
 pub use quality::{Metric, folded_cells, quality};
 pub use surface_grid::{Edge, SurfaceGrid, framed};
+pub use volume_elliptic::{
+    EllipticVolume, FaceWall, FaceWallReport, SmoothedVolume, elliptic_volume_until,
+};
+pub use volume_grid::{Face, VolumeGrid};

@@ -34,7 +34,9 @@ pub use refs::{
     CurveRef, FieldRef, Implicit, Point, ReparametrizationRef, SetRef, SolidRef, SurfaceRef,
 };
 pub use relabelled::relabelled;
-pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
+pub use row::{
+    Body, Build, CallRemark, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit,
+};
 pub use search_report::{Remark, SearchReport, SearchStatus};
 pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};
 pub use triangle_body::{Border, BorderCurve, Flaw, Group, TriangleBody, TriangulatedBorder};

@@ -4,8 +4,8 @@ use crate::{CallError, Class, FieldId, FromValue, Kept, Value};
 use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The tolerance of a model that states none, in its unit.
 const DEFAULT_TOLERANCE: f64 = 1e-6;
@@ -52,6 +52,33 @@ pub struct Context {
     pub cancel: Arc<AtomicBool>,
     /// What calls keep from one to the next.
     pub kept: Kept,
+    /// What calls have to say besides their values.
+    pub remarks: Arc<Mutex<Vec<CallRemark>>>,
+}
+
+/// What a call says besides its value: that an iteration has not settled, that a march ended early.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CallRemark {
+    /// A stable id.
+    pub id: &'static str,
+    /// One line that stands alone.
+    pub message: String,
+    /// What can be done about it.
+    pub help: &'static str,
+}
+
+impl Context {
+    /// Adds a remark.
+    pub fn remark(&self, id: &'static str, message: String, help: &'static str) {
+        let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
+        remarks.push(CallRemark { id, message, help });
+    }
+
+    /// The remarks so far; they are not kept.
+    pub fn take_remarks(&self) -> Vec<CallRemark> {
+        let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut *remarks)
+    }
 }
 
 impl Default for Context {
@@ -61,6 +88,7 @@ impl Default for Context {
             nesting: 0,
             cancel: Arc::default(),
             kept: Kept::default(),
+            remarks: Arc::default(),
         }
     }
 }

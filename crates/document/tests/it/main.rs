@@ -1,5 +1,6 @@
 //! Tests of documents, in one program: `cargo test -p moldloft-document --test it incremental::`.
 
+mod array_language;
 mod blocks;
 mod common;
 mod components;

@@ -1,4 +1,9 @@
 //! Structured grids against closed forms.
 
+// `!(a > b)` catches NaN, `a <= b` lets it pass.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 mod grids;
 mod marching;
+mod volumes;
+mod walls;

@@ -4,7 +4,7 @@ use crate::value::variables::Called as _;
 use moldloft_num::Real;
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
-    Array, Body, CallError, Class, Context, DefaultValue, Field, Row, Unit, Value,
+    Array, ArrayShape, Body, CallError, Class, Context, DefaultValue, Field, Row, Unit, Value,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -73,30 +73,107 @@ fn pairs<T: Real>(
     }
 }
 
-/// All numbers of the arguments: of `max(a)`, of `max(a, b, c)`.
+/// The numbers of one argument reduced to one, or along an axis; those of several combined element by element.
+///
+/// `max(a)` is a number, `max(a, 0)` has the shape of a, `max(s.x, axis = 1)` is a row of the greatest of each
+/// column.
 fn reduced<T: Real>(
     name: &str,
     args: &[Value<T>],
-    f: impl Fn(T, T) -> T,
+    f: impl Fn(T, T) -> T + Copy,
 ) -> Result<Value<T>, CallError> {
+    let (axis, args) = args.split_last().expect("the axis is the last argument");
     if let Some(field) = crate::value::implicit::functions(name, args) {
         return field;
     }
-    let mut numbers = Vec::new();
-    for (k, arg) in args.iter().enumerate() {
-        match arg {
-            Value::Number(x) => numbers.push(*x),
-            Value::Numbers(a) => numbers.extend(&a.items),
-            Value::Vector(v) => numbers.extend(v.to_array()),
-            Value::Unset => {}
-            other => return Err(not_a_number(other, k)),
-        }
+    let given: Vec<(usize, Cow<'_, Value<T>>)> = args
+        .iter()
+        .enumerate()
+        .filter(|(_, arg)| !matches!(arg, Value::Unset))
+        .map(|(k, arg)| (k, crate::value::ops::gathered(arg)))
+        .collect();
+    if let Value::Number(axis) = axis {
+        return match &given[..] {
+            [(_, value)] => along_axis(value, axis.re(), f),
+            _ => Err(CallError::new("unused-argument", "an axis goes with one array")
+                .expected("one array")
+                .in_field(field_id(4))),
+        };
     }
-    numbers
-        .into_iter()
-        .reduce(f)
-        .map(Value::Number)
-        .ok_or_else(|| CallError::new("empty", "an empty row has no such number"))
+    if let [(k, value)] = &given[..] {
+        let numbers = match &**value {
+            Value::Number(x) => vec![*x],
+            Value::Numbers(a) => a.items.clone(),
+            Value::Vector(v) => v.to_array().to_vec(),
+            other => return Err(not_a_number(other, *k)),
+        };
+        return numbers
+            .into_iter()
+            .reduce(f)
+            .map(Value::Number)
+            .ok_or_else(|| CallError::new("empty", "an empty row has no such number"));
+    }
+    let mut all: Option<Value<T>> = None;
+    for (k, value) in given {
+        let place = |fault: CallError| fault.in_field(field_id(k));
+        all = Some(match all {
+            None => value.into_owned(),
+            Some(all) => componentwise(&all, &value, f).map_err(place)?,
+        });
+    }
+    all.ok_or_else(|| CallError::new("empty", "there are no numbers"))
+}
+
+/// As `pairs`, of vectors by component.
+fn componentwise<T: Real>(
+    a: &Value<T>,
+    b: &Value<T>,
+    f: impl Fn(T, T) -> T + Copy,
+) -> Result<Value<T>, CallError> {
+    let parts = |v: &Value<T>| match v {
+        Value::Vector(v) => Some(v.to_array()),
+        Value::Number(x) => Some([*x; 3]),
+        _ => None,
+    };
+    match (a, b) {
+        (Value::Vector(_), _) | (_, Value::Vector(_)) => match (parts(a), parts(b)) {
+            (Some(a), Some(b)) => {
+                let c: [T; 3] = std::array::from_fn(|k| f(a[k], b[k]));
+                Ok(Value::Vector(c.into()))
+            }
+            _ => Err(CallError::new("wrong-class", "a vector goes with a vector or a number")
+                .expected("a number or a vector, or arrays of numbers in all places")),
+        },
+        _ => pairs(a, b, f),
+    }
+}
+
+/// A grid of numbers reduced along its first index (1) or its second (2).
+fn along_axis<T: Real>(
+    value: &Value<T>,
+    axis: f64,
+    f: impl Fn(T, T) -> T,
+) -> Result<Value<T>, CallError> {
+    let Value::Numbers(a) = value else { return Err(not_a_number(value, 0)) };
+    let ArrayShape::Grid(m, n) = a.shape else {
+        return Err(CallError::new("wrong-shape", format!("an farray {} has one axis", a.shape))
+            .expected("numbers [m,n]")
+            .in_field(field_id(0)));
+    };
+    if axis != 1.0 && axis != 2.0 {
+        return Err(CallError::new("out-of-range", format!("there is no axis {axis}"))
+            .expected("1 or 2")
+            .found(axis.to_string())
+            .in_field(field_id(4)));
+    }
+    let (count, length) = if axis == 1.0 { (n, m) } else { (m, n) };
+    let at = |k: usize, l: usize| if axis == 1.0 { a.items[l * n + k] } else { a.items[k * n + l] };
+    let mut items = Vec::with_capacity(count);
+    for k in 0..count {
+        let one = (0..length).map(|l| at(k, l)).reduce(&f);
+        items.push(one.ok_or_else(|| CallError::new("empty", "an empty row has no such number"))?);
+    }
+    Ok(Value::Numbers(Arc::new(Array { shape: ArrayShape::Row(count), items })))
 }
 
 macro_rules! row {
@@ -266,6 +343,10 @@ fn several() -> Vec<Field> {
         optional("b"),
         optional("c"),
         optional("d"),
+        Field {
+            default: Some(DefaultValue::Unset),
+            ..argument("axis", "1 or 2: reduces numbers [m,n] along that index to a row.")
+        },
     ]
 }
 
@@ -280,28 +361,69 @@ pub fn rows() -> Vec<Row> {
     fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("sum", args, |a, b| a + b)
     }
+    fn mean<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
+        let gathered = crate::value::ops::gathered(&args[0]);
+        let count = match (&*gathered, &args[1]) {
+            (Value::Numbers(a), Value::Number(axis)) => match a.shape {
+                ArrayShape::Grid(m, n) => {
+                    if axis.re() == 1.0 {
+                        m
+                    } else {
+                        n
+                    }
+                }
+                ArrayShape::Row(n) => n,
+            },
+            (Value::Numbers(a), _) => a.items.len(),
+            (Value::Vector(_), _) => 3,
+            _ => 1,
+        };
+        let unset = || Value::Unset;
+        let all = [args[0].clone(), unset(), unset(), unset(), args[1].clone()];
+        Ok(match reduced("mean", &all, |a, b| a + b)? {
+            Value::Number(x) => Value::Number(x / count as f64),
+            Value::Numbers(a) => {
+                let items = a.items.iter().map(|x| *x / count as f64).collect();
+                Value::Numbers(Arc::new(Array { shape: a.shape, items }))
+            }
+            other => return Err(not_a_number(&other, 0)),
+        })
+    }
     let mut rows = Vec::new();
     rows.extend(elementary_rows());
     rows.push(row!(
         "min",
-        "The least of all numbers given.",
+        "The least number of an array; of several arguments the least, element by element.",
         several(),
         "assert min(3, 1) == 1;",
         least
     ));
     rows.push(row!(
         "max",
-        "The greatest of all numbers given.",
+        "The greatest number of an array; of several arguments the greatest, element by element.",
         several(),
         "assert max(3, 1) == 3;",
         greatest
     ));
     rows.push(row!(
         "sum",
-        "The sum of all numbers given.",
+        "The sum of the numbers of an array; of several arguments the sum, element by element.",
         several(),
         "assert sum({1, 2, 4}) == 7;",
         total
+    ));
+    rows.push(row!(
+        "mean",
+        "The mean of the numbers of an array.",
+        vec![
+            argument("a", "A row or grid of numbers."),
+            Field {
+                default: Some(DefaultValue::Unset),
+                ..argument("axis", "1 or 2: the means along that index, a row.")
+            },
+        ],
+        "assert mean(list(1, 2, 6)) == 3;",
+        mean
     ));
     rows
 }

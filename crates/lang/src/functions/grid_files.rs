@@ -64,6 +64,41 @@ fn grid<T: Real>(a: &Vectors<T>) -> StructuredGrid {
     StructuredGrid { size: [m, n, 1], planes: [plane(0), plane(1), plane(2)], iblank: None }
 }
 
+/// The block whose layers k these surfaces are: what `tfi` of six faces and `hyperbolic` off a surface give.
+fn volume<T: Real>(layers: &[Value<T>], written: &str) -> Result<StructuredGrid, Diagnostic> {
+    let mut block: Option<StructuredGrid> = None;
+    for (k, layer) in layers.iter().enumerate() {
+        let Value::Vectors(a) = layer else {
+            let found = variables::a(layer);
+            let message = format!("item {} of `{written}` is no layer of a block", k + 1);
+            return Err(Diagnostic::error("wrong-type", message)
+                .expected("surfaces of one shape")
+                .found(found));
+        };
+        let next = finite(grid(a), a.shape, &format!("layer {} of {written}", k + 1))?;
+        match &mut block {
+            None => block = Some(next),
+            Some(block) => {
+                let ([m, n, _], [p, q, _]) = (block.size, next.size);
+                if [m, n] != [p, q] {
+                    let message = format!("layers 1 and {} of `{written}` differ in shape", k + 1);
+                    return Err(Diagnostic::error("shapes-differ", message)
+                        .expected(format!("[{m},{n}]"))
+                        .found(format!("[{p},{q}]")));
+                }
+                for (all, plane) in block.planes.iter_mut().zip(next.planes) {
+                    all.extend(plane);
+                }
+                block.size[2] += 1;
+            }
+        }
+    }
+    block.ok_or_else(|| {
+        Diagnostic::error("wrong-type", format!("`{written}` has no layers"))
+            .expected("a list of surfaces")
+    })
+}
+
 /// The block, if all of its points are finite: files with others are of no use to their readers.
 fn finite(
     block: StructuredGrid,
@@ -126,6 +161,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 Value::Vectors(a) => {
                     let written = m.program.slice(span).trim().to_string();
                     blocks.push(finite(grid(a), a.shape, &written).map_err(|d| d.at(span))?);
+                    names.push(written);
+                }
+                Value::List(layers) if matches!(name, "write_p3d" | "write_vts") => {
+                    let written = m.program.slice(span).trim().to_string();
+                    blocks.push(volume(layers, &written).map_err(|d| d.or_at(span))?);
                     names.push(written);
                 }
                 Value::Numbers(a) if name == "write_p3d" && !blocks.is_empty() => {

@@ -57,9 +57,27 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 ops::unary(op, &value)
             }
             ExprKind::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
-                let first = self.truth(m, left)?;
-                let decided = if op == BinaryOp::And { !first } else { first };
-                let holds = if decided { first } else { self.truth(m, right)? };
+                let first = self.operand(m, left)?;
+                if let Value::Number(x) = first {
+                    let first = x.re() != 0.0;
+                    if first == (op == BinaryOp::Or) {
+                        return Ok(Value::Number(T::from(f64::from(u8::from(first)))));
+                    }
+                }
+                // Masks are combined element by element.
+                let second = self.operand(m, right)?;
+                if [&first, &second].iter().any(|value| matches!(value, Value::Numbers(_))) {
+                    return ops::logical(op, &first, &second).map_err(|d| d.or_at(span));
+                }
+                let truth = |value: &Value<T>, id: ExprId| match value {
+                    Value::Number(x) => Ok(x.re() != 0.0),
+                    other => Err(Diagnostic::error("wrong-type", "expected a number")
+                        .at(m.program[id].span)
+                        .expected("a number")
+                        .found(other.called())),
+                };
+                let (first, second) = (truth(&first, left)?, truth(&second, right)?);
+                let holds = if op == BinaryOp::And { first && second } else { first || second };
                 Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
             }
             ExprKind::Binary { op, .. } if ops::is_elementwise(op) => {
@@ -341,6 +359,26 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 .expected("a row, grid or list before [")
                 .found(class));
         };
+        if let [Subscript::At(sub)] = m.program[subs] {
+            // An index can only be an array where it is not written as a number.
+            if !matches!(m.program[sub].kind, ExprKind::Number(_)) {
+                let index = self.operand(m, sub)?;
+                if let Value::Numbers(index) = &*ops::gathered(&index) {
+                    let picked = ops::picked(&value, index);
+                    return picked.map_err(|d| d.or_at(m.program[sub].span));
+                }
+                if let (Value::Number(x), [extent]) = (&index, &extents[..])
+                    && x.re().fract() == 0.0
+                    && x.re() >= 1.0
+                    && x.re() <= *extent as f64
+                {
+                    return variables::part(
+                        &value,
+                        Section::Row(Selection::at(x.re() as usize - 1)),
+                    );
+                }
+            }
+        }
         let section = self.section(m, base, &extents, &variables::shape_text(&value), subs)?;
         variables::part(&value, section)
     }
@@ -706,6 +744,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             self.charge_call();
             self.run.call(&row, filled)
         };
+        for remark in self.run.graph().context().take_remarks() {
+            let diagnostic = Diagnostic::remark(remark.id, remark.message).at(span);
+            self.report(diagnostic.help(remark.help));
+        }
         let value = value
             .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
         if !value.is_finite() {

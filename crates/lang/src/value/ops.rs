@@ -5,6 +5,7 @@ use moldloft_diag::Diagnostic;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Array, ArrayShape, Value, Vectors as Planes};
 use moldloft_syntax::sdl::{BinaryOp, UnaryOp};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A value as its elements: all numbers or all vectors, and the shape they form.
@@ -159,6 +160,135 @@ fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {
     })
 }
 
+/// A list of numbers, of vectors, or of rows of equal length, as the array that it spells; anything else as it is.
+pub(crate) fn gathered<T: Real>(value: &Value<T>) -> Cow<'_, Value<T>> {
+    let Value::List(items) = value else { return Cow::Borrowed(value) };
+    let all_numbers: Option<Vec<T>> = items
+        .iter()
+        .map(|item| if let Value::Number(x) = item { Some(*x) } else { None })
+        .collect();
+    if let Some(items) = all_numbers.filter(|items| !items.is_empty()) {
+        return Cow::Owned(numbers(Array { shape: ArrayShape::Row(items.len()), items }));
+    }
+    let all_vectors: Option<Vec<Vec3<T>>> = items
+        .iter()
+        .map(|item| match item {
+            Value::Vector(v) => Some(*v),
+            Value::Point(p) => Some(p.xyz),
+            _ => None,
+        })
+        .collect();
+    if let Some(items) = all_vectors.filter(|items| !items.is_empty()) {
+        return Cow::Owned(vectors(Array { shape: ArrayShape::Row(items.len()), items }));
+    }
+    let mut width = None;
+    let mut row = |shape: ArrayShape| match shape {
+        ArrayShape::Row(n) if width.is_none_or(|width| width == n) => {
+            width = Some(n);
+            true
+        }
+        _ => false,
+    };
+    let (mut flat, mut points) = (Vec::new(), Vec::new());
+    for item in items.iter() {
+        match item {
+            Value::Numbers(a) if points.is_empty() && row(a.shape) => flat.extend(&a.items),
+            Value::Vectors(a) if flat.is_empty() && row(a.shape) => points.extend(a.points()),
+            _ => return Cow::Borrowed(value),
+        }
+    }
+    let Some(n) = width else { return Cow::Borrowed(value) };
+    let shape = ArrayShape::Grid(items.len(), n);
+    Cow::Owned(match points.is_empty() {
+        true => numbers(Array { shape, items: flat }),
+        false => vectors(Array { shape, items: points }),
+    })
+}
+
+/// The elements of an array that a mask of its shape holds at, or those at the positions, from 1, of an index: a row.
+/// An index of a surface takes its lines i.
+pub(crate) fn picked<T: Real>(value: &Value<T>, index: &Array<T>) -> Result<Value<T>, Diagnostic> {
+    let shape = match value {
+        Value::Numbers(a) => a.shape,
+        Value::Vectors(a) => a.shape,
+        _ => {
+            return Err(Diagnostic::error("wrong-subscripts", "a list has no elements at a mask")
+                .expected("a whole number")
+                .found("an array"));
+        }
+    };
+    let is_mask = index.shape == shape && index.items.iter().all(|x| [0.0, 1.0].contains(&x.re()));
+    let extent = match shape {
+        ArrayShape::Row(n) => n,
+        ArrayShape::Grid(m, _) => m,
+    };
+    let positions: Vec<usize> = if is_mask {
+        let held = index.items.iter().enumerate().filter(|(_, x)| x.re() != 0.0);
+        held.map(|(k, _)| k).collect()
+    } else {
+        let mut positions = Vec::with_capacity(index.items.len());
+        for x in &index.items {
+            let x = x.re();
+            if !(x.fract() == 0.0 && x >= 1.0 && x <= extent as f64) {
+                return Err(Diagnostic::error(
+                    "outside",
+                    format!("index {x} is outside the array"),
+                )
+                .expected(format!(
+                    "a mask of 0 and 1 with the shape {shape}, or whole numbers from 1 to {extent}"
+                ))
+                .found(format!("an array {} with {x}", index.shape)));
+            }
+            positions.push(x as usize - 1);
+        }
+        positions
+    };
+    let (shape, positions) = match (shape, is_mask) {
+        (ArrayShape::Grid(_, n), false) => (
+            ArrayShape::Grid(positions.len(), n),
+            positions.iter().flat_map(|i| (0..n).map(move |j| i * n + j)).collect(),
+        ),
+        _ => (ArrayShape::Row(positions.len()), positions),
+    };
+    Ok(match value {
+        Value::Numbers(a) => {
+            numbers(Array { shape, items: positions.iter().map(|k| a.items[*k]).collect() })
+        }
+        Value::Vectors(a) => {
+            let planes = [0, 1, 2].map(|c| positions.iter().map(|k| a.planes[c][*k]).collect());
+            Value::Vectors(Arc::new(Planes { shape, planes }))
+        }
+        _ => unreachable!("arrays have shapes"),
+    })
+}
+
+/// `a and b`, `a or b` by element, one of them an array.
+pub(crate) fn logical<T: Real>(
+    op: BinaryOp,
+    a: &Value<T>,
+    b: &Value<T>,
+) -> Result<Value<T>, Diagnostic> {
+    let f = move |a: T, b: T| {
+        let (a, b) = (a.re() != 0.0, b.re() != 0.0);
+        T::from(f64::from(u8::from(if op == BinaryOp::And { a && b } else { a || b })))
+    };
+    Ok(match (elements(a, op.spelling())?, elements(b, op.spelling())?) {
+        (Elements::Numbers(a), Elements::Numbers(b)) => numbers(zipped(a, b, f)?),
+        (Elements::Numbers(a), Elements::Number(b)) => numbers(mapped(a, |a| f(a, b))),
+        (Elements::Number(a), Elements::Numbers(b)) => numbers(mapped(b, |b| f(a, b))),
+        _ => {
+            let message = format!("`{}` combines conditions", op.spelling());
+            return Err(Diagnostic::error("wrong-operand", message)
+                .expected("comparisons, numbers or masks"));
+        }
+    })
+}
+
+/// `not a` of an array.
+pub(crate) fn not<T: Real>(a: &Array<T>) -> Value<T> {
+    numbers(mapped(a, |x| T::from(f64::from(u8::from(x.re() == 0.0)))))
+}
+
 /// The value of `a op b`.
 pub(crate) fn binary<T: Real>(
     op: BinaryOp,
@@ -169,6 +299,7 @@ pub(crate) fn binary<T: Real>(
     if let Some(outcome) = crate::value::implicit::binary(op, a, b) {
         return outcome;
     }
+    let (a, b) = (&*gathered(a), &*gathered(b));
     let word = op.spelling();
     let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
     let undefined = || {
@@ -223,19 +354,30 @@ pub(crate) fn binary<T: Real>(
 }
 
 fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>, Diagnostic> {
-    let holds = match (a, b) {
-        (Value::Number(a), Value::Number(b)) => {
-            let (a, b) = (a.re(), b.re());
-            match op {
-                BinaryOp::Lt => a < b,
-                BinaryOp::Gt => a > b,
-                BinaryOp::Le => a <= b,
-                BinaryOp::Ge => a >= b,
-                BinaryOp::Eq => a == b,
-                BinaryOp::Ne => a != b,
-                _ => return Err(unsupported(op, a_of(&Value::Number(T::from(a))))),
-            }
+    if !matches!(
+        op,
+        BinaryOp::Lt | BinaryOp::Gt | BinaryOp::Le | BinaryOp::Ge | BinaryOp::Eq | BinaryOp::Ne
+    ) {
+        return Err(unsupported(op, a_of(a)));
+    }
+    let each = move |a: T, b: T| {
+        let (a, b) = (a.re(), b.re());
+        match op {
+            BinaryOp::Lt => a < b,
+            BinaryOp::Gt => a > b,
+            BinaryOp::Le => a <= b,
+            BinaryOp::Ge => a >= b,
+            BinaryOp::Eq => a == b,
+            _ => a != b,
         }
+    };
+    let mask = move |a: T, b: T| T::from(f64::from(u8::from(each(a, b))));
+    let holds = match (a, b) {
+        (Value::Number(a), Value::Number(b)) => each(*a, *b),
+        // Arrays give masks: 1 where it holds, 0 elsewhere.
+        (Value::Numbers(a), Value::Numbers(b)) => return Ok(numbers(zipped(&**a, &**b, mask)?)),
+        (Value::Numbers(a), Value::Number(b)) => return Ok(numbers(mapped(&**a, |a| mask(a, *b)))),
+        (Value::Number(a), Value::Numbers(b)) => return Ok(numbers(mapped(&**b, |b| mask(*a, b)))),
         (Value::Text(a), Value::Text(b)) => match op {
             BinaryOp::Eq => a == b,
             BinaryOp::Ne => a != b,
@@ -248,9 +390,9 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
                 "wrong-operand",
                 format!("`{}` compares numbers, not {found}", op.spelling()),
             )
-            .expected("two numbers")
+            .expected("numbers or arrays of numbers")
             .found(found)
-            .help("compare a component, or take min() or max() of an farray first"));
+            .help("compare a component (.x) or a length |v|"));
         }
     };
     Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
@@ -269,7 +411,7 @@ pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
     if let Some(value) = crate::value::implicit::negated(a) {
         return Ok(value);
     }
-    Ok(match elements(a, "-")? {
+    Ok(match elements(&gathered(a), "-")? {
         Elements::Number(x) => Value::Number(-x),
         Elements::Vector(v) => Value::Vector(-v),
         Elements::Numbers(a) => numbers(mapped(a, |x| -x)),
@@ -322,6 +464,7 @@ pub(crate) fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Result<Value<T>, 
         UnaryOp::Minus => negated(value),
         UnaryOp::Not => match value {
             Value::Number(x) => Ok(Value::Number(T::from(f64::from(u8::from(x.re() == 0.0))))),
+            Value::Numbers(a) => Ok(not(a)),
             other => Err(Diagnostic::error("wrong-operand", "`not` takes a condition")
                 .expected("a comparison or a number")
                 .found(other.called())),

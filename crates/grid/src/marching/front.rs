@@ -1,0 +1,265 @@
+//! The march itself, the same for curves and surfaces: layers, sub-steps, and what is tried when cells fold.
+
+use super::Hyperbolic;
+use super::report::Worst;
+use crate::GridError;
+use moldloft_num::{Real, Vec3};
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Why a layer cannot be marched.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FailureCause {
+    /// The first cell does not fit into a concave corner: lines off the neighbours of the corner cross those off
+    /// the corner.
+    CornerTooTight {
+        /// The angle of the corner on the grid's side, in degrees.
+        angle: f64,
+        /// The spacing of the points beside the corner.
+        spacing: f64,
+        /// The first cell asked for.
+        height: f64,
+        /// The largest one that fits.
+        fits: f64,
+    },
+    /// A corner of a cell is turned over; its scaled Jacobian.
+    Folded(f64),
+    /// Grid lines run into each other: an edge of the layer has shrunk to nothing.
+    LinesMeet,
+    /// The layer takes more steps than are made.
+    TooManySteps(usize),
+    /// The equations have no finite solution.
+    NotFinite,
+}
+
+/// Where and why a march ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarchFailure {
+    /// The layer, from 1 (the wall).
+    pub layer: usize,
+    /// The node or cell of it, from 1; 1 in the second index off curves.
+    pub at: [usize; 2],
+    /// The point of the wall below it.
+    pub wall: Vec3,
+    /// Why.
+    pub cause: FailureCause,
+}
+
+impl fmt::Display for MarchFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [i, j] = self.at;
+        let Vec3 { x, y, z } = self.wall;
+        let layer = self.layer;
+        match &self.cause {
+            FailureCause::CornerTooTight { angle, spacing, height, fits } => write!(
+                f,
+                "the first cell of {height:.3e} does not fit into the concave corner of {angle:.1} degrees at \
+                 [{i},{j}], where points are {spacing:.3e} apart: it fits up to {fits:.3e}"
+            ),
+            FailureCause::Folded(jacobian) => write!(
+                f,
+                "layer {layer} folds at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4}): scaled Jacobian {jacobian:.3}"
+            ),
+            FailureCause::LinesMeet => write!(
+                f,
+                "grid lines meet in layer {layer} at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4})"
+            ),
+            FailureCause::TooManySteps(steps) => {
+                write!(f, "layer {layer} is not reached in {steps} steps")
+            }
+            FailureCause::NotFinite => write!(
+                f,
+                "layer {layer} has no finite solution at [{i},{j}] above ({x:.4}, {y:.4}, {z:.4})"
+            ),
+        }
+    }
+}
+
+/// One step of a march.
+pub(super) struct Step<'a, T> {
+    /// The points, and those of the step before.
+    pub r: &'a [Vec3<T>],
+    pub before: &'a [Vec3<T>],
+    /// The height of the step, that reached with it, and the last one.
+    pub d: T,
+    pub s: T,
+    pub last: T,
+    /// How far volumes have been smoothed away from the plain ones, which may change by the factor `cap`.
+    pub smoothed: &'a mut [T],
+    pub cap: Option<f64>,
+    pub dissipation: f64,
+    /// The step leaves the wall itself.
+    pub first: bool,
+}
+
+/// What is marched: the unique points of a curve or a surface, with their neighbours.
+pub(super) trait Front<T: Real> {
+    /// The points of the wall.
+    fn wall(&self) -> &[Vec3<T>];
+    /// The first layer along the bisecting normals, or `None` where corners are so tight that it has to be
+    /// approached by steps.
+    fn first_layer(&self, height: T) -> Result<Option<Vec<Vec3<T>>>, MarchFailure>;
+    /// The shortest edge, and its node.
+    fn shortest_edge(&self, r: &[Vec3<T>]) -> (f64, usize);
+    /// The mean length of the edges.
+    fn mean_edge(&self, r: &[Vec3<T>]) -> f64;
+    /// The points after a step.
+    fn step(&self, step: Step<'_, T>, cancel: &AtomicBool) -> Vec<Vec3<T>>;
+    /// The least scaled Jacobian, and its cell, between two layers.
+    fn worst_cell(&self, below: &[Vec3<T>], above: &[Vec3<T>]) -> Worst;
+    /// The indices, from 1, of a node or cell.
+    fn place(&self, k: usize) -> [usize; 2];
+}
+
+/// Steps are at most this share of the shortest edge: beyond it some corners of 45 to 60 degrees fail.
+const EDGE_SHARE: f64 = 0.5;
+
+/// Steps are at most this share of the height reached.
+const HEIGHT_SHARE: f64 = 0.15;
+
+/// Between layers smoothed volumes change at most by this factor where lines do not converge.
+const CAP: f64 = 1.15;
+
+/// No march makes more steps.
+const MOST_STEPS: usize = 40_000;
+
+/// What is tried one after the other: as the recipe has it; without the cap on volumes, which acute corners
+/// with clustered points need; with more dissipation, too.
+const LADDER: [(Option<f64>, f64); 3] = [(Some(CAP), 1.0), (None, 1.0), (None, 3.0)];
+
+/// What a march came to.
+pub(super) struct Outcome<T> {
+    pub layers: Vec<Vec<Vec3<T>>>,
+    pub steps: usize,
+    /// The rung of the ladder, from 1.
+    pub rung: usize,
+    /// Why it ended before the last height.
+    pub failure: Option<MarchFailure>,
+}
+
+/// Marches on the rungs of the ladder until one reaches the last height; the farthest otherwise.
+pub(super) fn march<T: Real>(
+    front: &impl Front<T>,
+    options: &Hyperbolic<T>,
+    cancel: &AtomicBool,
+) -> Result<Outcome<T>, GridError> {
+    let mut farthest: Option<Outcome<T>> = None;
+    for (k, (cap, dissipation)) in LADDER.into_iter().enumerate() {
+        let mut outcome = attempt(front, options, cap, dissipation * options.smoothing, cancel)?;
+        outcome.rung = k + 1;
+        let first_fails = matches!(
+            outcome.failure,
+            Some(MarchFailure { cause: FailureCause::CornerTooTight { .. }, .. })
+        );
+        if outcome.failure.is_none() || first_fails {
+            return Ok(outcome);
+        }
+        if farthest.as_ref().is_none_or(|best| outcome.layers.len() > best.layers.len()) {
+            farthest = Some(outcome);
+        }
+    }
+    Ok(farthest.expect("the ladder has rungs"))
+}
+
+fn attempt<T: Real>(
+    front: &impl Front<T>,
+    options: &Hyperbolic<T>,
+    cap: Option<f64>,
+    dissipation: f64,
+    cancel: &AtomicBool,
+) -> Result<Outcome<T>, GridError> {
+    let heights = &options.heights;
+    let mut outcome =
+        Outcome { layers: vec![front.wall().to_vec()], steps: 0, rung: 0, failure: None };
+    let mut r = front.wall().to_vec();
+    let mut before = r.clone();
+    let mut smoothed = vec![T::one(); r.len()];
+    for k in 1..heights.len() {
+        let failure = |node: usize, cause: FailureCause| MarchFailure {
+            layer: k + 1,
+            at: front.place(node),
+            wall: front.wall()[node].re(),
+            cause,
+        };
+        let target = heights[k] - heights[k - 1];
+        if k == 1 {
+            match front.first_layer(target) {
+                Err(failure) => {
+                    outcome.failure = Some(failure);
+                    return Ok(outcome);
+                }
+                Ok(Some(layer)) => {
+                    let worst = front.worst_cell(&r, &layer);
+                    if !(worst.jacobian > 0.0) {
+                        outcome.failure =
+                            Some(failure(worst.cell, FailureCause::Folded(worst.jacobian)));
+                        return Ok(outcome);
+                    }
+                    before = std::mem::replace(&mut r, layer);
+                    outcome.layers.push(r.clone());
+                    outcome.steps += 1;
+                    continue;
+                }
+                Ok(None) => {}
+            }
+        }
+        let mut done = T::zero();
+        while done.re() < target.re() * (1.0 - 1e-12) {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(GridError::Cancelled);
+            }
+            let rest = target - done;
+            let reached = heights[k - 1] + done;
+            let (edge, node) = front.shortest_edge(&r);
+            let mut most = (EDGE_SHARE * edge).min(rest.re());
+            if reached.re() > 0.0 && most < rest.re() {
+                most = most.min(HEIGHT_SHARE * reached.re());
+            }
+            if !(most > 1e-9 * target.re()) {
+                outcome.failure = Some(failure(node, FailureCause::LinesMeet));
+                return Ok(outcome);
+            }
+            if outcome.steps >= MOST_STEPS {
+                outcome.failure = Some(failure(node, FailureCause::TooManySteps(MOST_STEPS)));
+                return Ok(outcome);
+            }
+            // The rest of the layer in equal steps; only their number depends on the lengths.
+            let d = rest * (1.0 / (rest.re() / most - 1e-9).ceil());
+            let share = (d.re() / target.re()).min(1.0);
+            let step = Step {
+                r: &r,
+                before: &before,
+                d,
+                s: reached + d,
+                last: heights[heights.len() - 1],
+                smoothed: &mut smoothed,
+                cap: cap.map(|cap| moldloft_num::Real::powf(cap, share)),
+                dissipation,
+                first: reached.re() == 0.0,
+            };
+            let next = front.step(step, cancel);
+            if cancel.load(Ordering::Relaxed) {
+                return Err(GridError::Cancelled);
+            }
+            if let Some(node) = next.iter().position(|p| !p.re().is_finite()) {
+                outcome.failure = Some(failure(node, FailureCause::NotFinite));
+                return Ok(outcome);
+            }
+            let worst = front.worst_cell(&r, &next);
+            if !(worst.jacobian > 0.0) {
+                outcome.failure = Some(failure(worst.cell, FailureCause::Folded(worst.jacobian)));
+                return Ok(outcome);
+            }
+            before = std::mem::replace(&mut r, next);
+            done += d;
+            outcome.steps += 1;
+        }
+        let worst = front.worst_cell(&outcome.layers[k - 1], &r);
+        if !(worst.jacobian > 0.0) {
+            outcome.failure = Some(failure(worst.cell, FailureCause::Folded(worst.jacobian)));
+            return Ok(outcome);
+        }
+        outcome.layers.push(r.clone());
+    }
+    Ok(outcome)
+}

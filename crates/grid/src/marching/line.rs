@@ -1,0 +1,187 @@
+//! Block-tridiagonal systems along one grid line, open or closed, and their scalar counterpart.
+
+use moldloft_num::{Real, Vec3};
+
+pub(super) type Matrix<T> = [[T; 3]; 3];
+
+/// One line of equations: low x_(k-1) + middle x_k + high x_(k+1) = right.
+pub(super) struct System<T> {
+    pub low: Vec<Matrix<T>>,
+    pub middle: Vec<Matrix<T>>,
+    pub high: Vec<Matrix<T>>,
+    pub right: Vec<Vec3<T>>,
+}
+
+impl<T: Real> System<T> {
+    /// The system of unit rows with nothing on the right.
+    pub fn unit(count: usize) -> Self {
+        Self {
+            low: vec![scaled_identity(T::zero()); count],
+            middle: vec![scaled_identity(T::one()); count],
+            high: vec![scaled_identity(T::zero()); count],
+            right: vec![Vec3::zero(); count],
+        }
+    }
+
+    /// The solution of the line; of a closed one, whose first and last unknowns are neighbours, the last
+    /// unknown is solved for by bordering.
+    pub fn solved(self, closed: bool) -> Vec<Vec3<T>> {
+        if !closed {
+            return self.eliminated::<false>(self.right.len()).0;
+        }
+        let last = self.right.len() - 1;
+        let (mut x, border) = self.eliminated::<true>(last);
+        let (low, high) = (&self.low[last], &self.high[last]);
+        let (before, after) = (times(low, &border[last - 1]), times(high, &border[0]));
+        let mut middle = self.middle[last];
+        for r in 0..3 {
+            for c in 0..3 {
+                middle[r][c] = middle[r][c] - before[r][c] - after[r][c];
+            }
+        }
+        let right = self.right[last] - apply(low, x[last - 1]) - apply(high, x[0]);
+        let w = apply(&inverse(&middle), right);
+        for (x, border) in x.iter_mut().zip(&border) {
+            *x -= apply(border, w);
+        }
+        x.push(w);
+        x
+    }
+
+    /// The first `count` unknowns by elimination and, with `BORDER`, how each depends on the next one, which
+    /// closes the line.
+    fn eliminated<const BORDER: bool>(&self, count: usize) -> (Vec<Vec3<T>>, Vec<Matrix<T>>) {
+        let mut upper: Vec<Matrix<T>> = Vec::with_capacity(count);
+        let mut x: Vec<Vec3<T>> = Vec::with_capacity(count);
+        let mut border: Vec<Matrix<T>> = Vec::with_capacity(if BORDER { count } else { 0 });
+        for k in 0..count {
+            let (low, mut middle, mut right) = (&self.low[k], self.middle[k], self.right[k]);
+            let mut side = scaled_identity(T::zero());
+            if BORDER && k == 0 {
+                side = *low;
+            }
+            if BORDER && k + 1 == count {
+                add(&mut side, &self.high[k]);
+            }
+            if k > 0 {
+                subtract(&mut middle, &times(low, &upper[k - 1]));
+                right -= apply(low, x[k - 1]);
+                if BORDER {
+                    subtract(&mut side, &times(low, &border[k - 1]));
+                }
+            }
+            let solve = inverse(&middle);
+            x.push(apply(&solve, right));
+            upper.push(times(&solve, &self.high[k]));
+            if BORDER {
+                border.push(times(&solve, &side));
+            }
+        }
+        for k in (0..count.saturating_sub(1)).rev() {
+            let next = x[k + 1];
+            x[k] -= apply(&upper[k], next);
+            if BORDER {
+                let product = times(&upper[k], &border[k + 1]);
+                subtract(&mut border[k], &product);
+            }
+        }
+        (x, border)
+    }
+}
+
+/// Solves (1 + 2 a_k) x_k - a_k (x_(k-1) + x_(k+1)) = v_k: values smoothed over a length of root a points;
+/// nothing passes the ends of an open line.
+pub(super) fn smoothed<T: Real>(a: &[T], v: &[T], closed: bool) -> Vec<T> {
+    let n = v.len();
+    let one = T::one();
+    let count = if closed { n - 1 } else { n };
+    let mut upper = Vec::with_capacity(count);
+    let mut x: Vec<T> = Vec::with_capacity(count);
+    let mut border = vec![T::zero(); count];
+    for k in 0..count {
+        let first = k == 0 && !closed;
+        let last = k + 1 == n;
+        let neighbours = if first || last { one } else { T::from(2.0) };
+        let mut middle = one + a[k] * neighbours;
+        let mut right = v[k];
+        let mut side = T::zero();
+        if closed && k == 0 {
+            side -= a[k];
+        }
+        if closed && k + 1 == count {
+            side -= a[k];
+        }
+        if k > 0 {
+            middle += a[k] * upper[k - 1];
+            right += a[k] * x[k - 1];
+            side += a[k] * border[k - 1];
+        }
+        x.push(right / middle);
+        upper.push(-(a[k] / middle));
+        border[k] = side / middle;
+    }
+    for k in (0..count - 1).rev() {
+        let (next, side) = (x[k + 1], border[k + 1]);
+        x[k] -= upper[k] * next;
+        border[k] -= upper[k] * side;
+    }
+    if closed {
+        let a = a[n - 1];
+        let whole = one + a * 2.0 + a * (border[count - 1] + border[0]);
+        let w = (v[n - 1] + a * (x[count - 1] + x[0])) / whole;
+        for (x, border) in x.iter_mut().zip(&border) {
+            *x -= *border * w;
+        }
+        x.push(w);
+    }
+    x
+}
+
+pub(super) fn scaled_identity<T: Real>(x: T) -> Matrix<T> {
+    let o = T::zero();
+    [[x, o, o], [o, x, o], [o, o, x]]
+}
+
+fn add<T: Real>(a: &mut Matrix<T>, b: &Matrix<T>) {
+    for r in 0..3 {
+        for c in 0..3 {
+            a[r][c] += b[r][c];
+        }
+    }
+}
+
+fn subtract<T: Real>(a: &mut Matrix<T>, b: &Matrix<T>) {
+    for r in 0..3 {
+        for c in 0..3 {
+            a[r][c] -= b[r][c];
+        }
+    }
+}
+
+pub(super) fn times<T: Real>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
+    std::array::from_fn(|r| {
+        std::array::from_fn(|c| a[r][0] * b[0][c] + a[r][1] * b[1][c] + a[r][2] * b[2][c])
+    })
+}
+
+pub(super) fn apply<T: Real>(a: &Matrix<T>, v: Vec3<T>) -> Vec3<T> {
+    let row = |r: usize| a[r][0] * v.x + a[r][1] * v.y + a[r][2] * v.z;
+    Vec3::new(row(0), row(1), row(2))
+}
+
+/// The inverse by cofactors; of a singular matrix it is not finite, which the march refuses.
+pub(super) fn inverse<T: Real>(a: &Matrix<T>) -> Matrix<T> {
+    let [x, y, z] = [0, 1, 2].map(|c| Vec3::new(a[0][c], a[1][c], a[2][c]));
+    let (p, q, r) = (y.cross(z), z.cross(x), x.cross(y));
+    let det = T::one() / x.dot(p);
+    [p, q, r].map(|row| (row * det).to_array())
+}
+
+/// The matrix with the signs of one column turned: what a mirror does to a step in its plane's coordinate.
+pub(super) fn mirrored<T: Real>(a: &Matrix<T>, column: usize) -> Matrix<T> {
+    let mut b = *a;
+    for row in &mut b {
+        row[column] = -row[column];
+    }
+    b
+}

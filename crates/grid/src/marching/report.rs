@@ -1,0 +1,279 @@
+//! What is measured of a march: cells, corners, walls, and whether it ends early.
+
+use super::Hyperbolic;
+use super::front::{FailureCause, Front, MarchFailure, Outcome};
+use crate::surface_grid::SAME;
+use crate::{Corner, Edge, GridError};
+use moldloft_num::{Real, Vec3};
+use std::fmt;
+
+/// Why a march ended before its last height.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StopReason {
+    /// The next layer cannot be marched.
+    Failure(MarchFailure),
+    /// The next layer has a cell of this scaled Jacobian.
+    Jacobian(f64),
+    /// The next layer has a cell of this skewness.
+    Skewness(f64),
+    /// The next layer has a cell that is so many times the one below.
+    Growth(f64),
+    /// Cells are as high as they are long.
+    Isotropic,
+}
+
+impl fmt::Display for StopReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Failure(failure) => write!(f, "{failure}"),
+            Self::Jacobian(x) => write!(f, "the next layer has a scaled Jacobian of {x:.3}"),
+            Self::Skewness(x) => write!(f, "the next layer has a skewness of {x:.3}"),
+            Self::Growth(x) => write!(f, "cells of the next layer grow by {x:.3}"),
+            Self::Isotropic => write!(f, "cells are as high as they are long"),
+        }
+    }
+}
+
+/// How a march went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarchReport {
+    /// Layers, the wall among them.
+    pub layers: usize,
+    /// Steps that were made for them.
+    pub steps: usize,
+    /// Which of the three settings was needed: 1, 2 without a cap on smoothed volumes, 3 with more smoothing.
+    pub rung: usize,
+    /// The least scaled Jacobian at a corner of a cell.
+    pub jacobian: f64,
+    /// Where: layer above the cell and indices of the cell, from 1.
+    pub at: [usize; 3],
+    /// The largest equiangle skewness of a cell's corners.
+    pub skewness: f64,
+    /// The least and the greatest distance of the first layer from the wall.
+    pub first_cell: [f64; 2],
+    /// The largest angle between a line and the bisecting normal at the wall, in radians.
+    pub wall_angle: f64,
+    /// The largest ratio of a line's cell to the one below, or of that to it.
+    pub growth: f64,
+    /// Why it ended before the last height.
+    pub stopped: Option<StopReason>,
+}
+
+/// The least scaled Jacobian of the cells of a layer, with the cell, and the greatest skewness.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worst {
+    pub jacobian: f64,
+    pub cell: usize,
+    pub skewness: f64,
+}
+
+impl Worst {
+    pub fn none() -> Self {
+        Self { jacobian: f64::INFINITY, cell: 0, skewness: 0.0 }
+    }
+
+    pub fn take(&mut self, cell: usize, [jacobian, skewness]: [f64; 2]) {
+        // NaN is the worst.
+        if !(jacobian >= self.jacobian) {
+            (self.jacobian, self.cell) = (jacobian, cell);
+        }
+        self.skewness = self.skewness.max(skewness);
+    }
+
+    pub fn worse(self, other: Self) -> Self {
+        let mut worst = self;
+        worst.take(other.cell, [other.jacobian, other.skewness]);
+        worst
+    }
+}
+
+/// Scaled Jacobian and equiangle skewness of a quadrilateral, as seen against a normal.
+pub(super) fn quad(corners: [Vec3; 4], up: Vec3) -> [f64; 2] {
+    let (mut least, mut skew) = (f64::INFINITY, 0.0f64);
+    for k in 0..4 {
+        let (next, last) = (corners[(k + 1) % 4] - corners[k], corners[(k + 3) % 4] - corners[k]);
+        let scale = next.norm() * last.norm();
+        let sine = next.cross(last).dot(up) / scale;
+        if !(sine >= least) {
+            least = sine;
+        }
+        skew = skew.max(angle_skewness(next, last));
+    }
+    [least, skew]
+}
+
+/// How far the angle between two edges is from a right one, 0 to 1.
+pub(super) fn angle_skewness(a: Vec3, b: Vec3) -> f64 {
+    let angle = libm::atan2(a.cross(b).norm(), a.dot(b));
+    (angle / std::f64::consts::FRAC_PI_2 - 1.0).abs()
+}
+
+/// Scaled Jacobian and skewness of a hexahedron with corners `p[a][b][c]`; corners at edges without length,
+/// which poles have, do not count.
+pub(crate) fn hexahedron(p: [[[Vec3; 2]; 2]; 2]) -> [f64; 2] {
+    let (mut least, mut skew) = (f64::INFINITY, 0.0f64);
+    for k in 0..8 {
+        let (a, b, c) = (k >> 2, k >> 1 & 1, k & 1);
+        let here = p[a][b][c];
+        let turn = |x: usize| if x == 0 { 1.0 } else { -1.0 };
+        let i = (p[1 - a][b][c] - here) * turn(a);
+        let j = (p[a][1 - b][c] - here) * turn(b);
+        let l = (p[a][b][1 - c] - here) * turn(c);
+        let scale = i.norm() * j.norm() * l.norm();
+        if scale == 0.0 {
+            continue;
+        }
+        let det = i.cross(j).dot(l) / scale;
+        if !(det >= least) {
+            least = det;
+        }
+        for (x, y) in [(i, j), (j, l), (l, i)] {
+            skew = skew.max(angle_skewness(x, y));
+        }
+    }
+    [least, skew]
+}
+
+/// True when a first cell fits into a concave corner whose half angle has this sine and cosine; false when it is
+/// so tight that the layer has to be approached by steps, which keep within 5 degrees of the normal there.
+///
+/// Lines off the neighbours of the corner, at the distance `spacing`, cross its bisector at the height
+/// spacing tan(half angle), which no march can pass; beyond 0.95 of it nothing is left of the first edge.
+///
+/// # Errors
+/// Where the corner is sharper and the cell higher.
+pub(super) fn fits_corner(
+    [sine, cosine]: [f64; 2],
+    spacing: f64,
+    height: f64,
+) -> Result<bool, FailureCause> {
+    /// The tangent of the lean that is allowed, 5 degrees.
+    const LEAN: f64 = 0.087_488_663_525_924;
+    let cot = cosine / sine;
+    let fits = 0.95 * spacing / cot;
+    if height > fits && cot > LEAN {
+        let angle = 2.0 * libm::atan2(sine, cosine).to_degrees();
+        return Err(FailureCause::CornerTooTight { angle, spacing, height, fits });
+    }
+    Ok(height <= fits)
+}
+
+/// How far from the wall a layer counts: (s / last)^0.15, independent of the number of layers.
+pub(super) fn shift<T: Real>(s: T, last: T) -> T {
+    (s / last).powf(T::from(0.15))
+}
+
+/// The sensor of converging lines: the ratio of the spans before and now to the power 2 / shift, between 0.1 and
+/// 1000 (Chan and Steger 1992, section 6).
+pub(super) fn convergence<T: Real>(ratio: T, shift: T) -> T {
+    let plain = libm::pow(ratio.re(), 2.0 / shift.re());
+    if !(plain > 0.1) {
+        return T::from(0.1);
+    }
+    if plain > 1e3 {
+        return T::from(1e3);
+    }
+    ratio.powf(T::from(2.0) / shift)
+}
+
+/// Refuses seams that do not close: pairs of points that shall be one, with their indices.
+pub(super) fn check_seam<T: Real>(
+    pairs: &[(Vec3, Vec3, [usize; 2])],
+    points: &[Vec3<T>],
+) -> Result<(), GridError> {
+    let origin = points[0].re();
+    let size = points.iter().map(|p| p.re().distance(origin)).fold(0.0, f64::max);
+    for (a, b, at) in pairs {
+        let gap = a.distance(*b);
+        if gap > SAME * size {
+            let corner = Corner { edge: Edge::FirstI, other: Edge::LastI, at: *at };
+            return Err(GridError::EdgesApart { corner, gap });
+        }
+    }
+    Ok(())
+}
+
+/// The layers up to where the options end the march, and the report of them.
+///
+/// # Errors
+/// [`GridError::March`] where the march failed and its layers are not kept.
+pub(super) fn settled<T: Real>(
+    front: &impl Front<T>,
+    options: &Hyperbolic<T>,
+    outcome: Outcome<T>,
+    first: Vec<(f64, f64)>,
+) -> Result<(Vec<Vec<Vec3<T>>>, MarchReport), GridError> {
+    let Outcome { mut layers, steps, rung, failure } = outcome;
+    if let Some(failure) = &failure
+        && !options.stop.keep
+    {
+        return Err(GridError::March(Box::new(failure.clone())));
+    }
+    let mut stopped = failure.map(StopReason::Failure);
+    let mut worst = Worst::none();
+    let mut at = [1, 1, 1];
+    let mut growth = 1.0f64;
+    let stop = &options.stop;
+    for k in 1..layers.len() {
+        let cells = front.worst_cell(&layers[k - 1], &layers[k]);
+        let grown = if k > 1 { growth_of(&layers[k - 2..=k]) } else { 1.0 };
+        let reason = if cells.jacobian < stop.jacobian {
+            Some(StopReason::Jacobian(cells.jacobian))
+        } else if cells.skewness > stop.skewness {
+            Some(StopReason::Skewness(cells.skewness))
+        } else if grown > stop.growth {
+            Some(StopReason::Growth(grown))
+        } else {
+            None
+        };
+        if reason.is_some() {
+            stopped = reason;
+            layers.truncate(k);
+            break;
+        }
+        if cells.jacobian < worst.jacobian {
+            let [i, j] = front.place(cells.cell);
+            at = [k + 1, i, j];
+        }
+        worst = worst.worse(cells);
+        growth = growth.max(grown);
+        if stop.isotropic && k + 1 < layers.len() && isotropic(front, &layers[k - 1], &layers[k]) {
+            stopped = Some(StopReason::Isotropic);
+            layers.truncate(k + 1);
+            break;
+        }
+    }
+    let (mut low, mut high, mut angle) = (f64::INFINITY, 0.0f64, 0.0f64);
+    for (distance, off) in first {
+        (low, high, angle) = (low.min(distance), high.max(distance), angle.max(off));
+    }
+    let report = MarchReport {
+        layers: layers.len(),
+        steps,
+        rung,
+        jacobian: worst.jacobian,
+        at,
+        skewness: worst.skewness,
+        first_cell: [low, high],
+        wall_angle: angle,
+        growth,
+        stopped,
+    };
+    Ok((layers, report))
+}
+
+/// The largest ratio of two cells of a line that follow each other.
+fn growth_of<T: Real>(layers: &[Vec<Vec3<T>>]) -> f64 {
+    let nodes = 0..layers[0].len();
+    nodes.fold(1.0, |most, k| {
+        let a = layers[1][k].re().distance(layers[0][k].re());
+        let b = layers[2][k].re().distance(layers[1][k].re());
+        if a > 0.0 && b > 0.0 { f64::max(most, (b / a).max(a / b)) } else { most }
+    })
+}
+
+/// True when the mean height of a layer is that of its cells' mean length.
+fn isotropic<T: Real>(front: &impl Front<T>, below: &[Vec3<T>], above: &[Vec3<T>]) -> bool {
+    let heights = below.iter().zip(above).map(|(a, b)| a.re().distance(b.re()));
+    heights.sum::<f64>() / below.len() as f64 >= front.mean_edge(above)
+}
