@@ -94,8 +94,10 @@ mod testing;
 pub use curve::breaks::{Finding, findings, with_findings};
 pub use curve::condition::{Condition, joined};
 pub use curve::corners::{FitWithCorners, interpolate_with_corners};
+pub use curve::data::{Data, DataFit, DataOptions, Goal, Merged, fair_data, merged};
 pub use curve::fit::{
     Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
+    parameters_with,
 };
 pub use curve::job::{End, Job};
 pub use curve::jumps::Jumps;
@@ -103,12 +105,14 @@ pub use curve::knot_removal::{
     KnotRemoval, KnotRemovalOptions, Move, Rule, Step, Stopped, Stops, knot_removal,
     knot_removal_from, replay, replay_from_with, replay_with, sweeps,
 };
+pub use curve::layout::Layout;
 pub use curve::limit::{Limit, Motion};
 pub use curve::multilevel::multilevel;
 pub use curve::space::Space;
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};
-pub use interrogate::report::{Mode, Numbers, Report, numbers, report};
+pub use interrogate::outliers::{DataFinding, data_findings, detectable};
+pub use interrogate::report::{Mode, Numbers, Report, data_report, numbers, report};
 pub use interrogate::{shape, surface};
 pub use kinds::rows;
 pub use measure::{Measure, Norm, value};

@@ -98,6 +98,12 @@ impl SparseRows {
         self
     }
 
+    /// The rows times a number.
+    pub fn scaled(mut self, by: f64) -> Self {
+        self.factors.iter_mut().for_each(|f| *f *= by);
+        self
+    }
+
     /// The rows for which `keep` holds of (columns, factors).
     pub fn filtered(&self, keep: impl Fn(&[u32], &[f64]) -> bool) -> Self {
         let mut out = Self::new();

@@ -4,7 +4,7 @@
 use crate::error::check_finite;
 use crate::net::patches::{Across, Patch};
 use crate::optimum::certificate::gap;
-use crate::optimum::{Optimum, Parts};
+use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Measure, Space,
     SparseRows, knot_removal_from, replay_from_with,
@@ -472,7 +472,13 @@ impl Network {
             frozen: self.frozen(),
             conditions,
             own: 0,
-            bezier: if bound == Bound::Bezier { self.bezier() } else { None },
+            bounded: match bound {
+                Bound::Bezier => self
+                    .bezier()
+                    .map_or(Bounded::ControlPoints, |(rows, reach)| Bounded::Bezier(rows, reach)),
+                Bound::ControlPoints => Bounded::ControlPoints,
+            },
+            pull: None,
             accuracy,
         })
     }

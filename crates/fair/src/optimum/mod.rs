@@ -137,6 +137,29 @@ pub fn optimum_with<T: Real>(
 /// The number of a condition, and by how much its factors change, point by point.
 pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
 
+/// What the limits are about.
+pub(crate) enum Bounded {
+    /// Control points.
+    ControlPoints,
+    /// Bézier points of the displacement, and how far control points can move under them.
+    Bezier(SparseRows, Vec<f64>),
+    /// Data on the curve.
+    Data(DataLimits),
+}
+
+/// How far data may be from the curve at their parameters.
+#[derive(Clone)]
+pub(crate) struct DataLimits {
+    /// The values at the data's parameters over the control points.
+    pub rows: SparseRows,
+    /// A radius per row.
+    pub radii: Vec<f64>,
+    /// Where the original is off the data; none where it passes through them.
+    pub offsets: Vec<Vec3<f64>>,
+    /// By how much each control point can move under these limits.
+    pub reach: Vec<f64>,
+}
+
 /// What curves, nets and networks have in common.
 pub(crate) struct Parts<'a> {
     pub points: &'a [Vec3<f64>],
@@ -151,9 +174,19 @@ pub(crate) struct Parts<'a> {
     pub centred: bool,
     /// How many of the conditions are not the caller's.
     pub own: usize,
-    /// Bézier points of the displacement, and how far control points can move under them.
-    pub bezier: Option<(SparseRows, Vec<f64>)>,
+    pub bounded: Bounded,
+    /// A pull towards the data, beside the measure: rows that measure displacements.
+    pub pull: Option<SparseRows>,
     pub accuracy: f64,
+}
+
+impl DataLimits {
+    /// The limits that say something: neither without end nor on what stands still.
+    fn used<'a>(&'a self, frozen: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+        (0..self.rows.len()).filter(|&k| {
+            self.radii[k].is_finite() && self.rows.row(k).0.iter().any(|&c| !frozen[c as usize])
+        })
+    }
 }
 
 impl<'a> Parts<'a> {
@@ -174,10 +207,13 @@ impl<'a> Parts<'a> {
             frozen,
             conditions,
             own,
-            bezier: match options.bound {
-                Bound::ControlPoints => None,
-                Bound::Bezier => Some((job.space.bezier(weights), job.space.reach(weights))),
+            bounded: match options.bound {
+                Bound::ControlPoints => Bounded::ControlPoints,
+                Bound::Bezier => {
+                    Bounded::Bezier(job.space.bezier(weights), job.space.reach(weights))
+                }
             },
+            pull: None,
             accuracy: options.accuracy,
         })
     }
@@ -228,7 +264,7 @@ impl<'a> Parts<'a> {
         } else {
             Vec3::zero()
         };
-        let rows = &problem.measure;
+        let rows = &self.measure;
         let down = |v: Vec3<T>| {
             let mut out = [T::zero(); 3];
             for (o, a) in out.iter_mut().zip(&frame.axes) {
@@ -236,7 +272,7 @@ impl<'a> Parts<'a> {
             }
             out
         };
-        let offsets: Vec<_> = (0..rows.len())
+        let mut offsets: Vec<_> = (0..rows.len())
             .map(|k| {
                 let (columns, factors) = rows.row(k);
                 let entries = columns.iter().zip(factors);
@@ -245,9 +281,17 @@ impl<'a> Parts<'a> {
                 }))
             })
             .collect();
+        offsets.resize(problem.measure.len(), [T::zero(); 3]);
         let limits = &problem.bounds.rows;
+        let used: Vec<usize> = match &self.bounded {
+            Bounded::Data(data) => data.used(&self.frozen).collect(),
+            _ => Vec::new(),
+        };
         let radii: Vec<T> = (0..limits.len())
             .map(|k| {
+                if let Some(&own) = used.get(k) {
+                    return tolerances[own] - T::from(tolerances[own].re());
+                }
                 // The tolerance that set this limit's radius: the first of the smallest.
                 let near = limits.row(k).0.iter().map(|&c| c as usize);
                 let set = near
@@ -342,23 +386,26 @@ impl<'a> Parts<'a> {
     pub fn problem(&self, frame: &Frame) -> Problem {
         let (n, radii, frozen) = (self.points.len(), &self.limit.radii, &self.frozen);
         let rows = &self.measure;
-        let offsets = (0..rows.len()).map(|k| frame.down(rows.apply(k, &self.relative))).collect();
+        let mut offsets: Vec<V> =
+            (0..rows.len()).map(|k| frame.down(rows.apply(k, &self.relative))).collect();
+        let mut measure = rows.clone();
+        if let Some(pull) = &self.pull {
+            // Displacements begin at zero.
+            offsets.resize(rows.len() + pull.len(), [0.0; 3]);
+            measure = measure.joined(pull);
+        }
         let corner = if frame.separate { (frame.axes.len() as f64).sqrt() } else { 1.0 };
         let mut reach: Vec<f64> = radii.iter().map(|r| r * corner).collect();
-        let mut bounds = Bounds {
-            rows: SparseRows::new(),
-            direct: self.bezier.is_none(),
-            radii: Vec::new(),
-            separate: frame.separate,
-        };
-        match &self.bezier {
-            None => {
+        let mut bounds = Bounds { separate: frame.separate, ..Bounds::none() };
+        match &self.bounded {
+            Bounded::ControlPoints => {
                 for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
                     bounds.rows.push([(i, 1.0)]);
                     bounds.radii.push(radii[i]);
                 }
             }
-            Some((all, most)) => {
+            Bounded::Bezier(all, most) => {
+                bounds.direct = false;
                 for k in 0..all.len() {
                     let (columns, factors) = all.row(k);
                     let columns = || columns.iter().map(|&c| c as usize);
@@ -371,6 +418,18 @@ impl<'a> Parts<'a> {
                 }
                 let largest = radii.iter().copied().fold(0.0, f64::max);
                 reach = most.iter().map(|r| r * largest * corner).collect();
+            }
+            Bounded::Data(data) => {
+                bounds.direct = false;
+                for k in data.used(frozen) {
+                    let (columns, factors) = data.rows.row(k);
+                    bounds
+                        .rows
+                        .push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
+                    bounds.radii.push(data.radii[k]);
+                    bounds.offsets.extend(data.offsets.get(k).map(|&o| frame.down(o)));
+                }
+                reach = data.reach.iter().map(|r| r * corner).collect();
             }
         }
         let conditions = self
@@ -386,7 +445,7 @@ impl<'a> Parts<'a> {
             .collect();
         Problem {
             dimension: frame.axes.len(),
-            measure: self.measure.clone(),
+            measure,
             norm: self.norm,
             offsets,
             bounds,
@@ -403,7 +462,7 @@ fn active(p: &Problem, s: &problem::Solution) -> usize {
     let mut count = 0;
     for k in 0..p.bounds.rows.len() {
         let (columns, factors) = p.bounds.rows.row(k);
-        let mut sum = [0.0; 3];
+        let mut sum = p.bounds.offset(k);
         for (&c, &a) in columns.iter().zip(factors) {
             for (q, x) in sum.iter_mut().zip(s.x[c as usize]) {
                 *q += a * x;

@@ -13,3 +13,4 @@ mod knot_removal;
 mod network;
 mod optimum;
 mod rational;
+mod truth;
