@@ -94,7 +94,9 @@ mod testing;
 pub use curve::breaks::{Finding, findings, with_findings};
 pub use curve::condition::{Condition, joined};
 pub use curve::corners::{FitWithCorners, interpolate_with_corners};
-pub use curve::data::{Data, DataFit, DataOptions, Goal, Merged, fair_data, merged};
+pub use curve::data::{
+    Data, DataFit, DataOptions, Merged, MovingFit, fair_data, fair_data_with, merged,
+};
 pub use curve::fit::{
     Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
     parameters_with,
@@ -120,5 +122,6 @@ pub use net::network;
 pub use net::network::{Network, NetworkCurve, NetworkMode, NetworkReport};
 pub use net::patches::{Edge, PatchNet, Seam};
 pub use optimum::certificate::{Certificate, ball_gap};
+pub use optimum::goal::Goal;
 pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};
 pub use sparse_rows::SparseRows;

@@ -9,28 +9,11 @@
 //! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
 
 use crate::curve::job::End;
-use crate::optimum::{Bounded, DataLimits, Optimum, Parts, kept};
-use crate::{
-    Certificate, Condition, FairError, Job, Layout, Limit, Measure, Norm, SparseRows, shape,
-};
-use moldloft_num::Vec3;
-
-/// Which of the curves within the tolerances is wanted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
-    /// The fairest: the least of the measure.
-    Fairest,
-    /// The fairest of those whose squared residuals, each over its tolerance, have a mean of at
-    /// most this share of 1/3, which is what noise has that fills the tolerance evenly.
-    Budget(f64),
-    /// The same, as far as it is worth a move: data whose own curve measures less than one and a
-    /// half times as much do not move at all, and from three times on they move all the way.
-    /// Exact data stay, and so does what was faired before.
-    Near(f64),
-    /// The one nearest to the data (in the sum of the same squares) whose measure exceeds the least
-    /// by at most this share. Data that are as fair as that do not move.
-    Nearest(f64),
-}
+use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
+use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
+use crate::optimum::{Bounded, DataLimits, Parts, kept};
+use crate::{Certificate, Condition, FairError, Job, Layout, Limit, Measure, SparseRows, shape};
+use moldloft_num::{Real, Vec3};
 
 /// Data with what they allow.
 #[derive(Clone, Debug)]
@@ -135,23 +118,24 @@ pub fn merged(points: &[Vec3<f64>], radii: &[f64], closed: bool) -> Result<Merge
     Ok(out)
 }
 
-/// Solutions at most on the way to a goal.
-const MOST_SOLUTIONS: usize = 60;
-
-/// How many times the optimum's measure the data's own curve must have before anything moves, and
-/// before it moves all the way.
-const STAYS: f64 = 1.5;
-const MOVES: f64 = 3.0;
-
-/// How exactly budgets and shares are kept.
-const GOAL_ACCURACY: f64 = 1e-7;
-
 impl Data {
     /// The parts of the optimum that are the same for all weights of the data.
     fn parts<'a>(&self, options: &DataOptions, job: &'a Job) -> Result<Parts<'a>, FairError> {
         let layout = &self.layout;
         let radii = layout.radii(&self.limit.radii);
         let (mut frozen, mut conditions) = kept(job);
+        // Of what an end keeps, the position is a datum of its own; the rest is held by conditions,
+        // so that it follows the curve through the data when these change.
+        let n = frozen.len();
+        let held: Vec<usize> = self.held();
+        for &c in &held {
+            frozen[c] = false;
+        }
+        if !layout.space.is_closed() {
+            for (end, c) in self.ends.into_iter().zip([0, n - 1]) {
+                frozen[c] |= end != End::Free && end != End::Points(0);
+            }
+        }
         for &m in &layout.marks {
             frozen[layout.control_of(m)] = true;
         }
@@ -174,6 +158,12 @@ impl Data {
             }
         }
         let own = conditions.len();
+        for &c in &held {
+            for axis in crate::curve::condition::AXES {
+                let entries = vec![(c, axis)];
+                conditions.push(Condition { entries, value: axis.dot(job.points[c]) });
+            }
+        }
         conditions.extend(options.conditions.iter().cloned());
         let mut rows = SparseRows::new();
         let mut own_radii = Vec::new();
@@ -207,6 +197,19 @@ impl Data {
             pull: None,
             accuracy: options.accuracy,
         })
+    }
+
+    /// The control points beside the ends that these keep.
+    fn held(&self) -> Vec<usize> {
+        if self.layout.space.is_closed() {
+            return Vec::new();
+        }
+        let n = self.layout.space.count();
+        let [first, last] = self.ends.map(|e| match e {
+            End::Points(k) => k.min(n),
+            e => e.kept(),
+        });
+        (1..first).chain((n - last.max(1)..n - 1).filter(move |&c| c >= first.max(1))).collect()
     }
 
     /// The data that pull, as rows of displacements over tolerances.
@@ -340,7 +343,8 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
 }
 
 impl Data {
-    /// The optimum of a goal by the rows of `parts`; its value by those of `counted`, where these are others.
+    /// The optimum of a goal by the rows of `parts`; its value by those of `counted`, where these
+    /// are others.
     fn along(
         &self,
         options: &DataOptions,
@@ -348,9 +352,36 @@ impl Data {
         parts: &mut Parts<'_>,
         counted: Option<&SparseRows>,
     ) -> Result<DataFit, FairError> {
+        let found = self.found(options, job, parts)?;
+        let mut fit = self.fit(found, job);
+        if let Some(rows) = counted {
+            fit.certificate.value = rows.sum_sq(&fit.points);
+        }
+        Ok(fit)
+    }
+
+    fn fit(&self, found: Found, job: &Job) -> DataFit {
+        DataFit {
+            residuals: self.residuals(&found.optimum.points),
+            used: found.used,
+            least: found.least,
+            weight: found.weight,
+            certificate: found.optimum.certificate,
+            iterations: found.optimum.iterations,
+            active: found.optimum.active,
+            points: found.optimum.points,
+            original: job.points.clone(),
+        }
+    }
+
+    fn found(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+        parts: &mut Parts<'_>,
+    ) -> Result<Found, FairError> {
         let pull = self.pull(parts);
         let (rows, norm) = (parts.measure.clone(), parts.norm);
-        let conditioned = !options.conditions.is_empty();
         let path = Path {
             energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
             squares: |points: &[Vec3<f64>]| {
@@ -361,208 +392,120 @@ impl Data {
             noise: rounding(&rows, norm, &job.points),
             original: &job.points,
         };
-        let found = path.follow(options.goal, norm, conditioned, |weight| {
+        path.follow(options.goal, norm, !options.conditions.is_empty(), |weight| {
             parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
             parts.solve()
-        })?;
-        let mut certificate = found.optimum.certificate;
-        if let Some(rows) = counted {
-            certificate.value = rows.sum_sq(&found.optimum.points);
-        }
-        Ok(DataFit {
-            residuals: self.residuals(&found.optimum.points),
-            used: found.used,
-            least: found.least,
-            weight: found.weight,
-            certificate,
-            iterations: found.optimum.iterations,
-            active: found.optimum.active,
-            points: found.optimum.points,
-            original: job.points.clone(),
         })
     }
 }
 
-/// The measure that rounding of the points alone may leave.
-pub(crate) fn rounding(rows: &SparseRows, norm: Norm, points: &[Vec3<f64>]) -> f64 {
-    let of = |k: usize| {
-        let (columns, factors) = rows.row(k);
-        let size: f64 =
-            columns.iter().zip(factors).map(|(&c, f)| f.abs() * points[c as usize].norm()).sum();
-        let noise = 64.0 * f64::EPSILON * size;
-        if norm == Norm::Square { noise * noise } else { noise }
-    };
-    (0..rows.len()).map(of).sum()
+/// A faired curve whose control points and knots carry derivatives.
+#[derive(Clone, Debug)]
+pub struct MovingFit<T> {
+    /// The control points on the layout's space.
+    pub points: Vec<Vec3<T>>,
+    /// The space's knots.
+    pub knots: Vec<T>,
 }
 
-/// The way from the fairest curve to the data as their weight grows.
-pub(crate) struct Path<'a, E, S> {
-    /// The measure at points.
-    pub energy: E,
-    /// The sum of squared residuals over tolerances.
-    pub squares: S,
-    /// How many residuals these are.
-    pub count: usize,
-    /// What rounding leaves of the measure.
-    pub noise: f64,
-    pub original: &'a [Vec3<f64>],
-}
-
-/// Where the way ended.
-pub(crate) struct Found {
-    pub optimum: Optimum,
-    pub used: f64,
-    pub least: f64,
-    pub weight: f64,
-}
-
-impl<E, S> Path<'_, E, S>
-where
-    E: Fn(&[Vec3<f64>]) -> f64,
-    S: Fn(&[Vec3<f64>]) -> f64,
-{
-    /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
-    /// continuously, so the goal is found between two weights.
-    pub fn follow(
-        &self,
-        goal: Goal,
-        norm: Norm,
-        conditioned: bool,
-        mut solve: impl FnMut(f64) -> Result<Optimum, FairError>,
-    ) -> Result<Found, FairError> {
-        let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
-        let begin = (self.energy)(self.original);
-        if !conditioned && begin <= self.noise {
-            // Nothing is left but rounding: not a bit moves.
-            let certificate = Certificate { value: begin, gap: begin };
-            let points = self.original.to_vec();
-            let optimum = Optimum { points, certificate, iterations: 0, active: 0 };
-            return Ok(Found { optimum, used: 0.0, least: begin, weight: f64::INFINITY });
-        }
-        let fairest = solve(0.0)?;
-        let least = (self.energy)(&fairest.points);
-        let squares = (self.squares)(&fairest.points);
-        let ended = |optimum: Optimum, weight: f64| {
-            let used = (self.squares)(&optimum.points) / mean;
-            let value = (self.energy)(&optimum.points);
-            let certificate = Certificate { value, ..optimum.certificate };
-            Ok(Found { optimum: Optimum { certificate, ..optimum }, used, least, weight })
-        };
-        // Between the data's own curve and the optimum, by what there is to gain: both are within
-        // the tolerances, and so is all between them.
-        let settle = |optimum: Optimum, weight: f64| {
-            let Goal::Near(_) = goal else { return ended(optimum, weight) };
-            if conditioned {
-                return ended(optimum, weight);
-            }
-            let value = (self.energy)(&optimum.points);
-            let gain = begin / value.max(f64::MIN_POSITIVE);
-            let share = ((gain - STAYS) / (MOVES - STAYS)).clamp(0.0, 1.0);
-            let share = share * share * (3.0 - 2.0 * share);
-            if share >= 1.0 {
-                return ended(optimum, weight);
-            }
-            let between = |(p, q): (&Vec3<f64>, &Vec3<f64>)| {
-                if share == 0.0 { *q } else { *q + (*p - *q) * share }
-            };
-            let points: Vec<_> = optimum.points.iter().zip(self.original).map(between).collect();
-            let now = (self.energy)(&points);
-            let gap = optimum.certificate.gap + (now - value).max(0.0);
-            let certificate = Certificate { value: now, gap };
-            let active = if share == 0.0 { 0 } else { optimum.active };
-            ended(Optimum { points, certificate, active, ..optimum }, weight)
-        };
-        // What should be met: a falling function of the weight's logarithm, negative when met.
-        let measured = |optimum: &Optimum| match goal {
-            Goal::Fairest => -1.0,
-            Goal::Budget(share) | Goal::Near(share) => {
-                ((self.squares)(&optimum.points) / (share * mean)).ln()
-            }
-            Goal::Nearest(share) => {
-                // Of curves near enough to the least the one nearest to the data: towards the data
-                // the measure rises.
-                (((1.0 + share) * least + self.noise) / (self.energy)(&optimum.points)).ln()
-            }
-        };
-        match goal {
-            Goal::Fairest => return ended(fairest, 0.0),
-            Goal::Budget(share) | Goal::Near(share) => {
-                if share.is_nan() || share <= 0.0 {
-                    return Err(FairError::Goal("a budget is a positive share"));
-                }
-                if squares <= share * mean || norm != Norm::Square {
-                    return settle(fairest, 0.0);
-                }
-            }
-            Goal::Nearest(share) => {
-                if share.is_nan() || share < 0.0 {
-                    return Err(FairError::Goal("a share of the measure is 0 or more"));
-                }
-                if share == 0.0 || squares == 0.0 {
-                    return ended(fairest, 0.0);
-                }
-                if !conditioned && begin <= (1.0 + share) * least + self.noise {
-                    let certificate =
-                        Certificate { value: begin, gap: begin - least + fairest.certificate.gap };
-                    let optimum = Optimum {
-                        points: self.original.to_vec(),
-                        certificate,
-                        active: 0,
-                        ..fairest
-                    };
-                    return Ok(Found { optimum, used: 0.0, least, weight: f64::INFINITY });
-                }
-            }
-        }
-        if norm != Norm::Square {
-            return Err(FairError::Goal(
-                "a sum of lengths has neither budget nor share: take `fairest`",
-            ));
-        }
-        // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
-        let mut low = (f64::NEG_INFINITY, measured(&fairest));
-        let mut high: Option<(f64, f64, Optimum)> = None;
-        let mut trial = (least.max(1e-6 * begin) / squares).ln();
-        let mut side = 0;
-        let mut best: Option<(f64, f64, Optimum)> = None;
-        for _ in 0..MOST_SOLUTIONS {
-            let optimum = solve(trial.exp())?;
-            let value = measured(&optimum);
-            let better = best.as_ref().is_none_or(|b| value.abs() < b.1.abs());
-            if better {
-                best = Some((trial, value, optimum.clone()));
-            }
-            if value.abs() <= GOAL_ACCURACY {
-                break;
-            }
-            if value > 0.0 {
-                if side == 1
-                    && let Some(h) = &mut high
-                {
-                    h.1 *= 0.5;
-                }
-                low = (trial, value);
-                side = 1;
-            } else {
-                if side == -1 {
-                    low.1 *= 0.5;
-                }
-                high = Some((trial, value, optimum));
-                side = -1;
-            }
-            trial = match (&high, low.0.is_finite()) {
-                (Some(h), true) => {
-                    if h.0 - low.0 < 1e-12 {
-                        break;
-                    }
-                    let share = low.1 / (low.1 - h.1);
-                    low.0 + (h.0 - low.0) * share.clamp(0.01, 0.99)
-                }
-                (Some(h), false) => h.0 - 3.0,
-                (None, _) => low.0 + 3.0,
-            };
-        }
-        let (weight, _, optimum) = best.expect("one solution at least");
-        settle(optimum, weight.exp())
+/// The same for data, tolerances (one per datum) and parameters that carry derivatives, whose real
+/// parts are those of the data. Derivatives follow from
+/// the conditions of optimality by the implicit function theorem, through knots and parameters
+/// too. Inflections are not held back (`bends`), and there are no conditions but those of the ends.
+///
+/// # Errors
+/// As [`fair_data`]; [`FairError::Goal`] for the goal `nearest`, and for sums of lengths on knots
+/// that move.
+pub fn fair_data_with<T: Real>(
+    data: &Data,
+    options: &DataOptions,
+    points: &[Vec3<T>],
+    tolerances: &[T],
+    at: &[T],
+) -> Result<(MovingFit<T>, DataFit), FairError> {
+    let options = &DataOptions { bends: true, conditions: Vec::new(), ..options.clone() };
+    let job = data.job()?;
+    let mut parts = data.parts(options, &job)?;
+    let found = data.found(options, &job, &mut parts)?;
+    let (share, weight) = (found.share, found.weight);
+    let layout = &data.layout;
+    let (sites, knots) = layout.moving(at);
+    let mut plain = points.iter().flat_map(|p| p.to_array()).chain(at.iter().copied());
+    let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
+    if plain.all(|x| x.is_constant()) && fixed(tolerances) {
+        let points = found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        return Ok((MovingFit { points, knots }, data.fit(found, &job)));
     }
+    let space = MovingSpace { space: &layout.space, knots: &knots };
+    let values = MovingRows { rows: sites.iter().map(|&t| space.value(t)).collect() };
+    let wanted = layout.data(points);
+    // By how much control points must change so that the curve of `of` follows the data at the
+    // sites while knots and sites move.
+    let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {
+        let lifted: Vec<Vec3<T>> = of.iter().map(|&p| Vec3::lifted(p)).collect();
+        let change: Vec<Vec3<T>> = (0..wanted.len())
+            .map(|k| {
+                let off = wanted[k] - values.apply(k, &lifted);
+                off - Vec3::lifted(off.re())
+            })
+            .collect();
+        let change = layout.through(&change)?;
+        Ok(real.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect())
+    };
+    let start = through(&job.points, &job.points)?;
+    if share == 0.0 {
+        return Ok((MovingFit { points: start, knots }, data.fit(found, &job)));
+    }
+    if parts.norm != crate::Norm::Square {
+        return Err(FairError::Goal(
+            "derivatives of a sum of lengths through moving knots are not known: take another \
+             measure, or spacing \"index\"",
+        ));
+    }
+    // The optimum of the weight found, with what its answers need.
+    let pull = data.pull(&parts);
+    parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+    let solved = parts.whole()?;
+    let control = &solved.optimum.points;
+    let rows = space.measure(options.measure)?;
+    let mut forces: Vec<Vec3<T>> =
+        rows.slope(control).into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
+    // Forces at the sites act through rows that move.
+    let radii = layout.radii(&data.limit.radii);
+    let held = |k: &usize| layout.rows.row(*k).0.iter().all(|&c| parts.frozen[c as usize]);
+    let limited: Vec<usize> =
+        (0..radii.len()).filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && !held(k)).collect();
+    let away: Vec<Vec3<f64>> = control.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
+    for (&k, force) in limited.iter().zip(&solved.forces()) {
+        let mut force = *force;
+        if layout.owner[k].is_some() {
+            force += layout.rows.apply(k, &away) * (weight / (radii[k] * radii[k]));
+        }
+        for &(c, f) in &values.rows[k] {
+            let change = f - T::from(f.re());
+            forces[c] += force.map_real(|x| change * x);
+        }
+    }
+    let owner = |k: &usize| layout.owner[*k].map(|i| tolerances[i]);
+    // A site that is no datum has the largest tolerance near it.
+    let largest = |k: usize| {
+        let near = layout.sources_of(k).map(|i| tolerances[i]);
+        near.reduce(|a, b| if b.re() > a.re() { b } else { a }).unwrap_or_else(T::zero)
+    };
+    let own: Vec<T> = (0..radii.len())
+        .filter(|&k| radii[k] > 0.0)
+        .map(|k| owner(&k).unwrap_or_else(|| largest(k)))
+        .collect();
+    let targets: Vec<T> = data.held().into_iter().flat_map(|c| start[c].to_array()).collect();
+    let moving = Moving {
+        originals: through(control, &job.points)?,
+        tolerances: &own,
+        pulled: limited.iter().filter_map(owner).collect(),
+        targets: &targets,
+        forces,
+        rows: &rows,
+        start: &start,
+    };
+    let points = moved(&parts, &solved, options.goal, &found, &pull, moving)?;
+    Ok((MovingFit { points, knots }, data.fit(found, &job)))
 }

@@ -1,6 +1,7 @@
 //! Splines whose knots stand at the data: where data lie on the curve, and the curve through them.
 
 use crate::curve::fit::{fit_with, values};
+use crate::curve::moving::{MapReal, MovingSpace};
 use crate::{FairError, Space, SparseRows, fit};
 use moldloft_num::{Banded, Real, Vec3};
 use moldloft_spline::KnotVector;
@@ -26,7 +27,17 @@ pub struct Layout {
     pub marks: Vec<usize>,
     /// Values at the sites over the control points.
     pub rows: SparseRows,
+    /// Sites as shares of the way from one parameter of the list to another.
+    site_of: Vec<Share>,
+    /// Knots as shares of the way from one site to another.
+    knot_of: Vec<Share>,
+    /// The datum at which a closed curve with breaks begins.
+    first: Option<usize>,
 }
+
+/// A share of the way from one place of a list to another; from the last to the first of a closed
+/// curve when the second is the length of the list.
+type Share = (usize, usize, f64);
 
 impl Layout {
     /// The splines for data at rising parameters in [0, 1] (of a closed curve less than 1), with
@@ -61,14 +72,14 @@ impl Layout {
             let mut moved: Vec<usize> = breaks.iter().map(|b| b - first).collect();
             moved.push(n);
             let mut layout = Self::open(degree, &turned, owner, &moved)?;
+            layout.first = Some(first);
             layout.at = (0..n).map(|i| turned[(i + n - first) % n]).collect();
             return Ok(layout);
         }
-        let knot = |k: usize| {
-            let next = if k + 1 < n { at[k + 1] } else { at[0] + 1.0 };
-            if degree % 2 == 1 { at[k] } else { 0.5 * (at[k] + next) }
-        };
-        let space = Space::periodic(degree, (0..n).map(knot).collect(), 1.0)?;
+        let half = if degree % 2 == 1 { 0.0 } else { 0.5 };
+        let knot_of: Vec<Share> = (0..n).map(|k| (k, k + 1, half)).collect();
+        let knots = knot_of.iter().map(|&s| shared(at, s)).collect();
+        let space = Space::periodic(degree, knots, 1.0)?;
         Ok(Self {
             rows: values(&space, at),
             space,
@@ -77,6 +88,9 @@ impl Layout {
             owner: (0..n).map(Some).collect(),
             at: at.to_vec(),
             marks: Vec::new(),
+            site_of: (0..n).map(|k| (k, k, 0.0)).collect(),
+            knot_of,
+            first: None,
         })
     }
 
@@ -96,7 +110,8 @@ impl Layout {
         if ends.len() == 2 && count < degree + 1 {
             return Err(FairError::TooFew { expected: degree + 1, actual: count });
         }
-        let mut knots = vec![at[0]; degree + 1];
+        let mut knot_of: Vec<Share> = vec![(0, 0, 0.0); degree + 1];
+        let mut site_of: Vec<Share> = vec![(0, 0, 0.0)];
         let (mut sites, mut owner) = (vec![at[0]], vec![Some(owners[0])]);
         let mut sources = SparseRows::new();
         sources.push([(owners[0], 1.0)]);
@@ -108,19 +123,22 @@ impl Layout {
             let (from, to) = (pair[0], pair[1]);
             let own = completed(degree, &at[from..=to]);
             let m = own.len();
-            let t: Vec<f64> = own.iter().map(|s| s.0).collect();
+            let start = sites.len() - 1;
             // Odd degrees leave out the same number of sites at both ends.
             for j in 1..m - degree {
-                knots.push(if degree % 2 == 1 {
-                    t[j + degree / 2]
+                let middle = start + j + degree / 2;
+                knot_of.push(if degree % 2 == 1 {
+                    (middle, middle, 0.0)
                 } else {
-                    0.5 * (t[j + degree / 2 - 1] + t[j + degree / 2])
+                    (middle - 1, middle, 0.5)
                 });
             }
             let times = if to == last { degree + 1 } else { degree };
-            knots.extend(std::iter::repeat_n(at[to], times));
-            for (site, source) in own.into_iter().skip(1) {
-                sites.push(site);
+            knot_of.extend(std::iter::repeat_n((start + m - 1, start + m - 1, 0.0), times));
+            for (share, source) in own.into_iter().skip(1) {
+                let share = (from + share.0, from + share.1, share.2);
+                sites.push(shared(at, share));
+                site_of.push(share);
                 owner.push(match source[..] {
                     [(k, _)] => Some(owners[from + k]),
                     _ => None,
@@ -132,12 +150,32 @@ impl Layout {
             }
         }
         // A single polynomial piece has nothing to fair.
-        if knots.len() == 2 * degree + 2 {
+        if knot_of.len() == 2 * degree + 2 {
             return Err(FairError::TooFew { expected: degree + 2, actual: count });
         }
+        let knots = knot_of.iter().map(|&s| shared(&sites, s)).collect();
         let space = Space::open(KnotVector::new(degree, knots)?)?;
         let rows = values(&space, &sites);
-        Ok(Self { space, sites, sources, owner, at: at.to_vec(), marks, rows })
+        let (at, first) = (at.to_vec(), None);
+        Ok(Self { space, sites, sources, owner, at, marks, rows, site_of, knot_of, first })
+    }
+
+    /// The parameters of the sites and the knots for parameters of the data that carry derivatives,
+    /// whose real parts are those of the layout.
+    pub(crate) fn moving<T: Real>(&self, at: &[T]) -> (Vec<T>, Vec<T>) {
+        let n = at.len();
+        let turned: Vec<T> = match self.first {
+            None => at.to_vec(),
+            Some(first) => (0..=n)
+                .map(|k| {
+                    let once = if first + k >= n { T::one() } else { T::zero() };
+                    at[(first + k) % n] - at[first] + once
+                })
+                .collect(),
+        };
+        let sites: Vec<T> = self.site_of.iter().map(|&s| shared(&turned, s)).collect();
+        let knots = self.knot_of.iter().map(|&s| shared(&sites, s)).collect();
+        (sites, knots)
     }
 
     /// The sites of data.
@@ -152,6 +190,11 @@ impl Layout {
                 entries.fold(Vec3::zero(), |s, (&c, &f)| s + points[c as usize].map(|x| x * f))
             })
             .collect()
+    }
+
+    /// The data that a site hangs on.
+    pub(crate) fn sources_of(&self, site: usize) -> impl Iterator<Item = usize> + '_ {
+        self.sources.row(site).0.iter().map(|&c| c as usize)
     }
 
     /// The sites' tolerances: of a point that completes a short piece the largest near it.
@@ -211,6 +254,37 @@ impl Layout {
         Ok(control)
     }
 
+    /// Control points and knots of the spline through data at parameters that carry derivatives,
+    /// whose real parts are those of the layout.
+    ///
+    /// # Errors
+    /// [`FairError::Singular`].
+    pub(crate) fn through_moving<T: Real>(
+        &self,
+        points: &[Vec3<T>],
+        at: &[T],
+    ) -> Result<(Vec<Vec3<T>>, Vec<T>), FairError> {
+        let (sites, knots) = self.moving(at);
+        let wanted = self.data(points);
+        let real: Vec<Vec3<f64>> = wanted.iter().map(|p| p.re()).collect();
+        let control = self.through(&real)?;
+        let space = MovingSpace { space: &self.space, knots: &knots };
+        let change: Vec<Vec3<T>> = sites
+            .iter()
+            .zip(&wanted)
+            .map(|(&t, &p)| {
+                let value = space.value(t);
+                let at = value
+                    .iter()
+                    .fold(Vec3::zero(), |s: Vec3<T>, &(c, f)| s + control[c].map_real(|x| f * x));
+                let off = p - at;
+                off - Vec3::lifted(off.re())
+            })
+            .collect();
+        let change = self.through(&change)?;
+        Ok((control.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect(), knots))
+    }
+
     /// By how much control points can move when the curve moves at the sites by these radii at
     /// most: the collocation matrix is totally positive, so its inverse has the signs of a
     /// chequer-board and one solution with alternating signs has the sums of its entries' sizes.
@@ -242,11 +316,20 @@ impl Layout {
     }
 }
 
+/// A share of the way between two places of a list.
+fn shared<T: Real>(list: &[T], (a, b, share): Share) -> T {
+    if share == 0.0 {
+        return list[a];
+    }
+    let to = if b < list.len() { list[b] } else { list[0] + T::one() };
+    list[a] + (to - list[a]) * share
+}
+
 /// The parameters of a piece with at least `degree + 1` sites, each as a combination of the data:
 /// what is missing is taken from the polynomial through the others, spread over its gaps.
-fn completed(degree: usize, at: &[f64]) -> Vec<(f64, Vec<(usize, f64)>)> {
+fn completed(degree: usize, at: &[f64]) -> Vec<(Share, Vec<(usize, f64)>)> {
     let m = at.len();
-    let datum = |k: usize| (at[k], vec![(k, 1.0)]);
+    let datum = |k: usize| ((k, k, 0.0), vec![(k, 1.0)]);
     if m > degree {
         return (0..m).map(datum).collect();
     }
@@ -254,14 +337,15 @@ fn completed(degree: usize, at: &[f64]) -> Vec<(f64, Vec<(usize, f64)>)> {
     let mut out = Vec::new();
     for gap in 0..gaps {
         out.push(datum(gap));
-        let share = missing / gaps + usize::from(gap < missing % gaps);
-        for k in 1..=share {
-            let t = at[gap] + (at[gap + 1] - at[gap]) * k as f64 / (share + 1) as f64;
+        let more = missing / gaps + usize::from(gap < missing % gaps);
+        for k in 1..=more {
+            let share = k as f64 / (more + 1) as f64;
+            let t = at[gap] + (at[gap + 1] - at[gap]) * share;
             let factor = |j: usize| {
                 let others = (0..m).filter(|&i| i != j);
                 others.map(|i| (t - at[i]) / (at[j] - at[i])).product::<f64>()
             };
-            out.push((t, (0..m).map(|j| (j, factor(j))).collect()));
+            out.push(((gap, gap + 1, share), (0..m).map(|j| (j, factor(j))).collect()));
         }
     }
     out.push(datum(m - 1));

@@ -11,5 +11,6 @@ pub(crate) mod jumps;
 pub(crate) mod knot_removal;
 pub(crate) mod layout;
 pub(crate) mod limit;
+pub(crate) mod moving;
 pub(crate) mod multilevel;
 pub(crate) mod space;

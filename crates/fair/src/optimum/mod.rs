@@ -2,6 +2,7 @@
 
 mod band;
 pub(crate) mod certificate;
+pub(crate) mod goal;
 mod interior_point;
 mod polish;
 pub(crate) mod problem;
@@ -134,6 +135,26 @@ pub fn optimum_with<T: Real>(
     Parts::of(job, options)?.solve_with(points, tolerances, targets)
 }
 
+/// An optimum with all that its derivatives need.
+pub(crate) struct Solved {
+    pub frame: Frame,
+    pub problem: Problem,
+    pub optimum: Optimum,
+    pub solution: problem::Solution,
+}
+
+impl Solved {
+    /// The forces of the limits on what they limit, one per limit of the problem.
+    pub fn forces(&self) -> Vec<Vec3<f64>> {
+        let groups = if self.problem.bounds.separate { self.problem.dimension } else { 1 };
+        let force = |k: usize| {
+            let own = &self.solution.cones[k * groups..(k + 1) * groups];
+            own.iter().fold(Vec3::zero(), |s, (_, y)| s - self.frame.up(y.1))
+        };
+        (0..self.problem.bounds.rows.len()).map(force).collect()
+    }
+}
+
 /// The number of a condition, and by how much its factors change, point by point.
 pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
 
@@ -249,12 +270,37 @@ impl<'a> Parts<'a> {
         let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
         let (optimum, solution) = self.solved(&frame, &problem)?;
+        let solved = Solved { frame, problem, optimum, solution };
+        let points = self.answer(&solved, points, tolerances, targets, bends, &[])?;
+        Ok((points, solved.optimum))
+    }
+
+    /// The optimum with all that its derivatives need.
+    pub fn whole(&self) -> Result<Solved, FairError> {
+        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let problem = self.problem(&frame);
+        let (optimum, solution) = self.solved(&frame, &problem)?;
+        Ok(Solved { frame, problem, optimum, solution })
+    }
+
+    /// How the optimum answers to changes; `forces` are changes of the slope of half the measure, with zero
+    /// real parts (none when empty).
+    pub fn answer<T: Real>(
+        &self,
+        solved: &Solved,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+        targets: &[T],
+        bends: &[Bend<T>],
+        forces: &[Vec3<T>],
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let Solved { frame, problem, optimum, solution } = solved;
         let constant = |p: &Vec3<T>| p.to_array().iter().all(|c| c.is_constant());
         let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
-        let still = points.iter().all(constant) && fixed(tolerances) && fixed(targets);
+        let still =
+            points.iter().chain(forces).all(constant) && fixed(tolerances) && fixed(targets);
         if still {
-            let lifted = optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
-            return Ok((lifted, optimum));
+            return Ok(optimum.points.iter().map(|&p| Vec3::lifted(p)).collect());
         }
         let change = |p: &Vec3<T>| *p - Vec3::lifted(p.re());
         let changes: Vec<Vec3<T>> = points.iter().map(change).collect();
@@ -314,7 +360,11 @@ impl<'a> Parts<'a> {
         };
         let mut values: Vec<T> = self.conditions.iter().enumerate().map(value).collect();
         // d(A x) = 0 and d(slope + nu A) = 0: both have a share of dA.
-        let mut pushes = vec![[T::zero(); 3]; if bends.is_empty() { 0 } else { points.len() }];
+        let none = bends.is_empty() && forces.is_empty();
+        let mut pushes = vec![[T::zero(); 3]; if none { 0 } else { points.len() }];
+        for (push, force) in pushes.iter_mut().zip(forces) {
+            *push = down(*force);
+        }
         for (k, entries) in bends {
             let k = k + self.own;
             for (i, f) in entries {
@@ -325,7 +375,7 @@ impl<'a> Parts<'a> {
                 }
             }
         }
-        let answers = problem::respond(&problem, &solution, &offsets, &radii, &values, &pushes)?;
+        let answers = problem::respond(problem, solution, &offsets, &radii, &values, &pushes)?;
         let faired = (0..points.len()).map(|i| {
             let mut p = Vec3::lifted(optimum.points[i]) + changes[i];
             for (a, x) in frame.axes.iter().zip(answers[i]) {
@@ -334,7 +384,7 @@ impl<'a> Parts<'a> {
             // The answer's real part is zero; adding it must not touch a bit.
             p - Vec3::lifted(p.re() - optimum.points[i])
         });
-        Ok((faired.collect(), optimum))
+        Ok(faired.collect())
     }
 
     fn solved(

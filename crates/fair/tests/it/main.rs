@@ -3,6 +3,7 @@
 
 mod breaks;
 mod entity;
+mod findings;
 mod fit;
 mod fixtures;
 mod interrogate;
