@@ -164,9 +164,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="WORD[=SHARE]",
         type=_goal,
         default="near",
-        help="which of the results within the tolerance: near (the default: no fairer than noise of "
-        "that size asks for, unmoved where little is to be gained), fairest, budget=SHARE of such "
-        "noise, nearest=SHARE above the least",
+        help="which of the results within the tolerance: near (the default: no fairer than noise "
+        "of that size asks for, unmoved where there is little to gain), fairest, budget=SHARE of "
+        "such noise, nearest=SHARE above the least",
     )
     parser.add_argument(
         "--release",
@@ -458,6 +458,17 @@ def _commit(path: Path, data: bytes) -> Path:
     return commit(path.parent, [Output(path.name, data)])[0]
 
 
+def _known_ending(path: Path, source: Path | None) -> None:
+    """Refuses an ending that says nothing, before anything is written."""
+    from moldloft.fairing.spline_files import POINTS, SPLINES
+
+    ending = path.suffix.lower()
+    known = (*POINTS, *SPLINES)
+    if ending in known or (source is not None and ending == source.suffix.lower()):
+        return
+    raise Error(f"error: --output: `{path}`: expected an ending of {', '.join(known)}")
+
+
 class _Points(_Source):
     """A file of points."""
 
@@ -567,7 +578,12 @@ class _Points(_Source):
         import numpy as np
 
         from moldloft.fairing.files import points_text
+        from moldloft.fairing.spline_files import SPLINES, encoded
 
+        _known_ending(path, self.file.path)
+        if path.suffix.lower() in SPLINES:
+            curves = result.curves if hasattr(result, "lists") else [result.spline]
+            return _commit(path, encoded(curves, path))
         if hasattr(result, "lists"):
             return _commit(path, points_text(result.points[self.of_row], self.file).encode())
         points = result.points
@@ -767,6 +783,11 @@ class _Object(_Source):
             from moldloft.fairing.files import GridFile
 
             return _commit(path, GridFile(path, [], "stream").encoded([result.points]))
+        from moldloft.fairing.spline_files import SPLINES, encoded
+
+        _known_ending(path, None)
+        if path.suffix.lower() in SPLINES:
+            return _commit(path, encoded([result.spline], path))
         return _commit(path, _encode_curve(result, path, None))
 
 

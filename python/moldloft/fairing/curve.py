@@ -94,7 +94,7 @@ class Fairing:
     residuals: Floats | None = field(default=None, repr=False)
     """The distance of each point that was given from the curve at its parameter, for fits."""
     used: float | None = None
-    """The mean of the squared residuals over tolerances, over that of noise that fills these evenly."""
+    """The mean of the squared residuals over tolerances; 1 is noise that fills these evenly."""
     parameters: Floats | None = field(default=None, repr=False)
     """Where the points that were given are on the curve, from 0 to 1."""
     log: tuple[NDArray[np.uint32], Floats] | None = field(default=None, repr=False)
@@ -103,8 +103,10 @@ class Fairing:
 
     @property
     def deviation_data(self) -> float:
-        """No point that was given is farther from the curve than this: its distance from the curve's
-        point at its parameter, or the move of the control point or the point that it is."""
+        """No point that was given is farther from the curve than this.
+
+        The distance from the curve's point at its parameter, or the move of the point itself.
+        """
         if self.residuals is not None and len(self.residuals):
             return float(self.residuals.max())
         if self.as_ == "points":
@@ -362,9 +364,9 @@ def fair_curve(
         How far the curve, or each point, may move; ``None`` for no limit.
     as_
         What points are: ``"fit"``, data on the curve, which stays within the tolerance of each;
-        ``"points"``, moved themselves, each within the tolerance; ``"control"``, the control points of
-        a uniform spline, whose parameter is the index: the rule of the report of 1991. A spline is its
-        own.
+        ``"points"``, moved themselves, each within the tolerance; ``"control"``, the control points
+        of a uniform spline, whose parameter is the index: the rule of the report of 1991. A spline
+        is its own.
     closed
         Whether the last point is followed by the first, which is not repeated.
     degree
@@ -383,9 +385,9 @@ def fair_curve(
         ``"vertex"``: one control point at a time to its own best place. ``"sweeps"``: all points in
         order. ``"levels"``: waves of all lengths, the longest first.
     bound
-        ``"data"``: the tolerance bounds the distance of each point from the curve; ``"curve"``: that
-        of the curve from the one through the points, everywhere; ``"points"``: the move of each
-        control point. By default the data for fits, the curve for splines, points otherwise.
+        ``"data"``: the tolerance bounds the distance of each point from the curve; ``"curve"``:
+        that of the curve from the one through the points, everywhere; ``"points"``: the move of
+        each control point. By default the data for fits, the curve for splines, points otherwise.
     breaks
         Points, from 0, that are intended breaks: they do not move by a bit and nothing is smoothed
         across them; a fitted curve has corners there. ``"auto"`` takes the corners among
@@ -417,18 +419,18 @@ def fair_curve(
     at
         The parameters themselves, rising, in [0, 1].
     goal
-        Which of the curves within the tolerances. ``"near"``: the fairest whose squared residuals are
-        at most four fifths of what noise has that fills the tolerances evenly, and the data's own curve
-        where little is to be gained: exact data stay, and so does what was faired before.
-        ``"fairest"``: the least of the measure. ``("budget", share)``: the first with a share of your
-        own. ``("nearest", share)``: the nearest to the data whose measure exceeds the least by at most
-        this share.
+        Which of the curves within the tolerances. ``"near"``: the fairest whose squared residuals
+        are at most four fifths of what noise has that fills the tolerances evenly, and the data's
+        own curve where little is to be gained: exact data stay, and so does what was faired
+        before. ``"fairest"``: the least of the measure. ``("budget", share)``: the first with a
+        share of your own. ``("nearest", share)``: the nearest to the data whose measure exceeds
+        the least by at most this share.
     release
         Points, from 0, that are wrong and may be left; ``"auto"``: the wrong digits among
         :attr:`Fairing.findings`. Nothing is released by itself.
     bends
-        Whether third derivatives may buy smoothness with inflections that the curve of least bending
-        does not have.
+        Whether third derivatives may buy smoothness with inflections that the curve of least
+        bending does not have.
     count
         Fit by least squares with so many control points instead of through all points.
     knots, weights, period
@@ -460,44 +462,27 @@ def fair_curve(
     own = _Own(knots, weights, period)
     word, share = _goal(goal)
     if not isinstance(points, Spline) and mode == "optimum":
-        plain = not own.given and count is None
-        if as_ == "fit" and plain and bound in (None, "data"):
-            asked = _Asked(
-                closed,
-                degree,
-                measure,
-                breaks,
-                release,
-                fixed,
-                ends,
-                motion,
-                spacing,
-                at,
-                (word, share),
-                bends,
-                accuracy,
-            )
-            wanted = (through, tangents, keep, joins)
-            return _fair_data(points, tol, asked, wanted, started)
-        conditioned = bool([*through, *tangents, *keep, *joins])
-        if as_ == "points" and not own.given and not conditioned and bound is None:
-            if spacing not in ("index", "uniform"):
-                asked = _Asked(
-                    closed,
-                    degree,
-                    measure,
-                    breaks,
-                    release,
-                    fixed,
-                    ends,
-                    motion,
-                    spacing,
-                    at,
-                    (word, share),
-                    bends,
-                    accuracy,
-                )
-                return _fair_points(points, tol, asked, started)
+        asked = _Asked(
+            closed,
+            degree,
+            measure,
+            breaks,
+            release,
+            fixed,
+            ends,
+            motion,
+            spacing,
+            at,
+            (word, share),
+            bends,
+            accuracy,
+        )
+        through, tangents = list(through), list(tangents)
+        if as_ == "fit" and not own.given and count is None and bound in (None, "data"):
+            return _fair_data(points, tol, asked, (through, tangents, keep, joins), started)
+        free = not (own.given or through or tangents or keep or joins)
+        if as_ == "points" and free and bound is None and spacing not in ("index", "uniform"):
+            return _fair_points(points, tol, asked, started)
     if bound == "data":
         raise FairingError('error: bound `data` is for optima of data, `as_="fit"`')
     if len(release):
@@ -711,8 +696,10 @@ def _fair_data(
 def laid(
     before: Floats, after: Floats, degree: int, spacing: Any, closed: bool, breaks: Sequence[int]
 ) -> tuple[Spline, Spline, float, float]:
-    """The splines through points before and after on the same knots, and how far these are apart:
-    certified by their control points, and sampled."""
+    """The splines through points before and after on the same knots.
+
+    Also how far these are apart: certified by their control points, and sampled.
+    """
     word, way = spacing_of(spacing)
     core, at, _ = _core.Spline.interpolate(before, degree, word, closed, list(breaks), way)
     first = Spline._of(core)
@@ -940,8 +927,8 @@ def _left(tol: ArrayLike | None, made: _Prepared) -> ArrayLike | None:
     if short.max() > 0:
         k = int(short.argmax())
         raise FairingError(
-            f"error: a spline of {len(made.spline.control_points)} control points is {off[k]:.3e} off "
-            f"point {k + 1}: more control points, or a larger tolerance",
+            f"error: a spline of {len(made.spline.control_points)} control points is "
+            f"{off[k]:.3e} off point {k + 1}: more control points, or a larger tolerance",
             index=k,
         )
     return each - off

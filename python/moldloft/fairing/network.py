@@ -73,10 +73,10 @@ class NetworkFairing:
     goal: str = "fairest"
     """Which of the networks within the tolerance was wanted."""
     used: float | None = None
-    """The mean of the squared moves over tolerances, over that of noise that fills these evenly."""
+    """The mean of the squared moves over tolerances; 1 is noise that fills these evenly."""
     findings: tuple[tuple[int, Finding], ...] = ()
-    """Wrong digits and knuckles that stand out along curves: the curve, from 0, and the finding, whose
-    index is the point's."""
+    """Wrong digits and knuckles that stand out along curves: the curve, from 0, and the finding,
+    whose index is the point's."""
 
     @property
     def deviation_sampled(self) -> float:
