@@ -4,7 +4,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft_lang::{Document, Format, NoFiles, registry};
+use moldloft_document::{Document, Format, NoFiles, registry};
 
 fuzz_target!(|text: &str| {
     for name in ["fuzz.sdl", "fuzz.ms2"] {

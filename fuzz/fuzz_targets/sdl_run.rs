@@ -4,7 +4,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use moldloft_lang::{Document, NoFiles, registry};
+use moldloft_document::{Document, NoFiles, registry};
 
 const HEAD: &str = "load \"stdsubs.sdl\"\nload \"mslbody.sdl\"\nint n = 5; float x = 2; vector v = {1, 2, 3};\n\
     farray a = uniform(0, 1, 5); curve c = {a, a^2, 1 - a}; surface s[5,5];\n\

@@ -23,7 +23,14 @@ if TYPE_CHECKING:
     from moldloft._core import Diagnostic, __version__
     from moldloft.blocks import Block, Blocks
     from moldloft.builder import Builder, model, param
-    from moldloft.errors import Error, FairingError, FileError, ModelError, UnknownNameError
+    from moldloft.errors import (
+        Error,
+        FairingError,
+        FileError,
+        FormatError,
+        ModelError,
+        UnknownNameError,
+    )
     from moldloft.fairing import fair
     from moldloft.hydrostatics import Hydrostatics, HydrostaticTable, RightingCurve
     from moldloft.implicit import Field, Set
@@ -43,6 +50,7 @@ __all__ = [
     "FairingError",
     "Field",
     "FileError",
+    "FormatError",
     "HydrostaticTable",
     "Hydrostatics",
     "Intersection",
@@ -75,6 +83,7 @@ _HOMES = {
     "Error": "moldloft.errors",
     "FairingError": "moldloft.errors",
     "FileError": "moldloft.errors",
+    "FormatError": "moldloft.errors",
     "ModelError": "moldloft.errors",
     "UnknownNameError": "moldloft.errors",
     "HydrostaticTable": "moldloft.hydrostatics",

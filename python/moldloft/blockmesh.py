@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from moldloft.blocks import Blocks, Interface
 
-__all__ = ["Hex", "cut", "write"]
+__all__ = ["Hex", "cut", "encode", "write"]
 
 Place: TypeAlias = tuple[int, int, int]
 
@@ -166,11 +166,11 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
     """
     points = blocks.vertices
     if not np.isfinite(points).all():
-        raise Error("error: cannot write blockMeshDict: a position is not a finite number")
+        raise Error("cannot write blockMeshDict: a position is not a finite number")
     if not blocks.positive:
         worst = min(blocks.blocks, key=lambda b: b.scaled_jacobian)
         raise Error(
-            f"error: cannot write blockMeshDict: `{worst.name}` has cells without positive volume\n"
+            f"cannot write blockMeshDict: `{worst.name}` has cells without positive volume\n"
             "help: exchange the two surfaces of a left-handed block"
         )
     parts = cut(blocks, every)
@@ -232,6 +232,11 @@ def write(blocks: Blocks, every: int = 0) -> bytes:
         lines += ["        );", "    }"]
     lines += [");", "", "mergePatchPairs", "(", ");", ""]
     return "\n".join(lines).encode()
+
+
+def encode(blocks: Blocks, title: str = "") -> bytes:
+    """The dictionary, cut only where it must be; it has no place for a title."""
+    return write(blocks)
 
 
 def _vector(point: NDArray[np.float64]) -> str:

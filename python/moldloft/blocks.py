@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from moldloft.errors import Error
+from moldloft.formats import formats
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,13 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMATS", "Block", "Blocks", "Boundary", "Interface"]
 
-FORMATS = {
-    "p3d": "Plot3D volume grids, all blocks in one file",
-    "vts": "VTK structured grids, one per block",
-    "vtu": "VTK unstructured hexahedra",
-    "cgns": "CGNS structured zones with interfaces and named boundaries (needs h5py)",
-    "blockmesh": "OpenFOAM blockMeshDict",
-}
+_ROWS = {row.name.removeprefix("volume-"): row for row in formats().values() if row.volume}
+
+FORMATS = {name: row.about for name, row in _ROWS.items()}
 """The formats of volume meshes by name, with a line about each."""
 
 
@@ -242,21 +239,12 @@ class Blocks:
         """The files of a format, with names after ``path``."""
         from moldloft.files import Output
 
-        if format not in FORMATS:
-            raise Error(
-                f"error: there is no volume format `{format}`; there are: {', '.join(FORMATS)}"
-            )
-        if format == "cgns":
-            from moldloft import volume_cgns
-
-            return [Output(path.name, volume_cgns.write(self, path.stem))]
-        if format == "blockmesh":
-            from moldloft import blockmesh
-
-            return [Output(path.name, blockmesh.write(self))]
-        files = self._core.write(format, path.stem)
-        main = f"{path.stem}.{format}"
-        return [Output(path.name if name == main else name, data) for name, data in files]
+        row = _ROWS.get(format)
+        if row is None:
+            raise Error(f"there is no volume format `{format}`; there are: {', '.join(FORMATS)}")
+        if row.writer:
+            return [Output(path.name, row.encode(self, path.stem))]
+        return [Output(name, data) for name, data in self._core.write(row.name, path.name)]
 
     def __repr__(self) -> str:
         return f"<Blocks: {len(self)} blocks, {self.cells} cells>"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from moldloft._core import Diagnostic
 
-__all__ = ["Error", "FairingError", "FileError", "ModelError", "UnknownNameError"]
+__all__ = ["Error", "FairingError", "FileError", "FormatError", "ModelError", "UnknownNameError"]
 
 
 class Error(Exception):
@@ -46,6 +46,12 @@ class Error(Exception):
     def __str__(self) -> str:
         return str(self.args[0])
 
+    @property
+    def rendered(self) -> str:
+        """The message as a terminal shows it: diagnostics as they are, others after ``error:``."""
+        text = str(self).rstrip()
+        return text if self.diagnostics else f"error: {text}"
+
 
 class ModelError(Error, ValueError):
     """The model, or an expression or value for it, is wrong; see ``diagnostics``."""
@@ -78,3 +84,29 @@ class FileError(Error, OSError):
 
     def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
         Error.__init__(self, message, diagnostics)
+
+
+class FormatError(Error, ValueError):
+    """Bytes are not a file of a format.
+
+    Attributes
+    ----------
+    format : str
+        The format.
+    place : str
+        What ``number`` counts: ``line`` and ``block`` from 1, ``byte`` from 0.
+    number : int
+        Where.
+    expected, found : str
+        What should be there, and what is.
+    """
+
+    def __init__(
+        self, message: str, format: str, place: str, number: int, expected: str, found: str
+    ) -> None:
+        super().__init__(message)
+        self.format = format
+        self.place = place
+        self.number = number
+        self.expected = expected
+        self.found = found

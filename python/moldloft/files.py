@@ -10,70 +10,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from moldloft.errors import Error, FileError
+from moldloft.formats import format_named as _row
+from moldloft.formats import formats
 
 if TYPE_CHECKING:
     from moldloft.models import Model
 
 __all__ = ["FORMATS", "SOLVERS", "Output", "commit", "file_name", "format_named", "produce"]
 
-FORMATS = {
-    "gdf": "WAMIT low-order panels",
-    "gdf-high": "WAMIT high-order B-spline patches (.high.gdf)",
-    "nemoh": "Nemoh panels (.mar)",
-    "hydrostar": "HydroStar panels (.hst)",
-    "hams": "HAMS panels (.pnl)",
-    "aqwa": "AQWA geometry decks (.dat)",
-    "stl": "triangles, binary STL",
-    "3mf": "triangles with names and colours, for printers",
-    "obj": "Wavefront OBJ",
-    "ply": "binary PLY",
-    "glb": "glTF with patch names and colours",
-    "vtp": "VTK polygons",
-    "vts": "VTK structured grids, one per patch",
-    "p3d": "Plot3D surface grids",
-    "cgns": "CGNS structured surface zones with interfaces (needs h5py)",
-    "volume-p3d": "the cells of solids as Plot3D volume grids",
-    "volume-vts": "the cells of solids as VTK structured grids, one per block, and a .vtm",
-    "volume-vtu": "the cells of solids as VTK unstructured hexahedra",
-    "volume-cgns": "the cells of solids as CGNS zones (needs h5py)",
-    "blockmesh": "the blocks of solids as OpenFOAM's blockMeshDict",
-    "offsets": "stations, waterlines and half-breadths (.csv)",
-    "svg": "body plan, waterlines and buttocks, each with its scale",
-    "png": "a picture",
-    "sdl": "the model as a program",
-    "ms2": "the model as a MultiSurf model file",
-}
-"""The formats by name, with a line about each."""
+FORMATS = {row.name: row.about for row in formats().values()}
+"""The formats by name, with a line about each; all about them is in :mod:`moldloft.formats`."""
 
-_ALIASES = {
-    "plot3d": "p3d",
-    "xyz": "p3d",
-    "vtk": "vtp",
-    "wamit": "gdf",
-    "mar": "nemoh",
-    "hst": "hydrostar",
-    "pnl": "hams",
-    "gltf": "glb",
-    "csv": "offsets",
-}
-
-SOLVERS = ("gdf", "nemoh", "hydrostar", "hams", "aqwa")
+SOLVERS = tuple(row.name for row in formats().values() if row.panel_code)
 """The formats of panel codes."""
-
-_SUFFIXES = {
-    "gdf-high": "high.gdf",
-    "nemoh": "mar",
-    "hydrostar": "hst",
-    "hams": "pnl",
-    "aqwa": "dat",
-    "offsets": "csv",
-    "volume-p3d": "volume.p3d",
-    "volume-vts": "volume.vts",
-    "volume-vtu": "volume.vtu",
-    "volume-cgns": "volume.cgns",
-    "blockmesh": "blockMeshDict",
-}
-"""Endings of file names where they are not the format's name."""
 
 
 @dataclass(frozen=True)
@@ -87,20 +36,12 @@ class Output:
 
 
 def format_named(name: str) -> str:
-    """The format of that name or alias.
+    """The name of the format of that name or alias.
 
     >>> format_named("Plot3D")
     'p3d'
     """
-    wanted = name.lower()
-    wanted = _ALIASES.get(wanted, wanted)
-    if wanted == "dat":
-        raise Error(
-            "error: files of Nemoh and of AQWA end in `.dat`; say which format: `nemoh` or `aqwa`"
-        )
-    if wanted not in FORMATS:
-        raise Error(f"error: there is no format `{name}`; there are: {', '.join(FORMATS)}")
-    return wanted
+    return _row(name).name
 
 
 def file_name(stem: str, format: str) -> str:
@@ -109,7 +50,7 @@ def file_name(stem: str, format: str) -> str:
     >>> file_name("hull", "gdf"), file_name("hull", "nemoh")
     ('hull.gdf', 'hull.mar')
     """
-    return f"{stem}.{_SUFFIXES.get(format, format)}"
+    return _row(format).file_name(stem)
 
 
 def produce(
@@ -127,37 +68,18 @@ def produce(
     ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
     names the patches to write, ``tolerance`` is how far fitted patches may be off.
     """
-    wanted = format_named(format)
-    if tolerance is not None and wanted != "gdf-high":
-        raise Error("error: a tolerance is for fitted patches, gdf-high")
-    if wanted == "gdf-high" and not immersed and not tags:
-        from moldloft import high_order
-
-        return [
-            Output(path.name, high_order.write(model, path.stem, tolerance=tolerance, lids=lids))
-        ]
-    volume = wanted == "blockmesh" or wanted.startswith("volume-")
-    if (volume or wanted in ("gdf-high", "cgns", "offsets")) and (immersed or tags):
-        named = "immersed" if immersed else "tags"
-        raise Error(f"error: `{named}` is not for {wanted}, which takes whole surfaces")
-    if (lids or immersed) and wanted not in SOLVERS:
-        named = "lids" if lids else "immersed"
-        raise Error(f"error: `{named}` is for the files of panel codes, {', '.join(SOLVERS)}")
-    if volume:
-        return model.blocks().outputs(wanted.removeprefix("volume-"), path)
-    if wanted == "cgns":
-        from moldloft import cgns
-
-        return [Output(path.name, cgns.write(model, path.stem))]
-    if wanted == "offsets":
-        from moldloft import offsets
-
-        return [Output(path.name, offsets.even(model).csv().encode())]
-    if wanted in ("sdl", "ms2"):
-        return [Output(path.name, model.convert(wanted).encode())]
-    files = model._document.write(wanted, path.stem, lids, immersed, list(tags))
-    main = file_name(path.stem, wanted)
-    return [Output(path.name if name == main else name, data) for name, data in files]
+    row = _row(format)
+    if not row.writer:
+        found = model.encoded(
+            row.name, path.name, lids=lids, immersed=immersed, tags=tags, tolerance=tolerance
+        )
+        return [Output(name, data) for name, data in found.items()]
+    given = {"lids": lids, "immersed": immersed, "tags": bool(tags), "tolerance": tolerance}
+    for option, value in given.items():
+        if value is not None and value is not False:
+            raise Error(f"`{option}` is not for {row.name}, which takes whole surfaces")
+    source = model.blocks() if row.volume else model
+    return [Output(path.name, row.encode(source, path.stem))]
 
 
 def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
@@ -181,7 +103,7 @@ def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
         for output in outputs:
             target = folder / output.name
             if target.is_dir():
-                raise FileError(f"error: cannot write `{target}`: it is a folder")
+                raise FileError(f"cannot write `{target}`: it is a folder")
             draft = folder / f".{output.name}.{os.getpid()}.part"
             pending.append((draft, target))
             _write_synced(draft, output.data)
@@ -196,7 +118,7 @@ def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:
                 new.rmdir()
         if isinstance(error, OSError) and not isinstance(error, FileError):
             where = pending[-1][1] if pending else folder
-            raise FileError(f"error: cannot write `{where}`: {_reason(error)}") from error
+            raise FileError(f"cannot write `{where}`: {_reason(error)}") from error
         raise
     return [target for _, target in pending]
 
@@ -211,7 +133,7 @@ def _make_folder(folder: Path) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(f"error: cannot make the folder `{folder}`: {_reason(error)}") from error
+        raise FileError(f"cannot make the folder `{folder}`: {_reason(error)}") from error
     return missing
 
 

@@ -11,15 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from moldloft import _core
-from moldloft.errors import Error, FileError
+from moldloft.errors import Error, FileError, FormatError
 from moldloft.files import Output, commit
 
 __all__ = [
     "Aerofoil",
     "Plot3DVariant",
+    "decode_plot3d",
+    "encode_plot3d",
     "read_aerofoil",
     "read_plot3d",
     "read_points",
+    "write",
     "write_cgns",
     "write_csv",
     "write_plot3d",
@@ -77,11 +80,11 @@ def _read(path: str | Path) -> bytes:
         return Path(path).read_bytes()
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        raise FileError(f"error: cannot read `{path}`: {reason}") from error
+        raise FileError(f"cannot read `{path}`: {reason}") from error
 
 
-def _named(path: str | Path, error: Error) -> FileError:
-    return FileError(f"error: cannot read `{path}`: {str(error).removeprefix('error: ')}")
+def _named(path: str | Path, error: FormatError) -> FileError:
+    return FileError(f"cannot read `{path}`: {error}")
 
 
 def _grid(grid: ArrayLike, number: int) -> NDArray[np.float64]:
@@ -91,7 +94,7 @@ def _grid(grid: ArrayLike, number: int) -> NDArray[np.float64]:
         array = array[:, :, None, :]
     if array.ndim != 4 or array.shape[-1] != 3 or 0 in array.shape:
         raise Error(
-            f"error: grid {number} has the shape {np.shape(grid)}; "
+            f"grid {number} has the shape {np.shape(grid)}; "
             "a grid is (ni, nj, 3) or (ni, nj, nk, 3)"
         )
     return np.ascontiguousarray(array)
@@ -130,11 +133,22 @@ def read_plot3d(
         When the file cannot be read, or no variant explains it: cut off, or no Plot3D.
     """
     try:
-        blocks, found = _core.read_plot3d(_read(path))
-    except FileError:
-        raise
-    except Error as error:
+        return decode_plot3d(_read(path))
+    except FormatError as error:
         raise _named(path, error) from error
+
+
+def decode_plot3d(
+    data: bytes,
+) -> tuple[list[NDArray[np.float64]], Plot3DVariant, list[NDArray[np.int32]] | None]:
+    """The blocks in the bytes of a Plot3D grid file; as :func:`read_plot3d`.
+
+    Raises
+    ------
+    FormatError
+        When no variant explains the bytes.
+    """
+    blocks, found = _core.read_plot3d(data)
     surfaces = [block[:, :, 0, :] if block.shape[2] == 1 else block for block in blocks]
     blanks = None
     if found["iblank"] is not None:
@@ -172,20 +186,30 @@ def write_plot3d(
         When the variant cannot hold the grids: several blocks in a single-block file, a z in a 2-D
         file, numbers beyond single precision.
     """
+    return _commit(path, encode_plot3d(grids, variant, iblank=iblank))
+
+
+def encode_plot3d(
+    grids: Sequence[ArrayLike],
+    variant: Plot3DVariant | None = None,
+    *,
+    iblank: Sequence[ArrayLike] | None = None,
+) -> bytes:
+    """The bytes of a Plot3D grid file; arguments and errors as for :func:`write_plot3d`."""
     variant = variant or Plot3DVariant()
     arrays = _grids(grids)
     blanks: list[list[int] | None] | None = None
     if iblank is not None:
         if len(iblank) != len(arrays):
-            raise Error(f"error: {len(arrays)} grids, but blanking for {len(iblank)}")
+            raise Error(f"{len(arrays)} grids, but blanking for {len(iblank)}")
         blanks = []
         for number, (blank, array) in enumerate(zip(iblank, arrays, strict=True)):
             values = np.asarray(blank)
             if values.size != array.size // 3:
-                raise Error(f"error: blanking of grid {number + 1} has not one number a point")
+                raise Error(f"blanking of grid {number + 1} has not one number a point")
             shaped = values.reshape(array.shape[:-1])
             blanks.append([int(x) for x in shaped.ravel(order="F")])
-    data = _core.write_plot3d(
+    return _core.write_plot3d(
         arrays,
         variant.layout,
         variant.double,
@@ -196,12 +220,42 @@ def write_plot3d(
         variant.mark,
         variant.planes,
     )
-    return _commit(path, data)
 
 
 def _commit(path: str | Path, data: bytes) -> Path:
     target = Path(path)
     return commit(target.parent, [Output(target.name, data)])[0]
+
+
+def write(
+    path: str | Path, grids: Sequence[ArrayLike], *, names: Sequence[str] | None = None
+) -> list[Path]:
+    """Write grids in the format that the file's name ends in.
+
+    Parameters
+    ----------
+    path
+        The file: ``.p3d``, ``.vts``, ``.stl`` or ``.cgns``, the formats of
+        :func:`moldloft.formats.formats` whose ``of_grids`` is true.
+    grids
+        Arrays (ni, nj, 3), or (ni, nj, nk, 3) for Plot3D and VTK.
+    names
+        Of the zones of a CGNS file.
+
+    Returns
+    -------
+    list of pathlib.Path
+        The files written; ``vts`` takes several for several grids.
+    """
+    from moldloft.formats import format_named, formats
+
+    target = Path(path)
+    rows = [row for row in formats().values() if row.of_grids]
+    row = format_named(target.suffix.lstrip("."), rows)
+    if row.writer:
+        return [write_cgns(target, grids, names)]
+    files = _core.write_grids(_grids(grids), row.name, target.name)
+    return commit(target.parent, [Output(name, data) for name, data in files])
 
 
 def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
@@ -215,8 +269,8 @@ def write_vts(path: str | Path, grids: Sequence[ArrayLike]) -> list[Path]:
         Arrays (ni, nj, 3) or (ni, nj, nk, 3).
     """
     target = Path(path)
-    files = _core.grids_as_vts(_grids(grids), target.stem)
-    return commit(target.parent, [Output(name, bytes(data)) for name, data in files])
+    files = _core.write_grids(_grids(grids), "vts", target.name)
+    return commit(target.parent, [Output(name, data) for name, data in files])
 
 
 def write_cgns(
@@ -255,7 +309,7 @@ def cgns_bytes(
     arrays = [np.asarray(grid, dtype=np.float64) for grid in grids]
     words = list(names) if names else [f"grid{k + 1}" for k in range(len(arrays))]
     if len(words) != len(arrays):
-        raise Error(f"error: {len(arrays)} grids, but {len(words)} names")
+        raise Error(f"{len(arrays)} grids, but {len(words)} names")
     return cgns.write_grids(arrays, words, Path(name).stem, tolerance)
 
 
@@ -284,20 +338,18 @@ def write_csv(path: str | Path, points: ArrayLike) -> Path:
     """
     array = np.asarray(points, dtype=np.float64)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
-        raise Error(f"error: points have the shape (n, 2) or (n, 3), found {array.shape}")
+        raise Error(f"points have the shape (n, 2) or (n, 3), found {array.shape}")
     if not np.isfinite(array).all():
-        raise Error("error: a point is not finite")
-    lines = ["x,y,z"[: 2 * array.shape[1] - 1]]
-    # Adding zero turns -0 into 0.
-    lines += [",".join(repr(float(x) + 0.0) for x in row) for row in array]
-    return _commit(path, ("\n".join(lines) + "\n").encode())
+        raise Error("a point is not finite")
+    return _commit(path, _core.points_csv(array).encode())
 
 
 def read_points(path: str | Path) -> NDArray[np.float64]:
     """Points (n, 3) of a text with two or three numbers to a line.
 
-    Blanks, commas, semicolons and tabulators separate; headings and lines that begin with ``#`` are
-    skipped; a missing z is 0.
+    Blanks, commas, semicolons and tabulators separate; titles, names of columns and what follows a
+    ``#`` are skipped; a missing z is 0. The two halves of an aerofoil become one run from the upper
+    trailing edge round the nose.
 
     Raises
     ------
@@ -305,10 +357,8 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
         With the line that is no point.
     """
     try:
-        return np.array(_core.read_points(_read(path)), dtype=np.float64)
-    except FileError:
-        raise
-    except Error as error:
+        return _core.read_points(_read(path))[0]
+    except FormatError as error:
         raise _named(path, error) from error
 
 
@@ -324,9 +374,7 @@ def read_aerofoil(path: str | Path) -> Aerofoil:
     """
     try:
         found: tuple[str, Any, int, str] = _core.read_aerofoil(_read(path))
-    except FileError:
-        raise
-    except Error as error:
+    except FormatError as error:
         raise _named(path, error) from error
     name, points, nose, listing = found
     return Aerofoil(name, np.array(points, dtype=np.float64)[:, :2], nose, listing)

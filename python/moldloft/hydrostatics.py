@@ -178,7 +178,7 @@ class _Rows:
 
         if name not in _NUMBERS:
             known = ", ".join(_NUMBERS)
-            raise Error(f"error: there is no figure `{name}`; there are: {known}")
+            raise Error(f"there is no figure `{name}`; there are: {known}")
         values = [getattr(row, name) for row in self.rows]
         return np.array([math.nan if v is None else v for v in values], dtype=np.float64)
 
@@ -288,7 +288,7 @@ class RightingCurve(_Rows):
         order = np.argsort(self.heels)
         heels, arms = self.heels[order], self.gz[order]
         if not heels[0] - 1e-12 <= low <= high <= heels[-1] + 1e-12:
-            raise Error("error: the area is asked beyond the heels of the curve")
+            raise Error("the area is asked beyond the heels of the curve")
         inner = heels[(heels > low) & (heels < high)]
         x = np.concatenate([[low], inner, [high]])
         y = np.interp(x, heels, arms)
@@ -317,7 +317,7 @@ def _axes(columns: int) -> tuple[Any, list[Any]]:
     try:
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise Error("error: plots need matplotlib\nhelp: pip install 'moldloft[plot]'") from error
+        raise Error("plots need matplotlib\nhelp: pip install 'moldloft[plot]'") from error
     figure = Figure(figsize=(4.5 * columns + 1.5, 4.8), layout="constrained")
     return figure, list(figure.subplots(1, columns, squeeze=False).flat)
 
@@ -329,7 +329,7 @@ def _save(figure: Any, path: str | os.PathLike[str]) -> Path:
     kind = path.suffix.lstrip(".").lower()
     known = figure.canvas.get_supported_filetypes()
     if kind not in known:
-        raise Error(f"error: no plot ends in `.{kind}`; there are: {', '.join(sorted(known))}")
+        raise Error(f"no plot ends in `.{kind}`; there are: {', '.join(sorted(known))}")
     drawn = io.BytesIO()
     # Without a date the same figures give the same file.
     metadata = {"Date": None} if kind == "svg" else None

@@ -214,6 +214,48 @@ class Model:
         return self._document.diagnostics()
 
     @property
+    def has_errors(self) -> bool:
+        """Whether one of the diagnostics is an error."""
+        return self._document.has_errors()
+
+    @property
+    def sources(self) -> list[str]:
+        """The files that the model was read from: its own, and those that it loads."""
+        return self._document.files()
+
+    @property
+    def types(self) -> dict[str, str]:
+        """The types of the program's variables by name, with extents: ``surface[2,3]``.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> moldloft.loads("farray t = uniform(0, 1, 3);").types
+        {'t': 'farray[3]'}
+        """
+        return {name: shape for name, shape, _ in self._document.variables()}
+
+    def facts(self, name: str) -> dict[str, Any]:
+        """What is known of an object without asking for its shape.
+
+        Returns
+        -------
+        dict
+            ``name``, ``kind``, ``class``; ``ok``: it was made; ``shown``; ``parents`` and
+            ``children``: names of objects.
+
+        Raises
+        ------
+        UnknownNameError
+            When there is no such object.
+        """
+        return self._document.object(name)
+
+    def completions(self, line: str) -> list[str]:
+        """The words that may stand at the end of the text followed by ``line``."""
+        return self._document.complete(line)
+
+    @property
     def evaluated(self) -> int:
         """How many objects the last change evaluated again."""
         return self._document.evaluated()
@@ -435,7 +477,7 @@ class Model:
         (6.0, 3.0)
         """
         if level is not None and draft is not None:
-            raise Error("error: give the level or the draft, not both")
+            raise Error("give the level or the draft, not both")
         given, number = ("level", 0.0 if level is None else float(level))
         if draft is not None:
             given, number = "draft", float(draft)
@@ -488,7 +530,7 @@ class Model:
             free = () if cg is None else ("trim",) if upright else ("trim", "heel")
         unknown = set(free) - {"trim", "heel"}
         if unknown:
-            raise Error(f"error: free are `trim` and `heel`, not `{unknown.pop()}`")
+            raise Error(f"free are `trim` and `heel`, not `{unknown.pop()}`")
         trims, heels = "trim" in free, "heel" in free
         row = ("displacement", float(displacement), float(trim), float(heel), trims, heels)
         return self._floating([row], cg, density, gravity, sides, by)[0]
@@ -552,7 +594,7 @@ class Model:
     ) -> list[Hydrostatics]:
         centre = None if cg is None else [float(x) for x in cg]
         if centre is not None and len(centre) != 3:
-            raise Error(f"error: a centre of gravity is x, y, z, not {len(centre)} numbers")
+            raise Error(f"a centre of gravity is x, y, z, not {len(centre)} numbers")
         answers = self._document.floating(rows, density, gravity, centre, sides, list(by))
         return [Hydrostatics(**answer) for answer in answers]
 
@@ -655,6 +697,37 @@ class Model:
             self, wanted, path, lids=lids, immersed=immersed, tolerance=tolerance, tags=names
         )
         return commit(path.parent, files)
+
+    def encoded(
+        self,
+        format: str,
+        name: str,
+        *,
+        lids: bool = False,
+        immersed: bool = False,
+        tags: Sequence[str] = (),
+        tolerance: float | None = None,
+    ) -> dict[str, bytes]:
+        """The files of a format by name, without writing them; the first is called ``name``.
+
+        For the formats of the Rust table; :func:`moldloft.files.produce` takes all. Arguments as
+        for :meth:`write`.
+        """
+        return dict(self._document.write(format, name, lids, immersed, list(tags), tolerance))
+
+    def picture(self, width: int = 1280, height: int = 720) -> bytes:
+        """A picture of the panels, contours and wires, as PNG.
+
+        Parameters
+        ----------
+        width, height
+            In points of the picture.
+        """
+        return bytes(self._document.picture(width, height))
+
+    def kind_picture(self, kind: str, width: int = 360, height: int = 240) -> bytes:
+        """A picture, as PNG, in which the objects of one kind stand out among the others."""
+        return bytes(self._document.portrait(kind, width, height))
 
     def convert(self, to: str) -> str:
         """The model's text in another form: ``"sdl"`` or ``"ms2"``."""

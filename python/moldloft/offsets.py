@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from moldloft.models import Model
 
-__all__ = ["Offsets", "even", "measure", "parse", "read"]
+__all__ = ["Offsets", "encode", "even", "measure", "parse", "read"]
 
 _COLUMNS = ("station", "waterline", "half_breadth")
 _OTHER = {
@@ -81,9 +81,9 @@ class Offsets:
             The unit of length, for the model's header.
         """
         if curves not in ("CCurve", "BCurve"):
-            raise Error(f"error: stations are CCurve or BCurve, not `{curves}`")
+            raise Error(f"stations are CCurve or BCurve, not `{curves}`")
         if len(self.stations) < 2:
-            raise Error("error: a hull needs at least two stations")
+            raise Error("a hull needs at least two stations")
         unit = f', units = "{units}"' if units else ""
         lines = [
             "# A half hull from a table of offsets; y = 0 is its plane of symmetry.",
@@ -118,7 +118,7 @@ def read(path: str | os.PathLike[str]) -> Offsets:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise FileError(f"error: cannot read `{os.fspath(path)}`: {reason.lower()}") from error
+        raise FileError(f"cannot read `{os.fspath(path)}`: {reason.lower()}") from error
     return parse(text, os.fspath(path))
 
 
@@ -126,7 +126,7 @@ def parse(text: str, name: str = "offsets") -> Offsets:
     """The table of a text; ``name`` is what messages call it."""
 
     def fault(line: int, expected: str, found: str) -> Error:
-        return Error(f"error: {name}, line {line}: expected {expected}, found {found}")
+        return Error(f"{name}, line {line}: expected {expected}, found {found}")
 
     lines = [(n, row) for n, row in enumerate(text.splitlines(), 1) if row.strip()]
     rows = [(n, next(csv.reader([row]))) for n, row in lines if not row.lstrip().startswith("#")]
@@ -160,8 +160,13 @@ def parse(text: str, name: str = "offsets") -> Offsets:
         points[z] = y
     for x, points in stations.items():
         if len(points) < 2:
-            raise Error(f"error: {name}: station {x!r} has one point; it needs two or more")
+            raise Error(f"{name}: station {x!r} has one point; it needs two or more")
     return Offsets({x: tuple(sorted(stations[x].items())) for x in sorted(stations)})
+
+
+def encode(model: Model, title: str = "") -> bytes:
+    """The file of :func:`even`; it has no place for a title."""
+    return even(model).csv().encode()
 
 
 def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]) -> Offsets:
@@ -200,7 +205,7 @@ def measure(model: Model, stations: Iterable[float], waterlines: Iterable[float]
         if row:
             found[x] = tuple(row)
     if not found:
-        raise Error("error: no station meets a waterline within the model")
+        raise Error("no station meets a waterline within the model")
     return Offsets(found)
 
 

@@ -73,6 +73,11 @@ class SketchError(Error, ValueError):
         super().__init__(message)
         self.replies = tuple(replies)
 
+    @property
+    def rendered(self) -> str:
+        """The replies as they are, or the message after ``error:``."""
+        return str(self).rstrip() if self.replies else super().rendered
+
 
 @dataclass(frozen=True)
 class Gradient:
@@ -132,6 +137,11 @@ class Sketch:
     def __init__(self, folder: str | os.PathLike[str] | None = None) -> None:
         self._session = _core.SketchSession(None if folder is None else os.fspath(folder))
 
+    @property
+    def session(self) -> _core.SketchSession:
+        """The session behind it, for programs that talk with it line by line."""
+        return self._session
+
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, strict: bool = True) -> Sketch:
         """Run a file of commands, or read a JSON twin.
@@ -148,9 +158,9 @@ class Sketch:
             text = path.read_text(encoding="utf-8")
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
-            raise FileError(f"error: cannot read `{path}`: {reason}") from error
+            raise FileError(f"cannot read `{path}`: {reason}") from error
         except UnicodeDecodeError as error:
-            raise FileError(f"error: cannot read `{path}`: it is no text in UTF-8") from error
+            raise FileError(f"cannot read `{path}`: it is no text in UTF-8") from error
         sketch = cls(path.parent)
         if text.lstrip().startswith(("[", "{")):
             sketch.run(f'INPUT "{path.name}"', strict=strict)

@@ -35,10 +35,10 @@ def write(blocks: Blocks, title: str) -> bytes:
     try:
         import h5py  # type: ignore[import-untyped]
     except ImportError as error:
-        raise Error("error: CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
+        raise Error("CGNS needs h5py\nhelp: pip install 'moldloft[grids]'") from error
     points = blocks.vertices
     if not np.isfinite(points).all():
-        raise Error("error: cannot write cgns: a position is not a finite number")
+        raise Error("cannot write cgns: a position is not a finite number")
     taken: set[str] = set()
     zones = [cgns.unique(block.name, taken) for block in blocks.blocks]
     families: dict[str, str] = {}

@@ -702,7 +702,7 @@ def test_faults_in_python():
         with pytest.raises(moldloft.FairingError) as caught:
             call()
         assert words in str(caught.value), caught.value
-        assert str(caught.value).startswith("error: ") and isinstance(caught.value, ValueError)
+        assert not str(caught.value).startswith("error") and isinstance(caught.value, ValueError)
     bad = points.copy()
     bad[7, 1] = math.nan
     with pytest.raises(moldloft.FairingError) as caught:

@@ -9,7 +9,8 @@ import pytest
 
 import moldloft
 from moldloft import fairing
-from moldloft.fairing.files import GridFile, read_grids
+from moldloft.fairing.files import read_grids
+from moldloft.grids import write_plot3d
 
 
 def hull(noise=3e-3):
@@ -54,7 +55,7 @@ def test_patches_run_on_across_their_seam():
 def test_blocks_of_a_file_are_faired_as_one(cli, tmp_path):
     fore, aft = hull()
     path, out = tmp_path / "hull.p3d", tmp_path / "faired.p3d"
-    path.write_bytes(GridFile(path, [], "stream").encoded([fore, aft]))
+    write_plot3d(path, [fore, aft])
     told = json.loads(cli("fair", path, "--tol", "0.02", "-o", out, "--json").stdout)
     assert told["seams"] == [[[0, "u1"], [1, "u0"]]] and told["keeps"] == "curvature"
     assert told["deviation_certified"] <= 0.02 + 1e-12 and told["gap"] >= 0
@@ -75,7 +76,7 @@ def test_blocks_of_a_file_are_faired_as_one(cli, tmp_path):
 def test_weights_and_knots_of_surfaces_in_files(cli, tmp_path):
     grid = hull()[0]
     path = tmp_path / "net.p3d"
-    path.write_bytes(GridFile(path, [], "stream").encoded([grid]))
+    write_plot3d(path, [grid])
     weights, knots = tmp_path / "weights.txt", tmp_path / "knots.txt"
     weights.write_text("\n".join(f"{1 + 0.1 * (k % 3)}" for k in range(64)))
     knots.write_text("0 0 0 0 0.1 0.4 0.5 0.8 1 1 1 1\n")

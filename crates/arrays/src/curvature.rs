@@ -1,16 +1,16 @@
 //! How arrays of points bend.
 
 use crate::grids::jets;
-use crate::value::{Lattice, Points, farray, numbers, vectors};
-use moldloft_grid::Sheet;
+use crate::value::{GridArg, Points, farray, numbers, vectors};
+use moldloft_grid::SurfaceGrid;
 use moldloft_num::{Real, SurfJet, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, Kind, Scalar, Value};
 
 fn root<T: Real>(square: T) -> T {
     if square.re() > 0.0 { square.sqrt() } else { T::zero() }
 }
 
-fn enough<T>(points: &[T], least: usize) -> Result<(), Fault> {
+fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), Fault> {
     if points.len() >= least {
         return Ok(());
     }
@@ -20,7 +20,7 @@ fn enough<T>(points: &[T], least: usize) -> Result<(), Fault> {
     )
     .expected(format!("at least {least} points"))
     .found(points.len().to_string())
-    .in_field(0))
+    .in_field(field))
 }
 
 /// The curvatures of a curve of points: 4 A / (a b c) of the triangle of a point and its neighbours,
@@ -45,7 +45,7 @@ pub struct Curvatures<T: Scalar> {
 impl<T: Scalar> Build<T> for Curvatures<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let points = self.curve.0;
-        enough(&points, 3)?;
+        enough(&points, 3, Self::CURVE)?;
         let mut all = Vec::with_capacity(points.len());
         for (k, w) in points.windows(3).enumerate() {
             let (a, b, c) = (w[1] - w[0], w[2] - w[1], w[2] - w[0]);
@@ -55,7 +55,7 @@ impl<T: Scalar> Build<T> for Curvatures<T> {
                 return Err(Fault::new("coincident-points", message)
                     .expected("three different points")
                     .in_item(k + 1)
-                    .in_field(0));
+                    .in_field(Self::CURVE));
             }
             all.push(root(a.cross(b).norm_sq() * 4.0 / product));
         }
@@ -86,7 +86,7 @@ pub struct Torsions<T: Scalar> {
 impl<T: Scalar> Build<T> for Torsions<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let points = self.curve.0;
-        enough(&points, 4)?;
+        enough(&points, 4, Self::CURVE)?;
         // The binormals of two neighbouring triangles turn by torsion times the step between them.
         let turn = |w: &[Vec3<T>]| {
             let (a, b, c) = (w[1] - w[0], w[2] - w[1], w[3] - w[2]);
@@ -127,11 +127,12 @@ fn forms<T: Real>(jet: &SurfJet<T>) -> Option<(Vec3<T>, [T; 6])> {
 
 /// A number at each point of a grid; at singular ones (poles) the mean of the next line's.
 fn at_points<T: Real>(
-    sheet: &Sheet<T>,
+    grid: &SurfaceGrid<T>,
+    field: FieldId,
     f: impl Fn(&SurfJet<T>) -> Option<Vec3<T>>,
 ) -> Result<Vec<Vec3<T>>, Fault> {
-    let (m, n) = (sheet.m, sheet.n);
-    let all: Vec<Option<Vec3<T>>> = jets(sheet)?.iter().map(f).collect();
+    let (m, n) = (grid.m, grid.n);
+    let all: Vec<Option<Vec3<T>>> = jets(grid, field)?.iter().map(f).collect();
     let mut known = Vec::with_capacity(m * n);
     for k in 0..m * n {
         let (i, j) = (k / n, k % n);
@@ -151,14 +152,14 @@ fn at_points<T: Real>(
         known.push(value.ok_or_else(|| {
             Fault::new("no-direction", format!("there is no normal at point [{},{}]", i + 1, j + 1))
                 .expected("a surface with a tangent plane at every inner point")
-                .in_field(0)
+                .in_field(field)
         })?);
     }
     Ok(known)
 }
 
-fn grid_of<T: Real>(sheet: &Sheet<T>, values: Vec<Vec3<T>>) -> Value<T> {
-    numbers(ArrayShape::Grid(sheet.m, sheet.n), values.into_iter().map(|v| v.x).collect())
+fn grid_of<T: Real>(grid: &SurfaceGrid<T>, values: Vec<Vec3<T>>) -> Value<T> {
+    numbers(ArrayShape::Grid(grid.m, grid.n), values.into_iter().map(|v| v.x).collect())
 }
 
 /// The Gaussian curvatures at the points of a surface: K = (L N - M^2) / (E G - F^2), of the bicubic
@@ -176,7 +177,7 @@ fn grid_of<T: Real>(sheet: &Sheet<T>, values: Vec<Vec3<T>>) -> Value<T> {
 )]
 pub struct Gauss<T: Scalar> {
     /// The points.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Gauss<T> {
@@ -185,7 +186,7 @@ impl<T: Scalar> Build<T> for Gauss<T> {
             let (_, [e, f, g, l, m, n]) = forms(jet)?;
             Some(Vec3::new((l * n - m * m) / (e * g - f * f), T::zero(), T::zero()))
         };
-        let values = at_points(&self.s.0, k)?;
+        let values = at_points(&self.s.0, Self::S, k)?;
         Ok(grid_of(&self.s.0, values))
     }
 }
@@ -203,7 +204,7 @@ impl<T: Scalar> Build<T> for Gauss<T> {
 )]
 pub struct Mean<T: Scalar> {
     /// The points.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Mean<T> {
@@ -213,7 +214,7 @@ impl<T: Scalar> Build<T> for Mean<T> {
             let h = (e * n - f * m * 2.0 + g * l) / ((e * g - f * f) * 2.0);
             Some(Vec3::new(h, T::zero(), T::zero()))
         };
-        let values = at_points(&self.s.0, h)?;
+        let values = at_points(&self.s.0, Self::S, h)?;
         Ok(grid_of(&self.s.0, values))
     }
 }
@@ -230,12 +231,12 @@ impl<T: Scalar> Build<T> for Mean<T> {
 )]
 pub struct Normals<T: Scalar> {
     /// The points.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Normals<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let all = at_points(&self.s.0, |jet| forms(jet).map(|(normal, _)| normal))?;
+        let all = at_points(&self.s.0, Self::S, |jet| forms(jet).map(|(normal, _)| normal))?;
         let unit = |v: Vec3<T>| v.normalized().unwrap_or(v);
         let all = all.into_iter().map(unit).collect();
         Ok(vectors(ArrayShape::Grid(self.s.0.m, self.s.0.n), all))

@@ -2,14 +2,23 @@
 
 use crate::value::{Farray, farray};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Scalar, Value};
 use moldloft_spline::distribution::{self, DistributionError};
 
 /// The longest row.
 pub const MOST_NUMBERS: u32 = 1_000_000;
 
-/// The fault of a distribution whose arguments are `start, end, [spacings,] n`.
-pub fn fault(error: DistributionError) -> Fault {
+/// The arguments that limits and spacings of a distribution come from.
+#[derive(Clone, Copy)]
+pub struct Arguments {
+    /// The first limit, or the length.
+    pub limits: FieldId,
+    /// The first spacing; of a distribution without spacings, which cannot be wrong in them, as `limits`.
+    pub spacings: FieldId,
+}
+
+/// The fault of a distribution made of these arguments.
+pub fn fault(error: DistributionError, of: Arguments) -> Fault {
     let fault = Fault::new("no-distribution", error.to_string());
     match error {
         DistributionError::TooFew { expected, actual } => {
@@ -18,28 +27,31 @@ pub fn fault(error: DistributionError) -> Fault {
         DistributionError::Limits { start, end } => fault
             .expected("two different finite limits")
             .found(format!("{start} and {end}"))
-            .in_field(0),
+            .in_field(of.limits),
         DistributionError::Spacing { spacing } => fault
             .expected("a positive spacing")
             .found(spacing.to_string())
             .help("spacings are lengths: positive whatever the direction")
-            .in_field(2),
-        DistributionError::TwoSided { .. } => {
-            fault.help("d_tanh, d_tanhx and geometric2 take a spacing at both ends").in_field(2)
-        }
+            .in_field(of.spacings),
+        DistributionError::TwoSided { .. } => fault
+            .help("d_tanh, d_tanhx and geometric2 take a spacing at both ends")
+            .in_field(of.spacings),
         DistributionError::Unreachable { spacings: [a, b], length, cells } => {
             let mean = length / cells as f64;
             fault
                 .expected(format!("spacings nearer to the mean, {mean}"))
                 .found(format!("{a} and {b}"))
                 .help("ask for another number of points: count_for(length, ds1, ds2, growth)")
-                .in_field(2)
+                .in_field(of.spacings)
         }
     }
 }
 
-fn row<T: Real>(row: Result<Vec<T>, DistributionError>) -> Result<Value<T>, Fault> {
-    row.map(farray).map_err(fault)
+fn row<T: Real>(
+    row: Result<Vec<T>, DistributionError>,
+    [limits, spacings]: [FieldId; 2],
+) -> Result<Value<T>, Fault> {
+    row.map(farray).map_err(|error| fault(error, Arguments { limits, spacings }))
 }
 
 /// `n` numbers in equal steps from `start` to `end`, both included.
@@ -57,7 +69,10 @@ pub struct Uniform<T: Real> {
 
 impl<T: Real> Build<T> for Uniform<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        row(distribution::uniform(self.start, self.end, self.n as usize))
+        row(
+            distribution::uniform(self.start, self.end, self.n as usize),
+            [Self::START, Self::START],
+        )
     }
 }
 
@@ -77,7 +92,7 @@ pub struct Cosine<T: Real> {
 
 impl<T: Real> Build<T> for Cosine<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        row(distribution::cosine(self.start, self.end, self.n as usize))
+        row(distribution::cosine(self.start, self.end, self.n as usize), [Self::START, Self::START])
     }
 }
 
@@ -106,7 +121,10 @@ pub struct Geometric<T: Real> {
 
 impl<T: Real> Build<T> for Geometric<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        row(distribution::geometric(self.start, self.end, self.ds1, self.n as usize))
+        row(
+            distribution::geometric(self.start, self.end, self.ds1, self.n as usize),
+            [Self::START, Self::DS1],
+        )
     }
 }
 
@@ -139,7 +157,7 @@ pub struct Geometric2<T: Real> {
 impl<T: Real> Build<T> for Geometric2<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::geometric2(start, end, ds1, ds2, n as usize))
+        row(distribution::geometric2(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -174,7 +192,7 @@ pub struct DSinh<T: Real> {
 impl<T: Real> Build<T> for DSinh<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::d_sinh(start, end, ds1, ds2, n as usize))
+        row(distribution::d_sinh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -209,7 +227,7 @@ pub struct DTanh<T: Real> {
 impl<T: Real> Build<T> for DTanh<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::d_tanh(start, end, ds1, ds2, n as usize))
+        row(distribution::d_tanh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -244,7 +262,7 @@ pub struct DTanhX<T: Real> {
 impl<T: Real> Build<T> for DTanhX<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { start, end, ds1, ds2, n } = self;
-        row(distribution::d_tanhx(start, end, ds1, ds2, n as usize))
+        row(distribution::d_tanhx(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
 }
 
@@ -266,9 +284,9 @@ pub struct Redist<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Redist<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let given = self.given.row().map_err(|fault| fault.in_field(0))?;
+        let given = self.given.row().map_err(|fault| fault.in_field(Self::GIVEN))?;
         distribution::redist(&given, self.n as usize)
             .map(farray)
-            .map_err(|error| fault(error).in_field(0))
+            .map_err(|error| fault(error, Arguments { limits: Self::GIVEN, spacings: Self::GIVEN }))
     }
 }

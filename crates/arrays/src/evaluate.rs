@@ -3,12 +3,12 @@
 use crate::value::{Farray, Numbers, vectors};
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
 use moldloft_registry::{
-    ArrayShape, Build, Context, CurveRef, Fault, Kind, Scalar, SurfaceRef, Value,
+    ArrayShape, Build, Context, CurveRef, Fault, FieldId, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::arclen;
 
 /// The fault of a parameter outside [0, 1], in field `field`.
-fn inside<T: Real>(parameters: &[T], field: usize) -> Result<(), Fault> {
+fn inside<T: Real>(parameters: &[T], field: FieldId) -> Result<(), Fault> {
     let outside = |t: &T| !(0.0..=1.0).contains(&t.re());
     let Some(k) = parameters.iter().position(outside) else { return Ok(()) };
     let found = parameters[k].re();
@@ -50,8 +50,8 @@ pub struct Distc<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Distc<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let parameters = self.parameters.row().map_err(|fault| fault.in_field(1))?;
-        inside(&parameters, 1)?;
+        let parameters = self.parameters.row().map_err(|fault| fault.in_field(Self::PARAMETERS))?;
+        inside(&parameters, Self::PARAMETERS)?;
         let points = positions(&self.curve, &parameters);
         Ok(vectors(ArrayShape::Row(points.len()), points))
     }
@@ -81,8 +81,8 @@ pub struct Dists<T: Scalar> {
 impl<T: Scalar> Build<T> for Dists<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, u, v } = self;
-        inside(&u.items, 1)?;
-        inside(&v.items, 2)?;
+        inside(&u.items, Self::U)?;
+        inside(&v.items, Self::V)?;
         let at = |u: T, v: T| surface.jet(u, v, Order::Zero).p;
         let constant = |a: &Farray<T>| a.items.iter().all(|t| t.is_constant());
         let plain = |a: &Farray<T>| a.items.iter().map(|t| t.re()).collect::<Vec<f64>>();
@@ -112,7 +112,7 @@ impl<T: Scalar> Build<T> for Dists<T> {
             (a, b) => Err(Fault::new("shapes-differ", format!("shapes differ: {a} and {b}"))
                 .expected("two rows, or two arrays of equal shape")
                 .found(format!("u is {a}, v is {b}"))
-                .in_field(2)),
+                .in_field(Self::V)),
         }
     }
 }
@@ -200,7 +200,7 @@ impl<T: Scalar> Build<T> for Curvc<T> {
                 return Err(Fault::new("no-direction", message)
                     .expected("a curve that moves on")
                     .in_item(k)
-                    .in_field(1));
+                    .in_field(Self::U));
             }
             // The root of an exact zero has no derivative; a straight line's curvature is zero.
             let size = bend.norm_sq();
@@ -231,7 +231,7 @@ pub struct Evals<T: Scalar> {
 }
 
 /// Equal shapes, or one pair.
-fn paired<T: Real>(u: &Numbers<T>, v: &Numbers<T>) -> Result<(), Fault> {
+fn paired<T: Real>(u: &Numbers<T>, v: &Numbers<T>, field: FieldId) -> Result<(), Fault> {
     let shape = |a: &Numbers<T>| match a {
         Numbers::One(_) => "a number".to_string(),
         Numbers::Many(a) => format!("an farray {}", a.shape),
@@ -244,13 +244,13 @@ fn paired<T: Real>(u: &Numbers<T>, v: &Numbers<T>) -> Result<(), Fault> {
         .expected("two numbers, or two farrays of equal shape")
         .found(format!("{a} and {b}"))
         .help("for all pairs of two rows there is dists(surface, u, v)")
-        .in_field(2))
+        .in_field(field))
 }
 
 impl<T: Scalar> Build<T> for Evals<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, u, v } = self;
-        paired(&u, &v)?;
+        paired(&u, &v, Self::V)?;
         let pairs = u.items().iter().zip(v.items());
         let points = pairs.map(|(&u, &v)| surface.jet(u, v, Order::Zero).p).collect();
         Ok(u.vectors(points))
@@ -285,13 +285,13 @@ pub struct Derivs<T: Scalar> {
 impl<T: Scalar> Build<T> for Derivs<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, u, v, ku, kv } = self;
-        paired(&u, &v)?;
+        paired(&u, &v, Self::V)?;
         if ku + kv > 2 {
             let message = format!("there is no derivative of order {}", ku + kv);
             return Err(Fault::new("out-of-range", message)
                 .expected("ku + kv of 2 at most")
                 .found((ku + kv).to_string())
-                .in_field(4));
+                .in_field(Self::KV));
         }
         let pick = |(&u, &v): (&T, &T)| {
             let jet = surface.jet(u, v, order(ku + kv));

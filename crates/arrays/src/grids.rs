@@ -1,20 +1,20 @@
 //! Structured grids: interpolated from edges and faces, smoothed, measured.
 
-use crate::value::{Lattice, Points, surface};
+use crate::value::{GridArg, Points, surface};
 use moldloft_grid::{
-    Blend, Edge, Elliptic, Faces, GridError, Hyperbolic, Method, Metric, Sheet, Side, Wall,
+    Blend, Edge, Elliptic, Faces, GridError, Hyperbolic, Method, Metric, Side, SurfaceGrid, Wall,
     elliptic_until, folded_cells, framed, hyperbolic, hyperbolic_curve, quality, transfinite,
     transfinite_block,
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, Context, Fault, FromValue, Kind, Scalar, SurfaceRef, Value,
+    ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::{End, Ends, GridSpline};
 use std::sync::Arc;
 
 /// The fault of a grid, about field 0.
-pub fn fault(error: GridError) -> Fault {
+pub fn fault(error: GridError, field: FieldId) -> Fault {
     let message = error.to_string();
     let with = |id: &'static str| Fault::new(id, message.clone());
     match error {
@@ -51,10 +51,10 @@ pub fn fault(error: GridError) -> Fault {
             with("no-direction").expected("a surface with a normal at every point")
         }
     }
-    .in_field(0)
+    .in_field(field)
 }
 
-fn unknown(word: &str, what: &str, expected: String, field: usize) -> Fault {
+fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> Fault {
     Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
@@ -96,14 +96,15 @@ impl<T: Scalar> Build<T> for Tfi<T> {
             "soni2" => Blend::Soni2,
             word => {
                 let expected = "\"arc\", \"linear\", \"hermite\" or \"soni2\"".to_string();
-                return Err(unknown(word, "kind of interpolation", expected, 1));
+                return Err(unknown(word, "kind of interpolation", expected, Self::KIND));
             }
         };
         let Value::List(items) = &self.s else {
-            let Lattice(sheet) = Lattice::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
-            return transfinite(&sheet, blend).map(surface).map_err(fault);
+            let GridArg(grid) =
+                GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+            return transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S));
         };
-        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(0);
+        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(Self::S);
         match items.len() {
             4 => {
                 let mut edges: [Vec<Vec3<T>>; 4] = Default::default();
@@ -118,31 +119,31 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                             .expected(format!("{m} points"))
                             .found(format!("{n} points"))
                             .in_item(b)
-                            .in_field(0));
+                            .in_field(Self::S));
                     }
                 }
-                let sheet = framed(&edges).map_err(fault)?;
-                transfinite(&sheet, blend).map(surface).map_err(fault)
+                let grid = framed(&edges).map_err(|error| fault(error, Self::S))?;
+                transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S))
             }
             6 => {
-                let mut faces: Vec<Sheet<T>> = Vec::with_capacity(6);
+                let mut faces: Vec<SurfaceGrid<T>> = Vec::with_capacity(6);
                 for (k, item) in items.iter().enumerate() {
-                    faces.push(Lattice::from_value(item).map_err(place(k))?.0);
+                    faces.push(GridArg::from_value(item).map_err(place(k))?.0);
                 }
-                let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6))?;
-                let layers = transfinite_block(&faces).map_err(fault)?;
+                let faces: Faces<T> = faces.try_into().map_err(|_| fault_of_count(6, Self::S))?;
+                let layers = transfinite_block(&faces).map_err(|error| fault(error, Self::S))?;
                 Ok(Value::list(layers.into_iter().map(surface)))
             }
-            n => Err(fault_of_count(n)),
+            n => Err(fault_of_count(n, Self::S)),
         }
     }
 }
 
-fn fault_of_count(n: usize) -> Fault {
+fn fault_of_count(n: usize, field: FieldId) -> Fault {
     Fault::new("wrong-shape", format!("nothing is bounded by {n} edges or faces"))
         .expected("a surface, a list of four curves or a list of six surfaces")
         .found(format!("a list of {n}"))
-        .in_field(0)
+        .in_field(field)
 }
 
 /// The edges by the names of the language.
@@ -170,7 +171,7 @@ const EDGES: [(&str, Edge); 4] =
 )]
 pub struct EllipticGrid<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
     /// The most sweeps.
     #[field(default = 200, min = 0, max = 1e6)]
     n: usize,
@@ -206,7 +207,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             "sorenson" => Method::Sorenson,
             word => {
                 let expected = "\"laplace\", \"middlecoff\" or \"sorenson\"".to_string();
-                return Err(unknown(word, "method", expected, 3));
+                return Err(unknown(word, "method", expected, Self::METHOD));
             }
         };
         let allowed = match &*self.folded {
@@ -214,13 +215,15 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             "allow" => true,
             word => {
                 let expected = "\"refuse\" or \"allow\"".to_string();
-                return Err(unknown(word, "answer to folded cells", expected, 9));
+                return Err(unknown(word, "answer to folded cells", expected, Self::FOLDED));
             }
         };
         let walls = match (method, &self.walls, self.spacing) {
-            (Method::Sorenson, Some(words), Some(spacing)) => walls(words, spacing, self.angle)?,
+            (Method::Sorenson, Some(words), Some(spacing)) => {
+                walls::<T>(words, spacing, self.angle)?
+            }
             (Method::Sorenson, ..) => {
-                let field = if self.walls.is_none() { 5 } else { 6 };
+                let field = if self.walls.is_none() { Self::WALLS } else { Self::SPACING };
                 return Err(Fault::new(
                     "missing-argument",
                     "\"sorenson\" needs walls and a spacing",
@@ -233,18 +236,18 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
                 return Err(Fault::new("unused-argument", "walls are for the method \"sorenson\"")
                     .expected("\"sorenson\"")
                     .found(format!("\"{}\"", self.method))
-                    .in_field(3));
+                    .in_field(Self::METHOD));
             }
         };
-        let sheet = self.s.0;
-        sheet.re().check_edges().map_err(fault)?;
+        let grid = self.s.0;
+        grid.re().check_edges().map_err(|error| fault(error, Self::S))?;
         let own;
         let on: Option<(&dyn Surface<T>, [Vec<T>; 2])> = match &self.on {
-            Some(surface) => Some((&**surface, on_surface(&sheet, surface)?)),
-            None if plane(&sheet) => None,
+            Some(surface) => Some((&**surface, on_surface(&grid, surface)?)),
+            None if plane(&grid) => None,
             None => {
-                own = through(&sheet)?;
-                let (m, n) = (sheet.m, sheet.n);
+                own = through(&grid, Self::S)?;
+                let (m, n) = (grid.m, grid.n);
                 let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
                 let u = (0..m * n).map(|k| even(k / n, m)).collect();
                 let v = (0..m * n).map(|k| even(k % n, n)).collect();
@@ -259,11 +262,13 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             walls,
             on,
         };
-        let smoothed = elliptic_until(&sheet, &options, &context.cancel).map_err(fault)?.sheet;
+        let smoothed = elliptic_until(&grid, &options, &context.cancel)
+            .map_err(|error| fault(error, Self::S))?
+            .grid;
         let folded = if allowed { Vec::new() } else { folded_cells(&smoothed) };
         if let Some(&[i, j]) = folded.first() {
             let error = GridError::Folded { count: folded.len(), at: [i + 1, j + 1], layer: None };
-            return Err(fault(error).help(
+            return Err(fault(error, Self::S).help(
                 "allow more sweeps, or look at it with folded = \"allow\" and quality(s, \"sj\")",
             ));
         }
@@ -271,12 +276,12 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
     }
 }
 
-fn walls<T: Real>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fault> {
+fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fault> {
     let mut walls = Vec::new();
     for word in words.split([' ', ',']).filter(|word| !word.is_empty()) {
         let Some((_, edge)) = EDGES.iter().find(|(name, _)| *name == word) else {
             let expected = "\"i1\", \"im\", \"j1\" or \"jn\"".to_string();
-            return Err(unknown(word, "edge", expected, 5));
+            return Err(unknown(word, "edge", expected, EllipticGrid::<T>::WALLS));
         };
         walls.push(Wall { edge: *edge, spacing: vec![spacing], angle });
     }
@@ -284,14 +289,14 @@ fn walls<T: Real>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fau
         return Err(Fault::new("out-of-range", "the spacing off a wall is a positive length")
             .expected("a positive number")
             .found(spacing.re().to_string())
-            .in_field(6));
+            .in_field(EllipticGrid::<T>::SPACING));
     }
     Ok(walls)
 }
 
 /// True when all points lie in one plane, to rounding.
-fn plane<T: Real>(sheet: &Sheet<T>) -> bool {
-    let plain = sheet.re();
+fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
+    let plain = grid.re();
     let points: Vec<Vec3> = plain.points().collect();
     let first = points[0];
     let far = |f: &dyn Fn(&Vec3) -> f64| {
@@ -315,27 +320,27 @@ fn plane<T: Real>(sheet: &Sheet<T>) -> bool {
 }
 
 /// The spline surface through the points, even in the indices.
-fn through<T: Real>(sheet: &Sheet<T>) -> Result<GridSpline<T>, Fault> {
+fn through<T: Real>(grid: &SurfaceGrid<T>, field: FieldId) -> Result<GridSpline<T>, Fault> {
     let knots = |n: usize| (0..n).map(|k| T::from(k as f64 / (n - 1) as f64)).collect();
     let ends = Ends::Open(End::NotAKnot, End::NotAKnot);
-    GridSpline::bicubic(knots(sheet.m), knots(sheet.n), sheet.points().collect(), ends)
-        .map_err(|error| crate::spline::fault(error, "point"))
+    GridSpline::bicubic(knots(grid.m), knots(grid.n), grid.points().collect(), ends)
+        .map_err(|error| crate::spline::fault(error, "point", [field, field]))
 }
 
 /// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
-fn on_surface<T: Real>(sheet: &Sheet<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
-    let points: Vec<Vec3<T>> = sheet.points().collect();
+fn on_surface<T: Scalar>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
+    let points: Vec<Vec3<T>> = grid.points().collect();
     let (uv, off) = crate::locate::nearest_parameters(on, &points);
-    let size = sheet.size();
+    let size = grid.size();
     let worst = (0..points.len()).fold(0, |w, k| if off[k] > off[w] { k } else { w });
     if off[worst] > 1e-6 * size {
-        let (i, j) = (worst / sheet.n + 1, worst % sheet.n + 1);
+        let (i, j) = (worst / grid.n + 1, worst % grid.n + 1);
         let message = format!("point [{i},{j}] of the grid is {} off the surface", off[worst]);
         return Err(Fault::new("off-surface", message)
             .expected("a grid whose points lie on the surface")
             .found(format!("a distance of {}", off[worst]))
             .help("project(s, surface) brings them there")
-            .in_field(4));
+            .in_field(EllipticGrid::<T>::ON));
     }
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
 }
@@ -375,17 +380,17 @@ pub struct HyperbolicGrid<T: Scalar> {
 
 impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let heights = self.heights.row().map_err(|fault| fault.in_field(1))?;
+        let heights = self.heights.row().map_err(|fault| fault.in_field(Self::HEIGHTS))?;
         let is_curve =
             matches!(&self.s, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
-        let sides = sides(&self.sides, is_curve)?;
+        let sides = sides(&self.sides, is_curve, Self::SIDES)?;
         let smoothing = self.smoothing.re();
         let place = |error: GridError| {
             let heights = matches!(error, GridError::Heights { .. });
             let folded = matches!(error, GridError::Folded { .. });
-            let fault = fault(error);
+            let fault = fault(error, Self::S);
             if heights {
-                crate::spline::moved(fault, 1)
+                crate::spline::moved(fault, Self::HEIGHTS)
             } else if folded {
                 fault.help("more smoothing, smaller heights, or sides at the edges keep cells from folding")
             } else {
@@ -393,27 +398,28 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
             }
         };
         if is_curve {
-            let Points(curve) = Points::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
+            let Points(curve) =
+                Points::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             let normal = self.normal.unwrap_or_else(|| Vec3::of(0.0, 0.0, 1.0));
             let ends = [sides[0], sides[1]];
             let grid = hyperbolic_curve(&curve, normal, &heights, ends, smoothing);
             return grid.map(surface).map_err(place);
         }
-        let Lattice(sheet) = Lattice::from_value(&self.s).map_err(|fault| fault.in_field(0))?;
-        let layers =
-            hyperbolic(&sheet, &Hyperbolic { heights, sides, smoothing }).map_err(place)?;
+        let GridArg(grid) =
+            GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
+        let layers = hyperbolic(&grid, &Hyperbolic { heights, sides, smoothing }).map_err(place)?;
         Ok(Value::list(layers.into_iter().map(surface)))
     }
 }
 
-fn sides(text: &str, is_curve: bool) -> Result<[Side; 4], Fault> {
+fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], Fault> {
     let mut sides = [Side::Free; 4];
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let words: Vec<&str> = part.split_whitespace().collect();
         let bad = || {
             let expected =
                 "\"i1 pole\", \"j1 symmetry z\", \"im periodic\" and the like".to_string();
-            unknown(part, "side", expected, 2)
+            unknown(part, "side", expected, field)
         };
         let at = EDGES.iter().position(|(name, _)| Some(name) == words.first());
         let at = at.filter(|at| !is_curve || *at < 2).ok_or_else(bad)?;
@@ -436,11 +442,11 @@ fn sides(text: &str, is_curve: bool) -> Result<[Side; 4], Fault> {
     Ok(sides)
 }
 
-fn metric(word: &str) -> Result<Metric, Fault> {
+fn metric(word: &str, field: FieldId) -> Result<Metric, Fault> {
     let known = Metric::ALL.iter().find(|metric| metric.word() == word);
     known.copied().ok_or_else(|| {
         let words: Vec<String> = Metric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
-        unknown(word, "metric", words.join(", "), 1)
+        unknown(word, "metric", words.join(", "), field)
     })
 }
 
@@ -461,7 +467,7 @@ fn metric(word: &str) -> Result<Metric, Fault> {
 )]
 pub struct QualityOf<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
     /// What is measured.
     #[field(default = "sj")]
     metric: Arc<str>,
@@ -469,13 +475,16 @@ pub struct QualityOf<T: Scalar> {
 
 impl<T: Scalar> Build<T> for QualityOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let metric = metric(&self.metric)?;
-        let sheet = self.s.0;
-        if sheet.m.min(sheet.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [sheet.m, sheet.n] }));
+        let metric = metric(&self.metric, Self::METRIC)?;
+        let grid = self.s.0;
+        if grid.m.min(grid.n) < 2 {
+            return Err(fault(
+                GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },
+                Self::S,
+            ));
         }
-        let values = quality(&sheet, metric);
-        Ok(crate::value::numbers(ArrayShape::Grid(sheet.m - 1, sheet.n - 1), values))
+        let values = quality(&grid, metric);
+        Ok(crate::value::numbers(ArrayShape::Grid(grid.m - 1, grid.n - 1), values))
     }
 }
 
@@ -490,7 +499,7 @@ impl<T: Scalar> Build<T> for QualityOf<T> {
 )]
 pub struct Folds<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
@@ -511,23 +520,26 @@ impl<T: Scalar> Build<T> for Folds<T> {
 )]
 pub struct Report<T: Scalar> {
     /// The grid.
-    s: Lattice<T>,
+    s: GridArg<T>,
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         use std::fmt::Write;
-        let sheet = self.s.0.re();
-        if sheet.m.min(sheet.n) < 2 {
-            return Err(fault(GridError::TooFew { expected: 2, actual: [sheet.m, sheet.n] }));
+        let grid = self.s.0.re();
+        if grid.m.min(grid.n) < 2 {
+            return Err(fault(
+                GridError::TooFew { expected: 2, actual: [grid.m, grid.n] },
+                Self::S,
+            ));
         }
-        let n = sheet.n - 1;
-        let folded = folded_cells(&sheet).len();
-        let mut text = format!("grid [{},{}], {folded} folded cells\n", sheet.m, sheet.n);
+        let n = grid.n - 1;
+        let folded = folded_cells(&grid).len();
+        let mut text = format!("grid [{},{}], {folded} folded cells\n", grid.m, grid.n);
         let _ =
             writeln!(text, "{:<11}{:>13}{:>13}{:>13}  worst cell", "metric", "min", "mean", "max");
         for metric in Metric::ALL {
-            let values = quality(&sheet, metric);
+            let values = quality(&grid, metric);
             let low_is_worse = matches!(metric, Metric::ScaledJacobian | Metric::Area);
             let worse = |x: f64, y: f64| if low_is_worse { x < y } else { x > y };
             let worst =
@@ -544,12 +556,15 @@ impl<T: Scalar> Build<T> for Report<T> {
 }
 
 /// Jets of the spline through a grid's own points, at its points.
-pub fn jets<T: Real>(sheet: &Sheet<T>) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
-    if sheet.m.min(sheet.n) < 3 {
-        return Err(fault(GridError::TooFew { expected: 3, actual: [sheet.m, sheet.n] }));
+pub fn jets<T: Real>(
+    grid: &SurfaceGrid<T>,
+    field: FieldId,
+) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
+    if grid.m.min(grid.n) < 3 {
+        return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }, field));
     }
-    let spline = through(sheet)?;
+    let spline = through(grid, field)?;
     let even = |k: usize, n: usize| T::from(k as f64 / (n - 1) as f64);
-    let (m, n) = (sheet.m, sheet.n);
+    let (m, n) = (grid.m, grid.n);
     Ok((0..m * n).map(|k| spline.jet(even(k / n, m), even(k % n, n), Order::Second)).collect())
 }

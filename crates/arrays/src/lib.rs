@@ -26,7 +26,7 @@ mod spacing;
 mod spline;
 mod value;
 
-pub use value::called;
+pub use value::type_name;
 
 use moldloft_registry::Row;
 use moldloft_registry::export::StaticRow;

@@ -7,7 +7,7 @@ use moldloft_locate::{
 };
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FromValue, Kind, Scalar, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
 };
 
 fn dots<T: Real>(v: Vec3<T>, a: Vec3<f64>) -> T {
@@ -157,10 +157,10 @@ impl<T: Scalar> Build<T> for Project<T> {
                 )
                 .expected("\"closest\", or a vector")
                 .found(format!("\"{word}\""))
-                .in_field(2));
+                .in_field(Self::DIR));
             }
             other => {
-                let d = <Vec3<T>>::from_value(other).map_err(|fault| fault.in_field(2))?;
+                let d = <Vec3<T>>::from_value(other).map_err(|fault| fault.in_field(Self::DIR))?;
                 along(&surface, &points, d)?
             }
         };
@@ -171,7 +171,7 @@ impl<T: Scalar> Build<T> for Project<T> {
     }
 }
 
-fn along<T: Real>(
+fn along<T: Scalar>(
     surface: &SurfaceRef<T>,
     points: &[Vec3<T>],
     d: Vec3<T>,
@@ -179,7 +179,7 @@ fn along<T: Real>(
     if d.re().norm() == 0.0 {
         return Err(Fault::new("no-direction", "the direction is zero")
             .expected("a vector other than zero")
-            .in_field(2));
+            .in_field(Project::<T>::DIR));
     }
     let plain = PlainSurface(&**surface);
     let mut moved = Vec::with_capacity(points.len());
@@ -191,7 +191,7 @@ fn along<T: Real>(
                 .found(format!("a gap of {}", report.residual))
                 .help("\"closest\" finds a point for every one")
                 .in_item(k)
-                .in_field(0)
+                .in_field(Project::<T>::O)
         })?;
         let [_, _, s] = found.at;
         if T::PARTS == 1 {
@@ -211,15 +211,15 @@ fn along<T: Real>(
     Ok(moved)
 }
 
-fn none(what: &str, residual: f64) -> Fault {
+fn none(what: &str, residual: f64, field: FieldId) -> Fault {
     Fault::new("no-solution", format!("{what} do not meet"))
         .expected("shapes that meet")
         .found(format!("a gap of {residual}"))
-        .in_field(1)
+        .in_field(field)
 }
 
-fn nothing<const N: usize>(roots: &Roots<N>, what: &str) -> Fault {
-    none(what, roots.closest.map_or(f64::INFINITY, |(_, residual)| residual))
+fn nothing<const N: usize>(roots: &Roots<N>, what: &str, field: FieldId) -> Fault {
+    none(what, roots.closest.map_or(f64::INFINITY, |(_, residual)| residual), field)
 }
 
 /// Where two shapes with parameters meet: of two curves, or a curve and a surface, the points, in
@@ -248,13 +248,13 @@ pub struct Intersect<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Intersect<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (count, found) = meetings(&self.a, &self.b, Some(self.branch - 1))?;
+        let (count, found) = meetings(&self.a, &self.b, Some(self.branch - 1), [Self::A, Self::B])?;
         match found.into_iter().next() {
             Some(points) => Ok(crate::value::curve(points)),
             None => Err(Fault::new("no-solution", format!("there is no branch {}", self.branch))
                 .expected(format!("a branch from 1 to {count}"))
                 .found(self.branch.to_string())
-                .in_field(2)),
+                .in_field(Self::BRANCH)),
         }
     }
 }
@@ -282,7 +282,7 @@ pub struct Intersections<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Intersections<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (_, found) = meetings(&self.a, &self.b, None)?;
+        let (_, found) = meetings(&self.a, &self.b, None, [Self::A, Self::B])?;
         Ok(Value::list(found.into_iter().map(crate::value::curve)))
     }
 }
@@ -292,16 +292,17 @@ fn meetings<T: Real>(
     a: &Value<T>,
     b: &Value<T>,
     only: Option<usize>,
+    fields: [FieldId; 2],
 ) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
     let points = match (a, b) {
-        (Value::Curve(a), Value::Curve(b)) => curves(a, b)?,
+        (Value::Curve(a), Value::Curve(b)) => curves(a, b, fields[1])?,
         (Value::Curve(a), Value::Surface(b)) | (Value::Surface(b), Value::Curve(a)) => {
-            curve_surface(a, b)?
+            curve_surface(a, b, fields[1])?
         }
-        (Value::Surface(a), Value::Surface(b)) => return surfaces(a, b, only),
+        (Value::Surface(a), Value::Surface(b)) => return surfaces(a, b, only, fields[1]),
         (a, b) => {
-            let field = usize::from(matches!(a, Value::Curve(_) | Value::Surface(_)));
-            let other = [a, b][field];
+            let second = usize::from(matches!(a, Value::Curve(_) | Value::Surface(_)));
+            let other = [a, b][second];
             let found = other.class().a();
             let fault = Fault::new(
                 "wrong-class",
@@ -313,20 +314,24 @@ fn meetings<T: Real>(
                 Value::Vectors(_) => fault.help("makecc(c) or makecs(s) makes one of points"),
                 _ => fault,
             }
-            .in_field(field));
+            .in_field(fields[second]));
         }
     };
     Ok((1, if only.unwrap_or(0) == 0 { vec![points] } else { Vec::new() }))
 }
 
-fn curves<T: Real>(a: &CurveRef<T>, b: &CurveRef<T>) -> Result<Vec<Vec3<T>>, Fault> {
+fn curves<T: Real>(
+    a: &CurveRef<T>,
+    b: &CurveRef<T>,
+    field: FieldId,
+) -> Result<Vec<Vec3<T>>, Fault> {
     let found = roots::all_curve_curve(&PlainCurve(&**a), &PlainCurve(&**b));
     let size = a.end(0.0).re().distance(a.end(1.0).re()).max(f64::MIN_POSITIVE);
     let meets: Vec<_> = found.roots.iter().filter(|r| r.residual <= 1e-9 * size).collect();
     if meets.is_empty() {
         let nearest = found.roots.first().map(|r| r.residual);
         let gap = nearest.or(found.closest.map(|(_, r)| r)).unwrap_or(f64::INFINITY);
-        return Err(none("the two curves", gap));
+        return Err(none("the two curves", gap, field));
     }
     Ok(meets
         .into_iter()
@@ -354,10 +359,11 @@ fn curves<T: Real>(a: &CurveRef<T>, b: &CurveRef<T>) -> Result<Vec<Vec3<T>>, Fau
 fn curve_surface<T: Real>(
     curve: &CurveRef<T>,
     surface: &SurfaceRef<T>,
+    field: FieldId,
 ) -> Result<Vec<Vec3<T>>, Fault> {
     let found = roots::all_curve_surface(&PlainCurve(&**curve), &PlainSurface(&**surface));
     if found.roots.is_empty() {
-        return Err(nothing(&found, "the curve and the surface"));
+        return Err(nothing(&found, "the curve and the surface", field));
     }
     Ok(found
         .roots
@@ -382,6 +388,7 @@ fn surfaces<T: Real>(
     a: &SurfaceRef<T>,
     b: &SurfaceRef<T>,
     only: Option<usize>,
+    field: FieldId,
 ) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
     let (p, q) = (PlainSurface(&**a), PlainSurface(&**b));
     let mut branches = Crossing::with_surface(&p, &q).branches().branches;
@@ -389,7 +396,7 @@ fn surfaces<T: Real>(
         branch.stations.windows(2).map(|w| w[0].x.distance(w[1].x)).sum()
     };
     if branches.is_empty() {
-        return Err(none("the two surfaces", f64::INFINITY));
+        return Err(none("the two surfaces", f64::INFINITY, field));
     }
     // Stable: branches of one length stay in the order in which they were found.
     branches.sort_by(|x, y| length(y).total_cmp(&length(x)));

@@ -2,9 +2,9 @@
 
 use crate::value::{Points, Shaped, vectors};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, Kind, Scalar, Value};
 
-fn direction<T: Real>(v: Vec3<T>, field: usize) -> Result<Vec3<T>, Fault> {
+fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, Fault> {
     v.normalized().ok_or_else(|| {
         Fault::new("no-direction", "the vector has no direction: it is zero")
             .expected("a vector other than zero")
@@ -54,7 +54,7 @@ impl<T: Scalar> Build<T> for Scale<T> {
         let by = match &self.by {
             Value::Number(x) => Vec3::new(*x, *x, *x),
             other => <Vec3<T> as moldloft_registry::FromValue<T>>::from_value(other)
-                .map_err(|fault| fault.in_field(1))?,
+                .map_err(|fault| fault.in_field(Self::BY))?,
         };
         Ok(self.o.mapped(|p| Vec3::new(p.x * by.x, p.y * by.y, p.z * by.z)))
     }
@@ -80,7 +80,7 @@ pub struct Mirror<T: Scalar> {
 impl<T: Scalar> Build<T> for Mirror<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { o, p, n } = self;
-        let square = direction(n, 2).map(|_| n.norm_sq())?;
+        let square = direction(n, Self::N).map(|_| n.norm_sq())?;
         // 2 (r - p) . n / n^2 without a root: planes of whole normals mirror exactly.
         Ok(o.mapped(|r| r - n * ((r - p).dot(n) * 2.0 / square)))
     }
@@ -113,15 +113,15 @@ pub struct Rotate<T: Scalar> {
 impl<T: Scalar> Build<T> for Rotate<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let (p, axis, angle, field) = match (&self.axis, self.angle) {
-            (Value::Number(angle), None) => (Vec3::zero(), self.p, *angle, 1),
+            (Value::Number(angle), None) => (Vec3::zero(), self.p, *angle, Self::P),
             (axis, Some(angle)) => {
                 let axis = <Vec3<T> as moldloft_registry::FromValue<T>>::from_value(axis);
-                (self.p, axis.map_err(|fault| fault.in_field(2))?, angle, 2)
+                (self.p, axis.map_err(|fault| fault.in_field(Self::AXIS))?, angle, Self::AXIS)
             }
             (_, None) => {
                 return Err(Fault::new("missing-argument", "the angle is missing")
                     .expected("rotate(o, axis, angle) or rotate(o, p, axis, angle)")
-                    .in_field(3));
+                    .in_field(Self::ANGLE));
             }
         };
         let k = direction(axis, field)?;
@@ -180,13 +180,13 @@ impl<T: Scalar> Build<T> for Revolve<T> {
 }
 
 /// Unit tangents of a curve of points: those of the circle through a point and its neighbours.
-fn tangents<T: Real>(points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, Fault> {
+fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>, Fault> {
     let n = points.len();
     if n < 2 {
         return Err(Fault::new("too-few-items", "one point has no tangent")
             .expected("at least two points")
             .found(n.to_string())
-            .in_field(0));
+            .in_field(field));
     }
     let mut chords = Vec::with_capacity(n - 1);
     for k in 1..n {
@@ -196,7 +196,7 @@ fn tangents<T: Real>(points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, Fault> {
             return Err(Fault::new("coincident-points", message)
                 .expected("neighbours at different places")
                 .in_item(k)
-                .in_field(0));
+                .in_field(field));
         }
         chords.push((d, d.norm()));
     }
@@ -217,7 +217,7 @@ fn tangents<T: Real>(points: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, Fault> {
         all.push(raw.normalized().ok_or_else(|| {
             Fault::new("no-direction", format!("the curve turns back at point {}", k + 1))
                 .in_item(k)
-                .in_field(0)
+                .in_field(field)
         })?);
     }
     Ok(all)
@@ -241,7 +241,7 @@ pub struct Tangents<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Tangents<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let all = tangents(&self.curve.0)?;
+        let all = tangents(&self.curve.0, Self::CURVE)?;
         Ok(vectors(ArrayShape::Row(all.len()), all))
     }
 }
@@ -270,10 +270,10 @@ pub struct FrameOf<T: Scalar> {
 impl<T: Scalar> Build<T> for FrameOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let points = self.curve.0;
-        let tangents = tangents(&points)?;
+        let tangents = tangents(&points, Self::CURVE)?;
         let t = tangents[0];
         let start = match self.n0 {
-            Some(n0) => direction(n0 - t * t.dot(n0), 1)?,
+            Some(n0) => direction(n0 - t * t.dot(n0), Self::N0)?,
             None => t.perpendicular(),
         };
         let mut all = vec![start];

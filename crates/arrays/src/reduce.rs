@@ -2,9 +2,9 @@
 
 use crate::value::{Farray, Items, Points, Shaped, Vectors, farray};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, Kind, Scalar, Value};
 
-fn empty(field: usize) -> Fault {
+fn empty(field: FieldId) -> Fault {
     Fault::new("empty", "an empty array has no such element")
         .expected("at least one element")
         .in_field(field)
@@ -33,9 +33,13 @@ impl<T: Scalar> Build<T> for Prod<T> {
     }
 }
 
-fn position<T: Real>(row: &[T], better: impl Fn(f64, f64) -> bool) -> Result<Value<T>, Fault> {
+fn position<T: Real>(
+    row: &[T],
+    field: FieldId,
+    better: impl Fn(f64, f64) -> bool,
+) -> Result<Value<T>, Fault> {
     if row.is_empty() {
-        return Err(empty(0));
+        return Err(empty(field));
     }
     let best = (0..row.len()).fold(0, |k, i| if better(row[i].re(), row[k].re()) { i } else { k });
     Ok(Value::Number(T::from((best + 1) as f64)))
@@ -51,7 +55,7 @@ pub struct Argmin<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Argmin<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        position(&self.a.row().map_err(|fault| fault.in_field(0))?, |x, y| x < y)
+        position(&self.a.row().map_err(|fault| fault.in_field(Self::A))?, Self::A, |x, y| x < y)
     }
 }
 
@@ -65,7 +69,7 @@ pub struct Argmax<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Argmax<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        position(&self.a.row().map_err(|fault| fault.in_field(0))?, |x, y| x > y)
+        position(&self.a.row().map_err(|fault| fault.in_field(Self::A))?, Self::A, |x, y| x > y)
     }
 }
 
@@ -94,7 +98,7 @@ impl<T: Scalar> Build<T> for Dot<T> {
             return Err(Fault::new("shapes-differ", message)
                 .expected("equal shapes")
                 .found(format!("{} and {}", a.shape, b.shape))
-                .in_field(1));
+                .in_field(Self::B));
         }
         let products = a.items.into_iter().zip(b.items).map(|(x, y)| x * y);
         Ok(Value::Number(products.fold(T::zero(), |x, y| x + y)))
@@ -114,7 +118,7 @@ impl<T: Scalar> Build<T> for Norm<T> {
         let square = match &self.a {
             Value::Vector(v) => v.norm_sq(),
             other => match <Items<T> as moldloft_registry::FromValue<T>>::from_value(other)
-                .map_err(|fault| fault.in_field(0))?
+                .map_err(|fault| fault.in_field(Self::A))?
             {
                 Items::Numbers(a) => a.items.iter().fold(T::zero(), |sum, &x| sum + x * x),
                 Items::Vectors(a) => a.items.iter().fold(T::zero(), |sum, v| sum + v.norm_sq()),
@@ -162,7 +166,7 @@ impl<T: Scalar> Build<T> for Cumlen<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let points = self.curve.0;
         if points.is_empty() {
-            return Err(empty(0));
+            return Err(empty(Self::CURVE));
         }
         let mut sum = T::zero();
         let mut all = vec![sum];
@@ -192,7 +196,7 @@ impl<T: Scalar> Build<T> for Centroid<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Vectors { shape, items } = self.o;
         if items.is_empty() {
-            return Err(empty(0));
+            return Err(empty(Self::O));
         }
         let (mut sum, mut whole) = (Vec3::zero(), T::zero());
         let mut take = |centre: Vec3<T>, size: T| {
@@ -228,13 +232,17 @@ impl<T: Scalar> Build<T> for Centroid<T> {
     }
 }
 
-fn corner<T: Real>(o: Shaped<T>, pick: impl Fn(T, T) -> T) -> Result<Value<T>, Fault> {
+fn corner<T: Real>(
+    o: Shaped<T>,
+    field: FieldId,
+    pick: impl Fn(T, T) -> T,
+) -> Result<Value<T>, Fault> {
     let points = match o {
         Shaped::One(p) => vec![p],
         Shaped::Many(a) => a.items,
     };
     let both = |a: Vec3<T>, b: Vec3<T>| Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z));
-    points.into_iter().reduce(both).map(Value::Vector).ok_or_else(|| empty(0))
+    points.into_iter().reduce(both).map(Value::Vector).ok_or_else(|| empty(field))
 }
 
 /// The least x, y and z of a curve or surface of points.
@@ -252,7 +260,7 @@ pub struct BboxMin<T: Scalar> {
 
 impl<T: Scalar> Build<T> for BboxMin<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        corner(self.o, T::min)
+        corner(self.o, Self::O, T::min)
     }
 }
 
@@ -271,6 +279,6 @@ pub struct BboxMax<T: Scalar> {
 
 impl<T: Scalar> Build<T> for BboxMax<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        corner(self.o, T::max)
+        corner(self.o, Self::O, T::max)
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::value::{Items, Points, farray, vectors};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, FromValue, Kind, Scalar, Value};
+use moldloft_registry::{
+    ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, Value,
+};
 
 /// The same array with its elements in the opposite order; of a surface or grid of numbers along the
 /// first index, or along the second.
@@ -29,7 +31,7 @@ impl<T: Scalar> Build<T> for Reverse<T> {
             (ArrayShape::Row(_), _) => Err(Fault::new("out-of-range", "a row has one index")
                 .expected("index 1")
                 .found("2")
-                .in_field(1)),
+                .in_field(Self::INDEX)),
             (ArrayShape::Grid(m, n), 1) => {
                 Ok(self.a.picked(shape, |k| (m - 1 - k / n) * n + k % n))
             }
@@ -60,7 +62,7 @@ impl<T: Scalar> Build<T> for Swap<T> {
             shape => Err(Fault::new("wrong-shape", format!("expected [m,n], found {shape}"))
                 .expected("a surface or a grid of numbers")
                 .found(shape.to_string())
-                .in_field(0)),
+                .in_field(Self::S)),
         }
     }
 }
@@ -89,7 +91,7 @@ pub struct Join<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Join<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(0);
+        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(Self::PARTS);
         if matches!(self.parts[0], Value::Numbers(_)) {
             let mut all: Vec<T> = Vec::new();
             for (k, part) in self.parts.iter().enumerate() {
@@ -123,13 +125,13 @@ impl<T: Scalar> Build<T> for Join<T> {
     }
 }
 
-fn row_of<T: Real>(a: &Items<T>) -> Result<usize, Fault> {
+fn row_of<T: Real>(a: &Items<T>, field: FieldId) -> Result<usize, Fault> {
     match a.shape() {
         ArrayShape::Row(n) => Ok(n),
         shape => Err(Fault::new("wrong-shape", format!("expected a row [n], found {shape}"))
             .expected("an farray [n] or a curve [n]")
             .found(shape.to_string())
-            .in_field(0)),
+            .in_field(field)),
     }
 }
 
@@ -151,8 +153,8 @@ pub struct SpreadI<T: Scalar> {
 
 impl<T: Scalar> Build<T> for SpreadI<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (m, n) = (row_of(&self.a)?, self.n);
-        grid(m, n)?;
+        let (m, n) = (row_of(&self.a, Self::A)?, self.n);
+        grid(m, n, Self::N)?;
         Ok(self.a.picked(ArrayShape::Grid(m, n), |k| k / n))
     }
 }
@@ -175,14 +177,14 @@ pub struct SpreadJ<T: Scalar> {
 
 impl<T: Scalar> Build<T> for SpreadJ<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (n, m) = (row_of(&self.a)?, self.m);
-        grid(m, n)?;
+        let (n, m) = (row_of(&self.a, Self::A)?, self.m);
+        grid(m, n, Self::M)?;
         Ok(self.a.picked(ArrayShape::Grid(m, n), |k| k % n))
     }
 }
 
 /// Refuses grids too large to hold.
-fn grid(m: usize, n: usize) -> Result<(), Fault> {
+fn grid(m: usize, n: usize, field: FieldId) -> Result<(), Fault> {
     const MOST: usize = 50_000_000;
     if m.saturating_mul(n) <= MOST {
         return Ok(());
@@ -190,7 +192,7 @@ fn grid(m: usize, n: usize) -> Result<(), Fault> {
     Err(Fault::new("too-large", format!("a grid [{m},{n}] is too large"))
         .expected(format!("at most {MOST} elements"))
         .found(format!("{}", m as f64 * n as f64))
-        .in_field(1))
+        .in_field(field))
 }
 
 /// The farray of these numbers.
@@ -253,7 +255,7 @@ impl<T: Scalar> Build<T> for Stack<T> {
         let (mut all, mut n) = (Vec::new(), None);
         let m = self.curves.len();
         for (k, part) in self.curves.iter().enumerate() {
-            let place = |fault: Fault| fault.in_item(k).in_field(0);
+            let place = |fault: Fault| fault.in_item(k).in_field(Self::CURVES);
             let Points(row) = Points::from_value(part).map_err(place)?;
             let expected = *n.get_or_insert(row.len());
             if row.len() != expected {
@@ -270,7 +272,7 @@ impl<T: Scalar> Build<T> for Stack<T> {
     }
 }
 
-fn extents<T: Scalar>(a: &Value<T>) -> Result<ArrayShape, Fault> {
+fn extents<T: Scalar>(a: &Value<T>, field: FieldId) -> Result<ArrayShape, Fault> {
     match a {
         Value::Numbers(a) => Ok(a.shape),
         Value::Vectors(a) => Ok(a.shape),
@@ -279,7 +281,7 @@ fn extents<T: Scalar>(a: &Value<T>) -> Result<ArrayShape, Fault> {
             Err(Fault::new("wrong-class", format!("expected an array, found {found}"))
                 .expected("an farray, a curve or a surface")
                 .found(found)
-                .in_field(0))
+                .in_field(field))
         }
     }
 }
@@ -294,7 +296,7 @@ pub struct D1<T: Scalar> {
 
 impl<T: Scalar> Build<T> for D1<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (ArrayShape::Row(n) | ArrayShape::Grid(n, _)) = extents(&self.a)?;
+        let (ArrayShape::Row(n) | ArrayShape::Grid(n, _)) = extents(&self.a, Self::A)?;
         Ok(Value::Number(T::from(n as f64)))
     }
 }
@@ -314,12 +316,12 @@ pub struct D2<T: Scalar> {
 
 impl<T: Scalar> Build<T> for D2<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        match extents(&self.a)? {
+        match extents(&self.a, Self::A)? {
             ArrayShape::Grid(_, n) => Ok(Value::Number(T::from(n as f64))),
             shape => Err(Fault::new("wrong-shape", format!("a row {shape} has one extent"))
                 .expected("a surface or a grid of numbers")
                 .found(shape.to_string())
-                .in_field(0)),
+                .in_field(Self::A)),
         }
     }
 }

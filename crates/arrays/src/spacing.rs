@@ -1,6 +1,6 @@
 //! The inverse questions of distributions: how many points, which spacing.
 
-use crate::distribution::{MOST_NUMBERS, fault};
+use crate::distribution::{Arguments, MOST_NUMBERS, fault};
 use crate::value::{Numbers, Vectors};
 use moldloft_num::Real;
 use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Scalar, Value};
@@ -37,14 +37,16 @@ pub struct CountFor<T: Real> {
 impl<T: Real> Build<T> for CountFor<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let [length, a, b, most] = [self.length, self.ds1, self.ds2, self.growth].map(T::re);
-        let n = count_for(length, a, b, most, MOST_NUMBERS as usize).map_err(fault)?;
+        let of = Arguments { limits: Self::LENGTH, spacings: Self::DS1 };
+        let n = count_for(length, a, b, most, MOST_NUMBERS as usize);
+        let n = n.map_err(|error| fault(error, of))?;
         n.map(|n| Value::Number(T::from(n as f64))).ok_or_else(|| {
             let message = format!("no number of points divides {length} so evenly");
             Fault::new("no-distribution", message)
                 .expected(format!("a growth that steps from {a} to {b} allow"))
                 .found(format!("a growth of {most}"))
                 .help("allow more growth, or bring the two spacings nearer to each other")
-                .in_field(3)
+                .in_field(Self::GROWTH)
         })
     }
 }

@@ -2,15 +2,18 @@
 
 use crate::value::{Net, Points};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Scalar, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, Context, CurveRef, Fault, FieldId, Kind, Scalar, SurfaceRef, Value,
+};
 use moldloft_spline::{
     ByArclen, End, Ends, GridSpline, InterpolatingSpline, InterpolationError, KnotLaw,
     PiecewiseCubic, curvature_breaks,
 };
 use std::sync::Arc;
 
-/// The fault of a spline through the points in field 0; `of` says what a point is there.
-pub fn fault(error: InterpolationError, of: &str) -> Fault {
+/// The fault of a spline through the points of an argument, with the end conditions of another; `of` says
+/// what a point is there.
+pub fn fault(error: InterpolationError, of: &str, [points, ends]: [FieldId; 2]) -> Fault {
     match error {
         InterpolationError::Coincident { first, second } => {
             let (a, b) = (first + 1, second + 1);
@@ -19,22 +22,22 @@ pub fn fault(error: InterpolationError, of: &str) -> Fault {
                 .found(format!("no distance between {of}s {a} and {b}"))
                 .help(format!("leave {of} {b} out, or take the basis \"index\""))
                 .in_item(second)
-                .in_field(0)
+                .in_field(points)
         }
         InterpolationError::TooFew { expected, actual } => {
             Fault::new("too-few-items", format!("a spline needs {expected} {of}s, found {actual}"))
                 .expected(format!("at least {expected} {of}s"))
                 .found(actual.to_string())
-                .in_field(0)
+                .in_field(points)
         }
         InterpolationError::NotFinite { index } => {
-            Fault::new("not-finite", error.to_string()).in_item(index).in_field(0)
+            Fault::new("not-finite", error.to_string()).in_item(index).in_field(points)
         }
         InterpolationError::NotClosed { gap } => Fault::new("not-closed", error.to_string())
             .expected(format!("the first {of} again as the last"))
             .found(format!("a gap of {gap}"))
             .help(format!("repeat the first {of} at the end"))
-            .in_field(1),
+            .in_field(ends),
         InterpolationError::Type { .. } | InterpolationError::Knots { .. } => {
             Fault::new("no-spline", error.to_string())
         }
@@ -56,14 +59,14 @@ enum Name {
     Periodic,
 }
 
-fn unknown(word: &str, field: usize, what: &str, expected: &str) -> Fault {
+fn unknown(word: &str, field: FieldId, what: &str, expected: &str) -> Fault {
     Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
         .in_field(field)
 }
 
-fn name(word: &str, field: usize) -> Result<Name, Fault> {
+fn name(word: &str, field: FieldId) -> Result<Name, Fault> {
     Ok(match word {
         "natural" => Name::Natural,
         "quadratic" => Name::Quadratic,
@@ -76,7 +79,7 @@ fn name(word: &str, field: usize) -> Result<Name, Fault> {
 }
 
 /// The conditions at both ends.
-fn names(text: &str, field: usize) -> Result<[Name; 2], Fault> {
+fn names(text: &str, field: FieldId) -> Result<[Name; 2], Fault> {
     let words: Vec<&str> = text.split(',').map(str::trim).collect();
     let pair = match words[..] {
         [one] => [name(one, field)?; 2],
@@ -111,7 +114,7 @@ struct Basis {
     breaks: bool,
 }
 
-fn basis(word: &str, field: usize) -> Result<Basis, Fault> {
+fn basis(word: &str, field: FieldId) -> Result<Basis, Fault> {
     let plain = |law| Basis { law, by_arclen: false, breaks: false };
     Ok(match word.replace(' ', "").as_str() {
         "arc" | "chord" => plain(KnotLaw::Chord),
@@ -169,11 +172,11 @@ pub struct Makecc<T: Scalar> {
 impl<T: Scalar> Build<T> for Makecc<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let points = self.curve.0;
-        let ends = names(&self.ends, 1)?;
-        let basis = basis(&self.basis, 2)?;
+        let ends = names(&self.ends, Self::ENDS)?;
+        let basis = basis(&self.basis, Self::BASIS)?;
         let tangents = [self.t1, self.t2];
         for (k, (end, tangent)) in ends.iter().zip(&tangents).enumerate() {
-            let (which, field) = (["start", "end"][k], 3 + k);
+            let (which, field) = (["start", "end"][k], [Self::T1, Self::T2][k]);
             match (*end == Name::Specified, tangent) {
                 (true, None) => {
                     return Err(Fault::new(
@@ -201,7 +204,10 @@ impl<T: Scalar> Build<T> for Makecc<T> {
         let mut parts: Vec<PiecewiseCubic<T>> = Vec::with_capacity(splits.len() - 1);
         for (k, w) in splits.windows(2).enumerate() {
             let piece = &points[w[0]..=w[1]];
-            let knots = basis.law.knots(piece).map_err(|error| shifted(error, w[0]))?;
+            let knots = basis
+                .law
+                .knots(piece)
+                .map_err(|error| shifted(error, w[0], [Self::CURVE, Self::ENDS]))?;
             let end = |at: usize, outer: bool| {
                 let name = if outer { ends[at] } else { inner(ends[at]) };
                 condition(name, slope(basis.law, piece, &knots, at, tangents[at]))
@@ -211,7 +217,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
                 _ => Ends::Open(end(0, k == 0), end(1, k + 2 == splits.len())),
             };
             let spline = InterpolatingSpline::with_knots(&knots, piece, ends);
-            let spline = spline.map_err(|error| shifted(error, w[0]))?;
+            let spline = spline.map_err(|error| shifted(error, w[0], [Self::CURVE, Self::ENDS]))?;
             if splits.len() == 2 && !basis.by_arclen {
                 return Ok(Value::Curve(CurveRef::new(spline, 0)));
             }
@@ -224,7 +230,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
             )));
         }
         let curve = ByArclen::of(parts).ok_or_else(|| {
-            Fault::new("coincident-points", "the curve has no length").in_field(0)
+            Fault::new("coincident-points", "the curve has no length").in_field(Self::CURVE)
         })?;
         Ok(Value::Curve(CurveRef::new(curve, 0)))
     }
@@ -252,7 +258,7 @@ fn slope<T: Real>(
     tangent * (step / gap)
 }
 
-fn shifted(error: InterpolationError, by: usize) -> Fault {
+fn shifted(error: InterpolationError, by: usize, fields: [FieldId; 2]) -> Fault {
     let error = match error {
         InterpolationError::Coincident { first, second } => {
             InterpolationError::Coincident { first: first + by, second: second + by }
@@ -262,11 +268,11 @@ fn shifted(error: InterpolationError, by: usize) -> Fault {
         }
         other => other,
     };
-    fault(error, "point")
+    fault(error, "point", fields)
 }
 
 /// The indices, from 0, of the ends of the pieces.
-fn splits<T: Real>(
+fn splits<T: Scalar>(
     points: &[Vec3<T>],
     basis: Basis,
     periodic: bool,
@@ -274,14 +280,18 @@ fn splits<T: Real>(
 ) -> Result<Vec<usize>, Fault> {
     let n = points.len();
     if n < 2 {
-        return Err(fault(InterpolationError::TooFew { expected: 2, actual: n }, "point"));
+        return Err(fault(
+            InterpolationError::TooFew { expected: 2, actual: n },
+            "point",
+            [Makecc::<T>::CURVE, Makecc::<T>::ENDS],
+        ));
     }
     let mut all = vec![0];
     match given {
         Some(_) if !basis.breaks => {
             return Err(Fault::new("unused-argument", "breaks are given, but the basis has none")
                 .expected("the basis \"arclen+breaks\" or \"arc+breaks\"")
-                .in_field(5));
+                .in_field(Makecc::<T>::BREAKS));
         }
         Some(given) => {
             for (k, index) in given.into_iter().enumerate() {
@@ -293,7 +303,7 @@ fn splits<T: Real>(
                         .expected(format!("ascending indices from 2 to {}", n - 1))
                         .found(index.to_string())
                         .in_item(k)
-                        .in_field(5));
+                        .in_field(Makecc::<T>::BREAKS));
                 }
                 all.push(index - 1);
             }
@@ -308,20 +318,22 @@ fn splits<T: Real>(
         return Err(Fault::new("no-spline", "a periodic spline has no breaks")
             .expected("open ends, such as \"quadratic\"")
             .found(format!("a break at point {}", all[1] + 1))
-            .in_field(1));
+            .in_field(Makecc::<T>::ENDS));
     }
     all.push(n - 1);
     Ok(all)
 }
 
 /// The parts as one curve, their parameters in proportion to the knots of all points.
-fn joined<T: Real>(
+fn joined<T: Scalar>(
     law: KnotLaw,
     points: &[Vec3<T>],
     splits: &[usize],
     parts: &[PiecewiseCubic<T>],
 ) -> Result<PiecewiseCubic<T>, Fault> {
-    let knots = law.knots(points).map_err(|error| shifted(error, 0))?;
+    let knots = law
+        .knots(points)
+        .map_err(|error| shifted(error, 0, [Makecc::<T>::CURVE, Makecc::<T>::ENDS]))?;
     let mut coefficients = Vec::with_capacity(points.len());
     for (w, part) in splits.windows(2).zip(parts) {
         let shrink = T::one() / (knots[w[1]] - knots[w[0]]);
@@ -353,8 +365,9 @@ pub struct Makelc<T: Scalar> {
 impl<T: Scalar> Build<T> for Makelc<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let points = self.curve.0;
-        let law = basis(&self.basis, 1)?.law;
-        let knots = law.knots(&points).map_err(|error| shifted(error, 0))?;
+        let law = basis(&self.basis, Self::BASIS)?.law;
+        let knots =
+            law.knots(&points).map_err(|error| shifted(error, 0, [Self::CURVE, Self::BASIS]))?;
         let line = |k: usize| {
             let slope = (points[k + 1] - points[k]) / (knots[k + 1] - knots[k]);
             [points[k], slope, Vec3::zero(), Vec3::zero()]
@@ -365,12 +378,16 @@ impl<T: Scalar> Build<T> for Makelc<T> {
     }
 }
 
-fn knots_of<T: Scalar>(net: &Net<T>, word: &str) -> Result<[Vec<T>; 2], Fault> {
-    let basis = basis(word, 2)?;
+fn knots_of<T: Scalar>(
+    net: &Net<T>,
+    word: &str,
+    [points, field]: [FieldId; 2],
+) -> Result<[Vec<T>; 2], Fault> {
+    let basis = basis(word, field)?;
     if basis.by_arclen || basis.breaks {
         return Err(unknown(
             word,
-            2,
+            field,
             "basis of a surface",
             "\"arc\", \"index\" or \"centripetal\"",
         )
@@ -380,14 +397,14 @@ fn knots_of<T: Scalar>(net: &Net<T>, word: &str) -> Result<[Vec<T>; 2], Fault> {
         basis
             .law
             .averaged(net.m, net.n, &net.points, axis)
-            .map_err(|error| surface_fault(error, axis))
+            .map_err(|error| surface_fault(error, axis, points))
     };
     Ok([knots(0)?, knots(1)?])
 }
 
-fn surface_fault(error: InterpolationError, axis: usize) -> Fault {
+fn surface_fault(error: InterpolationError, axis: usize, points: FieldId) -> Fault {
     let line = ["line s[i,]", "line s[,j]"][axis];
-    fault(error, line)
+    fault(error, line, [points, points])
 }
 
 /// The bicubic spline surface through the points of a surface, as a psurface: u runs along the first
@@ -420,8 +437,8 @@ pub struct Makecs<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Makecs<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let [u, v] = knots_of(&self.surface, &self.basis)?;
-        let ends = |word: &str, field: usize| -> Result<Ends<T>, Fault> {
+        let [u, v] = knots_of(&self.surface, &self.basis, [Self::SURFACE, Self::BASIS])?;
+        let ends = |word: &str, field: FieldId| -> Result<Ends<T>, Fault> {
             let pair = names(word, field)?;
             if pair.contains(&Name::Specified) {
                 let fault = unknown(word, field, "end condition of a surface", ENDS);
@@ -435,13 +452,13 @@ impl<T: Scalar> Build<T> for Makecs<T> {
                 }
             })
         };
-        let along = ends(&self.ends, 1)?;
+        let along = ends(&self.ends, Self::ENDS)?;
         let across = match &self.ends_v {
-            Some(word) => ends(word, 3)?,
+            Some(word) => ends(word, Self::ENDS_V)?,
             None => along,
         };
         let spline = GridSpline::bicubic_with(u, v, self.surface.points, [along, across]);
-        let spline = spline.map_err(|error| surface_fault(error, 0))?;
+        let spline = spline.map_err(|error| surface_fault(error, 0, Self::SURFACE))?;
         Ok(Value::Surface(SurfaceRef::new(spline, 0)))
     }
 }
@@ -465,20 +482,15 @@ pub struct Makels<T: Scalar> {
 
 impl<T: Scalar> Build<T> for Makels<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        // The basis is the second argument here.
-        let knots = knots_of(&self.surface, &self.basis);
-        let [u, v] = knots.map_err(|fault| match fault.place {
-            Some(place) if place.field == 2 => moved(fault, 1),
-            _ => fault,
-        })?;
+        let [u, v] = knots_of(&self.surface, &self.basis, [Self::SURFACE, Self::BASIS])?;
         let surface = GridSpline::bilinear(u, v, self.surface.points);
-        let surface = surface.map_err(|error| surface_fault(error, 0))?;
+        let surface = surface.map_err(|error| surface_fault(error, 0, Self::SURFACE))?;
         Ok(Value::Surface(SurfaceRef::new(surface, 0)))
     }
 }
 
 /// The same fault about another field.
-pub fn moved(fault: Fault, field: usize) -> Fault {
+pub fn moved(fault: Fault, field: FieldId) -> Fault {
     let mut other = Fault::new(fault.id, fault.message.clone());
     if let Some(expected) = &fault.expected {
         other = other.expected(expected.clone());

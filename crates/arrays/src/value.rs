@@ -1,6 +1,6 @@
 //! Arrays in and out: the one place that knows how a value holds its numbers and vectors.
 
-use moldloft_grid::Sheet;
+use moldloft_grid::SurfaceGrid;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Array, ArrayShape, Class, Fault, FromValue, Scalar, Value, Vectors as Planes,
@@ -42,7 +42,7 @@ fn not_finite(index: usize) -> Fault {
 }
 
 /// What a value is, in the words of the array language.
-pub fn called<T: Real>(value: &Value<T>) -> &'static str {
+pub fn type_name<T: Real>(value: &Value<T>) -> &'static str {
     match value {
         Value::Numbers(_) => "an farray",
         Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)) => "a surface",
@@ -54,7 +54,7 @@ pub fn called<T: Real>(value: &Value<T>) -> &'static str {
 }
 
 fn wrong<T: Real, R>(expected: &'static str, value: &Value<T>) -> Result<R, Fault> {
-    let found = called(value);
+    let found = type_name(value);
     let fault = Fault::new("wrong-class", format!("expected {expected}, found {found}"))
         .expected(expected)
         .found(found);
@@ -298,15 +298,15 @@ impl<T: Real> Items<T> {
     }
 }
 
-/// A grid of vectors as the sheet that grid functions work on.
-pub struct Lattice<T>(pub Sheet<T>);
+/// A grid of vectors as the grid that grid functions work on.
+pub struct GridArg<T>(pub SurfaceGrid<T>);
 
-impl<T: Scalar> FromValue<T> for Lattice<T> {
+impl<T: Scalar> FromValue<T> for GridArg<T> {
     const CLASS: Class = Class::Vectors;
     fn from_value(value: &Value<T>) -> Result<Self, Fault> {
         match value {
             Value::Vectors(a) => match a.shape {
-                ArrayShape::Grid(m, n) => Ok(Self(Sheet::new(m, n, a.planes.clone()))),
+                ArrayShape::Grid(m, n) => Ok(Self(SurfaceGrid::new(m, n, a.planes.clone()))),
                 shape => {
                     Err(Fault::new("wrong-shape", format!("expected a surface, found {shape}"))
                         .expected("a surface [m,n]")
@@ -318,10 +318,10 @@ impl<T: Scalar> FromValue<T> for Lattice<T> {
     }
 }
 
-/// A sheet as a value.
-pub fn surface<T: Real>(sheet: Sheet<T>) -> Value<T> {
-    let shape = ArrayShape::Grid(sheet.m, sheet.n);
-    Value::Vectors(Arc::new(Planes { shape, planes: sheet.planes }))
+/// A grid as a value.
+pub fn surface<T: Real>(grid: SurfaceGrid<T>) -> Value<T> {
+    let shape = ArrayShape::Grid(grid.m, grid.n);
+    Value::Vectors(Arc::new(Planes { shape, planes: grid.planes }))
 }
 
 /// A row of vectors as a value.

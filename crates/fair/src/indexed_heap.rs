@@ -94,19 +94,19 @@ impl IndexedHeap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Random;
+    use moldloft_testing::Lcg;
 
     #[test]
     fn the_top_is_the_first_maximum() {
-        let mut random = Random::new(5);
+        let mut random = Lcg::new(5);
         // Coarse keys: ties are common.
-        let mut keys: Vec<f64> = (0..50).map(|_| (random.unit() * 8.0).round()).collect();
+        let mut keys: Vec<f64> = (0..50).map(|_| (random.centred() * 8.0).round()).collect();
         let mut heap = IndexedHeap::new(keys.clone());
         for k in 0..2000 {
             let best = (0..50).fold(0, |b, i| if keys[i] > keys[b] { i } else { b });
             assert_eq!(heap.top(), Some((best, keys[best])));
             let item = if k % 3 == 0 { best } else { (k * 7) % 50 };
-            keys[item] = (random.unit() * 8.0).round();
+            keys[item] = (random.centred() * 8.0).round();
             heap.set(item, keys[item]);
         }
         assert_eq!(IndexedHeap::new(vec![]).top(), None);

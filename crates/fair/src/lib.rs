@@ -88,8 +88,6 @@ mod measure;
 mod net;
 mod optimum;
 mod sparse_rows;
-#[cfg(test)]
-mod testing;
 
 pub use curve::breaks::{Finding, findings, with_findings};
 pub use curve::condition::{Condition, joined};

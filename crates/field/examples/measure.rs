@@ -1,6 +1,6 @@
 //! Times and quality of the T-piece: bulk evaluation, brackets, facets, fewer triangles. Run with `--release`.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common.rs"]
 mod common;
 
 use moldloft_num::Vec3;

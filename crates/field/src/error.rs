@@ -1,3 +1,5 @@
+//! What can be wrong with a primitive, a set, a blend or a question to them.
+
 use moldloft_num::{Box3, Vec3};
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! How long a 500 x 500 sheet takes: transfinite interpolation and 200 elliptic sweeps, by the clock and,
+//! How long a 500 x 500 grid takes: transfinite interpolation and 200 elliptic sweeps, by the clock and,
 //! where the system tells it, by the processor time of all threads together.
 use moldloft_grid::*;
 use moldloft_num::Vec3;
@@ -16,7 +16,7 @@ fn processor() -> Option<f64> {
 
 fn main() {
     let n = 500;
-    let start = Sheet::<f64>::from_fn(n, n, |i, j| {
+    let start = SurfaceGrid::<f64>::from_fn(n, n, |i, j| {
         let (u, v) = (i as f64 / (n - 1) as f64, j as f64 / (n - 1) as f64);
         let bump = 0.2 * (std::f64::consts::PI * u).sin() * (1.0 - v);
         Vec3::of(u + 0.1 * v * v, v + bump, 0.0)

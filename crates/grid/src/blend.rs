@@ -1,4 +1,8 @@
-use crate::{Edge, GridError, Sheet};
+//! Transfinite interpolation of a surface grid from its four edges.
+//!
+//! Holds: the edges of the result are those given, to the bit.
+
+use crate::{Edge, GridError, SurfaceGrid};
 use moldloft_num::{Real, Vec3};
 use rayon::prelude::*;
 
@@ -32,7 +36,7 @@ fn lengths<T: Real>(points: &[Vec3<T>], size: f64) -> Option<Vec<T>> {
         }
         all.push(total);
     }
-    if total.re() <= crate::sheet::SAME * size {
+    if total.re() <= crate::surface_grid::SAME * size {
         return None;
     }
     let shrink = T::one() / total;
@@ -64,7 +68,7 @@ fn pair<T: Real>(a: &[Vec3<T>], b: &[Vec3<T>], size: f64, blend: Blend) -> [Vec<
 /// From so many points on several threads share the work.
 const PARALLEL: usize = 1 << 15;
 
-/// The sheet with the edges of this one, to the bit, and its inside interpolated from them.
+/// The grid with the edges of this one, to the bit, and its inside interpolated from them.
 ///
 /// r = (1 - x) r(1, j) + x r(m, j) + (1 - y) r(i, 1) + y r(i, n) - the bilinear part of the corners
 /// (Gordon and Hall 1973), with (x, y) by `blend`. An edge without length (a pole) takes the
@@ -72,23 +76,26 @@ const PARALLEL: usize = 1 << 15;
 /// directions. Folds where the edges make it fold: see [`crate::folded_cells`].
 ///
 /// # Errors
-/// As [`Sheet::check_edges`].
+/// As [`SurfaceGrid::check_edges`].
 ///
 /// # Example
 /// ```
-/// use moldloft_grid::{Blend, Sheet, transfinite};
+/// use moldloft_grid::{Blend, SurfaceGrid, transfinite};
 /// use moldloft_num::Vec3;
-/// let square = Sheet::from_fn(4, 3, |i, j| {
+/// let square = SurfaceGrid::from_fn(4, 3, |i, j| {
 ///     let inside = (1..3).contains(&i) && j == 1;
 ///     if inside { Vec3::<f64>::zero() } else { Vec3::of(i as f64 / 3.0, j as f64 / 2.0, 0.0) }
 /// });
 /// let grid = transfinite(&square, Blend::Arc).unwrap();
 /// assert!((grid.at(1, 1) - Vec3::of(1.0 / 3.0, 0.5, 0.0)).norm() < 1e-15);
 /// ```
-pub fn transfinite<T: Real>(sheet: &Sheet<T>, blend: Blend) -> Result<Sheet<T>, GridError> {
-    sheet.check_edges()?;
-    let (m, n) = (sheet.m, sheet.n);
-    let [first_i, last_i, first_j, last_j] = Edge::ALL.map(|edge| sheet.edge(edge));
+pub fn transfinite<T: Real>(
+    grid: &SurfaceGrid<T>,
+    blend: Blend,
+) -> Result<SurfaceGrid<T>, GridError> {
+    grid.check_edges()?;
+    let (m, n) = (grid.m, grid.n);
+    let [first_i, last_i, first_j, last_j] = Edge::ALL.map(|edge| grid.edge(edge));
     let size = [&first_i, &last_i, &first_j, &last_j]
         .into_iter()
         .flatten()
@@ -125,10 +132,10 @@ pub fn transfinite<T: Real>(sheet: &Sheet<T>, blend: Blend) -> Result<Sheet<T>, 
     } else {
         chunks.for_each(fill);
     }
-    Ok(Sheet { m, n, planes })
+    Ok(SurfaceGrid { m, n, planes })
 }
 
-/// Rows of the sheet from `first` on; a struct, for closures need not be inlined, and what is not
+/// Rows of the grid from `first` on; a struct, for closures need not be inlined, and what is not
 /// inlined does not get the wide registers.
 struct Fill<'a, T> {
     frame: &'a Frame<T>,
@@ -154,7 +161,7 @@ impl<T: Real> pulp::NullaryFnOnce for Fill<'_, T> {
     }
 }
 
-/// The edges of a sheet as component rows, and their parameters.
+/// The edges of a grid as component rows, and their parameters.
 struct Frame<T> {
     /// s[1,] and s[m,]: along j.
     first: [Vec<T>; 3],
@@ -204,7 +211,7 @@ impl<T: Real> Frame<T> {
         }
     }
 
-    /// Row i of the sheet.
+    /// Row i of the grid.
     #[inline(always)]
     fn row(&self, i: usize, [along, across]: &[Vec<T>; 2], out: [&mut [T]; 3]) {
         let (m, n) = (self.low[0].len(), self.t.len());

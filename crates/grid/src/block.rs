@@ -1,10 +1,14 @@
-use crate::sheet::SAME;
-use crate::{GridError, Sheet};
+//! Transfinite interpolation of a block from its six faces.
+//!
+//! Holds: the faces of the result are those given, to the bit.
+
+use crate::surface_grid::SAME;
+use crate::{GridError, SurfaceGrid};
 use moldloft_num::{Real, Vec3};
 
 /// The six faces of a block of ni by nj by nk points: i = 1 and ni (each [nj, nk]), j = 1 and nj
 /// ([ni, nk]), k = 1 and nk ([ni, nj]).
-pub type Faces<T> = [Sheet<T>; 6];
+pub type Faces<T> = [SurfaceGrid<T>; 6];
 
 /// The layers k = 1 .. nk, each [ni, nj], of the block that has these faces, to the bit, and whose
 /// inside is interpolated from them (Gordon and Hall 1973).
@@ -15,7 +19,7 @@ pub type Faces<T> = [Sheet<T>; 6];
 ///
 /// # Errors
 /// [`GridError::FaceSizes`]; [`GridError::FacesApart`] where two faces do not share their edge.
-pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<Sheet<T>>, GridError> {
+pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<SurfaceGrid<T>>, GridError> {
     let [ni, nj, nk] = [faces[4].m, faces[4].n, faces[0].n];
     let expected = [[nj, nk], [nj, nk], [ni, nk], [ni, nk], [ni, nj], [ni, nj]];
     for (k, (face, expected)) in faces.iter().zip(expected).enumerate() {
@@ -31,7 +35,7 @@ pub fn transfinite_block<T: Real>(faces: &Faces<T>) -> Result<Vec<Sheet<T>>, Gri
     let parameters = [block.parameters(0), block.parameters(1), block.parameters(2)];
     let means = [0, 1, 2].map(|axis| mean(&parameters[axis], block.size[axis]));
     let layer = |k: usize| {
-        Sheet::from_fn(ni, nj, |i, j| {
+        SurfaceGrid::from_fn(ni, nj, |i, j| {
             if let Some(p) = block.on_face([i, j, k]) {
                 return p;
             }

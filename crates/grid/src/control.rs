@@ -1,7 +1,7 @@
 //! Control terms: how elliptic grids keep the spacing of their edges, or take one that is asked for.
 
 use crate::lines::Control;
-use crate::{Edge, Sheet, Wall};
+use crate::{Edge, SurfaceGrid, Wall};
 use moldloft_num::{Real, Vec3};
 
 /// -r' . r'' / |r'|^2 at each point of a row, by central differences; zero at its ends and where it
@@ -21,10 +21,10 @@ fn along<T: Real>(points: &[Vec3<T>]) -> Vec<T> {
 /// The terms of Thomas and Middlecoff (1980): along each edge those with which its own points are a
 /// solution, in between linear from edge to edge by index. An edge that is a point takes those of the
 /// opposite one.
-pub fn middlecoff<T: Real>(sheet: &Sheet<T>) -> Control<T> {
-    let (m, n) = (sheet.m, sheet.n);
+pub fn middlecoff<T: Real>(grid: &SurfaceGrid<T>) -> Control<T> {
+    let (m, n) = (grid.m, grid.n);
     let pair = |a: Edge, b: Edge| -> [Vec<T>; 2] {
-        let (p, q) = (sheet.edge(a), sheet.edge(b));
+        let (p, q) = (grid.edge(a), grid.edge(b));
         let still = |p: &[Vec3<T>]| p.iter().all(|x| x.re() == p[0].re());
         match (still(&p), still(&q)) {
             (true, false) => [along(&q), along(&q)],
@@ -32,7 +32,7 @@ pub fn middlecoff<T: Real>(sheet: &Sheet<T>) -> Control<T> {
             _ => [along(&p), along(&q)],
         }
     };
-    // The rows of the sheet run along j: "across" goes with i.
+    // The rows of the grid run along j: "across" goes with i.
     let [low, high] = pair(Edge::FirstJ, Edge::LastJ);
     let [first, last] = pair(Edge::FirstI, Edge::LastI);
     let mix = |a: T, b: T, k: usize, n: usize| a + (b - a) * (k as f64 / (n - 1) as f64);
@@ -59,8 +59,8 @@ pub struct WallTerms<T> {
 }
 
 impl<T: Real> WallTerms<T> {
-    pub fn new(sheet: &Sheet<T>, walls: &[Wall<T>]) -> Self {
-        let terms = walls.iter().map(|w| vec![[T::zero(); 2]; sheet.edge(w.edge).len()]).collect();
+    pub fn new(grid: &SurfaceGrid<T>, walls: &[Wall<T>]) -> Self {
+        let terms = walls.iter().map(|w| vec![[T::zero(); 2]; grid.edge(w.edge).len()]).collect();
         Self { terms }
     }
 
@@ -69,9 +69,9 @@ impl<T: Real> WallTerms<T> {
     /// At a wall the derivative into the grid is given: of the asked length, at the asked angle to the
     /// wall in the surface. With it, one-sided second differences of the grid and the equations, the
     /// two terms follow as the components of what is left over along both derivatives.
-    pub fn update(&mut self, sheet: &Sheet<T>, walls: &[Wall<T>]) {
+    pub fn update(&mut self, grid: &SurfaceGrid<T>, walls: &[Wall<T>]) {
         for (wall, terms) in walls.iter().zip(&mut self.terms) {
-            let view = View { sheet, edge: wall.edge };
+            let view = View { grid, edge: wall.edge };
             let count = view.count();
             let depth = view.depth();
             if depth < 3 {
@@ -126,12 +126,17 @@ impl<T: Real> WallTerms<T> {
         }
     }
 
-    /// The terms in the whole sheet, fading away from the walls.
-    pub fn control(&self, sheet: &Sheet<T>, walls: &[Wall<T>], base: &Control<T>) -> Control<T> {
+    /// The terms in the whole grid, fading away from the walls.
+    pub fn control(
+        &self,
+        grid: &SurfaceGrid<T>,
+        walls: &[Wall<T>],
+        base: &Control<T>,
+    ) -> Control<T> {
         let mut control = base.clone();
-        let n = sheet.n;
+        let n = grid.n;
         for (wall, terms) in walls.iter().zip(&self.terms) {
-            let view = View { sheet, edge: wall.edge };
+            let view = View { grid, edge: wall.edge };
             let fade: Vec<f64> =
                 (0..view.depth()).map(|d| libm::exp(-(d as f64) / REACH)).collect();
             for (k, [p, q]) in terms.iter().enumerate() {
@@ -156,9 +161,9 @@ impl<T: Real> WallTerms<T> {
     }
 }
 
-/// A sheet seen from an edge: point k along it, d cells deep.
+/// A grid seen from an edge: point k along it, d cells deep.
 struct View<'a, T> {
-    sheet: &'a Sheet<T>,
+    grid: &'a SurfaceGrid<T>,
     edge: Edge,
 }
 
@@ -173,11 +178,11 @@ impl<T: Real> View<'_, T> {
     }
 
     fn count(&self) -> usize {
-        if self.along_i() { self.sheet.m } else { self.sheet.n }
+        if self.along_i() { self.grid.m } else { self.grid.n }
     }
 
     fn depth(&self) -> usize {
-        if self.along_i() { self.sheet.n } else { self.sheet.m }
+        if self.along_i() { self.grid.n } else { self.grid.m }
     }
 
     fn index(&self, k: usize, d: usize) -> [usize; 2] {
@@ -187,7 +192,7 @@ impl<T: Real> View<'_, T> {
 
     fn at(&self, k: usize, d: usize) -> Vec3<T> {
         let [i, j] = self.index(k, d);
-        self.sheet.at(i, j)
+        self.grid.at(i, j)
     }
 
     /// The derivative along the edge.

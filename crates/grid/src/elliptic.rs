@@ -1,7 +1,11 @@
+//! Elliptic smoothing of surface grids, free or on a support surface.
+//!
+//! Holds: edges stay to the bit; the same bits at any number of threads.
+
 use crate::control::{WallTerms, middlecoff};
 use crate::lines::{Change, Control, Rows, larger, transposed_control};
 use crate::zebra::Banks;
-use crate::{Edge, GridError, Sheet};
+use crate::{Edge, GridError, SurfaceGrid};
 use moldloft_num::{Order, Real, Surface, Vec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -54,14 +58,14 @@ const TURN: usize = 2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothed<T> {
     /// The grid.
-    pub sheet: Sheet<T>,
+    pub grid: SurfaceGrid<T>,
     /// The sweeps that were done.
     pub sweeps: usize,
     /// The greatest step of the last sweep, as a share of the size.
     pub change: f64,
 }
 
-/// The sheet with its inner points moved towards a solution of
+/// The grid with its inner points moved towards a solution of
 /// a (r_xx + p r_x) - 2 b r_xy + c (r_yy + q r_y) = 0, a = |r_y|^2, b = r_x . r_y, c = |r_x|^2,
 /// by line over-relaxation in two colours; the edges stay.
 ///
@@ -70,10 +74,10 @@ pub struct Smoothed<T> {
 /// # Errors
 /// [`GridError::TooFew`], [`GridError::NotFinite`], [`GridError::Diverged`].
 pub fn elliptic<T: Real>(
-    sheet: &Sheet<T>,
+    grid: &SurfaceGrid<T>,
     options: &Elliptic<T>,
 ) -> Result<Smoothed<T>, GridError> {
-    elliptic_until(sheet, options, &AtomicBool::new(false))
+    elliptic_until(grid, options, &AtomicBool::new(false))
 }
 
 /// As [`elliptic`]; ends early when `cancel` is set.
@@ -81,36 +85,36 @@ pub fn elliptic<T: Real>(
 /// # Errors
 /// Also [`GridError::Cancelled`].
 pub fn elliptic_until<T: Real>(
-    sheet: &Sheet<T>,
+    grid: &SurfaceGrid<T>,
     options: &Elliptic<T>,
     cancel: &AtomicBool,
 ) -> Result<Smoothed<T>, GridError> {
     // Rows side by side that fill the widest registers; numbers with derivatives fill several.
     match T::PARTS {
-        1 => smoothed::<T, 8>(sheet, options, cancel),
-        _ => smoothed::<T, 2>(sheet, options, cancel),
+        1 => smoothed::<T, 8>(grid, options, cancel),
+        _ => smoothed::<T, 2>(grid, options, cancel),
     }
 }
 
 fn smoothed<T: Real, const L: usize>(
-    sheet: &Sheet<T>,
+    grid: &SurfaceGrid<T>,
     options: &Elliptic<T>,
     cancel: &AtomicBool,
 ) -> Result<Smoothed<T>, GridError> {
-    sheet.check_count(3)?;
-    sheet.check_finite()?;
-    let size = sheet.size();
-    let (m, n) = (sheet.m, sheet.n);
+    grid.check_count(3)?;
+    grid.check_finite()?;
+    let size = grid.size();
+    let (m, n) = (grid.m, grid.n);
     // A component that is the same everywhere stays so.
     let varies = |c: &usize| {
-        let plane = &sheet.planes[*c];
+        let plane = &grid.planes[*c];
         !plane.iter().all(|x| x.bits_eq(plane[0]))
     };
     let mut components: Vec<usize> = (0..3).filter(varies).collect();
     if components.len() < 2 || options.on.is_some() {
         components = vec![0, 1, 2];
     }
-    let planes: Vec<Vec<T>> = components.iter().map(|&c| sheet.planes[c].clone()).collect();
+    let planes: Vec<Vec<T>> = components.iter().map(|&c| grid.planes[c].clone()).collect();
     let mut points = match &options.on {
         None => Points::Free(Banks::<T, L>::of(m, n, &planes)),
         Some((surface, uv)) => Points::On(Constraint {
@@ -121,18 +125,18 @@ fn smoothed<T: Real, const L: usize>(
     };
     let mut turned = false;
     let merged = |points: &Points<T, L>, turned: bool| {
-        let mut planes = sheet.planes.clone();
+        let mut planes = grid.planes.clone();
         for (&c, plane) in components.iter().zip(points.planes(turned)) {
             planes[c] = plane;
         }
-        Sheet { m, n, planes }
+        SurfaceGrid { m, n, planes }
     };
     let base = match options.method {
         Method::Laplace => None,
-        Method::Middlecoff | Method::Sorenson => Some(middlecoff(sheet)),
+        Method::Middlecoff | Method::Sorenson => Some(middlecoff(grid)),
     };
     let mut terms = (options.method == Method::Sorenson && !options.walls.is_empty())
-        .then(|| WallTerms::new(sheet, &options.walls));
+        .then(|| WallTerms::new(grid, &options.walls));
     let both = |control: &Control<T>| {
         let turned = transposed_control(control, m, n);
         let bank = |m: usize, n: usize, c: &Control<T>| {
@@ -181,7 +185,7 @@ fn smoothed<T: Real, const L: usize>(
             turned = !turned;
         }
     }
-    Ok(Smoothed { sheet: merged(&points, turned), sweeps: done, change })
+    Ok(Smoothed { grid: merged(&points, turned), sweeps: done, change })
 }
 
 /// The points under way, as rows along j, or along i when they are turned.
@@ -202,7 +206,7 @@ impl<T: Real, const L: usize> Points<'_, T, L> {
         }
     }
 
-    /// The planes of the sheet.
+    /// The planes of the grid.
     fn planes(&self, turned: bool) -> Vec<Vec<T>> {
         match (self, turned) {
             (Points::Free(banks), false) => banks.planes(),

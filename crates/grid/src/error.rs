@@ -1,7 +1,9 @@
+//! What can be wrong with a grid, with the place.
+
 use crate::Edge;
 use std::fmt;
 
-/// A corner of a sheet.
+/// A corner of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
     /// The edge that it is an end of.

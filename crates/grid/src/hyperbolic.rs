@@ -1,4 +1,6 @@
-use crate::{GridError, Sheet, folded_cells};
+//! Volume grids marched off a surface, plane grids marched off a curve.
+
+use crate::{GridError, SurfaceGrid, folded_cells};
 use moldloft_num::{Real, Vec3};
 
 /// What happens at an edge of the surface that a grid is marched from.
@@ -42,9 +44,9 @@ pub struct Hyperbolic<T> {
 /// Heights that do not ascend from 0; surfaces without a normal; [`GridError::Folded`] with the layer;
 /// [`GridError::Diverged`].
 pub fn hyperbolic<T: Real>(
-    surface: &Sheet<T>,
+    surface: &SurfaceGrid<T>,
     options: &Hyperbolic<T>,
-) -> Result<Vec<Sheet<T>>, GridError> {
+) -> Result<Vec<SurfaceGrid<T>>, GridError> {
     surface.check_count(3)?;
     surface.check_finite()?;
     let heights = &options.heights;
@@ -62,7 +64,7 @@ pub fn hyperbolic<T: Real>(
         let cell = mean_cell(&now);
         let parts = (step.re() / cell).ceil().clamp(1.0, 64.0) as usize;
         for _ in 0..parts {
-            let march = March { sheet: &now, options };
+            let march = March { grid: &now, options };
             now = march.stepped(step * (1.0 / parts as f64))?;
         }
         if now.points().any(|p| !p.is_finite()) {
@@ -89,7 +91,7 @@ pub fn hyperbolic_curve<T: Real>(
     heights: &[T],
     ends: [Side; 2],
     smoothing: f64,
-) -> Result<Sheet<T>, GridError> {
+) -> Result<SurfaceGrid<T>, GridError> {
     let unit = normal.normalized().ok_or(GridError::NoNormal { at: [1, 1] })?;
     let n = curve.len();
     if n < 3 {
@@ -99,23 +101,28 @@ pub fn hyperbolic_curve<T: Real>(
     let length = (1..n).fold(0.0, |sum, k| sum + curve[k].re().distance(curve[k - 1].re()));
     let cell = length / (n - 1) as f64;
     // r_i x r_j is normal x tangent: to the left.
-    let sheet = Sheet::from_fn(3, n, |i, j| curve[j] + unit * T::from(cell * (i as f64 - 1.0)));
+    let grid =
+        SurfaceGrid::from_fn(3, n, |i, j| curve[j] + unit * T::from(cell * (i as f64 - 1.0)));
     let options = Hyperbolic {
         heights: heights.to_vec(),
         sides: [Side::Free, Side::Free, ends[0], ends[1]],
         smoothing,
     };
-    let layers = hyperbolic(&sheet, &options)?;
-    Ok(Sheet::of_points(layers.len(), n, layers.iter().flat_map(|l| (0..n).map(|j| l.at(1, j)))))
+    let layers = hyperbolic(&grid, &options)?;
+    Ok(SurfaceGrid::of_points(
+        layers.len(),
+        n,
+        layers.iter().flat_map(|l| (0..n).map(|j| l.at(1, j))),
+    ))
 }
 
-fn mean_cell<T: Real>(sheet: &Sheet<T>) -> f64 {
-    let (m, n) = (sheet.m, sheet.n);
+fn mean_cell<T: Real>(grid: &SurfaceGrid<T>) -> f64 {
+    let (m, n) = (grid.m, grid.n);
     let mut area = 0.0;
     for i in 0..m - 1 {
         for j in 0..n - 1 {
-            let (a, c) = (sheet.at(i, j).re(), sheet.at(i + 1, j + 1).re());
-            let (b, d) = (sheet.at(i + 1, j).re(), sheet.at(i, j + 1).re());
+            let (a, c) = (grid.at(i, j).re(), grid.at(i + 1, j + 1).re());
+            let (b, d) = (grid.at(i + 1, j).re(), grid.at(i, j + 1).re());
             area += 0.5 * (c - a).cross(d - b).norm();
         }
     }
@@ -150,7 +157,7 @@ fn inverse<T: Real>(a: &Matrix<T>) -> Option<Matrix<T>> {
 }
 
 struct March<'a, T> {
-    sheet: &'a Sheet<T>,
+    grid: &'a SurfaceGrid<T>,
     options: &'a Hyperbolic<T>,
 }
 
@@ -160,7 +167,7 @@ impl<T: Real> March<'_, T> {
     }
 
     fn extent(&self, axis: usize) -> usize {
-        if axis == 0 { self.sheet.m } else { self.sheet.n }
+        if axis == 0 { self.grid.m } else { self.grid.n }
     }
 
     /// The derivative by an index: central, mirrored at planes of symmetry, one-sided at free ends.
@@ -169,7 +176,7 @@ impl<T: Real> March<'_, T> {
         let point = |k: usize| {
             let mut at = at;
             at[axis] = k;
-            self.sheet.at(at[0], at[1])
+            self.grid.at(at[0], at[1])
         };
         let (k, half) = (at[axis], T::from(0.5));
         let end = match k {
@@ -198,8 +205,8 @@ impl<T: Real> March<'_, T> {
     }
 
     /// The surface moved by one step.
-    fn stepped(&self, step: T) -> Result<Sheet<T>, GridError> {
-        let (m, n) = (self.sheet.m, self.sheet.n);
+    fn stepped(&self, step: T) -> Result<SurfaceGrid<T>, GridError> {
+        let (m, n) = (self.grid.m, self.grid.n);
         let mut moved: Vec<Vec3<T>> = Vec::with_capacity(m * n);
         let mut systems: Vec<Option<[Matrix<T>; 2]>> = Vec::with_capacity(m * n);
         let mut reach = Vec::with_capacity(m * n);
@@ -249,10 +256,10 @@ impl<T: Real> March<'_, T> {
                 self.solve_line(axis, line, &systems, &reach, &mut moved);
             }
         }
-        let mut new = self.sheet.clone();
+        let mut new = self.grid.clone();
         for k in 0..m * n {
             let (i, j) = (k / n, k % n);
-            new.set(i, j, self.sheet.at(i, j) + moved[k]);
+            new.set(i, j, self.grid.at(i, j) + moved[k]);
         }
         self.mend_edges(&mut new);
         Ok(new)
@@ -261,7 +268,7 @@ impl<T: Real> March<'_, T> {
     /// Gives poles the motion that the line beside them shares: what smooths the lines to a pole pulls at what
     /// moves there, too.
     fn lead_poles(&self, step: T, moved: &mut [Vec3<T>]) {
-        let n = self.sheet.n;
+        let n = self.grid.n;
         for axis in 0..2 {
             let (last, count) = (self.extent(axis) - 1, self.extent(1 - axis));
             let index = |k: usize, l: usize| if axis == 0 { k * n + l } else { l * n + k };
@@ -301,7 +308,7 @@ impl<T: Real> March<'_, T> {
         reach: &[[T; 2]],
         moved: &mut [Vec3<T>],
     ) {
-        let (n, count) = (self.sheet.n, self.extent(axis));
+        let (n, count) = (self.grid.n, self.extent(axis));
         // A closed line runs on over its seam by enough points for their ends not to matter.
         let closed = self.side(axis, 0) == Side::Periodic;
         let (around, extra) = (count - 1, if closed { SEAM } else { 0 });
@@ -371,7 +378,7 @@ impl<T: Real> March<'_, T> {
     }
 
     /// Edges as their sides ask.
-    fn mend_edges(&self, new: &mut Sheet<T>) {
+    fn mend_edges(&self, new: &mut SurfaceGrid<T>) {
         let (m, n) = (new.m, new.n);
         for axis in 0..2 {
             let (last, count) = (self.extent(axis) - 1, if axis == 0 { n } else { m });
@@ -384,11 +391,11 @@ impl<T: Real> March<'_, T> {
                 if matches!(self.side(axis, end), Side::Free | Side::Symmetry(_)) {
                     for l in 0..count {
                         let ([i, j], [a, b]) = (place(k, l), place(beside, l));
-                        let step = new.at(i, j) - self.sheet.at(i, j);
-                        let near = new.at(a, b) - self.sheet.at(a, b);
+                        let step = new.at(i, j) - self.grid.at(i, j);
+                        let near = new.at(a, b) - self.grid.at(a, b);
                         if step.norm_sq().re() > 0.0 && near.norm_sq().re() > 0.0 {
                             let step = step * (near.norm() / step.norm());
-                            new.set(i, j, self.sheet.at(i, j) + step);
+                            new.set(i, j, self.grid.at(i, j) + step);
                         }
                     }
                 }
@@ -398,7 +405,7 @@ impl<T: Real> March<'_, T> {
                         for l in 0..count {
                             let [i, j] = place(k, l);
                             let mut p = new.at(i, j).to_array();
-                            p[plane] = self.sheet.at(i, j)[plane];
+                            p[plane] = self.grid.at(i, j)[plane];
                             new.set(i, j, p.into());
                         }
                     }
@@ -406,13 +413,13 @@ impl<T: Real> March<'_, T> {
                         let mut sum = Vec3::zero();
                         for l in 0..count {
                             let [i, j] = place(beside, l);
-                            sum += new.at(i, j) - self.sheet.at(i, j);
+                            sum += new.at(i, j) - self.grid.at(i, j);
                         }
                         // The component of the neighbours' motion that they share.
                         let [i, j] = place(k, 0);
                         let mean = sum / T::from(count as f64);
                         let step = self.pole_step(axis, beside, new, mean);
-                        let p = self.sheet.at(i, j) + step;
+                        let p = self.grid.at(i, j) + step;
                         for l in 0..count {
                             let [i, j] = place(k, l);
                             new.set(i, j, p);
@@ -434,12 +441,18 @@ impl<T: Real> March<'_, T> {
     }
 
     /// The motion of a pole: along the mean motion of the line beside it, as long as that line's own.
-    fn pole_step(&self, axis: usize, beside: usize, new: &Sheet<T>, mean: Vec3<T>) -> Vec3<T> {
+    fn pole_step(
+        &self,
+        axis: usize,
+        beside: usize,
+        new: &SurfaceGrid<T>,
+        mean: Vec3<T>,
+    ) -> Vec3<T> {
         let count = if axis == 0 { new.n } else { new.m };
         let mut length = T::zero();
         for l in 0..count {
             let [i, j] = if axis == 0 { [beside, l] } else { [l, beside] };
-            length += (new.at(i, j) - self.sheet.at(i, j)).norm();
+            length += (new.at(i, j) - self.grid.at(i, j)).norm();
         }
         match self.along_pole(axis, mean) {
             Some(unit) => unit * (length * (1.0 / count as f64)),

@@ -1,7 +1,7 @@
 //! Structured grids: interpolation from their edges, smoothing, marching, and their quality.
 //!
-//! A surface grid is a [`Sheet`] of m by n points kept as three component planes; a volume grid is
-//! a list of sheets. All functions are generic over the scalar, so a grid carries its derivatives;
+//! A surface grid is a [`SurfaceGrid`] of m by n points kept as three component planes; a volume grid is
+//! a list of grids. All functions are generic over the scalar, so a grid carries its derivatives;
 //! all give the same bits at any number of threads.
 //!
 //! `edges -> transfinite -> elliptic -> quality`, `surface, heights -> hyperbolic -> layers`
@@ -19,7 +19,7 @@ mod error;
 mod hyperbolic;
 mod lines;
 mod quality;
-mod sheet;
+mod surface_grid;
 mod zebra;
 
 pub use blend::{Blend, transfinite};
@@ -28,4 +28,4 @@ pub use elliptic::{Elliptic, Method, Smoothed, Wall, elliptic, elliptic_until};
 pub use error::{Corner, GridError};
 pub use hyperbolic::{Hyperbolic, Side, hyperbolic, hyperbolic_curve};
 pub use quality::{Metric, folded_cells, quality};
-pub use sheet::{Edge, Sheet, framed};
+pub use surface_grid::{Edge, SurfaceGrid, framed};

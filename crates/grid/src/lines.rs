@@ -1,9 +1,9 @@
-//! The rows of a sheet in two colours, and control terms.
+//! The rows of a grid in two colours, and control terms.
 
 use moldloft_num::Real;
 use rayon::prelude::*;
 
-/// Components of a sheet (those that vary) with its even rows apart from its odd ones.
+/// Components of a grid (those that vary) with its even rows apart from its odd ones.
 #[derive(Clone)]
 pub struct Rows<T> {
     pub m: usize,

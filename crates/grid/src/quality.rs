@@ -1,4 +1,6 @@
-use crate::Sheet;
+//! Measures of the cells of a surface grid.
+
+use crate::SurfaceGrid;
 use moldloft_num::{Real, Vec3};
 
 /// What is measured of each cell.
@@ -57,15 +59,15 @@ impl Metric {
     }
 }
 
-/// The metric of each cell, (i, j) at `i * (n - 1) + j`; a sheet of fewer than two lines has none.
+/// The metric of each cell, (i, j) at `i * (n - 1) + j`; a grid of fewer than two lines has none.
 ///
 /// Sides without length (at poles) do not count: the cell is a triangle then. A cell without area
 /// has scaled Jacobian 0 and skew 1, aspect and edge ratio infinite unless it is a point.
-pub fn quality<T: Real>(sheet: &Sheet<T>, metric: Metric) -> Vec<T> {
-    if sheet.m < 2 || sheet.n < 2 {
+pub fn quality<T: Real>(grid: &SurfaceGrid<T>, metric: Metric) -> Vec<T> {
+    if grid.m < 2 || grid.n < 2 {
         return Vec::new();
     }
-    let cells = Cells { sheet, m: sheet.m - 1, n: sheet.n - 1 };
+    let cells = Cells { grid, m: grid.m - 1, n: grid.n - 1 };
     let each = |f: &dyn Fn(usize, usize) -> T| {
         (0..cells.m * cells.n).map(|k| f(k / cells.n, k % cells.n)).collect()
     };
@@ -108,18 +110,18 @@ pub fn quality<T: Real>(sheet: &Sheet<T>, metric: Metric) -> Vec<T> {
 
 /// The cells, (i, j) from 0, that are turned over against those around them, in order.
 ///
-/// In a plane sheet all cells are compared with the sign of the whole; in a curved one with the mean
+/// In a plane grid all cells are compared with the sign of the whole; in a curved one with the mean
 /// normal of the cells around, so of a large fold its border is reported.
-pub fn folded_cells<T: Real>(sheet: &Sheet<T>) -> Vec<[usize; 2]> {
-    let plain = sheet.re();
-    let n = sheet.n.saturating_sub(1).max(1);
+pub fn folded_cells<T: Real>(grid: &SurfaceGrid<T>) -> Vec<[usize; 2]> {
+    let plain = grid.re();
+    let n = grid.n.saturating_sub(1).max(1);
     let jacobians = quality(&plain, Metric::ScaledJacobian);
     let folded = jacobians.iter().enumerate().filter(|(_, x)| **x < 0.0);
     folded.map(|(k, _)| [k / n, k % n]).collect()
 }
 
 struct Cells<'a, T> {
-    sheet: &'a Sheet<T>,
+    grid: &'a SurfaceGrid<T>,
     m: usize,
     n: usize,
 }
@@ -142,7 +144,7 @@ fn ratio<T: Real>(a: T, b: T) -> T {
 impl<T: Real> Cells<'_, T> {
     /// The corners, counter-clockwise as seen from the side of r_i x r_j.
     fn corners(&self, i: usize, j: usize) -> [Vec3<T>; 4] {
-        let s = self.sheet;
+        let s = self.grid;
         [s.at(i, j), s.at(i + 1, j), s.at(i + 1, j + 1), s.at(i, j + 1)]
     }
 
@@ -241,7 +243,7 @@ impl<T: Real> Cells<'_, T> {
     }
 
     fn turn(&self, i: usize, j: usize) -> T {
-        let s = self.sheet;
+        let s = self.grid;
         let mut most = T::zero();
         for (i, j) in [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)] {
             let lines = [

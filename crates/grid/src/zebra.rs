@@ -1,4 +1,4 @@
-//! Zebra line relaxation: the rows of a sheet in two colours, each row solved at once.
+//! Zebra line relaxation: the rows of a grid in two colours, each row solved at once.
 //!
 //! Rows of one colour depend on rows of the other only, so a pass gives the same bits whatever the
 //! number of threads. The rows of a colour lie in banks, a number of each side by side, so that a bank is
@@ -8,13 +8,13 @@ use crate::lines::{Change, larger};
 use moldloft_num::Real;
 use rayon::prelude::*;
 
-/// Banks that make a task for a thread, so that both threads of a small machine have several of a sheet of
+/// Banks that make a task for a thread, so that both threads of a small machine have several of a grid of
 /// 500 rows.
 const BANKS_PER_TASK: usize = 2;
 
 type Pack<T, const L: usize> = [T; L];
 
-/// Components of a sheet in banks of `L` rows.
+/// Components of a grid in banks of `L` rows.
 #[derive(Clone)]
 pub struct Banks<T, const L: usize> {
     pub m: usize,

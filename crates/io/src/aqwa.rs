@@ -11,7 +11,7 @@
 
 use crate::solver::{Panels, corners, title};
 use crate::text::put;
-use crate::{Bits, Skin, WriteError};
+use crate::{Bits, PanelFileOptions, WriteError};
 use moldloft_mesh::Mesh;
 
 /// The most vertices of a structure, by the width of their column.
@@ -26,8 +26,8 @@ const WIDTH: usize = 10;
 /// [`WriteError::AboveWater`] for panels that reach above z = 0; more than 97 999 vertices (numbers
 /// from 98 000 are those of centres of gravity); coordinates that ten characters cannot show;
 /// positions that are not finite; a half that crosses its plane.
-pub fn write(mesh: &Mesh, name: &str, skin: Skin) -> Result<Vec<u8>, WriteError> {
-    let panels = Panels::of(mesh, skin)?;
+pub fn write(mesh: &Mesh, name: &str, options: PanelFileOptions) -> Result<Vec<u8>, WriteError> {
+    let panels = Panels::of(mesh, options)?;
     let count = panels.points.len();
     if count > MOST_NODES {
         return Err(WriteError::TooLarge { what: "vertices", count });
@@ -65,10 +65,10 @@ pub fn write(mesh: &Mesh, name: &str, skin: Skin) -> Result<Vec<u8>, WriteError>
     out.push_str(" END\n");
     deck(&mut out, 2);
     put!(out, "          ELM1      {}\n", first(&title(name), 40));
-    if skin.mirror_x {
+    if options.mirror_x {
         out.push_str("      SYMY\n");
     }
-    if skin.mirror_y {
+    if options.mirror_y {
         out.push_str("      SYMX\n");
     }
     out.push_str("      ZLWL          (        0.)\n");

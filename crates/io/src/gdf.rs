@@ -1,4 +1,4 @@
-//! WAMIT's low-order geometric data file.
+//! WAMIT's geometric data files, of low and of high order.
 //!
 //! Lines: a title; `ULEN GRAV`; `ISX ISY`; `NPAN`; then the corners of the panels, free format.
 //! The corners of a panel are counter-clockwise seen from the water (WAMIT User Manual, 6.1), which
@@ -6,10 +6,11 @@
 //! plane of symmetry, `ISY` = 1 that y = 0 is, and only one half, or quarter, is listed.
 
 use crate::solver::{Panels, title};
-use crate::text::{Line, put, quoted, real, utf8};
-use crate::{Place, ReadError, Skin, WriteError};
+use crate::text::{Line, pointed, put, quoted, real, utf8};
+use crate::{PanelFileOptions, Place, ReadError, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
-use moldloft_num::Vec3;
+use moldloft_num::{Order, Vec3};
+use moldloft_spline::{Basis, KnotVector};
 
 const FORMAT: &str = "GDF";
 
@@ -53,8 +54,8 @@ impl Header {
 /// # Errors
 /// Positions that are not finite, and a half that crosses its symmetry plane.
 pub fn write(mesh: &Mesh, header: &Header, lids: bool) -> Result<Vec<u8>, WriteError> {
-    let skin = Skin { mirror_x: header.mirror_x, mirror_y: header.mirror_y, lids };
-    let panels = Panels::of(mesh, skin)?;
+    let options = PanelFileOptions { mirror_x: header.mirror_x, mirror_y: header.mirror_y, lids };
+    let panels = Panels::of(mesh, options)?;
     let mut out = String::with_capacity(200 + 240 * panels.faces.len());
     put!(out, "{}", header.lines());
     put!(out, "{}\n", panels.faces.len());
@@ -65,6 +66,89 @@ pub fn write(mesh: &Mesh, header: &Header, lids: bool) -> Result<Vec<u8>, WriteE
         }
     }
     Ok(out.into_bytes())
+}
+
+/// A B-spline patch with clamped uniform knots on [-1, 1].
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplinePatch {
+    /// The surface that it is, or is a part of.
+    pub name: String,
+    /// Degrees in u and v.
+    pub degree: [usize; 2],
+    /// Spans in u and v.
+    pub spans: [usize; 2],
+    /// Control points, v fastest.
+    pub points: Vec<Vec3>,
+    /// The largest distance found from the surface; rounding where the form is exact.
+    pub deviation: f64,
+}
+
+impl SplinePatch {
+    /// The knots of so many even spans of [-1, 1], end knots included.
+    ///
+    /// # Panics
+    /// When the degree is 0 or above the largest one, or there are no spans.
+    pub fn uniform_knots(degree: usize, spans: usize) -> KnotVector {
+        let inner = (1..spans).map(|k| -1.0 + (2 * k) as f64 / spans as f64);
+        let ends = |x: f64| std::iter::repeat_n(x, degree + 1);
+        let knots = ends(-1.0).chain(inner).chain(ends(1.0)).collect();
+        KnotVector::new(degree, knots).expect("even knots ascend")
+    }
+
+    /// The knots of u (0) or v (1).
+    pub fn knots(&self, axis: usize) -> KnotVector {
+        Self::uniform_knots(self.degree[axis], self.spans[axis])
+    }
+
+    /// Points on a grid of parameters in [-1, 1], v fastest.
+    pub fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<Vec3> {
+        let width = self.degree[1] + self.spans[1];
+        let of = |axis: usize, t: &[f64]| -> Vec<Basis<f64>> {
+            let knots = self.knots(axis);
+            t.iter().map(|&t| knots.basis(t, Order::Zero)).collect()
+        };
+        let (us, vs) = (of(0, us), of(1, vs));
+        let place = |a: &Basis<f64>, b: &Basis<f64>| {
+            let mut sum = Vec3::zero();
+            for (i, &x) in a.rows[0].iter().enumerate() {
+                for (j, &y) in b.rows[0].iter().enumerate() {
+                    sum += self.points[(a.first + i) * width + b.first + j] * (x * y);
+                }
+            }
+            sum
+        };
+        us.iter().flat_map(|a| vs.iter().map(move |b| place(a, b))).collect()
+    }
+
+    /// Turns u round.
+    pub fn turn(&mut self) {
+        let width = self.degree[1] + self.spans[1];
+        let rows = self.points.chunks(width).rev();
+        self.points = rows.flatten().copied().collect();
+    }
+}
+
+/// The high-order file (IGDEF = 1): for each patch its spans `NUG NVG`, orders `KUG KVG` (degree +
+/// 1), the knots in u and in v, and the control points, u fastest (WAMIT User Manual 7.6).
+pub fn write_patches(patches: &[SplinePatch], header: &Header) -> Vec<u8> {
+    let mut out = header.lines();
+    put!(out, "{} 1\n", patches.len());
+    for patch in patches {
+        let ([m, n], [p, q]) = (patch.spans, patch.degree);
+        put!(out, "{m} {n}\n{} {}\n", p + 1, q + 1);
+        for axis in [0, 1] {
+            let knots: Vec<String> =
+                patch.knots(axis).as_slice().iter().map(|&x| pointed(x)).collect();
+            put!(out, "{}\n", knots.join(" "));
+        }
+        let width = q + n;
+        for k in 0..patch.points.len() {
+            let height = p + m;
+            let [x, y, z] = patch.points[k % height * width + k / height].to_array().map(pointed);
+            put!(out, "{x} {y} {z}\n");
+        }
+    }
+    out.into_bytes()
 }
 
 /// The header and the panels. Corners at bit-equal positions become one vertex; panels without area

@@ -7,22 +7,22 @@
 
 use crate::solver::{Panels, corners};
 use crate::text::put;
-use crate::{Skin, WriteError};
+use crate::{PanelFileOptions, WriteError};
 use moldloft_mesh::{Mesh, Tag, TopologyBuilder};
 
 /// The file of the mesh's skin.
 ///
 /// # Errors
 /// Positions that are not finite; a half that crosses its plane.
-pub fn write(mesh: &Mesh, skin: Skin) -> Result<Vec<u8>, WriteError> {
-    Ok(file(&Panels::of(mesh, skin)?, "Hull", skin))
+pub fn write(mesh: &Mesh, options: PanelFileOptions) -> Result<Vec<u8>, WriteError> {
+    Ok(file(&Panels::of(mesh, options)?, "Hull", options))
 }
 
 /// The file of the lids, HAMS's `WaterplaneMesh.pnl`; `None` when the mesh has none.
 ///
 /// # Errors
 /// As for [`write`].
-pub fn write_lids(mesh: &Mesh, skin: Skin) -> Result<Option<Vec<u8>>, WriteError> {
+pub fn write_lids(mesh: &Mesh, options: PanelFileOptions) -> Result<Option<Vec<u8>>, WriteError> {
     let mut builder = TopologyBuilder::new();
     let lids = mesh.patches().iter().filter(|p| p.info.tag == Tag::Lid && !p.faces.is_empty());
     let mut found = false;
@@ -40,11 +40,15 @@ pub fn write_lids(mesh: &Mesh, skin: Skin) -> Result<Option<Vec<u8>>, WriteError
     if !found {
         return Ok(None);
     }
-    Ok(Some(file(&Panels::of(&lids, Skin { lids: true, ..skin })?, "Waterplane", skin)))
+    Ok(Some(file(
+        &Panels::of(&lids, PanelFileOptions { lids: true, ..options })?,
+        "Waterplane",
+        options,
+    )))
 }
 
-fn file(panels: &Panels, what: &str, skin: Skin) -> Vec<u8> {
-    let (x, y) = (u8::from(skin.mirror_x), u8::from(skin.mirror_y));
+fn file(panels: &Panels, what: &str, options: PanelFileOptions) -> Vec<u8> {
+    let (x, y) = (u8::from(options.mirror_x), u8::from(options.mirror_y));
     let rule = "-".repeat(14);
     let mut out = format!(
         "    {rule}{what} Mesh File{rule}\n\n    # Number of Panels, Nodes, X-Symmetry and \

@@ -7,7 +7,7 @@
 
 use crate::solver::{Panels, corners, title};
 use crate::text::put;
-use crate::{Skin, WriteError};
+use crate::{PanelFileOptions, WriteError};
 use moldloft_mesh::Mesh;
 
 /// The file of the mesh's skin.
@@ -15,8 +15,8 @@ use moldloft_mesh::Mesh;
 /// # Errors
 /// [`WriteError::CannotHold`] for a mesh mirrored in x = 0 alone, which the format has no flag for.
 /// Positions that are not finite; a half that crosses its plane.
-pub fn write(mesh: &Mesh, name: &str, skin: Skin) -> Result<Vec<u8>, WriteError> {
-    let symmetry = match (skin.mirror_x, skin.mirror_y) {
+pub fn write(mesh: &Mesh, name: &str, options: PanelFileOptions) -> Result<Vec<u8>, WriteError> {
+    let symmetry = match (options.mirror_x, options.mirror_y) {
         (false, false) => 0,
         (false, true) => 1,
         (true, true) => 2,
@@ -25,7 +25,7 @@ pub fn write(mesh: &Mesh, name: &str, skin: Skin) -> Result<Vec<u8>, WriteError>
             return Err(WriteError::CannotHold { format: "HydroStar", what });
         }
     };
-    let panels = Panels::of(mesh, skin)?;
+    let panels = Panels::of(mesh, options)?;
     let mut out = format!("PROJECT: {}\n\nSYMMETRY {symmetry}\n\nCOORDINATES\n", title(name));
     panels.node_lines(&mut out);
     out.push_str("ENDCOORDINATES\n\nPANEL TYPE 1\n");

@@ -12,12 +12,10 @@
 //! | STL | [`stl::write`] (binary) | [`stl::read`] (binary and text) |
 //! | 3MF | [`threemf::write`] | – |
 //! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
-//! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`] | – |
-//! | Plot3D surfaces | [`plot3d::write`] | – |
-//! | Plot3D volumes | [`plot3d::write_blocks`] | – |
-//! | Plot3D, all variants, of grids of points | [`plot3d_any::write`] | [`plot3d_any::read`] |
-//! | VTK XML and STL of grids of points | [`write_vts`], [`write_stl`] | – |
-//! | coordinates in text, aerofoil sections | – | [`section::read_points`], [`section::read_aerofoil`] |
+//! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
+//! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |
+//! | points in text | [`points::write`], [`points::write_csv`] | [`points::read`] |
+//! | aerofoil sections | – | [`section::read_aerofoil`] |
 //! | SVG lines drawings | [`drawing::draw`] | – |
 //!
 //! `Mesh -> Vec<u8>` and `&[u8] -> Mesh`. The caller opens and closes the files, and writes each
@@ -33,8 +31,8 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod error;
-mod lattice;
 mod solver;
+mod structured_grid;
 mod text;
 
 pub mod aqwa;
@@ -46,29 +44,29 @@ pub mod hydrostar;
 pub mod nemoh;
 pub mod obj;
 pub mod plot3d;
-pub mod plot3d_any;
 pub mod ply;
+pub mod points;
 pub mod section;
 pub mod stl;
 pub mod threemf;
 pub mod vtk;
 
 pub use error::{Bits, Place, ReadError, WriteError};
-pub use lattice::{Lattice, write_stl, write_vts};
-pub use solver::Skin;
+pub use solver::PanelFileOptions;
+pub use structured_grid::StructuredGrid;
 
 use moldloft_num::Vec3;
 
 /// What a model has besides surfaces.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Strands {
+pub struct LinesAndPoints {
     /// Polylines, each with the name of its object; a closed one repeats its first point.
     pub wires: Vec<(String, Vec<Vec3>)>,
     /// Points, each with the name of its object.
     pub dots: Vec<(String, Vec3)>,
 }
 
-impl Strands {
+impl LinesAndPoints {
     /// True when there are none.
     pub fn is_empty(&self) -> bool {
         self.wires.is_empty() && self.dots.is_empty()

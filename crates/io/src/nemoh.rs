@@ -7,7 +7,7 @@
 
 use crate::solver::{Panels, corners};
 use crate::text::put;
-use crate::{Skin, WriteError};
+use crate::{PanelFileOptions, WriteError};
 use moldloft_mesh::Mesh;
 
 /// The file of the mesh's skin.
@@ -16,12 +16,12 @@ use moldloft_mesh::Mesh;
 /// [`WriteError::CannotHold`] for a mesh mirrored in x = 0, which the format has no flag for: mirror
 /// it first ([`Mesh::with_mirror_image`]). Positions that are not finite; a half that crosses its
 /// plane.
-pub fn write(mesh: &Mesh, skin: Skin) -> Result<Vec<u8>, WriteError> {
-    if skin.mirror_x {
+pub fn write(mesh: &Mesh, options: PanelFileOptions) -> Result<Vec<u8>, WriteError> {
+    if options.mirror_x {
         return Err(WriteError::CannotHold { format: "Nemoh", what: "symmetry in x = 0" });
     }
-    let panels = Panels::of(mesh, skin)?;
-    let mut out = format!("2 {}\n", u8::from(skin.mirror_y));
+    let panels = Panels::of(mesh, options)?;
+    let mut out = format!("2 {}\n", u8::from(options.mirror_y));
     panels.node_lines(&mut out);
     out.push_str("0 0. 0. 0.\n");
     for &face in &panels.faces {

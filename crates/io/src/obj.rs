@@ -2,7 +2,7 @@
 
 use crate::error::check_positions;
 use crate::text::{Line, put, quoted, real, utf8, word};
-use crate::{Place, ReadError, Strands, WriteError};
+use crate::{LinesAndPoints, Place, ReadError, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, is_triangle};
 use moldloft_num::Vec3;
 
@@ -13,14 +13,14 @@ const FORMAT: &str = "OBJ";
 /// # Errors
 /// Positions that are not finite.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
-    write_with(mesh, &Strands::default())
+    write_with(mesh, &LinesAndPoints::default())
 }
 
 /// As [`write`], with polylines (`l`) and points (`p`) after the faces.
 ///
 /// # Errors
 /// As [`write`].
-pub fn write_with(mesh: &Mesh, strands: &Strands) -> Result<Vec<u8>, WriteError> {
+pub fn write_with(mesh: &Mesh, strands: &LinesAndPoints) -> Result<Vec<u8>, WriteError> {
     check_positions(mesh, f64::MAX)?;
     let mut used = vec![false; mesh.positions().len()];
     mesh.faces().iter().flatten().for_each(|&v| used[v as usize] = true);

@@ -7,7 +7,7 @@ use moldloft_mesh::{Mesh, Tag, is_triangle};
 
 /// What the file of a panel code is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Skin {
+pub struct PanelFileOptions {
     /// x = 0 is a symmetry plane and the mesh one side of it.
     pub mirror_x: bool,
     /// y = 0 is a symmetry plane and the mesh one side of it.
@@ -35,9 +35,9 @@ impl Panels {
     ///
     /// # Errors
     /// Positions that are not finite; a half that crosses its symmetry plane.
-    pub fn of(mesh: &Mesh, skin: Skin) -> Result<Self, WriteError> {
+    pub fn of(mesh: &Mesh, options: PanelFileOptions) -> Result<Self, WriteError> {
         check_positions(mesh, f64::MAX)?;
-        let mirrors = [skin.mirror_x, skin.mirror_y];
+        let mirrors = [options.mirror_x, options.mirror_y];
         let snap = 1e-9 * mesh.bounds().diagonal();
         let place = |v: u32| {
             let mut p = mesh.positions()[v as usize].to_array();
@@ -49,7 +49,7 @@ impl Panels {
             p
         };
         let chosen = || {
-            let kept = |tag: &Tag| tag.is_skin() || skin.lids && *tag == Tag::Lid;
+            let kept = |tag: &Tag| tag.is_skin() || options.lids && *tag == Tag::Lid;
             mesh.patches().iter().filter(move |p| kept(&p.info.tag))
         };
         for axis in (0..2).filter(|&axis| mirrors[axis]) {
@@ -117,8 +117,8 @@ mod tests {
         String::from_utf8(bytes.unwrap()).unwrap()
     }
 
-    fn half() -> Skin {
-        Skin { mirror_y: true, ..Skin::default() }
+    fn half() -> PanelFileOptions {
+        PanelFileOptions { mirror_y: true, ..PanelFileOptions::default() }
     }
 
     #[test]
@@ -133,7 +133,7 @@ mod tests {
         let pnl = text(hams::write(&mesh, half()));
         assert_eq!(pnl.lines().nth(3), Some("    4 8 0 1"), "{pnl}");
         assert!(pnl.contains("\n1 4 1 3 4 2\n") && pnl.contains(" 3 "), "{pnl}");
-        let both = Skin { mirror_x: true, mirror_y: true, lids: false };
+        let both = PanelFileOptions { mirror_x: true, mirror_y: true, lids: false };
         assert!(text(hydrostar::write(&mesh, "", both)).contains("SYMMETRY 2\n"));
     }
 
@@ -144,14 +144,14 @@ mod tests {
         assert!(lids.contains("Waterplane") && lids.contains("\n1 3 1 2 3\n"), "{lids}");
         let none = mesh.immersed(-10.0).unwrap();
         assert_eq!(hams::write_lids(&none, half()), Ok(None));
-        let with = text(nemoh::write(&mesh, Skin { lids: true, ..half() }));
+        let with = text(nemoh::write(&mesh, PanelFileOptions { lids: true, ..half() }));
         assert_eq!(with.lines().count(), text(nemoh::write(&mesh, half())).lines().count() + 2);
     }
 
     #[test]
     fn what_a_code_cannot_say_is_refused_by_name() {
         let mesh = two_patches();
-        let x = Skin { mirror_x: true, ..Skin::default() };
+        let x = PanelFileOptions { mirror_x: true, ..PanelFileOptions::default() };
         for error in [nemoh::write(&mesh, x), hydrostar::write(&mesh, "", x)] {
             let error = error.unwrap_err().to_string();
             assert!(error.contains("cannot hold symmetry in x = 0"), "{error}");

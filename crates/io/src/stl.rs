@@ -5,7 +5,7 @@
 
 use crate::error::check_positions;
 use crate::text::{Line, quoted, utf8};
-use crate::{Place, ReadError, WriteError};
+use crate::{Place, ReadError, StructuredGrid, WriteError};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::Vec3;
 
@@ -132,6 +132,41 @@ fn built(corners: Vec<Vec3>, name: &str, place: Place) -> Result<Mesh, ReadError
         Mesh::new(builder.build().into(), corners)?.welded()
     };
     build().map_err(|e| ReadError::mesh(FORMAT, place, e))
+}
+
+/// The surfaces as one binary STL. Quads are split along their shorter diagonal; triangles without
+/// area at poles are dropped. Facets face along r_i x r_j, or against it when `flip`.
+///
+/// # Errors
+/// No grids; blocks that are no surfaces; coordinates that are not finite in single precision.
+pub fn write_grids(
+    blocks: &[StructuredGrid],
+    name: &str,
+    flip: bool,
+) -> Result<Vec<u8>, WriteError> {
+    StructuredGrid::check(blocks, f64::from(f32::MAX))?;
+    let cannot = |what| WriteError::CannotHold { format: "STL", what };
+    let mut builder = TopologyBuilder::new();
+    let mut positions: Vec<Vec3> = Vec::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let [m, n, k] = block.size;
+        if k != 1 || m < 2 || n < 2 {
+            return Err(cannot("grids other than surfaces of two lines and more each way"));
+        }
+        let first = u32::try_from(positions.len())
+            .ok()
+            .filter(|first| first.checked_add((m * n) as u32).is_some())
+            .ok_or(WriteError::TooLarge { what: "points", count: positions.len() })?;
+        positions.extend(block.layer(0));
+        let large = |_| WriteError::TooLarge { what: "points", count: m * n };
+        builder.add_vertices(m * n).map_err(large)?;
+        let vertices = (first..first + (m * n) as u32).collect();
+        let info = PatchInfo::new(format!("grid {}", number + 1));
+        builder.add_block(info, m, n, vertices, flip).map_err(large)?;
+    }
+    let mesh = Mesh::new(builder.build().into(), positions);
+    let mesh = mesh.map_err(|_| WriteError::TooLarge { what: "points", count: 0 })?;
+    write(&mesh, name)
 }
 
 #[cfg(test)]

@@ -10,6 +10,22 @@ pub(crate) fn real(x: f64) -> String {
     if size != 0.0 && !(1e-5..1e16).contains(&size) { format!("{x:e}") } else { format!("{x}") }
 }
 
+/// The shortest decimal that reads back as the same double, with a point or an exponent of two
+/// digits and a sign, as C and Python write it; -0 as 0.
+pub(crate) fn pointed(x: f64) -> String {
+    let text = format!("{:?}", x + 0.0);
+    match text.split_once('e') {
+        None => text,
+        Some((digits, exponent)) => {
+            let (sign, size) = match exponent.strip_prefix('-') {
+                Some(size) => ('-', size),
+                None => ('+', exponent),
+            };
+            format!("{}e{sign}{size:0>2}", digits.strip_suffix(".0").unwrap_or(digits))
+        }
+    }
+}
+
 /// A name without blanks and control characters, never empty.
 pub(crate) fn word(name: &str) -> String {
     let word: String =
@@ -100,6 +116,14 @@ pub(crate) fn quoted(word: &str) -> String {
         short.push('…');
     }
     format!("`{short}`")
+}
+
+/// The bytes as text: UTF-8, else Latin-1, which old files are in and where every byte is a letter.
+pub(crate) fn text_of(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect::<String>().into(),
+    }
 }
 
 /// The bytes as text.

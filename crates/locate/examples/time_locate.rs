@@ -33,10 +33,10 @@ fn main() {
     let start = Instant::now();
     let prepared = NearestSurface::new(&s);
     println!("prepared in {:?}, {} cells", start.elapsed(), prepared.cells());
-    let mut random = Random(99);
+    let mut random = Random::new(99);
     let near: Vec<Vec3> = (0..50_000)
         .map(|_| {
-            let j = s.jet(random.next(), random.next(), Order::First);
+            let j = s.jet(random.unit(), random.unit(), Order::First);
             j.p + j.normal() * 0.004
         })
         .collect();

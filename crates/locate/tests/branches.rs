@@ -319,8 +319,8 @@ fn agree(found: &Branches, net: &[f64], what: &str) {
 
 #[test]
 fn random_splines_are_cut_into_as_many_branches_as_a_fine_net_says() {
-    let mut random = Random(17);
-    let soak = std::env::var("MOLDLOFT_SOAK").is_ok();
+    let mut random = Random::new(17);
+    let soak = moldloft_testing::soak();
     for seed in 1..=if soak { 200 } else { 12 } {
         let s = bumpy(20, seed);
         let z = random.between(0.35, 0.65);

@@ -17,7 +17,7 @@ fn v(x: f64, y: f64, z: f64) -> Vec3 {
 #[test]
 fn nearest_on_a_sphere_lies_towards_its_centre() {
     let s = Sphere { centre: v(1.0, 2.0, 3.0), radius: 2.0 };
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for _ in 0..200 {
         let p = v(random.between(-4.0, 6.0), random.between(-3.0, 7.0), random.between(-2.0, 8.0));
         let found = nearest_on_surface(&s, p, None);
@@ -61,7 +61,7 @@ fn nearest_from_a_start_stays_near_it_and_an_edge_is_told() {
 #[test]
 fn nearest_on_a_spline_surface_is_the_nearest() {
     let s = bumpy(8, 3);
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for _ in 0..40 {
         let p = v(random.between(-1.0, 5.0), random.between(-1.0, 5.0), random.between(-2.0, 3.0));
         let found = nearest_on_surface(&s, p, None);
@@ -138,7 +138,7 @@ fn curves_meet_where_they_should() {
 #[test]
 fn all_roots_of_a_line_and_a_cylinder() {
     let s = Cylinder { centre: v(0.0, 0.0, 0.0), radius: 1.0, half: 3.0, axis: 2 };
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for _ in 0..100 {
         let mut r = || random.between(-1.5, 1.5);
         let l = Line(v(-3.0, r(), r()), v(3.0, r(), r()));

@@ -9,7 +9,7 @@ use moldloft_num::{Curve, Order, Surface, Vec3};
 use moldloft_spline::BSplineCurve;
 
 fn directions(seed: u64, count: usize) -> impl Iterator<Item = Vec3> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     (0..count).map(move |_| {
         let mut side = || random.between(-1.0, 1.0);
         Vec3::of(side(), side(), side()).normalized().unwrap_or(Vec3::of(1.0, 0.0, 0.0))
@@ -19,8 +19,8 @@ fn directions(seed: u64, count: usize) -> impl Iterator<Item = Vec3> {
 /// From far away the nearest point is the foremost in that direction.
 #[test]
 fn from_far_away_the_foremost_point_is_the_nearest() {
-    let mut random = Random(3);
-    let points = (0..9).map(|i| Vec3::of(f64::from(i), random.next(), random.next())).collect();
+    let mut random = Random::new(3);
+    let points = (0..9).map(|i| Vec3::of(f64::from(i), random.unit(), random.unit())).collect();
     let c = BSplineCurve::uniform(3, points).unwrap();
     let s = bumpy(8, 3);
     let (curve, surface) = (NearestCurve::new(&c), NearestSurface::new(&s));

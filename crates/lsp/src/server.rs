@@ -2,8 +2,9 @@
 
 use crate::position::{offset, position, range};
 use moldloft_diag::{DiagnosticData, LabelData, Severity};
+use moldloft_document::{CompletionKind, Document, NoFiles, World};
 use moldloft_host::FileWorld;
-use moldloft_lang::{CompletionKind, Document, LIBRARIES, NoFiles, World};
+use moldloft_lang::LIBRARIES;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -591,7 +592,7 @@ fn opened(uri: &str, text: &str, cancel: Arc<AtomicBool>) -> Document {
         }
         None => (Box::new(NoFiles), uri.to_string()),
     };
-    Document::watched(moldloft_lang::registry(), world, (&name, text), cancel)
+    Document::watched(moldloft_document::registry(), world, (&name, text), cancel)
 }
 
 /// The path of a file address.

@@ -3,7 +3,7 @@ use crate::object::{Failure, Object, State};
 use indexmap::IndexMap;
 use moldloft_diag::nearest;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Class, Context, Fault, Head, Row, Scalar, Value};
+use moldloft_registry::{Class, Context, Fault, FieldId, Head, Kept, Row, Scalar, Value};
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashSet};
@@ -151,6 +151,11 @@ impl<T: Scalar> Graph<T> {
     /// Says what ends long evaluations when it is set to true.
     pub fn obey(&mut self, cancel: Arc<AtomicBool>) {
         self.context.cancel = cancel;
+    }
+
+    /// Says where calls keep what spares work later.
+    pub fn keep_in(&mut self, kept: Kept) {
+        self.context.kept = kept;
     }
 
     pub(crate) fn object(&self, key: Key) -> &Object<T> {
@@ -367,16 +372,19 @@ impl<T: Scalar> Graph<T> {
             }
         }
         if let Some([bead, point]) = object.row.sweep {
-            let named = |k: usize| match object.args[k] {
+            let named = |field: FieldId| match object.args[field.position()] {
                 Value::Object(key) => Ok(key),
                 _ => Err(Fault::new("constant-point", "a sweep needs names")
                     .expected("a bead and what follows it, by their names in the model")
                     .found("something without a name")
-                    .in_field(k)),
+                    .in_field(field)),
             };
-            let locus = named(bead).and_then(|bead| self.locus(bead, named(point)?));
+            let locus = named(bead).and_then(|bead| {
+                let follower = named(point)?;
+                self.locus(bead, follower).map_err(|fault| fault.in_field(point))
+            });
             match locus {
-                Ok(locus) => args[point] = Value::Locus(locus),
+                Ok(locus) => args[point.position()] = Value::Locus(locus),
                 Err(fault) => return State::Failed(Failure::Fault(fault)),
             }
         }

@@ -20,7 +20,6 @@ impl<T: Scalar> Graph<T> {
                 .help("build it on the bead")
                 .related(Some(bead), "is the bead")
                 .related(Some(follower), "does not move with it")
-                .in_field(1)
         };
         let after: HashSet<Key> = self.dependents(bead).into_iter().collect();
         if !after.contains(&follower) {
@@ -40,8 +39,7 @@ impl<T: Scalar> Graph<T> {
                     .expected("an object that depends on no ProcCurve or ProcSurf")
                     .found("one that does")
                     .help("sweep the object that the other sweep follows")
-                    .related(Some(key), "sweeps itself")
-                    .in_field(1));
+                    .related(Some(key), "sweeps itself"));
             }
             let moves = |key: Key| key == bead || inside.contains(&key);
             let args = object.args.iter().map(|arg| self.resolved_but(arg, &moves));

@@ -23,6 +23,7 @@ mod roots;
 mod shape;
 mod solid;
 pub mod trace;
+pub mod union_find;
 mod vec3;
 
 pub use boxes::Box3;

@@ -2,10 +2,11 @@
 
 use crate::arrays;
 use crate::diagnostics::Diagnostic;
-use moldloft_io::{plot3d, vtk};
-use moldloft_lang::Blocked;
+use crate::error::{model_error, plain_error};
+use moldloft_diag::Sources;
+use moldloft_document::Blocked;
+use moldloft_export::{format_named, write_blocks};
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::Arc;
@@ -100,28 +101,16 @@ impl PyBlocks {
         free.iter().map(|b| (b.block, b.face, b.from, b.to)).collect()
     }
 
-    /// The files of a format: names and contents.
+    /// The files of a format, the first of them under the name `main`: name and content of each.
     fn write<'py>(
         &self,
         py: Python<'py>,
         format: &str,
-        stem: &str,
+        main: &str,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-        let blocks = &self.blocked.blocks;
-        let one = |bytes: Vec<u8>| vec![vtk::NamedFile { name: format!("{stem}.{format}"), bytes }];
-        let files = py.detach(|| match format {
-            "p3d" => Some(plot3d::write_blocks(blocks, plot3d::Layout::Stream).map(one)),
-            "vts" => Some(vtk::block_files(blocks, stem)),
-            "vtu" => Some(vtk::unstructured(blocks).map(one)),
-            _ => None,
-        });
-        let Some(files) = files else {
-            let message = format!("error: there is no volume format `{format}`");
-            return Err(PyValueError::new_err(message));
-        };
-        let files = files.map_err(|error| {
-            PyValueError::new_err(format!("error: cannot write {format}: {error}"))
-        })?;
+        let format = format_named(format).map_err(|d| plain_error(&d.message))?;
+        let files = py.detach(|| write_blocks(&self.blocked.blocks, format, main));
+        let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
     }
 }

@@ -6,14 +6,13 @@ use crate::diagnostics::Diagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
 use crate::mesh::PyMesh;
-use crate::portrait::portrait;
 use crate::search::Searches;
 use crate::value::to_python;
 use crate::work::{interruptible, interruptible_shared};
-use crate::write;
 use moldloft_diag::Sources;
+use moldloft_document::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
+use moldloft_export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft_host::FileWorld;
-use moldloft_lang::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
 use moldloft_model::Object;
 use moldloft_num::{Order, Vec3};
 use moldloft_registry::{CurveRef, SurfaceRef, Value};
@@ -45,6 +44,9 @@ pub struct PyDocument {
     /// Shapes prepared for searches.
     searches: Mutex<Searches>,
 }
+
+/// A B-spline patch: name, degrees, spans, control points, deviation.
+type PatchFacts<'py> = (String, [usize; 2], [usize; 2], Bound<'py, PyArray3<f64>>, f64);
 
 type Outcome<R> = Result<R, Vec<moldloft_diag::Diagnostic>>;
 
@@ -125,7 +127,7 @@ impl PyDocument {
     fn open(py: Python<'_>, path: String, library: Vec<String>) -> PyResult<Self> {
         let world = Box::new(FileWorld::around(&path, &library));
         let never = AtomicBool::new(false);
-        let open = move || Document::open(moldloft_lang::registry(), world, &path);
+        let open = move || Document::open(moldloft_document::registry(), world, &path);
         interruptible(py, &never, open).map(Self::new)
     }
 
@@ -139,7 +141,7 @@ impl PyDocument {
     ) -> PyResult<Self> {
         let world = Box::new(FileWorld::new(folder.as_deref().map(Path::new), &library));
         let never = AtomicBool::new(false);
-        let open = move || Document::from_text(moldloft_lang::registry(), world, &name, &text);
+        let open = move || Document::from_text(moldloft_document::registry(), world, &name, &text);
         interruptible(py, &never, open).map(Self::new)
     }
 
@@ -175,7 +177,7 @@ impl PyDocument {
     /// Rows of name, value, default, low, high, whole.
     fn params(&self, py: Python<'_>) -> Vec<(String, f64, f64, Option<f64>, Option<f64>, bool)> {
         let document = self.lock(py);
-        let row = |p: &moldloft_lang::Param| {
+        let row = |p: &moldloft_document::Param| {
             let (low, high) = p.range.unzip();
             (p.name.clone(), p.value, p.default, low, high, p.is_int)
         };
@@ -445,7 +447,7 @@ impl PyDocument {
     fn mesh(&self, py: Python<'_>, tags: Vec<String>) -> PyResult<PyMesh> {
         let (panelled, part) = self.long_checked(py, move |d| {
             let panelled = d.panelled().map_err(|e| vec![e])?;
-            let part = write::tagged(&panelled.mesh, &tags)?;
+            let part = moldloft_export::tagged(&panelled.mesh, &tags)?;
             Ok((panelled, part))
         })?;
         Ok(PyMesh::new(panelled, part))
@@ -508,8 +510,8 @@ impl PyDocument {
             "one" => true,
             _ => return Err(plain_error(format!("sides are `both` or `one`, not `{sides}`"))),
         };
-        let centimetre = 10.0 / write::length_unit(&self.lock(py)).1;
-        let gravity = gravity.unwrap_or(write::GRAVITY * 100.0 * centimetre);
+        let centimetre = 10.0 / moldloft_export::length_unit(&self.lock(py)).1;
+        let gravity = gravity.unwrap_or(moldloft_export::GRAVITY * 100.0 * centimetre);
         if !(density > 0.0 && density.is_finite() && gravity > 0.0 && gravity.is_finite()) {
             return Err(plain_error("density and gravity must be positive numbers"));
         }
@@ -534,19 +536,42 @@ impl PyDocument {
         answers.iter().map(|answer| float_facts(py, answer, &names)).collect()
     }
 
-    /// The files of a format: name and content of each.
+    /// The files of a format, the first of them under the name `main`: name and content of each.
+    #[allow(clippy::too_many_arguments)]
     fn write<'py>(
         &self,
         py: Python<'py>,
-        format: String,
-        stem: String,
+        format: &str,
+        main: String,
         lids: bool,
         immersed: bool,
         tags: Vec<String>,
+        tolerance: Option<f64>,
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
-        let wishes = write::Wishes { lids, immersed, tags };
-        let files = self.long_checked(py, move |d| write::files(d, &format, &stem, wishes))?;
+        let format = format_named(format).map_err(|d| plain_error(&d.message))?;
+        let options = WriteOptions { lids, immersed, tags, tolerance };
+        let files =
+            self.long_checked(py, move |d| moldloft_export::write(d, format, &main, &options))?;
         Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
+    }
+
+    /// The skin as B-spline patches: name, degrees, spans, control points (nu, nv, 3), deviation.
+    fn spline_patches<'py>(
+        &self,
+        py: Python<'py>,
+        tolerance: Option<f64>,
+        lids: bool,
+    ) -> PyResult<Vec<PatchFacts<'py>>> {
+        let patches = self.long_checked(py, move |d| {
+            spline_patches(d, tolerance, lids).map_err(|e| e.diagnostics("gdf-high"))
+        })?;
+        let facts = |patch: SplinePatch| {
+            let shape = [0, 1].map(|axis| patch.degree[axis] + patch.spans[axis]);
+            let fill = |out: &mut [Vec3]| out.copy_from_slice(&patch.points);
+            let points = arrays::filled(py, [shape[0], shape[1], 3], fill).0;
+            (patch.name.clone(), patch.degree, patch.spans, points, patch.deviation)
+        };
+        Ok(patches.into_iter().map(facts).collect())
     }
 
     fn picture<'py>(
@@ -555,7 +580,7 @@ impl PyDocument {
         width: usize,
         height: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let picture = self.long_checked(py, move |d| write::picture(d, width, height))?;
+        let picture = self.long_checked(py, move |d| moldloft_export::picture(d, width, height))?;
         Ok(PyBytes::new(py, &picture))
     }
 
@@ -567,7 +592,8 @@ impl PyDocument {
         width: usize,
         height: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let picture = self.long_checked(py, move |d| portrait(d, &kind, width, height))?;
+        let picture =
+            self.long_checked(py, move |d| moldloft_export::kind_picture(d, &kind, width, height))?;
         Ok(PyBytes::new(py, &picture))
     }
 }

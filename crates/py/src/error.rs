@@ -2,10 +2,12 @@
 
 use crate::diagnostics::Diagnostic;
 use moldloft_diag::Sources;
+use moldloft_io::{Place, ReadError};
 use pyo3::prelude::*;
 
 mod raised {
     pyo3::import_exception!(moldloft.errors, Error);
+    pyo3::import_exception!(moldloft.errors, FormatError);
     pyo3::import_exception!(moldloft.errors, ModelError);
     pyo3::import_exception!(moldloft.errors, UnknownNameError);
 }
@@ -28,10 +30,22 @@ pub fn model_error(diagnostics: &[moldloft_diag::Diagnostic], sources: &Sources)
 
 /// An exception without a place in a model.
 pub fn plain_error(message: impl std::fmt::Display) -> PyErr {
-    raised::Error::new_err(format!("error: {message}"))
+    raised::Error::new_err(message.to_string())
 }
 
 /// An exception about a name.
 pub fn unknown_name(message: impl std::fmt::Display) -> PyErr {
     raised::UnknownNameError::new_err(message.to_string())
+}
+
+/// An exception about bytes that are not a file of their format.
+pub fn format_error(error: ReadError) -> PyErr {
+    let (place, number) = match error.place {
+        Place::Line(line) => ("line", line),
+        Place::Byte(byte) => ("byte", byte),
+        Place::Block(block) => ("block", block),
+    };
+    let message = error.to_string();
+    let ReadError { format, expected, found, .. } = error;
+    raised::FormatError::new_err((message, format, place, number, expected, found))
 }

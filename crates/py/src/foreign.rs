@@ -103,7 +103,7 @@ impl PythonFunction {
                 )
                 .expected("numbers, vectors, rows and grids of them, or texts")
                 .found(arg.class().a())
-                .in_field(k)
+                .in_field(moldloft_registry::export::field_id(k))
             })?);
         }
         let called = visit_python(|py| {

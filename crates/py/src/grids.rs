@@ -1,38 +1,46 @@
 //! Structured grids of points in and out of files.
 
-use crate::error::plain_error;
-use moldloft_io::plot3d_any::{self, Laid, Variant};
+use crate::arrays;
+use crate::error::{format_error, model_error, plain_error};
+use moldloft_diag::Sources;
+use moldloft_export::format_named;
+use moldloft_io::plot3d::{self, Laid, Variant};
+use moldloft_io::points::{self, PointLayout};
 use moldloft_io::section::{self, Listing};
-use moldloft_io::{Lattice, write_stl, write_vts};
+use moldloft_io::{StructuredGrid, stl, vtk};
 use moldloft_num::Vec3;
-use numpy::ndarray::Array4;
-use numpy::{PyArray4, PyReadonlyArray4, ToPyArray};
+use numpy::ndarray::{Array4, ArrayView4};
+use numpy::{PyArray2, PyArray4, PyReadonlyArray2, PyReadonlyArray4, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-/// Grids of shape (ni, nj, nk, 3).
-fn lattices(grids: &[PyReadonlyArray4<'_, f64>]) -> PyResult<Vec<Lattice>> {
-    let one = |grid: &PyReadonlyArray4<'_, f64>| {
-        let a = grid.as_array();
-        let &[ni, nj, nk, 3] = a.shape() else {
-            let found = a.shape();
-            return Err(plain_error(format!(
-                "a grid has the shape (ni, nj, nk, 3), found {found:?}"
-            )));
-        };
-        let plane = |c: usize| {
-            let across = (0..nk).flat_map(|k| (0..nj).map(move |j| (j, k)));
-            across
-                .flat_map(|(j, k)| (0..ni).map(move |i| (i, j, k)))
-                .map(|(i, j, k)| a[[i, j, k, c]])
-                .collect()
-        };
-        Ok(Lattice { size: [ni, nj, nk], planes: [plane(0), plane(1), plane(2)], iblank: None })
+/// Numbers (ni, nj, nk, c) as planes, i fastest.
+fn planes(a: &ArrayView4<'_, f64>) -> Vec<Vec<f64>> {
+    let &[ni, nj, nk, parts] = a.shape() else { return Vec::new() };
+    let plane = |c: usize| {
+        let across = (0..nk).flat_map(|k| (0..nj).map(move |j| (j, k)));
+        let along = across.flat_map(|(j, k)| (0..ni).map(move |i| (i, j, k)));
+        along.map(|(i, j, k)| a[[i, j, k, c]]).collect()
     };
-    grids.iter().map(one).collect()
+    (0..parts).map(plane).collect()
 }
 
-fn array<'py>(py: Python<'py>, block: &Lattice) -> Bound<'py, PyArray4<f64>> {
+/// A grid of shape (ni, nj, nk, 3).
+fn grid(given: &PyReadonlyArray4<'_, f64>) -> PyResult<StructuredGrid> {
+    let a = given.as_array();
+    let &[ni, nj, nk, 3] = a.shape() else {
+        let found = a.shape();
+        return Err(plain_error(format!("a grid has the shape (ni, nj, nk, 3), found {found:?}")));
+    };
+    let planes = planes(&a).try_into().unwrap_or_default();
+    Ok(StructuredGrid { size: [ni, nj, nk], planes, iblank: None })
+}
+
+fn grids(given: &[PyReadonlyArray4<'_, f64>]) -> PyResult<Vec<StructuredGrid>> {
+    given.iter().map(grid).collect()
+}
+
+fn array<'py>(py: Python<'py>, block: &StructuredGrid) -> Bound<'py, PyArray4<f64>> {
     let [ni, nj, nk] = block.size;
     let at = |(i, j, k, c): (usize, usize, usize, usize)| block.planes[c][(k * nj + j) * ni + i];
     Array4::from_shape_fn((ni, nj, nk, 3), at).to_pyarray(py)
@@ -44,7 +52,7 @@ pub fn read_plot3d<'py>(
     py: Python<'py>,
     data: &[u8],
 ) -> PyResult<(Vec<Bound<'py, PyArray4<f64>>>, Bound<'py, PyDict>)> {
-    let (blocks, variant) = py.detach(|| plot3d_any::read(data)).map_err(plain_error)?;
+    let (blocks, variant) = py.detach(|| plot3d::read(data)).map_err(format_error)?;
     let dict = PyDict::new(py);
     let layout = match variant.laid {
         Laid::Formatted => "text",
@@ -66,11 +74,11 @@ pub fn read_plot3d<'py>(
 
 /// A Plot3D file of arrays (ni, nj, nk, 3).
 #[pyfunction]
-#[pyo3(signature = (grids, layout, double, multi, three, iblank, big_endian, mark, planes))]
+#[pyo3(signature = (blocks, layout, double, multi, three, iblank, big_endian, mark, planes))]
 #[allow(clippy::too_many_arguments)]
 pub fn write_plot3d<'py>(
     py: Python<'py>,
-    grids: Vec<PyReadonlyArray4<'py, f64>>,
+    blocks: Vec<PyReadonlyArray4<'py, f64>>,
     layout: &str,
     double: bool,
     multi: bool,
@@ -89,49 +97,118 @@ pub fn write_plot3d<'py>(
             return Err(plain_error(format!("there is no layout `{other}`; there are {expected}")));
         }
     };
-    let mut blocks = lattices(&grids)?;
+    let mut blocks = grids(&blocks)?;
     let given = iblank.is_some();
     for (block, blank) in blocks.iter_mut().zip(iblank.into_iter().flatten()) {
         block.iblank = blank;
     }
     let variant = Variant { laid, double, multi, three, iblank: given, big_endian, mark, planes };
-    let bytes = plot3d_any::write(&blocks, variant).map_err(plain_error)?;
+    let bytes = plot3d::write(&blocks, variant).map_err(plain_error)?;
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// VTK structured grids: names and contents of the files.
+/// The files of grids in a format, the first of them under the name `main`: name and content of each.
 #[pyfunction]
-pub fn grids_as_vts(
-    grids: Vec<PyReadonlyArray4<'_, f64>>,
-    stem: &str,
-) -> PyResult<Vec<(String, Vec<u8>)>> {
-    let files = write_vts(&lattices(&grids)?, stem).map_err(plain_error)?;
-    Ok(files.into_iter().map(|file| (file.name, file.bytes)).collect())
+pub fn write_grids<'py>(
+    py: Python<'py>,
+    blocks: Vec<PyReadonlyArray4<'py, f64>>,
+    format: &str,
+    main: &str,
+) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+    let format = format_named(format).map_err(|d| plain_error(&d.message))?;
+    let files = moldloft_export::write_grids(&grids(&blocks)?, format, main);
+    let files = files.map_err(|d| model_error(&d, &Sources::new()))?;
+    Ok(files.into_iter().map(|f| (f.name, PyBytes::new(py, &f.bytes))).collect())
+}
+
+/// One VTK structured grid with named numbers (ni, nj, nk, parts) at its points.
+#[pyfunction]
+pub fn grid_with_fields<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray4<'py, f64>,
+    fields: Vec<(String, PyReadonlyArray4<'py, f64>)>,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let field = |(name, given): &(String, PyReadonlyArray4<'py, f64>)| {
+        let planes = planes(&given.as_array());
+        let count = planes.first().map_or(0, Vec::len);
+        let values = (0..count).flat_map(|k| planes.iter().map(move |plane| plane[k])).collect();
+        vtk::Field { name: name.clone(), components: planes.len(), values }
+    };
+    let fields: Vec<vtk::Field> = fields.iter().map(field).collect();
+    let bytes = vtk::grid_with_fields(&grid(&points)?, &fields).map_err(plain_error)?;
+    Ok(PyBytes::new(py, &bytes))
 }
 
 /// A binary STL of surface grids.
 #[pyfunction]
 pub fn grids_as_stl<'py>(
     py: Python<'py>,
-    grids: Vec<PyReadonlyArray4<'py, f64>>,
+    blocks: Vec<PyReadonlyArray4<'py, f64>>,
     name: &str,
     flip: bool,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let bytes = write_stl(&lattices(&grids)?, name, flip).map_err(plain_error)?;
+    let bytes = stl::write_grids(&grids(&blocks)?, name, flip).map_err(plain_error)?;
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// Rows of coordinates in text.
+/// Rows of coordinates in text: points (n, 3), and what the text is besides.
 #[pyfunction]
-pub fn read_points(data: &[u8]) -> PyResult<Vec<[f64; 3]>> {
-    let points = section::read_points(data).map_err(plain_error)?;
-    Ok(points.into_iter().map(Vec3::to_array).collect())
+pub fn read_points<'py>(
+    py: Python<'py>,
+    data: &[u8],
+) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>)> {
+    let table = points::read(data).map_err(format_error)?;
+    let dict = PyDict::new(py);
+    dict.set_item("columns", table.columns)?;
+    dict.set_item("lines", table.lines)?;
+    let blocks: Vec<(usize, usize)> = table.blocks.iter().map(|b| (b.start, b.end)).collect();
+    dict.set_item("blocks", blocks)?;
+    dict.set_item("head", table.head)?;
+    dict.set_item("delimiter", table.delimiter.map(String::from))?;
+    dict.set_item("halves", table.halves.map(|[upper, lower]| (upper, lower)))?;
+    let rows = arrays::filled(py, [table.rows.len(), 3], |out| out.copy_from_slice(&table.rows)).0;
+    Ok((rows, dict))
+}
+
+/// The text of points (n, 2) or (n, 3).
+#[pyfunction]
+pub fn points_text(
+    rows: PyReadonlyArray2<'_, f64>,
+    separator: String,
+    head: Vec<String>,
+    blocks: Vec<(usize, usize)>,
+    halves: Option<[usize; 2]>,
+) -> PyResult<String> {
+    let (rows, columns) = point_rows(&rows)?;
+    let blocks = blocks.into_iter().map(|(first, end)| first..end).collect();
+    let layout = PointLayout { head, separator, blocks, halves };
+    Ok(points::write(&rows, columns, &layout))
+}
+
+/// Points (n, 2) or (n, 3) as a table under the names of its columns.
+#[pyfunction]
+pub fn points_csv(rows: PyReadonlyArray2<'_, f64>) -> PyResult<String> {
+    let (rows, columns) = point_rows(&rows)?;
+    Ok(points::write_csv(&rows, columns))
+}
+
+fn point_rows(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<(Vec<Vec3>, usize)> {
+    let a = rows.as_array();
+    let columns = a.ncols();
+    if !matches!(columns, 2 | 3) {
+        let found = a.shape();
+        return Err(plain_error(format!("points have 2 or 3 columns, found an array {found:?}")));
+    }
+    let row = |r: numpy::ndarray::ArrayView1<'_, f64>| {
+        Vec3::of(r[0], r[1], if columns == 3 { r[2] } else { 0.0 })
+    };
+    Ok((a.outer_iter().map(row).collect(), columns))
 }
 
 /// An aerofoil section: its name, points, index of the nose and listing.
 #[pyfunction]
 pub fn read_aerofoil(data: &[u8]) -> PyResult<(String, Vec<[f64; 3]>, usize, &'static str)> {
-    let found = section::read_aerofoil(data).map_err(plain_error)?;
+    let found = section::read_aerofoil(data).map_err(format_error)?;
     let listing = match found.listing {
         Listing::Selig => "selig",
         Listing::Lednicer => "lednicer",

@@ -3,8 +3,8 @@
 //! `Document -> Python object`, `&[Vec3] -> NumPy array`, `Diagnostic -> exception`. What users see
 //! is `python/moldloft`, which wraps these classes.
 //!
-//! Invariant: this crate is the only one that knows Python and the only one that opens files, and
-//! those for reading only: inside the model's folder and the library path.
+//! Invariant: this crate is the only one that knows Python. It opens no files: models are read
+//! through `moldloft-host`, and Python reads and writes all others.
 
 mod arrays;
 mod blocks;
@@ -13,16 +13,15 @@ mod document;
 mod error;
 mod fair;
 mod foreign;
+mod formats;
 mod grids;
 mod implicit;
 mod mesh;
-mod portrait;
 mod reference;
 mod search;
 mod sketch;
 mod value;
 mod work;
-mod write;
 
 use pyo3::pymodule;
 
@@ -47,8 +46,11 @@ mod _core {
         monotone_runs,
     };
     #[pymodule_export]
+    use crate::formats::{formats, spline_patch_grid, spline_patch_knots};
+    #[pymodule_export]
     use crate::grids::{
-        grids_as_stl, grids_as_vts, read_aerofoil, read_plot3d, read_points, write_plot3d,
+        grid_with_fields, grids_as_stl, points_csv, points_text, read_aerofoil, read_plot3d,
+        read_points, write_grids, write_plot3d,
     };
     #[pymodule_export]
     use crate::implicit::{PyFacets, PyField, PySet};

@@ -1,7 +1,7 @@
 //! Meshes: arrays and their report.
 
 use crate::arrays;
-use moldloft_lang::Panelled;
+use moldloft_document::Panelled;
 use moldloft_mesh::{
     Block, Closes, Mesh, PatchInfo, PatchQuality, Spread, TopologyBuilder, WorstPanel, closure,
     measure, measure_patch, qualities,

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 /// All kinds and functions with their classes and arguments, in the order of the reference.
 #[pyfunction]
 pub fn reference(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let registry = moldloft_lang::registry();
+    let registry = moldloft_document::registry();
     let rows = registry.rows().map(|row| describe(py, row));
     rows.chain(moldloft_lang::BUILTINS.iter().map(|b| describe_builtin(py, b))).collect()
 }

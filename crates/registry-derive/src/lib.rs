@@ -19,6 +19,7 @@
 //! `relabel` or with columns that begin with it, take a last argument `relabel`, which acts on what
 //! they build; see `moldloft_registry::relabelled`. `sweep = [bead, point]`: the fields of a bead and of a
 //! point that the model is to move; see `moldloft_registry::Row::sweep`.
+//! Each field has a constant that names it in faults, `Self::C1` for `c1`: `fault.in_field(Self::C1)`.
 //! Field: `default` (absent) or `default = 3`, `min`, `max`, `min_items`, `angle`, `variadic`.
 
 use proc_macro::TokenStream;
@@ -46,7 +47,7 @@ struct KindOptions {
     function: bool,
     shape: bool,
     relabel: bool,
-    sweep: Option<Expr>,
+    sweep: Option<Vec<syn::Ident>>,
 }
 
 #[derive(Default)]
@@ -90,7 +91,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         }
     };
     let sweep = match &options.sweep {
-        Some(sweep) => quote!(Some(#sweep)),
+        Some(fields) => quote!(Some([#(Self::#fields),*])),
         None => quote!(None),
     };
     let is_kind = !options.function;
@@ -100,6 +101,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
 
     let mut infos = Vec::new();
     let mut reads = Vec::new();
+    let mut constants = Vec::new();
     // Fields whose count or range may only be known when an object was evaluated.
     let mut checks: Vec<usize> = Vec::new();
     for (k, field) in fields.named.iter().enumerate() {
@@ -145,8 +147,9 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         }));
         reads.push(quote!(
             #field_ident: <#ty as ::moldloft_registry::FromValue<T>>::from_value(&args[#k])
-                .map_err(|fault| fault.in_field(#k))?
+                .map_err(|fault| fault.in_field(::moldloft_registry::export::field_id(#k)))?
         ));
+        constants.push(constant(field_ident));
     }
     // The table entry is filled for one scalar; classes do not depend on it.
     let infos: Vec<Tokens> = infos
@@ -161,7 +164,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         quote!(
             for (at, field) in [#((#checks, #fields)),*] {
                 ::moldloft_registry::check_evaluated(&field, &args[at])
-                    .map_err(|fault| fault.in_field(at))?;
+                    .map_err(|fault| fault.in_field(::moldloft_registry::export::field_id(at)))?;
             }
         )
     };
@@ -171,8 +174,9 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         let finish = quote!(
             let value = ::moldloft_registry::Build::build(this, &context)?;
             ::moldloft_registry::relabelled(value, &args[#count])
-                .map_err(|fault| fault.in_field(#count))
+                .map_err(|fault| fault.in_field(Self::RELABEL))
         );
+        constants.push(syn::Ident::new("RELABEL", ident.span()));
         (extra, finish)
     } else {
         (quote!(), quote!(::moldloft_registry::Build::build(this, &context)))
@@ -208,7 +212,16 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
         quote!()
     };
 
+    let positions = 0..constants.len();
+    let (generics, parameters, conditions) = input.generics.split_for_impl();
     Ok(quote!(
+        /// The fields, to name arguments by.
+        #[allow(dead_code)]
+        impl #generics #ident #parameters #conditions {
+            #(pub(crate) const #constants: ::moldloft_registry::FieldId =
+                ::moldloft_registry::export::field_id(#positions);)*
+        }
+
         impl<T: ::moldloft_registry::Scalar> #ident<T> {
             fn call(
                 args: &[::moldloft_registry::Value<T>],
@@ -261,6 +274,22 @@ fn takes_relabel(class: &Expr, columns: &Option<Expr>, asked: bool) -> bool {
     }
 }
 
+/// The constants of the fields in `[bead, point]`.
+fn field_names(list: &Expr) -> syn::Result<Vec<syn::Ident>> {
+    let wrong = |at: &Expr| syn::Error::new_spanned(at, "expected [field, field]");
+    let Expr::Array(array) = list else { return Err(wrong(list)) };
+    let name = |e: &Expr| match e {
+        Expr::Path(path) => path.path.get_ident().ok_or_else(|| wrong(e)).map(constant),
+        other => Err(wrong(other)),
+    };
+    array.elems.iter().map(name).collect()
+}
+
+/// The constant of a field.
+fn constant(field: &syn::Ident) -> syn::Ident {
+    syn::Ident::new(&field.unraw().to_string().to_uppercase(), field.span())
+}
+
 fn metas(attr: &Attribute) -> syn::Result<Punctuated<Meta, Token![,]>> {
     attr.parse_args_with(Punctuated::parse_terminated)
 }
@@ -280,7 +309,7 @@ fn kind_options(input: &DeriveInput) -> syn::Result<KindOptions> {
                     options.example = Some(nv.value.clone());
                 }
                 Meta::NameValue(nv) if nv.path.is_ident("sweep") => {
-                    options.sweep = Some(nv.value.clone());
+                    options.sweep = Some(field_names(&nv.value)?);
                 }
                 Meta::NameValue(nv) if nv.path.is_ident("name") => {
                     options.name = Some(nv.value.clone());

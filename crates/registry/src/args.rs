@@ -1,4 +1,4 @@
-use crate::{Class, Fault, Field, Head, Place, Row, Value};
+use crate::{Argument, Class, Fault, Field, FieldId, Head, Row, Value};
 use moldloft_num::Real;
 use moldloft_num::trace::Key;
 
@@ -16,8 +16,7 @@ pub struct Given<'a, T: Real> {
 /// arguments that belong to the head go there.
 ///
 /// # Errors
-/// A [`Fault`] with its place. A place beyond the fields, `fields.len() + k`, is the k-th named
-/// argument.
+/// A [`Fault`] with its place.
 pub fn arrange<T: Real>(
     row: &Row,
     mut given: Given<T>,
@@ -34,7 +33,7 @@ pub fn arrange<T: Real>(
         )
         .expected(format!("{}({})", row.name, names.join(", ")))
         .found(format!("{} arguments", given.positional.len()))
-        .in_field(fields.len()));
+        .in_argument(Argument::Extra));
     }
     let mut args: Vec<Option<Value<T>>> = given.positional.into_iter().map(Some).collect();
     args.resize(fields.len(), None);
@@ -47,15 +46,15 @@ pub fn arrange<T: Real>(
                     format!("`{name}` of {} is given twice", row.name),
                 )
                 .help(format!("`{name}` is already the argument number {}", at + 1))
-                .in_field(fields.len() + k));
+                .in_argument(Argument::Named(k)));
             }
             None if row.kind => {
-                let set = head.set(name, &value).map_err(|f| f.in_field(fields.len() + k))?;
+                let set = head.set(name, &value).map_err(|f| f.in_argument(Argument::Named(k)))?;
                 if !set {
-                    return Err(unknown_argument(row, name).in_field(fields.len() + k));
+                    return Err(unknown_argument(row, name).in_argument(Argument::Named(k)));
                 }
             }
-            None => return Err(unknown_argument(row, name).in_field(fields.len() + k)),
+            None => return Err(unknown_argument(row, name).in_argument(Argument::Named(k))),
         }
     }
     let mut filled = Vec::with_capacity(fields.len());
@@ -69,10 +68,10 @@ pub fn arrange<T: Real>(
                     format!("{} needs `{}`: {}", row.name, field.name, lower(field.help)),
                 )
                 .expected(expectation(field))
-                .in_field(at));
+                .in_field(FieldId::at(at)));
             }
         };
-        check(field, &arg, &class_of).map_err(|fault| fault.in_field(at))?;
+        check(field, &arg, &class_of).map_err(|fault| fault.in_field(FieldId::at(at)))?;
         filled.push(arg);
     }
     Ok((filled, head))
@@ -250,11 +249,4 @@ fn range(field: &Field, x: f64) -> Result<(), Fault> {
     Err(Fault::new("out-of-range", format!("`{}` = {x} is out of range", field.name))
         .expected(expected)
         .found(x.to_string()))
-}
-
-impl Place {
-    /// The place of a whole argument.
-    pub fn of(field: usize) -> Self {
-        Self { field, item: None }
-    }
 }

@@ -1,11 +1,42 @@
+//! Faults of calls: what is wrong, and with which argument.
+
 use crate::Class;
 use moldloft_num::trace::Key;
+
+/// A field of a row: the constants that `#[derive(Kind)]` emits for a struct, `Self::RADIUS` for its field
+/// `radius`. There is no other way to name an argument in a fault, so a field that moves takes its faults
+/// along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldId(u16);
+
+impl FieldId {
+    /// For the derive macro and for rows: nothing else knows a position.
+    pub(crate) const fn at(position: usize) -> Self {
+        FieldId(position as u16)
+    }
+
+    /// The position in the row.
+    pub fn position(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// An argument of a call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// That of a field.
+    Field(FieldId),
+    /// The one with this number among the named arguments, as they are written.
+    Named(usize),
+    /// The first that is too many.
+    Extra,
+}
 
 /// Which argument a fault is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The field's position in the row.
-    pub field: usize,
+    /// The argument.
+    pub argument: Argument,
     /// The item of a list argument, from 0.
     pub item: Option<usize>,
 }
@@ -29,6 +60,8 @@ pub struct FaultData {
     pub help: Vec<String>,
     /// The argument it is about.
     pub place: Option<Place>,
+    /// The item of an argument that is not known yet.
+    item: Option<usize>,
     /// Other objects it is about, each with what is to be said of it.
     pub related: Vec<(Key, String)>,
 }
@@ -43,6 +76,7 @@ impl Fault {
             found: None,
             help: Vec::new(),
             place: None,
+            item: None,
             related: Vec::new(),
         }))
     }
@@ -92,19 +126,35 @@ impl Fault {
     }
 
     /// Says which argument it is about, unless that is known already.
-    pub fn in_field(mut self, field: usize) -> Self {
-        match &mut self.0.place {
-            Some(place) if place.field == usize::MAX => place.field = field,
-            Some(_) => {}
-            none => *none = Some(Place { field, item: None }),
-        }
+    pub fn in_field(self, field: FieldId) -> Self {
+        self.in_argument(Argument::Field(field))
+    }
+
+    /// Says which argument it is about, unless that is known already.
+    pub fn in_argument(mut self, argument: Argument) -> Self {
+        let item = self.0.item.take();
+        self.0.place.get_or_insert(Place { argument, item });
         self
     }
 
     /// Says which item of a list argument it is about; the field is added by [`Self::in_field`].
     pub fn in_item(mut self, item: usize) -> Self {
-        self.0.place = Some(Place { field: usize::MAX, item: Some(item) });
+        self.0.place = None;
+        self.0.item = Some(item);
         self
+    }
+
+    /// The position of the field that it is about.
+    pub fn field(&self) -> Option<usize> {
+        match self.0.place?.argument {
+            Argument::Field(field) => Some(field.position()),
+            _ => None,
+        }
+    }
+
+    /// The item of a list argument that it is about.
+    pub fn item(&self) -> Option<usize> {
+        self.0.place.map_or(self.0.item, |place| place.item)
     }
 }
 

@@ -15,6 +15,7 @@ mod facets;
 mod fault;
 mod found;
 mod head;
+mod kept;
 mod read;
 mod refs;
 mod relabelled;
@@ -25,9 +26,10 @@ mod value;
 pub use args::{Given, arrange, check_evaluated};
 pub use class::Class;
 pub use facets::{Border, Facets, Flaw, Group, Hem, Hemmed};
-pub use fault::{Fault, Place};
+pub use fault::{Argument, Fault, FieldId, Place};
 pub use found::{Found, FoundStatus, Remark};
 pub use head::{HEAD, Head, Panels, Spacing};
+pub use kept::Kept;
 pub use moldloft_registry_derive::Kind;
 pub use read::{FromValue, Mirror, many};
 pub use refs::{CurveRef, FieldRef, Implicit, Point, RelabelRef, SetRef, SolidRef, SurfaceRef};
@@ -41,5 +43,9 @@ pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};
 pub mod export {
     pub use crate::relabelled::RELABEL_FIELD;
     pub use crate::row::StaticRow;
+    /// The field at a position.
+    pub const fn field_id(position: usize) -> crate::FieldId {
+        crate::FieldId::at(position)
+    }
     pub use moldloft_num::{Dual4, Real};
 }

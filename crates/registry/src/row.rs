@@ -1,4 +1,4 @@
-use crate::{Class, Fault, FromValue, Value};
+use crate::{Class, Fault, FieldId, FromValue, Kept, Value};
 use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
@@ -41,11 +41,13 @@ pub struct Context {
     pub nesting: u32,
     /// Set to true from elsewhere to end long calls.
     pub cancel: Arc<AtomicBool>,
+    /// What calls keep from one to the next.
+    pub kept: Kept,
 }
 
 impl Default for Context {
     fn default() -> Self {
-        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default() }
+        Self { tolerance: 1e-6, nesting: 0, cancel: Arc::default(), kept: Kept::default() }
     }
 }
 
@@ -164,7 +166,7 @@ pub struct Row {
     pub example: Cow<'static, str>,
     /// For a kind that sweeps: the fields of the bead that is moved and of the point or curve that
     /// follows, which the model gives as a [`crate::LocusRef`].
-    pub sweep: Option<[usize; 2]>,
+    pub sweep: Option<[FieldId; 2]>,
     /// How it is computed.
     pub body: Body,
 }
@@ -173,6 +175,15 @@ impl Row {
     /// The first line of the documentation.
     pub fn summary(&self) -> &str {
         self.doc.lines().next().unwrap_or("")
+    }
+
+    /// The field at a position.
+    ///
+    /// # Panics
+    /// When there are not so many fields.
+    pub fn id(&self, position: usize) -> FieldId {
+        assert!(position < self.fields.len(), "{} has no field {position}", self.name);
+        FieldId::at(position)
     }
 
     /// Position of the field called `name`.

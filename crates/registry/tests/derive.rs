@@ -87,7 +87,7 @@ fn says_what_is_wrong_and_where() {
     };
     let p = || vector(0.0, 0.0, 0.0);
     let f = fault(vec![p()], vec![]);
-    assert_eq!((f.id, f.place.unwrap().field), ("missing-argument", 1));
+    assert_eq!((f.id, f.field().unwrap()), ("missing-argument", 1));
     let f = fault(vec![p(), Value::Object(Key(3))], vec![]);
     assert_eq!((f.id, f.message.as_str()), ("wrong-class", "expected a point, found a surface"));
     let f = fault(vec![p(), p(), Value::Number(11.0)], vec![]);

@@ -2,7 +2,7 @@
 
 use moldloft_num::trace::Key;
 use moldloft_num::{CurveJet, Order, Real};
-use moldloft_registry::{Class, CurveRef, Fault, FromValue, SurfaceRef, Value};
+use moldloft_registry::{Class, CurveRef, Fault, FieldId, FromValue, SurfaceRef, Value};
 use moldloft_spline::{End, Ends};
 use std::sync::Arc;
 
@@ -222,7 +222,7 @@ pub fn common_surface<T: Real>(
 ///
 /// # Errors
 /// `wrong-curve`, in field `field`, when they lie on different curves.
-pub fn common_curve<T: Real>([a, b]: [&Bead<T>; 2], field: usize) -> Result<CurveRef<T>, Fault> {
+pub fn common_curve<T: Real>([a, b]: [&Bead<T>; 2], field: FieldId) -> Result<CurveRef<T>, Fault> {
     let named = a.curve.key.is_some() || b.curve.key.is_some();
     let same = if named { a.curve.key == b.curve.key } else { a.curve.same(&b.curve) };
     if same {
@@ -253,7 +253,7 @@ impl Named {
     ///
     /// # Errors
     /// `unknown-name`, in field `field`.
-    pub fn among<'n>(&self, names: &[&'n str], field: usize) -> Result<&'n str, Fault> {
+    pub fn among<'n>(&self, names: &[&'n str], field: FieldId) -> Result<&'n str, Fault> {
         let found = match self {
             Named::Text(text) => names.iter().find(|name| **name == &**text),
             Named::Number(k) => k.checked_sub(1).and_then(|k| names.get(k)),

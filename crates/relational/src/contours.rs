@@ -2,19 +2,19 @@
 
 use moldloft_num::{Axis, Plane, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, Contours, Family, Fault, Kind, OBLIQUE, Point, SurfaceRef, Value,
+    Build, Context, Contours, Family, Fault, FieldId, Kind, OBLIQUE, Point, SurfaceRef, Value,
 };
 use std::sync::Arc;
 
 /// The most sections of one family.
 const MOST_SECTIONS: i64 = 10_000;
 
-/// The values start + i step, for i from first to last, in the fields `field` and the one after.
+/// The values start + i step, for i from first to last; `field` is that of the last.
 fn values<T: Real>(
     [first, last]: [i32; 2],
     start: T,
     step: T,
-    field: usize,
+    field: FieldId,
 ) -> Result<Vec<T>, Fault> {
     let count = i64::from(last) - i64::from(first) + 1;
     if count < 1 {
@@ -24,13 +24,13 @@ fn values<T: Real>(
         )
         .expected(format!("a last index of at least {first}"))
         .found(last.to_string())
-        .in_field(field + 1));
+        .in_field(field));
     }
     if count > MOST_SECTIONS {
         return Err(Fault::new("out-of-range", format!("{count} sections are too many"))
             .expected(format!("at most {MOST_SECTIONS}"))
             .found(count.to_string())
-            .in_field(field + 1));
+            .in_field(field));
     }
     Ok((first..=last).map(|i| start + step * f64::from(i)).collect())
 }
@@ -40,7 +40,7 @@ fn contours<T: Real>(
     family: Family<T>,
     values: Vec<T>,
     surfaces: Option<Vec<SurfaceRef<T>>>,
-    field: usize,
+    field: FieldId,
 ) -> Result<Value<T>, Fault> {
     let key = |(k, surface): (usize, SurfaceRef<T>)| {
         surface.key.ok_or_else(|| {
@@ -76,8 +76,8 @@ macro_rules! contour_kind {
 
         impl<T: Real> Build<T> for $name<T> {
             fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-                let values = values([self.first, self.last], self.start, self.step, 0)?;
-                contours($axis, Family::coordinate($axis), values, self.surfaces, 4)
+                let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
+                contours($axis, Family::coordinate($axis), values, self.surfaces, Self::SURFACES)
             }
         }
     };
@@ -133,8 +133,8 @@ pub struct PlaneContours<T: Real> {
 
 impl<T: Real> Build<T> for PlaneContours<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let values = values([self.first, self.last], self.start, self.step, 1)?;
-        contours(OBLIQUE, Family::Planes(self.plane), values, self.surfaces, 5)
+        let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
+        contours(OBLIQUE, Family::Planes(self.plane), values, self.surfaces, Self::SURFACES)
     }
 }
 
@@ -166,16 +166,16 @@ pub struct CylinderContours<T: Real> {
 
 impl<T: Real> Build<T> for CylinderContours<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let values = values([self.first, self.last], self.start, self.step, 1)?;
+        let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
         if let Some(k) = values.iter().position(|r| r.re() <= 0.0) {
             let radius = values[k].re();
             let index = i64::from(self.first) + k as i64;
             return Err(Fault::new("out-of-range", format!("a cylinder of radius {radius}"))
                 .expected("positive radii")
                 .found(format!("the radius {radius} for i = {index}"))
-                .in_field(3));
+                .in_field(Self::START));
         }
-        contours(OBLIQUE, Family::Cylinders(self.line), values, self.surfaces, 5)
+        contours(OBLIQUE, Family::Cylinders(self.line), values, self.surfaces, Self::SURFACES)
     }
 }
 
@@ -234,9 +234,9 @@ impl<T: Real> Build<T> for AngleContours<T> {
                 .expected("a point off the axis")
                 .found("no direction from the axis to it")
                 .related(key, "lies on the axis")
-                .in_field(5));
+                .in_field(Self::ZERO));
         };
-        let values = values([self.first, self.last], self.start, self.step, 1)?;
-        contours(OBLIQUE, Family::Angles { axis, zero }, values, self.surfaces, 6)
+        let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
+        contours(OBLIQUE, Family::Angles { axis, zero }, values, self.surfaces, Self::SURFACES)
     }
 }

@@ -1,11 +1,11 @@
 //! What the mathematics below refuses, as faults with a place.
 
-use moldloft_registry::Fault;
+use moldloft_registry::{Fault, FieldId};
 use moldloft_spline::{ArcError, InterpolationError, KnotError, SplineError};
 
 /// The fault of a B-spline whose control points are the list in field `items` and whose degree is
 /// the number in field `degree`.
-pub fn of_spline(error: SplineError, items: usize, degree: usize) -> Fault {
+pub fn of_spline(error: SplineError, items: FieldId, degree: FieldId) -> Fault {
     match error {
         SplineError::Knots(KnotError::Degree { degree: found }) => {
             Fault::new("out-of-range", format!("degree = {found} is out of range"))
@@ -25,7 +25,7 @@ pub fn of_spline(error: SplineError, items: usize, degree: usize) -> Fault {
 pub fn of_interpolation(
     error: InterpolationError,
     noun: &str,
-    [items, degree, ends]: [usize; 3],
+    [items, degree, ends]: [FieldId; 3],
 ) -> Fault {
     match error {
         InterpolationError::Coincident { first, second } => {
@@ -59,8 +59,8 @@ pub fn of_interpolation(
     }
 }
 
-/// The fault of an arc.
-pub fn of_arc(error: ArcError) -> Fault {
+/// The fault of an arc; `field` is its first point.
+pub fn of_arc(error: ArcError, field: FieldId) -> Fault {
     let fault = match error {
         ArcError::Collinear => Fault::new("collinear-points", error.to_string())
             .expected("three points that span a plane")
@@ -71,7 +71,7 @@ pub fn of_arc(error: ArcError) -> Fault {
             .found("a point at the centre"),
         ArcError::NotFinite { .. } => Fault::new("not-finite", error.to_string()),
     };
-    fault.in_field(0)
+    fault.in_field(field)
 }
 
 /// A number to nine digits, as messages show what was computed.

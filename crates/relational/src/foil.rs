@@ -4,29 +4,33 @@
 use crate::arguments::Named;
 use crate::lifted;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3};
-use moldloft_registry::{CurveRef, Fault};
+use moldloft_registry::{CurveRef, Fault, FieldId};
 use moldloft_spline::foil::{FoilError, Layout, Metric, Offset, Profile, Section, SectionSpec};
 use std::sync::Arc;
 
-/// The fields of a foil, in the order of [`foil_kind`].
-pub const POINTS: usize = 0;
-const FAMILY: usize = 1;
-const MEAN: usize = 2;
-const CAMBER_AT: usize = 3;
-const LOAD: usize = 4;
-const NOSE_INDEX: usize = 5;
-const THICKNESS_AT: usize = 6;
-const TAIL: usize = 7;
-const OFFSET: usize = 8;
-const ORDINATES: usize = 10;
-const METRIC: usize = 11;
+/// The fields of a kind of foil.
+#[derive(Clone, Copy)]
+pub struct Fields {
+    pub points: FieldId,
+    pub family: FieldId,
+    pub mean: FieldId,
+    pub camber_at: FieldId,
+    pub load: FieldId,
+    pub nose_index: FieldId,
+    pub thickness_at: FieldId,
+    pub tail: FieldId,
+    pub offset: FieldId,
+    pub ordinates: FieldId,
+    /// That of the points where a kind has no metric.
+    pub metric: FieldId,
+}
 
 /// Declares a kind of foil: a list of what the section is laid between, the arguments that say
 /// which section it is, and those of its own after them. `parts` takes it apart again.
 macro_rules! foil_kind {
     ($(#[$kind:meta])* $name:ident {
-        $(#[$first:meta])* $items:ident: $Item:ty
-        $(, $(#[$last:meta])* metric: $Metric:ty)? $(,)?
+        $(#[$first:meta])* $items:ident ($ITEMS:ident): $Item:ty
+        $(, $(#[$last:meta])* metric ($METRIC:ident): $Metric:ty)? $(,)?
     }) => {
         $(#[$kind])*
         pub struct $name<T: Real> {
@@ -70,6 +74,21 @@ macro_rules! foil_kind {
             fn parts(self) -> (Vec<$Item>, crate::foil::Arguments<T>) {
                 let metric: Option<moldloft_num::Vec3<T>> = None;
                 $(let metric: $Metric = metric.or(self.metric);)?
+                let metric_field = Self::$ITEMS;
+                $(let metric_field = { let _ = metric_field; Self::$METRIC };)?
+                let fields = crate::foil::Fields {
+                    points: Self::$ITEMS,
+                    family: Self::FAMILY,
+                    mean: Self::MEAN,
+                    camber_at: Self::CAMBER_AT,
+                    load: Self::LOAD,
+                    nose_index: Self::NOSE_INDEX,
+                    thickness_at: Self::THICKNESS_AT,
+                    tail: Self::TAIL,
+                    offset: Self::OFFSET,
+                    ordinates: Self::ORDINATES,
+                    metric: metric_field,
+                };
                 let arguments = crate::foil::Arguments {
                     family: self.family,
                     mean: self.mean,
@@ -82,6 +101,7 @@ macro_rules! foil_kind {
                     section: self.section,
                     ordinates: self.ordinates,
                     metric,
+                    fields,
                 };
                 (self.$items, arguments)
             }
@@ -104,10 +124,12 @@ pub struct Arguments<T: Real> {
     pub section: Option<CurveRef<T>>,
     pub ordinates: Option<Vec<Vec3<T>>>,
     pub metric: Option<Vec3<T>>,
+    /// Where faults are told.
+    pub fields: Fields,
 }
 
 /// The choice of a word of two.
-fn either(word: &str, names: [&str; 2], field: usize) -> Result<bool, Fault> {
+fn either(word: &str, names: [&str; 2], field: FieldId) -> Result<bool, Fault> {
     match names.iter().position(|name| *name == word) {
         Some(at) => Ok(at == 0),
         None => Err(Fault::new("unknown-name", format!("there is no \"{word}\" to choose here"))
@@ -121,8 +143,9 @@ impl<T: Real> Arguments<T> {
     /// The foil between `points`, whether its section is closed, and how deep shapes are nested in
     /// it.
     pub fn profile(self, points: &[Vec3<T>]) -> Result<(Profile<T>, bool, u32), Fault> {
+        let fields = self.fields;
         let metric = self.metric.map_or(Metric::Space, |m| Metric::Plane(m.to_array()));
-        let layout = Layout::new(points, metric).map_err(of_foil)?;
+        let layout = Layout::new(points, metric).map_err(|error| of_foil(error, fields))?;
         let (section, layout, offset, nesting) = self.laid(layout)?;
         let closed = section.is_closed();
         let section = Arc::new(section.settled());
@@ -145,6 +168,7 @@ impl<T: Real> Arguments<T> {
             section: self.section.as_ref().map(|c| CurveRef::new(Fixed(c.clone()), c.depth)),
             ordinates: self.ordinates.as_ref().map(|o| o.iter().map(|&p| fixed(p)).collect()),
             metric: self.metric.map(fixed),
+            fields: self.fields,
         };
         let first = points.first().map(|p| p.re());
         let layout = if points.iter().all(|p| Some(p.re()) == first) {
@@ -152,16 +176,18 @@ impl<T: Real> Arguments<T> {
         } else {
             Layout::new(points, Metric::Space)
         };
-        let (section, layout, offset, _) = arguments.laid(layout.map_err(of_foil)?)?;
+        let (section, layout, offset, _) =
+            arguments.laid(layout.map_err(|error| of_foil(error, self.fields))?)?;
         Ok(Profile { section: Arc::new(section), layout, offset })
     }
 
     /// The section, where it lies, how thickness is set off, and how deep shapes are nested in it.
     fn laid(self, layout: Layout<T>) -> Result<(Section<T>, Layout<T>, Offset, u32), Fault> {
+        let fields = self.fields;
         let families = Section::<T>::FAMILIES;
-        let family = self.family.among(&families, FAMILY)?;
-        let closed = either(&self.tail, ["closed", "open"], TAIL)?;
-        let offset = match either(&self.offset, ["affine", "normal"], OFFSET)? {
+        let family = self.family.among(&families, fields.family)?;
+        let closed = either(&self.tail, ["closed", "open"], fields.tail)?;
+        let offset = match either(&self.offset, ["affine", "normal"], fields.offset)? {
             true => Offset::Affine,
             false => Offset::Normal,
         };
@@ -173,7 +199,7 @@ impl<T: Real> Arguments<T> {
                     "a section is given by a curve or by ordinates, not by both",
                 )
                 .help("leave `ordinates` or `section` out")
-                .in_field(ORDINATES));
+                .in_field(fields.ordinates));
             }
             (Some(curve), None) => {
                 nesting = curve.depth;
@@ -191,9 +217,9 @@ impl<T: Real> Arguments<T> {
                 closed,
             }),
         }
-        .map_err(of_foil)?;
+        .map_err(|error| of_foil(error, fields))?;
         if offset == Offset::Normal && !section.has_slope() {
-            return Err(of_foil(FoilError::NoSlope));
+            return Err(of_foil(FoilError::NoSlope, fields));
         }
         Ok((section, layout, offset, nesting))
     }
@@ -230,23 +256,23 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
 }
 
 /// The fault of a foil.
-fn of_foil(error: FoilError) -> Fault {
+fn of_foil(error: FoilError, fields: Fields) -> Fault {
     let text = error.to_string();
     match error {
         FoilError::Family { name } => Fault::new("unknown-name", text)
             .expected(Section::<f64>::FAMILIES.map(|n| format!("\"{n}\"")).join(", "))
             .found(format!("\"{name}\""))
-            .in_field(FAMILY),
+            .in_field(fields.family),
         FoilError::Mean { name } => Fault::new("unknown-name", text)
             .expected(Section::<f64>::MEANS.map(|n| format!("\"{n}\"")).join(", "))
             .found(format!("\"{name}\""))
-            .in_field(MEAN),
+            .in_field(fields.mean),
         FoilError::Range { name, value, min, max } => {
             let field = match name {
-                "a nose index" => NOSE_INDEX,
-                "the place of the greatest thickness" => THICKNESS_AT,
-                "the place of the greatest camber" => CAMBER_AT,
-                _ => LOAD,
+                "a nose index" => fields.nose_index,
+                "the place of the greatest thickness" => fields.thickness_at,
+                "the place of the greatest camber" => fields.camber_at,
+                _ => fields.load,
             };
             Fault::new("out-of-range", text)
                 .expected(format!("a number from {min} to {max}"))
@@ -256,23 +282,23 @@ fn of_foil(error: FoilError) -> Fault {
         FoilError::Ordinates { index, .. } => Fault::new("no-section", text)
             .expected("{x, half thickness, camber} with x ascending from 0 to 1")
             .in_item(index)
-            .in_field(ORDINATES),
+            .in_field(fields.ordinates),
         FoilError::Points { actual } => Fault::new("wrong-length", text)
             .expected("3 points (half a section), 4 (symmetric) or 5 (cambered)")
             .found(actual.to_string())
-            .in_field(POINTS),
+            .in_field(fields.points),
         FoilError::NoChord => Fault::new("coincident-points", text)
             .expected("a nose away from the tail")
             .found("no chord between them")
-            .in_field(POINTS),
+            .in_field(fields.points),
         FoilError::Metric => Fault::new("out-of-range", text)
             .expected("{uu, uv, vv} with uu > 0 and uu vv > uv^2")
-            .in_field(METRIC),
+            .in_field(fields.metric),
         FoilError::NoSlope => Fault::new("unused-argument", text)
             .expected("offset = \"affine\" with a section of one's own")
-            .in_field(OFFSET),
+            .in_field(fields.offset),
         FoilError::NotFinite { index } => {
-            Fault::new("not-finite", text).in_item(index).in_field(POINTS)
+            Fault::new("not-finite", text).in_item(index).in_field(fields.points)
         }
     }
 }

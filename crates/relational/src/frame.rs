@@ -34,7 +34,7 @@ impl<T: Real> Build<T> for ThreePointFrame<T> {
                 .expected("three points that span a plane")
                 .found("three points in line")
                 .help("move the third point off the line through the others")
-                .in_field(2)),
+                .in_field(Self::P3)),
         }
     }
 }

@@ -44,7 +44,7 @@ impl<T: Real> Build<T> for KnotList<T> {
                 .expected(format!("a knot of at least {before}"))
                 .found(value.to_string())
                 .in_item(k + 1)
-                .in_field(0));
+                .in_field(Self::VALUES));
         }
         Ok(Value::Numbers(Arc::new(Array::row(self.values))))
     }

@@ -96,7 +96,7 @@ impl<T: Real> Build<T> for ThreePointPlane<T> {
                 .expected("three points that span a plane")
                 .found("three points in line")
                 .help("move the third point off the line through the others")
-                .in_field(2)),
+                .in_field(Self::P3)),
         }
     }
 }
@@ -123,7 +123,7 @@ impl<T: Real> Build<T> for TwoPointPlane<T> {
             None => Err(Fault::new("coincident-points", "the two points coincide")
                 .expected("two different points")
                 .found("no direction between them")
-                .in_field(1)),
+                .in_field(Self::P2)),
         }
     }
 }
@@ -165,7 +165,7 @@ pub struct TanPlane<T: Real> {
 
 impl<T: Real> Build<T> for TanPlane<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let normal = normal(&self.magnet).map_err(|fault| fault.in_field(0))?;
+        let normal = normal(&self.magnet).map_err(|fault| fault.in_field(Self::MAGNET))?;
         let [u, v] = self.magnet.uv;
         plane(Plane { point: self.magnet.surface.jet(u, v, Order::Zero).p, normal })
     }
@@ -187,7 +187,7 @@ pub struct NormalPlane<T: Real> {
 
 impl<T: Real> Build<T> for NormalPlane<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let normal = tangent(&self.bead)?;
+        let normal = tangent(&self.bead, Self::BEAD)?;
         let point = self.bead.curve.jet(self.bead.t, Order::Zero)[0];
         plane(Plane { point, normal })
     }

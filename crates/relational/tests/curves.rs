@@ -112,7 +112,7 @@ fn lengths_place_beads() {
     let long = fault(
         "AbsPoint A(0, 0, 0); AbsPoint B(3, 4, 0); Line l(A, B); AbsBead b(l, 0.5); ArcLenBead c(b, 2.6);",
     );
-    assert_eq!((long.id, long.place.map(|p| p.field)), ("beyond-end", Some(1)));
+    assert_eq!((long.id, long.field()), ("beyond-end", Some(1)));
     assert!(long.expected.as_deref().unwrap().contains("2.5"), "{long:?}");
 }
 
@@ -195,7 +195,7 @@ fn chains_run_along_their_pieces() {
     assert_eq!(untils, [0.25, 0.5, 1.0]);
 
     let gap = fault(&format!("{text} PolyCurve c2({{c, e}});"));
-    assert_eq!((gap.id, gap.place.map(|p| (p.field, p.item))), ("gap", Some((0, Some(1)))));
+    assert_eq!((gap.id, gap.field().map(|field| (field, gap.item()))), ("gap", Some((0, Some(1)))));
     assert_eq!(gap.related.len(), 2);
     let turned = fault(&format!("{text} BCurve r({{D, B, C}}); PolyCurve c2({{c, r}});"));
     assert_eq!(turned.help, ["piece 2 ends there: let it run the other way"]);
@@ -390,7 +390,7 @@ fn each_fault_of_the_new_kinds_has_its_id_and_its_place() {
         ("CCurve z({A, D, B, E, C}); BFitCurve f(z, 2, 3, 0.001);", "no-fit", 3, None),
     ] {
         let fault = fault(&format!("{BASE} {text}"));
-        let place = fault.place.map(|p| (p.field, p.item));
+        let place = fault.field().map(|field| (field, fault.item()));
         assert_eq!((fault.id, place), (id, Some((field, item))), "{text}\n{fault:?}");
         assert!(!fault.message.ends_with('.'), "{text}: {}", fault.message);
     }

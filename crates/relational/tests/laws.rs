@@ -7,6 +7,7 @@ use common::{Scene, run, scene};
 use moldloft_num::trace::{Edge, Key, Piece, Root, Trace};
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{Class, Row, Scalar, SurfaceRef, Value};
+use moldloft_testing::ridders;
 
 fn rows() -> Vec<Row> {
     // Those that sweep a point need a model: they have their tests in `lang`.
@@ -47,33 +48,9 @@ fn names_are_unique() {
     moldloft_registry::Registry::new(rows());
 }
 
-/// The derivative of `f` at 0, by Ridders' extrapolation of central differences (Press et al. 2007,
-/// section 5.7).
-fn ridders(mut f: impl FnMut(f64) -> f64, step: f64) -> f64 {
-    const N: usize = 8;
-    let (mut h, mut best, mut error) = (step, f64::NAN, f64::INFINITY);
-    let mut table = [[0.0f64; N]; N];
-    for i in 0..N {
-        table[0][i] = (f(h) - f(-h)) / (2.0 * h);
-        let mut factor = 2.0;
-        for j in 1..=i {
-            table[j][i] = (table[j - 1][i] * factor - table[j - 1][i - 1]) / (factor - 1.0);
-            factor *= 2.0;
-            let e = (table[j][i] - table[j - 1][i])
-                .abs()
-                .max((table[j][i] - table[j - 1][i - 1]).abs());
-            if e <= error {
-                (error, best) = (e, table[j][i]);
-            }
-        }
-        h /= 2f64.sqrt();
-    }
-    best
-}
-
 fn close(what: &str, exact: Vec3, by: impl Fn(f64) -> Vec3, accuracy: f64) {
     for axis in 0..3 {
-        let centred = ridders(|h| by(h)[axis], 0.02);
+        let centred = ridders(|h| by(h)[axis], 0.0, 0.02);
         let size = exact.norm().max(1.0);
         let d = (exact[axis] - centred).abs();
         assert!(d <= accuracy * size, "{what}, axis {axis}: {} and {centred}", exact[axis]);
@@ -139,7 +116,10 @@ fn jets_equal_central_differences() {
                             q[axis] += h;
                             f.value(q.into())
                         };
-                        assert!((gradient[axis] - ridders(along, 0.02)).abs() < 1e-9, "{name}");
+                        assert!(
+                            (gradient[axis] - ridders(along, 0.0, 0.02)).abs() < 1e-9,
+                            "{name}"
+                        );
                     }
                 }
                 _ => {}
@@ -245,7 +225,7 @@ fn derivatives_by_every_number_equal_central_differences() {
                 for (at, x) in dual.iter().enumerate() {
                     let along =
                         |h: f64| ladder.entry(h.to_bits()).or_insert_with(|| moved(h).unwrap())[at];
-                    let centred = ridders(along, step);
+                    let centred = ridders(along, 0.0, step);
                     let d = (x.eps[direction] - centred).abs();
                     assert!(
                         d <= 2e-7 * size,

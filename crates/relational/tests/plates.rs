@@ -136,7 +136,7 @@ fn tangent_patches_keep_the_tangent_planes() {
     assert!(n.dot(bilinear.v.normalized().unwrap()).abs() > 1e-3, "the test shows nothing");
     // A side that leaves the plane.
     let fault = fault(&text.replace("BCurve west({C, I, E}, 2)", "Line west(C, E)"));
-    assert_eq!((fault.id, fault.place.unwrap().item), ("not-tangent", Some(0)));
+    assert_eq!((fault.id, fault.item()), ("not-tangent", Some(0)));
     assert!(fault.help[0].contains("TanPoint"), "{fault:?}");
     assert_eq!(common::fault(&text.replace("free = {1}", "free = {5}")).id, "out-of-range");
 }
@@ -267,7 +267,7 @@ fn joined_surfaces_are_run_through_in_turn() {
         ("Line c(B, C)", "Line c(A, C)", "common curve"),
     ] {
         let fault = fault(&text.replace(old, new));
-        assert_eq!((fault.id, fault.place.unwrap().item), ("gap", Some(1)), "{new}");
+        assert_eq!((fault.id, fault.item()), ("gap", Some(1)), "{new}");
         assert!(fault.help[0].contains(help), "{fault:?}");
     }
 }

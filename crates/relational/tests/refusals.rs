@@ -79,7 +79,7 @@ fn each_fault_has_its_id_and_its_place() {
         ("farray c = d_tanh(1, 1, 0.1, 0.1, 5);", "no-distribution", 0, None),
     ] {
         let fault = fault(&format!("{POINTS} {text}"));
-        let place = fault.place.map(|p| (p.field, p.item));
+        let place = fault.field().map(|field| (field, fault.item()));
         assert_eq!((fault.id, place), (id, Some((field, item))), "{text}\n{fault:?}");
         assert!(!fault.message.ends_with('.'), "{text}: {}", fault.message);
     }

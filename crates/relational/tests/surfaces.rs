@@ -75,7 +75,7 @@ fn an_explicit_loft_is_linear_in_its_axis() {
          AbsPoint F(2.5, 1, 1); AbsPoint G(2, 8, 1); Line a(A, E); Line b(B, F); Line c(C, G);
          XLoftSurf S(1, {a, b, c});",
     );
-    assert_eq!((fault.id, fault.place.unwrap().item), ("not-monotone", Some(2)));
+    assert_eq!((fault.id, fault.item()), ("not-monotone", Some(2)));
     assert!(fault.message.contains("u = 0.75"), "{}", fault.message);
 }
 
@@ -195,7 +195,7 @@ fn sweeps_say_where_the_path_fails() {
         ("SweepSurf S(profile, l, twist = {});", "too-few-items", 4),
     ] {
         let fault = fault(&format!("{base} {text}"));
-        assert_eq!((fault.id, fault.place.unwrap().field), (id, field), "{text} {fault:?}");
+        assert_eq!((fault.id, fault.field().unwrap()), (id, field), "{text} {fault:?}");
     }
 }
 
@@ -272,7 +272,7 @@ fn fillets_that_turn_back_are_refused() {
         ),
     ] {
         let fault = fault(&format!("{CORNER} {text}"));
-        assert_eq!((fault.id, fault.place.unwrap().field), (id, field), "{text} {fault:?}");
+        assert_eq!((fault.id, fault.field().unwrap()), (id, field), "{text} {fault:?}");
     }
 }
 
@@ -323,7 +323,7 @@ fn coons_patches_must_meet_at_their_corners() {
     let base = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(4, 3, 1); AbsPoint D(0, 3, 0); AbsPoint E(0, 3, 1e-3);
          Line ab(A, B); Line bc(B, C); Line dc(D, C); Line ad(A, D); Line ae(A, E); Line cd(C, D);";
     let open = fault(&format!("{base} BlendSurf S({{ab, bc, dc, ae}});"));
-    assert_eq!((open.id, open.place.unwrap().item), ("open-corner", Some(3)));
+    assert_eq!((open.id, open.item()), ("open-corner", Some(3)));
     let turned = fault(&format!("{base} BlendSurf S({{ab, bc, cd, ad}});"));
     assert_eq!(turned.help[0], "they do when these sides run the other way: 3");
     assert_eq!(fault(&format!("{base} BlendSurf S({{ab, bc, cd, ad, ab}});")).id, "wrong-length");

@@ -59,46 +59,32 @@
 //!
 //! Invariant: this crate reads no file and no clock, and no line given to it makes it panic.
 
-mod axis;
 pub mod command;
-pub mod curve;
-mod derived;
+mod dimension;
 mod drawing;
 pub mod entity;
-mod estimate;
-pub mod export;
-mod expr;
-pub mod faces;
-mod gradient;
-pub mod import;
-pub mod json;
-mod layout;
-mod mass;
-pub mod merge;
+mod format;
 mod object;
-mod picture;
-mod planes;
-mod projection;
-mod round;
-mod script;
 pub mod solid;
-pub mod twin;
-mod typing;
 
-pub use axis::{Axis, Free, Letters, Naming};
-pub use command::{Fault, Files, NoFiles, OutFile, Reply, Session};
-pub use derived::scale;
+pub use command::{CommandError, Files, NoFiles, OutFile, Reply, Session};
+pub use dimension::expr::{Expr, FUNCTIONS, NoValue};
+pub use dimension::layout::{
+    Count, DimensionFault, Layout, Loose, agree, chain, chain_text, solve,
+};
+pub use dimension::solver::scale;
+pub use dimension::{Dimension, Measure, Role, Variable};
+pub use drawing::axis::{Axis, Free, Letters, Naming};
+pub use drawing::estimate::{Estimate, FreeDepth, MAX_PLANES};
+pub use drawing::line_types::{DOUBTFUL, NAMING_TOLERANCE};
+pub use drawing::planes::{Planes, Reason, TypeFault, why};
+pub use drawing::projection::Projection;
 pub use drawing::{Align, Drawing, FaceId, Line, LineId, Point, PointId, Source};
-pub use estimate::{Estimate, FreeDepth, MAX_PLANES};
-pub use expr::{Expr, FUNCTIONS, NoValue};
-pub use gradient::{Gradient, Swept, gradient};
-pub use layout::{Count, DimensionFault, Layout, Loose, agree, chain, chain_text, solve};
-pub use mass::Mass;
+pub use format::script::script;
+pub use format::{dxf, export, json, json_format};
 pub use moldloft_mesh::triangulate;
-pub use object::{Dimension, Face, Measure, Object, Reference, Role, Variable};
-pub use planes::{Planes, Reason, TypeFault, why};
-pub use projection::Projection;
-pub use round::RoundFace;
-pub use script::script;
-pub use solid::{Solid, solid};
-pub use typing::{DOUBTFUL, NAMING_TOLERANCE};
+pub use object::{Face, Object, Reference};
+pub use solid::gradient::{Gradient, Swept, gradient};
+pub use solid::mass::Mass;
+pub use solid::ruled_faces::RoundFace;
+pub use solid::{Solid, curve, faces, merge, solid};

@@ -1,74 +1,10 @@
 //! One named object: a drawing, its dimensions, faces and curves.
 
-use crate::curve::Curve;
-use crate::{Axis, Drawing, Expr, FaceId, LineId, PointId};
+use crate::solid::curve::Curve;
+use crate::{Axis, Dimension, Drawing, FaceId, LineId, Measure, PointId, Variable};
 use indexmap::IndexMap;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// What a dimension fixes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// `coordinate(q) - coordinate(p)` on an axis. The sign never changes by itself.
-    Along {
-        /// The axis.
-        axis: Axis,
-        /// From.
-        p: PointId,
-        /// To.
-        q: PointId,
-    },
-    /// The coordinate of a point (and so of its plane).
-    Datum {
-        /// The axis.
-        axis: Axis,
-        /// The point.
-        point: PointId,
-    },
-    /// The true length of a line.
-    Length(LineId),
-    /// Run per rise of a line: horizontal length divided by the difference in height (1V : n H).
-    Slope(LineId),
-    /// The angle between two lines in degrees, as vectors away from their common point.
-    Angle(LineId, LineId),
-    /// The second line is `value` times as long as the first.
-    Equal(LineId, LineId),
-}
-
-/// Whether a dimension drives the shape.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// It does.
-    Driving,
-    /// It only shows what follows from others.
-    Reference,
-}
-
-/// A dimension.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Dimension {
-    /// As the user wrote it.
-    pub name: String,
-    /// What it fixes.
-    pub measure: Measure,
-    /// Its value, in model units or degrees; `None` when it was unset.
-    pub value: Option<Expr>,
-    /// What it is for.
-    pub role: Role,
-    /// The values that make sense, for sliders and studies.
-    pub range: Option<[f64; 2]>,
-}
-
-/// A named number.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Variable {
-    /// As the user wrote it.
-    pub name: String,
-    /// Its value.
-    pub value: Expr,
-    /// The values that make sense.
-    pub range: Option<[f64; 2]>,
-}
 
 /// A plane face: cycles of points, counter-clockwise seen from outside, holes clockwise.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -21,7 +21,7 @@ fn flat(points: [[f64; 2]; 3]) -> [Vec3<f64>; 3] {
 
 #[test]
 fn all_types_have_constant_speed_and_curvature() {
-    let mut random = Random(10);
+    let mut random = Random::new(10);
     for kind in 1..=6 {
         for _ in 0..20 {
             let p = [random.point(), random.point(), random.point()];
@@ -42,7 +42,7 @@ fn all_types_have_constant_speed_and_curvature() {
 
 #[test]
 fn each_type_meets_its_points() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for _ in 0..20 {
         let p = [random.point(), random.point(), random.point()];
         let through = arc(1, p);
@@ -140,7 +140,7 @@ fn straight_arcs_are_lines_and_the_limit_of_bent_ones() {
 
 #[test]
 fn moves_with_its_points() {
-    let mut random = Random(12);
+    let mut random = Random::new(12);
     for kind in 1..=6 {
         let (points, directions) = (random.points(3), random.points(3));
         let make = |p: &[Vec3<f64>]| at(&arc(kind, [p[0], p[1], p[2]]), 0.7);

@@ -8,7 +8,7 @@ use moldloft_spline::{BSplineCurve, KnotError, KnotVector, SplineError};
 
 /// Polynomial and rational curves of several degrees, with simple and double knots.
 fn curves() -> Vec<BSplineCurve<f64>> {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut all = Vec::new();
     for degree in 1..=6 {
         for rational in [false, true] {
@@ -17,7 +17,7 @@ fn curves() -> Vec<BSplineCurve<f64>> {
                 knots = knots.with_knot(0.4, 1).unwrap();
             }
             let n = knots.points();
-            let weights = rational.then(|| (0..n).map(|_| 1.5 + random.next()).collect());
+            let weights = rational.then(|| (0..n).map(|_| 1.5 + random.signed()).collect());
             all.push(BSplineCurve::new(knots, random.points(n), weights).unwrap());
         }
     }
@@ -46,7 +46,7 @@ fn clamped_ends_meet_the_end_points() {
 
 #[test]
 fn moves_with_points_and_parameter() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let (points, directions) = (random.points(6), random.points(6));
     let t = Dual::<1> { re: 0.37, eps: [0.8] };
     let plain = BSplineCurve::uniform(3, points.clone()).unwrap();

@@ -42,8 +42,9 @@ fn relabels_are_monotone_from_zero_to_one_with_right_slopes() {
         for t in [0.03, 0.31, 0.77] {
             let jet = law.at(Uni2::parameter(t));
             let vector = |x: f64| Vec3::of(x, 0.0, 0.0);
-            let first = common::ridders(|t| vector(law.at(t)), t, 0.01).x;
-            let second = common::ridders(|t| vector(law.at(Uni2::parameter(t)).t), t, 0.01).x;
+            let first = common::ridders_vector(|t| vector(law.at(t)), t, 0.01).x;
+            let second =
+                common::ridders_vector(|t| vector(law.at(Uni2::parameter(t)).t), t, 0.01).x;
             assert!((jet.f - law.at(t)).abs() < 1e-15);
             assert!((jet.t - first).abs() < 1e-8, "{law:?} {} {first}", jet.t);
             assert!((jet.tt - second).abs() < 1e-6, "{law:?} {} {second}", jet.tt);
@@ -108,7 +109,7 @@ fn parabola_as_a_cubic_has_its_exact_length() {
 
 #[test]
 fn length_and_its_inverse_agree_across_breaks() {
-    let mut random = common::Random(30);
+    let mut random = common::Random::new(30);
     let curve = InterpolatingSpline::through(&random.points(7)).unwrap();
     for (a, b) in [(0.0, 1.0), (0.1, 0.93), (0.8, 0.05), (0.4, 0.4)] {
         let s = arclen(&curve, a, b, 1e-12);
@@ -122,7 +123,7 @@ fn length_and_its_inverse_agree_across_breaks() {
 
 #[test]
 fn lengths_move_with_points_and_limits() {
-    let mut random = common::Random(31);
+    let mut random = common::Random::new(31);
     let (points, directions) = (random.points(5), random.points(5));
     let spline =
         |h: f64| InterpolatingSpline::through(&common::moved(&points, &directions, h)).unwrap();
@@ -130,11 +131,11 @@ fn lengths_move_with_points_and_limits() {
     let vector = |x: f64| Vec3::of(x, 0.0, 0.0);
     let (a, b) = (Dual::<1> { re: 0.2, eps: [1.0] }, Dual::<1> { re: 0.9, eps: [-2.0] });
     let length = |h: f64| arclen(&spline(h), 0.2 + h, 0.9 - 2.0 * h, 1e-13);
-    let slope = common::ridders(|h| vector(length(h)), 0.0, 0.01).x;
+    let slope = common::ridders_vector(|h| vector(length(h)), 0.0, 0.01).x;
     assert!((arclen(&dual, a, b, 1e-13).eps[0] - slope).abs() < 1e-7);
     let s = Dual::<1> { re: 0.8, eps: [0.5] };
     let inverse = |h: f64| inv_arclen(&spline(h), 0.2 + h, 0.8 + 0.5 * h, 1e-12).unwrap();
-    let slope = common::ridders(|h| vector(inverse(h)), 0.0, 0.01).x;
+    let slope = common::ridders_vector(|h| vector(inverse(h)), 0.0, 0.01).x;
     let exact = inv_arclen(&dual, a, s, 1e-12).unwrap();
     assert!((exact.re() - inverse(0.0)).abs() < 1e-12);
     assert!((exact.eps[0] - slope).abs() < 1e-6, "{} {slope}", exact.eps[0]);

@@ -6,7 +6,7 @@ mod random;
 
 use moldloft_diag::{FileId, Sources, render};
 use moldloft_syntax::{model_file, sdl};
-use random::{Random, rounds};
+use random::{RandomText, rounds};
 
 const PIECES: [&str; 60] = [
     "(",
@@ -71,24 +71,24 @@ const PIECES: [&str; 60] = [
     "*",
 ];
 
-fn damage(text: &str, random: &mut Random) -> String {
+fn damage(text: &str, random: &mut RandomText) -> String {
     let mut text = text.to_owned();
     for _ in 0..=random.below(6) {
-        let at = floor(&text, random.below(text.len() as u64 + 1) as usize);
-        let to = floor(&text, (at + random.below(12) as usize).min(text.len()));
+        let at = floor(&text, random.below(text.len() + 1));
+        let to = floor(&text, (at + random.below(12)).min(text.len()));
         match random.below(4) {
             0 => text.replace_range(at..to, ""),
             1 => text.insert_str(at, random.pick(&PIECES)),
             2 => text.replace_range(at..to, random.pick(&PIECES)),
             _ => {
-                let from = floor(&text, random.below(text.len() as u64 + 1) as usize);
+                let from = floor(&text, random.below(text.len() + 1));
                 let copy = text[from..floor(&text, (from + 20).min(text.len()))].to_owned();
                 text.insert_str(at, &copy);
             }
         }
     }
     if random.below(20) == 0 {
-        let end = floor(&text, random.below(text.len() as u64 + 1) as usize);
+        let end = floor(&text, random.below(text.len() + 1));
         text.truncate(end);
     }
     text
@@ -103,7 +103,7 @@ fn floor(text: &str, mut at: usize) -> usize {
 
 #[test]
 fn damaged_programs() {
-    let mut random = Random::new(21);
+    let mut random = RandomText::new(21);
     for _ in 0..rounds(100_000) {
         let text = random.program(5);
         let text = damage(&text, &mut random);
@@ -130,7 +130,7 @@ fn damaged_model_files() {
     let model = "MultiSurf 1.44 /y\nUnits: m kg\nBeginModel;\nRem a hull\nAbsPoint P11 14 1 0.000 0.5 3.600;\n\
         BCurve MC1 11 1 8x4 A:Layer(2) / * 2 { P11 P12 (P13 1.5) };\n# note\nVariable beam 5 3 7;\n\
         CLoftSurf hull 10 1 10 1 20 1 0 3 { MC1 MC2 } =beam [2*beam] \"text\" *X=0;\nEndModel;\n";
-    let mut random = Random::new(22);
+    let mut random = RandomText::new(22);
     for _ in 0..rounds(200_000) {
         let text = damage(model, &mut random);
         let (parsed, faults) = model_file::parse(text.as_str(), FileId(0));

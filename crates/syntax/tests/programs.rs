@@ -4,7 +4,7 @@ mod random;
 
 use moldloft_diag::FileId;
 use moldloft_syntax::sdl::{self, Grouping, Step, StmtKind};
-use random::Random;
+use random::RandomText;
 
 fn parse(text: &str) -> sdl::Program {
     let (program, faults) = sdl::parse(text, FileId(0));
@@ -34,6 +34,10 @@ fn a_direct_edit_changes_one_number_and_nothing_else() {
     assert_eq!(edited, expected);
     // The edited tree says the same as its text.
     assert_eq!(program.dump(), parse(&edited).dump());
+    // A literal behind a sign of its own keeps its value when that turns negative.
+    let mut signed = parse("a = b . -2;");
+    signed.set_literal(sdl::LiteralId(0), -3.0).unwrap();
+    assert_eq!(signed.text_with_edits(), "a = b . -(-3);");
     let fault = program.set_literal(sdl::LiteralId(0), f64::INFINITY).unwrap_err();
     assert_eq!(fault.id, "not-finite");
     assert_eq!(program.set_literal(sdl::LiteralId(77), 1.0).unwrap_err().id, "unknown-literal");
@@ -41,7 +45,7 @@ fn a_direct_edit_changes_one_number_and_nothing_else() {
 
 #[test]
 fn random_edits_reparse_to_the_same_tree() {
-    let mut random = Random::new(11);
+    let mut random = RandomText::new(11);
     for _ in 0..300 {
         let mut program = parse(&random.program(6));
         for _ in 0..5 {
@@ -49,7 +53,7 @@ fn random_edits_reparse_to_the_same_tree() {
             if count == 0 {
                 break;
             }
-            let id = sdl::LiteralId(random.below(count as u64) as u32);
+            let id = sdl::LiteralId(random.below(count) as u32);
             let value = random.number_value();
             program.set_literal(id, value).unwrap();
         }
@@ -60,7 +64,7 @@ fn random_edits_reparse_to_the_same_tree() {
 
 #[test]
 fn random_programs_format_to_the_same_meaning() {
-    let mut random = Random::new(12);
+    let mut random = RandomText::new(12);
     for _ in 0..random::rounds(20_000) {
         let text = random.program(8);
         let program = parse(&text);

@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(arguments: list[str]) -> int:
     if arguments[:1] in (["--version"], ["-V"]):
-        from moldloft._core import __version__
+        from moldloft import __version__
 
         print(f"moldloft {__version__}")
         return 0
@@ -69,7 +69,7 @@ def _run(arguments: list[str]) -> int:
     try:
         status: int = options.run(options)
     except Error as error:
-        print(str(error).rstrip(), file=sys.stderr)
+        print(error.rendered, file=sys.stderr)
         return 1
     return status
 

@@ -85,7 +85,7 @@ def _format(name: str) -> str:
     try:
         return format_named(name)
     except Error as error:
-        raise argparse.ArgumentTypeError(str(error).removeprefix("error: ")) from error
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def run(options: argparse.Namespace) -> int:
@@ -98,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             sources = _build_watched(options)
         except Error as error:
-            print(str(error).rstrip(), file=sys.stderr)
+            print(error.rendered, file=sys.stderr)
             sources = [options.model]
         print(f"watching {', '.join(sources)}", file=sys.stderr)
         _wait_for_change(sources)
@@ -125,14 +125,15 @@ def _stamp(path: str) -> tuple[int, int]:
 
 
 def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int:
-    from moldloft.files import SOLVERS, Output, commit, file_name, produce
+    from moldloft.files import Output, commit, file_name, produce
+    from moldloft.formats import formats
 
     with Progress() as progress:
         progress.stage(f"running {options.model}")
         model = open_model(options)
         if sources is not None:
-            sources.extend(model._document.files())
-        if model._document.has_errors():
+            sources.extend(model.sources)
+        if model.has_errors:
             progress.stage("reporting")
             return _report_errors(model, options)
         progress.stage("making panels")
@@ -150,9 +151,9 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
         for name in dict.fromkeys(options.to):
             progress.stage(f"writing {name}")
             path = folder / file_name(stem, name)
-            solver = name in SOLVERS
-            lids = options.lids and (solver or name == "gdf-high")
-            immersed = options.immersed and solver
+            row = formats()[name]
+            lids = options.lids and row.lids
+            immersed = options.immersed and row.immersed
             outputs += produce(model, name, path, lids=lids, immersed=immersed, tags=options.tag)
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
@@ -193,7 +194,7 @@ def _report_errors(model: Model, options: argparse.Namespace) -> int:
 
 def _objects(model: Model) -> list[dict[str, Any]]:
     keys = ("name", "kind", "class", "ok", "parents")
-    facts = (model._document.object(name) for name in model.objects)
+    facts = (model.facts(name) for name in model.objects)
     return [{key: fact[key] for key in keys} for fact in facts]
 
 

@@ -15,7 +15,7 @@ from moldloft.cli.console import (
 )
 
 if TYPE_CHECKING:
-    from moldloft._core import Diagnostic
+    from moldloft import Diagnostic
 
 __all__ = ["add", "run"]
 

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from moldloft._core import Diagnostic
+    from moldloft import Diagnostic
     from moldloft.models import Model
 
 __all__ = [
@@ -76,9 +76,9 @@ def open_model(options: argparse.Namespace) -> Model:
     model = load(options.model, library=options.library, strict=False)
     if options.refine:
         if options.refine < 0:
-            raise Error("error: --refine takes a whole number of at least 0")
+            raise Error("--refine takes a whole number of at least 0")
         model.refine(options.refine)
-    if options.set and not model._document.has_errors():
+    if options.set and not model.has_errors:
         model.set(dict(options.set))
     return model
 
@@ -93,7 +93,7 @@ def block_problems(model: Model) -> list[Diagnostic]:
     """What is wrong with the cells of the model's solids, if it has any: folded ones, and joins."""
     from moldloft.errors import ModelError
 
-    facts = (model._document.object(name) for name in model.objects)
+    facts = (model.facts(name) for name in model.objects)
     if not any(fact["ok"] and fact["class"] == "solid" for fact in facts):
         return []
     try:

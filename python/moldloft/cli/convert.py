@@ -11,9 +11,6 @@ from moldloft.errors import Error
 
 __all__ = ["add", "run"]
 
-TEXTS = ("gdf", "gdf-high", "nemoh", "hydrostar", "aqwa", "offsets", "obj")
-"""Formats that are one text, besides programs and model files."""
-
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
@@ -23,7 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         metavar="FORMAT",
-        choices=[*FORMATS, "sdl", "ms2"],
+        choices=list(FORMATS),
         help="by default that of -o, else the other one of sdl and ms2: "
         + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
     )
@@ -41,6 +38,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Converts; what the other form cannot hold is an error or a remark."""
     from moldloft.files import commit, format_named, produce
+    from moldloft.formats import formats
 
     target = Path(options.output) if options.output else None
     ending = target.suffix.lstrip(".").lower() if target else ""
@@ -48,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
         return _from_offsets(options, target, format_named(options.to or ending or "sdl"))
     model = open_model(options)
     report(model.diagnostics)
-    if model._document.has_errors():
+    if model.has_errors:
         return 1
     other = "ms2" if options.model.lower().endswith(".sdl") else "sdl"
     form = format_named(options.to or ending or other)
@@ -56,11 +54,11 @@ def run(options: argparse.Namespace) -> int:
         commit(target.parent, produce(model, form, target))
     elif form in ("sdl", "ms2"):
         sys.stdout.write(model.convert(form))
-    elif form in TEXTS:
+    elif formats()[form].text:
         (output,) = produce(model, form, Path(f"{Path(options.model).stem}.{form}"))
         sys.stdout.write(output.data.decode())
     else:
-        raise Error(f"error: {form} is no text for a terminal: name the file with -o")
+        raise Error(f"{form} is no text for a terminal: name the file with -o")
     return 0
 
 
@@ -78,6 +76,6 @@ def _from_offsets(options: argparse.Namespace, target: Path | None, form: str) -
         return 0
     model = loads(text, name=f"{Path(options.model).stem}.sdl")
     if target is None:
-        raise Error(f"error: name the {form} file with -o")
+        raise Error(f"name the {form} file with -o")
     commit(target.parent, produce(model, form, target))
     return 0

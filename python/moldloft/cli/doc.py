@@ -25,7 +25,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prints the reference."""
-    from moldloft._core import reference
+    from moldloft.language import reference
 
     rows = reference()
     if options.markdown:
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     if row is None:
         near = difflib.get_close_matches(options.name, [row["name"] for row in rows], n=1)
         hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
-        raise UnknownNameError(f"error: there is no kind or function `{options.name}`{hint}")
+        raise UnknownNameError(f"there is no kind or function `{options.name}`{hint}")
     if options.pictures:
         _draw([row], options.pictures)
     elif options.json:
@@ -75,7 +75,7 @@ def _draw(rows: list[dict[str, Any]], folder: str) -> None:
     outputs = []
     for row in filter(_pictured, rows):
         model = moldloft.loads(row["example"], name=f"{row['name']}.sdl")
-        portrait = model._document.portrait(row["name"], 360, 240)
+        portrait = model.kind_picture(row["name"], 360, 240)
         outputs.append(Output(f"{row['name']}.png", portrait))
     commit(Path(folder), outputs)
     print(f"{len(outputs)} pictures in {folder}")

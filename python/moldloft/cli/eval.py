@@ -20,7 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Evaluates and prints."""
     model = open_model(options)
-    if model._document.has_errors():
+    if model.has_errors:
         report(model.diagnostics)
     values = [model.eval(expression) for expression in options.expressions]
     if options.json:
@@ -28,15 +28,15 @@ def run(options: argparse.Namespace) -> int:
     else:
         for value in values:
             print(as_text(value))
-    return 1 if model._document.has_errors() else 0
+    return 1 if model.has_errors else 0
 
 
 def as_data(value: Any) -> Any:
     """The value as JSON holds it; a shape as its class."""
     from numpy import ndarray
 
-    from moldloft._core import Shape
     from moldloft.implicit import Field, Set
+    from moldloft.language import Shape
 
     if isinstance(value, ndarray):
         return value.tolist()

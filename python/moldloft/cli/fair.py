@@ -266,7 +266,7 @@ def _places(text: str, count: int | None = None, what: str = "--breaks") -> list
     for word in filter(None, (w.strip() for w in text.split(","))):
         if not word.isdigit() or int(word) < 1 or (count is not None and int(word) > count):
             to = f" to {count}" if count else ""
-            raise FairingError(f"error: {what}: expected points from 1{to}, found `{word}`")
+            raise FairingError(f"{what}: expected points from 1{to}, found `{word}`")
         out.append(int(word) - 1)
     return out
 
@@ -274,7 +274,7 @@ def _places(text: str, count: int | None = None, what: str = "--breaks") -> list
 def run(options: argparse.Namespace) -> int:
     """Fairs and reports."""
     if options.plot and Path(options.plot).suffix.lower() not in (".png", ".svg"):
-        raise Error(f"error: a plot is .png or .svg, not `{options.plot}`")
+        raise Error(f"a plot is .png or .svg, not `{options.plot}`")
     if options.tol is None and not options.json:
         print(
             "warning: without a tolerance nothing keeps the result near the data: steps without "
@@ -284,7 +284,7 @@ def run(options: argparse.Namespace) -> int:
     if options.passes is not None and options.mode is None:
         options.mode = "faithful"
     if options.passes is not None and options.passes < 1:
-        raise Error(f"error: expected 1 pass or more, found {options.passes}")
+        raise Error(f"expected 1 pass or more, found {options.passes}")
     options.mode = options.mode or "optimum"
     with Progress() as progress:
         progress.stage(f"reading {options.file}")
@@ -306,7 +306,7 @@ def run(options: argparse.Namespace) -> int:
         if options.plot:
             progress.stage(f"drawing {options.plot}")
             if not hasattr(result, "plot"):
-                raise Error("error: --plot: several blocks; choose one with --block")
+                raise Error("--plot: several blocks; choose one with --block")
             result.plot(options.plot)
             files.append(options.plot)
     data["files"] = [str(f) for f in files]
@@ -329,7 +329,7 @@ def _source(options: argparse.Namespace) -> _Source:
         return _Object(model, thing, options)
     path = Path(name)
     if path.suffix.lower() in (".sdl", ".ms2"):
-        raise Error(f"error: which object of `{name}` is to be faired? write `{name}:NAME`")
+        raise Error(f"which object of `{name}` is to be faired? write `{name}:NAME`")
     from moldloft.fairing.files import is_grid, read_grids, read_points
 
     if is_grid(path):
@@ -349,7 +349,7 @@ def _ends(options: argparse.Namespace) -> Any:
     words = [w.strip() for w in options.ends.split(",")]
     ends = [int(w) if w.isdigit() else w for w in words]
     if len(ends) not in (1, 2):
-        raise Error(f"error: --ends: expected one or two, found {len(ends)}")
+        raise Error(f"--ends: expected one or two, found {len(ends)}")
     return ends[0] if len(ends) == 1 else tuple(ends)
 
 
@@ -408,7 +408,7 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
         ("u and v", any(len(at) > 1 for at, _ in [*options.through, *options.tangent])),
     ):
         if given:
-            raise Error(f"error: {name}: for surfaces only")
+            raise Error(f"{name}: for surfaces only")
     passes = options.passes
     steps = options.steps
     if passes is not None and steps is None:
@@ -466,7 +466,7 @@ def _known_ending(path: Path, source: Path | None) -> None:
     known = (*POINTS, *SPLINES)
     if ending in known or (source is not None and ending == source.suffix.lower()):
         return
-    raise Error(f"error: --output: `{path}`: expected an ending of {', '.join(known)}")
+    raise Error(f"--output: `{path}`: expected an ending of {', '.join(known)}")
 
 
 class _Points(_Source):
@@ -501,8 +501,8 @@ class _Points(_Source):
         if error.index is None or error.index >= len(self.file.lines):
             return error
         line = self.file.lines[error.index]
-        text = str(error).removeprefix("error: ")
-        return FairingError(f"error: {self.file.path}:{line}: {text}", index=error.index)
+        text = str(error)
+        return FairingError(f"{self.file.path}:{line}: {text}", index=error.index)
 
     def _network(self, options: argparse.Namespace) -> NetworkFairing:
         from moldloft.fairing import network
@@ -528,8 +528,7 @@ class _Points(_Source):
         ):
             if given:
                 raise Error(
-                    f"error: {name}: not for networks; {self.file.path} has "
-                    f"{len(self.file.blocks)} curves"
+                    f"{name}: not for networks; {self.file.path} has {len(self.file.blocks)} curves"
                 )
         places: dict[bytes, int] = {}
         rows: list[int] = []
@@ -597,11 +596,11 @@ class _Points(_Source):
 
 def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
     if text == "auto":
-        raise FairingError("error: --breaks: rows of surfaces are named, as in u5,v2")
+        raise FairingError("--breaks: rows of surfaces are named, as in u5,v2")
     out: dict[str, list[int]] = {"u": [], "v": []}
     for word in filter(None, (w.strip() for w in text.split(","))):
         if word[0] not in out or not word[1:].isdigit() or int(word[1:]) < 1:
-            raise FairingError(f"error: --breaks: expected rows as in u5,v2, found `{word}`")
+            raise FairingError(f"--breaks: expected rows as in u5,v2, found `{word}`")
         out[word[0]].append(int(word[1:]) - 1)
     return out["u"], out["v"]
 
@@ -613,7 +612,7 @@ def _grid_weights(path: str | None, shape: tuple[int, int]) -> Any:
         return None
     if len(numbers) != shape[0] * shape[1]:
         raise FairingError(
-            f"error: {path}: expected {shape[0]} x {shape[1]} weights, found {len(numbers)}"
+            f"{path}: expected {shape[0]} x {shape[1]} weights, found {len(numbers)}"
         )
     import numpy as np
 
@@ -631,9 +630,9 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
         ("--fixed", options.fixed),
     ):
         if given:
-            raise Error(f"error: {option} is for curves")
+            raise Error(f"{option} is for curves")
     if any(len(at) != 2 for at, _ in options.through + options.normal):
-        raise Error("error: --through, --normal: a place of a surface is U,V")
+        raise Error("--through, --normal: a place of a surface is U,V")
     rims: Any = options.rims
     if "=" in rims:
         rims = dict(word.partition("=")[::2] for word in rims.split(","))
@@ -667,13 +666,13 @@ class _Grids(_Source):
         count = len(file.grids)
         self.all = options.block is None and count > 1
         if options.seams and not self.all:
-            raise Error("error: --seams: for the blocks of a Plot3D file that are faired together")
+            raise Error("--seams: for the blocks of a Plot3D file that are faired together")
         if self.all:
             self.title = f"{file.path}: {count} blocks"
             return
         self.at = (options.block or 1) - 1
         if not 0 <= self.at < count:
-            raise Error(f"error: --block: expected 1 to {count}, found {options.block}")
+            raise Error(f"--block: expected 1 to {count}, found {options.block}")
         m, n = file.grids[self.at].shape[:2]
         block = f", block {self.at + 1}" if count > 1 else ""
         self.title = f"{file.path}{block}: {m} x {n} points"
@@ -706,7 +705,7 @@ class _Grids(_Source):
         ):
             if given:
                 raise Error(
-                    f"error: {name}: `{self.file.path}` has {len(self.file.grids)} blocks; choose "
+                    f"{name}: `{self.file.path}` has {len(self.file.grids)} blocks; choose "
                     "one with --block"
                 )
         rims: Any = options.rims
@@ -726,13 +725,13 @@ class _Grids(_Source):
 
     def write(self, result: Any, path: Path) -> Path:
         if self.all:
-            return _commit(path, self.file.encoded(list(result.grids)))
+            return self.file.write(path, result.grids)
         if path.suffix.lower() == ".vts":
             result.write_vtk(path)
             return path
         grids = list(self.file.grids)
         grids[self.at] = result.points
-        return _commit(path, self.file.encoded(grids))
+        return self.file.write(path, grids)
 
 
 class _Object(_Source):
@@ -780,9 +779,9 @@ class _Object(_Source):
             if path.suffix.lower() == ".vts":
                 result.write_vtk(path)
                 return path
-            from moldloft.fairing.files import GridFile
+            from moldloft.grids import write_plot3d
 
-            return _commit(path, GridFile(path, [], "stream").encoded([result.points]))
+            return write_plot3d(path, [result.points])
         from moldloft.fairing.spline_files import SPLINES, encoded
 
         _known_ending(path, None)
@@ -794,7 +793,7 @@ class _Object(_Source):
 def _write_log(result: Any, path: Path) -> Path:
     log = getattr(result, "log", None)
     if log is None:
-        raise Error("error: --log: only local steps of curves are written down")
+        raise Error("--log: only local steps of curves are written down")
     rows = ["point, x, y, z"]
     for index, to in zip(*log, strict=True):
         rows.append(", ".join([str(int(index) + 1), *(repr(float(c)) for c in to)]))

@@ -21,9 +21,9 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Formats each file; a program that does not parse stays as it is and is reported."""
-    from moldloft._core import format_text
     from moldloft.errors import Error
     from moldloft.files import Output, commit
+    from moldloft.language import format_text
 
     status = 0
     for file in options.files:
@@ -32,11 +32,11 @@ def run(options: argparse.Namespace) -> int:
             old = path.read_bytes()
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
-            raise FileError(f"error: cannot read `{file}`: {reason}") from error
+            raise FileError(f"cannot read `{file}`: {reason}") from error
         try:
             new = format_text(file, old).encode()
         except Error as error:
-            print(str(error).rstrip(), file=sys.stderr)
+            print(error.rendered, file=sys.stderr)
             status = 1
             continue
         if options.check:

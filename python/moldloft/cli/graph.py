@@ -24,8 +24,8 @@ def run(options: argparse.Namespace) -> int:
 
     model = open_model(options)
     report(model.diagnostics)
-    facts = [model._document.object(name) for name in model.objects]
-    status = 1 if model._document.has_errors() else 0
+    facts = [model.facts(name) for name in model.objects]
+    status = 1 if model.has_errors else 0
     if options.json:
         keys = ("name", "kind", "class", "ok")
         edges = [[parent, fact["name"]] for fact in facts for parent in fact["parents"]]

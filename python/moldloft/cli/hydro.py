@@ -85,16 +85,16 @@ def _range(text: str) -> list[float]:
 def run(options: argparse.Namespace) -> int:
     """Measures and reports."""
     if options.table and options.gz:
-        raise Error("error: ask for --table or for --gz, not for both")
+        raise Error("ask for --table or for --gz, not for both")
     if options.gz and (options.displacement is None or options.cg is None):
-        raise Error("error: --gz needs --displacement and --cg")
+        raise Error("--gz needs --displacement and --cg")
     if (options.plot or options.csv) and not (options.table or options.gz):
-        raise Error("error: --csv and --plot are of the rows of --table or --gz")
+        raise Error("--csv and --plot are of the rows of --table or --gz")
     with Progress() as progress:
         progress.stage(f"running {options.model}")
         model = open_model(options)
         report(model.diagnostics)
-        if model._document.has_errors():
+        if model.has_errors:
             return 1
         progress.stage("floating")
         common: dict[str, Any] = {

@@ -52,7 +52,7 @@ def server() -> Path:
     given = os.environ.get("MOLDLOFT_LSP")
     if given:
         if not Path(given).is_file():
-            raise Error(f"error: MOLDLOFT_LSP names `{given}`, which is no file")
+            raise Error(f"MOLDLOFT_LSP names `{given}`, which is no file")
         return Path(given)
     checkout = Path(__file__).resolve().parents[3]
     target = Path(os.environ.get("CARGO_TARGET_DIR", checkout / "target"))
@@ -65,6 +65,6 @@ def server() -> Path:
     if found:
         return Path(found)
     raise Error(
-        "error: the language server moldloft-lsp is not installed\n"
+        "the language server moldloft-lsp is not installed\n"
         "help: build it with `cargo install --path crates/lsp` in a checkout of Moldloft"
     )

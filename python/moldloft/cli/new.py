@@ -24,9 +24,9 @@ def run(options: argparse.Namespace) -> int:
     if path.suffix == "":
         path = path.with_suffix(".sdl")
     if path.suffix != ".sdl":
-        raise FileError(f"error: a new model is a program: give `{path.stem}.sdl`, not `{path}`")
+        raise FileError(f"a new model is a program: give `{path.stem}.sdl`, not `{path}`")
     if path.exists():
-        raise FileError(f"error: `{path}` is there already; give another name")
+        raise FileError(f"`{path}` is there already; give another name")
     text = STARTER.format(name=path.stem, file=path.name)
     commit(path.parent, [Output(path.name, text.encode())])
     print(f"made {path}; next: moldloft build {path}")

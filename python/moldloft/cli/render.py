@@ -92,9 +92,9 @@ def run(options: argparse.Namespace) -> int:
         progress.stage("drawing")
         path = Path(options.output or f"{Path(options.model).stem}.png")
         if options.traced is None:
-            picture = model._document.picture(*options.size)
+            picture = model.picture(*options.size)
         else:
             picture = _traced(options, model)
         commit(path.parent, [Output(path.name, picture)])
     print(path)
-    return 1 if model._document.has_errors() else 0
+    return 1 if model.has_errors else 0

@@ -59,48 +59,48 @@ class Session:
         """
         if not entry.strip():
             return []
-        document = self.model._document
+        model = self.model
         expression = entry.strip().rstrip(";")
         try:
-            return [shown(document.eval(expression))]
+            return [shown(model.eval(expression))]
         except Error as error:
             if _is_expression(expression, error):
                 raise
-        text = document.text()
-        printed = len(document.printed())
+        text = model.text
+        printed = len(model.printed)
         start = text if not text or text.endswith("\n") else text + "\n"
         # A statement is closed for whoever forgot it.
         closed = entry if entry.rstrip().endswith((";", "}")) else entry.rstrip() + ";"
-        known = {(d.id, d.message) for d in document.diagnostics()}
+        known = {(d.id, d.message) for d in model.diagnostics}
         try:
-            document.set_text(start + closed + "\n")
+            model.text = start + closed + "\n"
         except KeyboardInterrupt:
-            document.set_text(text)
+            model.text = text
             raise
-        if document.has_errors():
-            diagnostics = document.diagnostics()
+        if model.has_errors:
+            diagnostics = model.diagnostics
             new = [d for d in diagnostics if (d.id, d.message) not in known]
             told = "\n".join(str(d) for d in new or diagnostics)
-            document.set_text(text)
+            model.text = text
             raise ModelError(told, new or diagnostics)
         self._before.append(text)
-        new = [d for d in document.diagnostics() if (d.id, d.message) not in known]
-        return document.printed()[printed:] + [str(d).rstrip() for d in new]
+        new = [d for d in model.diagnostics if (d.id, d.message) not in known]
+        return model.printed[printed:] + [str(d).rstrip() for d in new]
 
     def undo(self) -> bool:
         """Takes back the last entry; false when there is none."""
         if not self._before:
             return False
-        self.model._document.set_text(self._before.pop())
+        self.model.text = self._before.pop()
         return True
 
     def names(self) -> set[str]:
         """The names of the variables."""
-        return {name for name, _, _ in self.model._document.variables()}
+        return set(self.model.types)
 
     def variables(self) -> list[str]:
         """A line for each variable."""
-        return [f"{name}: {shape}" for name, shape, _ in self.model._document.variables()]
+        return [f"{name}: {shape}" for name, shape in self.model.types.items()]
 
 
 def _is_expression(text: str, error: Error) -> bool:
@@ -171,7 +171,7 @@ def run(options: argparse.Namespace) -> int:
                     print(line)
             except Error as error:
                 failed = True
-                print(str(error).rstrip(), file=sys.stderr)
+                print(error.rendered, file=sys.stderr)
             except KeyboardInterrupt:
                 if not terminal:
                     raise
@@ -199,7 +199,7 @@ def _command(session: Session, entry: str) -> list[str] | None:
         path = Path(rest.strip())
         commit(path.parent, [Output(path.name, session.model.text.encode())])
         return [f"wrote {path}"]
-    raise Error(f"error: there is no command `{word}`; :help lists them")
+    raise Error(f"there is no command `{word}`; :help lists them")
 
 
 def _read(terminal: bool) -> str:
@@ -258,7 +258,7 @@ def _line_editor(session: Session) -> Iterator[None]:
 
     def complete(_: str, number: int) -> str | None:
         line = readline.get_line_buffer()[: readline.get_endidx()]
-        found = session.model._document.complete(line)
+        found = session.model.completions(line)
         return found[number] if number < len(found) else None
 
     readline.set_completer_delims(' \t\n()[]{},;=+-*/^|&<>!.:"')

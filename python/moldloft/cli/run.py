@@ -11,11 +11,12 @@ from moldloft.models import Model
 
 __all__ = ["add", "run"]
 
-_GRIDS = ("p3d", "vts", "stl", "cgns")
-
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
+    from moldloft.formats import formats
+
+    grids = [row.name for row in formats().values() if row.of_grids]
     add_model(parser)
     parser.add_argument(
         "-o",
@@ -29,9 +30,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="FORMAT",
         nargs="+",
         action="extend",
-        choices=list(_GRIDS),
+        choices=grids,
         default=[],
-        help="the surfaces of the program as structured grids: " + ", ".join(_GRIDS),
+        help="the surfaces of the program as structured grids: " + ", ".join(grids),
     )
     parser.add_argument("--json", action="store_true", help="one object: lines printed, files")
 
@@ -39,7 +40,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Runs the program; its files are written when it has no errors."""
     model = open_model(options)
-    failed = model._document.has_errors()
+    failed = model.has_errors
     report(model.diagnostics)
     if not options.json:
         for line in model.printed:
@@ -64,23 +65,15 @@ def _grids(model: Model, stem: Path, formats: list[str]) -> list[Path]:
     """Writes the surfaces among the variables, in the order of their declaration."""
     from moldloft import grids
 
-    variables = model._document.variables()
-    named = {name: value for name, shape, value in variables if shape.startswith("surface[")}
-    found = list(named.values())
-    if not found:
-        raise Error("error: the program has no surface to write")
+    surfaces = [name for name, type_ in model.types.items() if type_.startswith("surface[")]
+    if not surfaces:
+        raise Error("the program has no surface to write")
+    values = model.variables
+    found = [values[name] for name in surfaces]
     stem.parent.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
     for name in dict.fromkeys(formats):
-        path = stem.with_suffix(f".{name}")
-        if name == "vts":
-            written += grids.write_vts(path, found)
-        elif name == "p3d":
-            written.append(grids.write_plot3d(path, found))
-        elif name == "cgns":
-            written.append(grids.write_cgns(path, found, list(named)))
-        else:
-            written.append(grids.write_stl(path, found))
+        written += grids.write(stem.with_suffix(f".{name}"), found, names=surfaces)
     return written
 
 
@@ -91,7 +84,7 @@ def _write(folder: Path, files: dict[str, bytes]) -> list[Path]:
     root = folder.resolve()
     for name in files:
         if not (folder / name).resolve().is_relative_to(root):
-            raise FileError(f"error: cannot write `{name}`: a link leads out of `{folder}`")
+            raise FileError(f"cannot write `{name}`: a link leads out of `{folder}`")
     by_folder: dict[Path, list[Output]] = {}
     for name, data in files.items():
         path = folder / name

@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
     if options.edit or not options.file:
         host.prompt()
     if options.json:
-        data = json.loads(sketch._session.objects_json())
+        data = json.loads(sketch.session.objects_json())
         data["ok"] = not host.refused
         data["replies"] = [reply.to_dict() for reply in host.replies]
         print_json(data)
@@ -85,7 +85,7 @@ class Host:
 
     def __init__(self, sketch: Sketch, options: argparse.Namespace) -> None:
         self.sketch = sketch
-        self.session = sketch._session
+        self.session = sketch.session
         self.options = options
         self.refused = False
         self.replies: list[Reply] = []
@@ -104,9 +104,9 @@ class Host:
             text = path.read_text(encoding="utf-8")
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
-            raise FileError(f"error: cannot read `{path}`: {reason}") from error
+            raise FileError(f"cannot read `{path}`: {reason}") from error
         except UnicodeDecodeError as error:
-            raise FileError(f"error: cannot read `{path}`: it is no text in UTF-8") from error
+            raise FileError(f"cannot read `{path}`: it is no text in UTF-8") from error
         if text.lstrip().startswith(("[", "{")):
             self.run_line(f'INPUT "{path.name}"', where=str(path))
         else:
@@ -145,7 +145,7 @@ class Host:
         try:
             commit(path.parent, [Output(path.name, file[1])])
         except Error as error:
-            text = str(error).removeprefix("error: ")
+            text = str(error)
             return Reply("error", text, "choose another name or folder", 600)
         whole = path.suffix.lower() == ".json" or file[1] == self.session.text(None).encode()
         if path.suffix.lower() in (".skt", ".json") and whole:
@@ -220,7 +220,7 @@ class Host:
         elif left:
             print(_offer(left[0], self.options.file), file=sys.stderr)
         elif self.options.recover:
-            raise Error("error: there is no unsaved session to go on with")
+            raise Error("there is no unsaved session to go on with")
         if taken is not None:
             commands = taken.commands
             before = self.refused
@@ -239,7 +239,7 @@ class Host:
         except OSError as error:
             where = own or folder
             reason = (error.strerror or str(error)).lower()
-            raise FileError(f"error: cannot keep a journal in `{where}`: {reason}") from error
+            raise FileError(f"cannot keep a journal in `{where}`: {reason}") from error
         if taken is not None and taken.path != self.journal.path:
             taken.path.unlink(missing_ok=True)
 
@@ -276,7 +276,7 @@ def _line_editor(sketch: Sketch) -> Iterator[None]:
 
     def complete(_: str, number: int) -> str | None:
         line = readline.get_line_buffer()[: readline.get_endidx()]
-        found = sketch._session.complete(line)
+        found = sketch.session.complete(line)
         return found[number] + " " if number < len(found) else None
 
     readline.set_completer_delims(" ,=;")

@@ -21,17 +21,17 @@ def points_of(points: ArrayLike, dimensions: int = 2) -> tuple[Floats, int]:
     try:
         given = np.asarray(points, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise FairingError(f"error: the points are not an array of numbers: {error}") from error
+        raise FairingError(f"the points are not an array of numbers: {error}") from error
     if given.ndim != dimensions or given.shape[-1] not in (2, 3):
         wanted = "(n, 2) or (n, 3)" if dimensions == 2 else "(m, n, 3)"
-        raise FairingError(f"error: expected points {wanted}, found an array {given.shape}")
+        raise FairingError(f"expected points {wanted}, found an array {given.shape}")
     width = given.shape[-1]
     if width == 2:
         given = np.concatenate([given, np.zeros((*given.shape[:-1], 1))], axis=-1)
     flat = np.isfinite(given.reshape(-1, 3)).all(axis=1)
     if not flat.all():
         bad = int(np.flatnonzero(~flat)[0])
-        raise FairingError(f"error: point {bad + 1} is not finite", index=bad)
+        raise FairingError(f"point {bad + 1} is not finite", index=bad)
     return np.ascontiguousarray(given), width
 
 
@@ -45,7 +45,7 @@ def refuse_repeats(points: Floats, closed: bool) -> None:
         second = (k + 1) % len(points)
         hint = "a closed curve does not repeat its first point" if second == 0 else "remove one"
         raise FairingError(
-            f"error: points {k + 1} and {second + 1} coincide: {hint}", index=max(k, second)
+            f"points {k + 1} and {second + 1} coincide: {hint}", index=max(k, second)
         )
 
 
@@ -58,12 +58,12 @@ def radii(tol: ArrayLike | None, count: int) -> list[float]:
         each = np.broadcast_to(given.ravel() if given.ndim else given, count)
     except ValueError as error:
         raise FairingError(
-            f"error: expected one tolerance or {count} of them, found {given.size}"
+            f"expected one tolerance or {count} of them, found {given.size}"
         ) from error
     bad = np.flatnonzero(np.isnan(each) | (each < 0))
     if len(bad):
         value = each[bad[0]]
-        raise FairingError(f"error: expected a tolerance of at least 0, found {value:g}")
+        raise FairingError(f"expected a tolerance of at least 0, found {value:g}")
     return [float(r) for r in each]
 
 
@@ -78,7 +78,7 @@ def direction(motion: Any) -> tuple[str, tuple[float, float, float]]:
     if vector.size == 2:
         vector = np.append(vector, 0.0)
     if vector.size != 3 or not np.isfinite(vector).all() or not vector.any():
-        raise FairingError(f"error: expected a direction of some length, found {motion!r}")
+        raise FairingError(f"expected a direction of some length, found {motion!r}")
     return word, (float(vector[0]), float(vector[1]), float(vector[2]))
 
 

@@ -144,7 +144,7 @@ class Fairing:
     def displacement(self) -> tuple[Floats, Floats]:
         """How far each place of the curve has moved: share of the arc length and percent of it."""
         if self.spline.closed != self.original.closed:
-            raise FairingError("error: the faired curve and its original are not alike")
+            raise FairingError("the faired curve and its original are not alike")
         before, after = self.original.samples(8), self.spline.samples(8)
         far = np.linalg.norm(after.points - before.points, axis=1)
         return before.arc, 100.0 * far / self.length if self.length > 0 else far
@@ -279,14 +279,14 @@ def _conditions(
         for t, vector in rows:
             v = _vector(vector)
             if not 0 <= t <= 1:
-                raise FairingError(f"error: expected a parameter from 0 to 1, found {t:g}")
+                raise FairingError(f"expected a parameter from 0 to 1, found {t:g}")
             if word == "tangent" and not any(v):
-                raise FairingError(f"error: the tangent at {t:g} has no direction")
+                raise FairingError(f"the tangent at {t:g} has no direction")
             out.append((word, float(t), v, none))
             labels.append(f"{word} at {t:g}")
     for word in keep:
         if word not in ("area", "centroid", "volume"):
-            raise FairingError(f"error: `{word}` cannot be kept; what can: area, centroid, volume")
+            raise FairingError(f"`{word}` cannot be kept; what can: area, centroid, volume")
         axis = (1.0, 0.0, 0.0) if word == "volume" else (0.0, 0.0, 1.0)
         out.append((word, 0.0, axis, none))
         labels.append(f"keep {word}")
@@ -296,23 +296,23 @@ def _conditions(
 def _joins(joins: Sequence[Spline], spline: Spline) -> list[_Condition]:
     """What the curve's ends run on from: conditions whose parameter is 0 or 1."""
     if joins and spline.closed:
-        raise FairingError("error: a closed curve has no ends to join")
+        raise FairingError("a closed curve has no ends to join")
     out: dict[int, _Condition] = {}
     own = spline([0.0, 1.0])
     extent = float(np.ptp(spline.control_points, axis=0).max())
     for k, other in enumerate(joins):
         if not isinstance(other, Spline) or other.closed:
-            raise FairingError(f"error: join {k + 1} is no open spline")
+            raise FairingError(f"join {k + 1} is no open spline")
         ends = other.at([0.0, 1.0])
         away = np.linalg.norm(own[:, None] - ends.points[None], axis=2)
         a, b = (int(i) for i in np.unravel_index(int(np.argmin(away)), away.shape))
         if not away[a, b] <= TOGETHER * extent:
             raise FairingError(
-                f"error: join {k + 1} does not begin or end where the curve does: its nearest end "
+                f"join {k + 1} does not begin or end where the curve does: its nearest end "
                 f"is {away[a, b]:.3e} off (a fitted curve ends at its points: as `fit`)"
             )
         if a in out:
-            raise FairingError(f"error: two curves join at the {('start', 'end')[a]} of the curve")
+            raise FairingError(f"two curves join at the {('start', 'end')[a]} of the curve")
         # The neighbour's parameter runs into the start, or on from the end, or the other way.
         first = ends.first[b] * (-1.0 if a == b else 1.0)
         out[a] = ("join", float(a), _vector(first), _vector(ends.second[b]))
@@ -457,7 +457,7 @@ def fair_curve(
         With :attr:`~moldloft.errors.FairingError.index`, the point at fault.
     """
     if as_ not in ROLES:
-        raise FairingError(f"error: points are `control`, `points` or `fit`, not `{as_}`")
+        raise FairingError(f"points are `control`, `points` or `fit`, not `{as_}`")
     started = time.perf_counter()
     own = _Own(knots, weights, period)
     word, share = _goal(goal)
@@ -484,15 +484,15 @@ def fair_curve(
         if as_ == "points" and free and bound is None and spacing not in ("index", "uniform"):
             return _fair_points(points, tol, asked, started)
     if bound == "data":
-        raise FairingError('error: bound `data` is for optima of data, `as_="fit"`')
+        raise FairingError('bound `data` is for optima of data, `as_="fit"`')
     if len(release):
-        raise FairingError('error: release is for optima of data, `as_="fit"`')
+        raise FairingError('release is for optima of data, `as_="fit"`')
     measure = measure or "second"
     if spacing == "index":
         spacing = "uniform"
     if not isinstance(spacing, str) or spacing not in ("chord", "centripetal", "uniform"):
         raise FairingError(
-            f"error: spacing {spacing!r} is for optima of data; here: chord, centripetal or index"
+            f"spacing {spacing!r} is for optima of data; here: chord, centripetal or index"
         )
     made = _prepared(points, as_, closed, degree, spacing, count, breaks, own)
     spline, data, width = made.spline, made.data, made.width
@@ -530,7 +530,7 @@ def fair_curve(
         "log": log,
     }
     if conditions and mode != "optimum":
-        raise FairingError("error: only the optimum keeps conditions; take mode `optimum`")
+        raise FairingError("only the optimum keeps conditions; take mode `optimum`")
     core, told = spline._core.fair(chosen)
     seconds = time.perf_counter() - started
     return _result(made, Spline._of(core), told, tol, mode, width, seconds, data)
@@ -564,7 +564,7 @@ def _goal(given: Any) -> tuple[str, float]:
     known = {"near": BUDGET, "budget": BUDGET, "fairest": 0.0, "nearest": 0.1}
     if word not in known:
         raise FairingError(
-            f"error: there is no goal `{word}`; there are: near, fairest, budget, nearest"
+            f"there is no goal `{word}`; there are: near, fairest, budget, nearest"
         )
     return str(word), known[word] if share is None else float(share)
 
@@ -581,7 +581,7 @@ def _chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: 
     """Points by number, or those that findings of a kind propose."""
     if isinstance(given, str):
         if given != "auto":
-            raise FairingError(f"error: expected numbers of points or `auto`, found `{given}`")
+            raise FairingError(f"expected numbers of points or `auto`, found `{given}`")
         return sorted({f.index for f in found if f.kind == kind})
     return sorted({_index(k, count) for k in given})
 
@@ -599,7 +599,7 @@ def _fair_data(
     least = 2 * asked.degree + 2 if asked.closed else asked.degree + 2
     if n < least:
         raise FairingError(
-            f"error: expected at least {least} points for degree {asked.degree}, found {n}"
+            f"expected at least {least} points for degree {asked.degree}, found {n}"
         )
     found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
     breaks = _chosen(asked.breaks, found, "corner", n)
@@ -613,7 +613,7 @@ def _fair_data(
         size = float(np.ptp(data, axis=0).max())
         limits[k] = limits[k] + 2.0 * float(error) if error is not None else size
     if asked.closed and tol is None:
-        raise FairingError("error: a closed curve without a tolerance shrinks to a point")
+        raise FairingError("a closed curve without a tolerance shrinks to a point")
     word, way = direction(asked.motion)
     spaced, spacing_way = spacing_of(asked.spacing)
     kept = list(_ends(asked.ends if asked.ends is not None else "free", asked.closed))
@@ -630,7 +630,7 @@ def _fair_data(
         at = [float(t) for t in np.asarray(asked.at, np.float64).ravel()]
         rises = len(at) == n and all(a < b for a, b in pairwise(at)) and at[0] >= 0 and at[-1] <= 1
         if not rises:
-            raise FairingError(f"error: expected {n} rising parameters in [0, 1]")
+            raise FairingError(f"expected {n} rising parameters in [0, 1]")
     measure = _data_measure(asked.measure, asked.degree)
     core, original, told = _core.Spline.fair_data(
         data,
@@ -828,9 +828,7 @@ class _Prepared:
 def _index(given: Any, count: int) -> int:
     k = int(given)
     if not 0 <= k < count:
-        raise FairingError(
-            f"error: expected points from 0 to {count - 1}, found {k}", index=max(k, 0)
-        )
+        raise FairingError(f"expected points from 0 to {count - 1}, found {k}", index=max(k, 0))
     return k
 
 
@@ -846,7 +844,7 @@ def _prepared(
 ) -> _Prepared:
     """The spline to fair, and what the data give away."""
     if own.given and (isinstance(points, Spline) or role == "points"):
-        raise FairingError("error: knots and weights are for control points and fits")
+        raise FairingError("knots and weights are for control points and fits")
     if isinstance(points, Spline):
         data, width = points.control_points, 3
         spline: Spline = points
@@ -857,7 +855,7 @@ def _prepared(
         least = 2 * degree + 2 if closed else degree + 2
         if len(data) < least:
             raise FairingError(
-                f"error: expected at least {least} points for degree {degree}, found {len(data)}"
+                f"expected at least {least} points for degree {degree}, found {len(data)}"
             )
         plain = Spline(data, degree=degree, closed=closed, clamped=False)
         spline = own.control(data, degree, closed) if own.given and role == "control" else plain
@@ -867,7 +865,7 @@ def _prepared(
     corrected: list[Finding] = []
     if isinstance(breaks, str):
         if breaks != "auto":
-            raise FairingError(f"error: breaks are numbers of points or `auto`, not `{breaks}`")
+            raise FairingError(f"breaks are numbers of points or `auto`, not `{breaks}`")
         corrected, found = found, []
         chosen = sorted({f.index for f in corrected if f.kind == "corner"})
     else:
@@ -883,7 +881,7 @@ def _prepared(
                 moved[f.index] -= f.vector
         if own.given:
             if marks:
-                raise FairingError("error: a fit with knots or weights has its breaks in the knots")
+                raise FairingError("a fit with knots or weights has its breaks in the knots")
             spline, parameters = Spline._fit(
                 moved, degree, own.knots, count, own.weights, closed, own.period, spacing, None
             )
@@ -891,7 +889,7 @@ def _prepared(
             core, parameters, _, _ = _least_squares(moved, degree, count, spacing, closed)
             spline = core
             if marks:
-                raise FairingError("error: a least-squares fit has no breaks: fit all points")
+                raise FairingError("a least-squares fit has no breaks: fit all points")
         else:
             spline, parameters, marks = Spline._interpolated(moved, degree, spacing, closed, chosen)
     return _Prepared(
@@ -927,7 +925,7 @@ def _left(tol: ArrayLike | None, made: _Prepared) -> ArrayLike | None:
     if short.max() > 0:
         k = int(short.argmax())
         raise FairingError(
-            f"error: a spline of {len(made.spline.control_points)} control points is "
+            f"a spline of {len(made.spline.control_points)} control points is "
             f"{off[k]:.3e} off point {k + 1}: more control points, or a larger tolerance",
             index=k,
         )

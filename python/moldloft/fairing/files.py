@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-import struct
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from moldloft.errors import FairingError, FileError
+from moldloft import _core
+from moldloft.errors import FairingError, FileError, FormatError
+from moldloft.grids import Plot3DVariant, decode_plot3d, write_plot3d
 
 if TYPE_CHECKING:
     import os
@@ -64,31 +66,13 @@ class PointFile:
 def _bytes(path: Path) -> bytes:
     try:
         if path.stat().st_size > LARGEST:
-            raise FileError(f"error: `{path}` is larger than {LARGEST >> 20} MB")
+            raise FileError(f"`{path}` is larger than {LARGEST >> 20} MB")
         return path.read_bytes()
     except FileError:
         raise
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        raise FileError(f"error: cannot read `{path}`: {reason}") from error
-
-
-def _number(word: str) -> float | None:
-    # Fortran writes 1.0D-3.
-    try:
-        return float(word)
-    except ValueError:
-        try:
-            return float(word.replace("D", "E").replace("d", "e"))
-        except ValueError:
-            return None
-
-
-def _split(line: str) -> tuple[list[str], str | None]:
-    for delimiter in (",", ";", "\t"):
-        if delimiter in line:
-            return [w.strip() for w in line.split(delimiter)], delimiter
-    return line.split(), None
+        raise FileError(f"cannot read `{path}`: {reason}") from error
 
 
 def read_points(path: str | os.PathLike[str]) -> PointFile:
@@ -106,110 +90,40 @@ def read_points(path: str | os.PathLike[str]) -> PointFile:
     """
     path = Path(path)
     try:
-        text = _bytes(path).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise FairingError(f"error: `{path}` is no text: byte {error.start}") from error
-    rows: list[list[float]] = []
-    lines: list[int] = []
-    starts: list[int] = []
-    head: list[str] = []
-    comments: list[str] = []
-    delimiter: str | None = None
-    width = 0
-    open_block = False
-
-    def refuse(line: int, what: str) -> FairingError:
-        return FairingError(f"error: {path}:{line}: {what}")
-
-    for number, raw in enumerate(text.splitlines(), 1):
-        line = raw.split("#", 1)[0].strip()
-        if not line:
-            if not raw.strip():
-                open_block = False
-            elif not rows:
-                comments.append(raw.rstrip())
-            continue
-        words, found = _split(line)
-        values = [_number(w) for w in words]
-        if not rows and any(v is None for v in values):
-            # A title may hold numbers, names of columns do not.
-            if not head and (found is None or all(v is None for v in values)):
-                head.append(raw.rstrip())
-                continue
-            bad = next(w for w, v in zip(words, values, strict=True) if v is None)
-            raise refuse(number, f"expected a number, found `{bad}`")
-        if None in values:
-            bad = words[values.index(None)]
-            what = f"expected a number, found `{bad}`" if bad else "a number is missing"
-            raise refuse(number, what)
-        numbers = [v for v in values if v is not None]
-        for word, value in zip(words, numbers, strict=True):
-            if not math.isfinite(value):
-                raise refuse(number, f"`{word}` is not finite")
-        if not rows:
-            if len(numbers) not in (2, 3):
-                raise refuse(number, f"expected 2 or 3 columns, found {len(numbers)}")
-            width, delimiter = len(numbers), found
-        if len(numbers) != width:
-            raise refuse(number, f"expected {width} columns, found {len(numbers)}")
-        if not open_block:
-            starts.append(len(rows))
-            open_block = True
-        rows.append(numbers)
-        lines.append(number)
-    if not rows:
-        raise FairingError(f"error: there are no points in `{path}`")
-    made = PointFile(path, np.array(rows), lines, [], comments + head, delimiter)
-    ends = [*starts[1:], len(rows)]
-    made.blocks = [range(a, b) for a, b in zip(starts, ends, strict=True)]
-    return _halves(made)
+        rows, found = _core.read_points(_bytes(path))
+    except FormatError as error:
+        raise _at(path, error) from error
+    halves = found["halves"]
+    notes = ["the two halves are read as one curve from the upper trailing edge"] if halves else []
+    return PointFile(
+        path,
+        np.ascontiguousarray(rows[:, : found["columns"]]),
+        found["lines"],
+        [range(first, end) for first, end in found["blocks"]],
+        found["head"],
+        found["delimiter"],
+        halves,
+        notes,
+    )
 
 
-def _halves(file: PointFile) -> PointFile:
-    """An aerofoil in two halves becomes one run from the upper trailing edge round the nose."""
-    if file.width != 2 or len(file.points) < 7:
-        return file
-    a, b = file.points[0]
-    if not (a > 1.5 and b > 1.5 and a == int(a) and b == int(b)):
-        return file
-    upper, lower = int(a), int(b)
-    if upper + lower != len(file.points) - 1:
-        return file
-    order = [*range(upper, 0, -1), *range(upper + 1, upper + lower + 1)]
-    if (file.points[1] == file.points[upper + 1]).all():
-        del order[upper]
-    file.points = file.points[order]
-    file.lines = [file.lines[k] for k in order]
-    file.blocks = [range(len(order))]
-    file.counts = (upper, lower)
-    file.notes.append("the two halves are read as one curve from the upper trailing edge")
-    return file
+def _at(path: Path, error: FormatError) -> FairingError:
+    """The same fault with its place in the file."""
+    what = f"expected {error.expected}, found {error.found}"
+    if error.place == "line":
+        return FairingError(f"{path}:{error.number}: {what}")
+    return FairingError(f"`{path}` is no {error.format} grid: {error.place} {error.number}: {what}")
 
 
 def points_text(points: Floats, like: PointFile | None = None, delimiter: str = ",") -> str:
     """Rows of points as text that reads back to the bit, in the form of a file read."""
-    if like is not None:
-        join = {None: " ", ",": ", ", ";": "; ", "\t": "\t"}[like.delimiter]
-    else:
-        join = delimiter + " " if delimiter.strip() else delimiter
-
-    def row(p: Floats) -> str:
-        return join.join(repr(float(c) + 0.0) for c in p)
-
-    out = list(like.head) if like else []
-    if like is not None and like.counts is not None:
-        upper, lower = like.counts
-        first, second = points[upper - 1 :: -1][:upper], points[len(points) - lower :]
-        counted = [f"{upper}.{join}{lower}.", ""]
-        return "\n".join([*out, *counted, *map(row, first), "", *map(row, second), ""])
-    blocks = like.blocks if like is not None and len(like.points) == len(points) else []
-    if not blocks:
-        blocks = [range(len(points))]
-    for k, block in enumerate(blocks):
-        if k:
-            out.append("")
-        out += [row(points[i]) for i in block]
-    return "\n".join([*out, ""])
+    own = delimiter if like is None else (like.delimiter or " ")
+    separator = own + " " if own.strip() else own
+    head = like.head if like else []
+    halves = like.counts if like else None
+    blocks = [(block.start, block.stop) for block in like.blocks] if like else []
+    rows = np.ascontiguousarray(points, dtype=np.float64)
+    return _core.points_text(rows, separator, head, blocks, halves)
 
 
 def read_numbers(path: str | os.PathLike[str]) -> list[float]:
@@ -226,12 +140,15 @@ def read_numbers(path: str | os.PathLike[str]) -> list[float]:
     out = []
     for number, line in enumerate(_bytes(path).decode("latin-1").splitlines(), 1):
         for word in line.partition("#")[0].replace(",", " ").replace(";", " ").split():
-            value = _number(word)
-            if value is None or not math.isfinite(value):
-                raise FairingError(f"error: {path}:{number}: expected a number, found `{word}`")
+            try:
+                value = float(word.replace("D", "E").replace("d", "e"))
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value):
+                raise FairingError(f"{path}:{number}: expected a number, found `{word}`")
             out.append(value)
     if not out:
-        raise FairingError(f"error: `{path}` has no numbers")
+        raise FairingError(f"`{path}` has no numbers")
     return out
 
 
@@ -243,29 +160,33 @@ class GridFile:
     """Where it was read."""
     grids: list[Floats]
     """Its blocks, ``(m, n, 3)`` each."""
-    layout: str
-    """``"text"``, ``"stream"`` or ``"records"``."""
-    counted: bool = True
-    """Whether it begins with the number of blocks."""
+    variant: Plot3DVariant
+    """What Plot3D leaves open."""
+    iblank: list[NDArray[np.int32]] | None = None
+    """A whole number for each point of each block, if the file has them."""
 
-    def encoded(self, grids: list[Floats]) -> bytes:
-        """The file with other coordinates."""
-        sizes = [n for g in grids for n in (g.shape[0], g.shape[1], 1)]
-        # i runs fastest, and all x come before all y.
-        numbers = [np.ascontiguousarray(np.moveaxis(g, 2, 0).transpose(0, 2, 1)) for g in grids]
-        if self.layout == "text":
-            out = [f"{len(grids)}"] if self.counted else []
-            out += [" ".join(map(str, sizes[k : k + 3])) for k in range(0, len(sizes), 3)]
-            for block in numbers:
-                flat = [repr(float(x) + 0.0) for x in block.ravel()]
-                out += [" ".join(flat[k : k + 4]) for k in range(0, len(flat), 4)]
-            return ("\n".join(out) + "\n").encode()
-        parts = [struct.pack("<i", len(grids))] if self.counted else []
-        parts.append(struct.pack(f"<{len(sizes)}i", *sizes))
-        parts += [block.astype("<f8").tobytes() for block in numbers]
-        if self.layout == "records":
-            parts = [struct.pack("<i", len(p)) + p + struct.pack("<i", len(p)) for p in parts]
-        return b"".join(parts)
+    @property
+    def layout(self) -> str:
+        """``"text"``, ``"stream"`` or ``"records"``."""
+        return self.variant.layout
+
+    @property
+    def counted(self) -> bool:
+        """Whether it begins with the number of blocks."""
+        return self.variant.multi
+
+    def write(self, path: str | os.PathLike[str], grids: Sequence[Floats]) -> Path:
+        """Write other coordinates in the same variant, in double precision.
+
+        A third coordinate is added where the file has two and the points need it; blanking is kept
+        where the blocks have as many points as those read.
+        """
+        flat = all((grid[..., 2] == 0).all() for grid in grids)
+        variant = replace(self.variant, double=True, three=self.variant.three or not flat)
+        blanks = self.iblank
+        if blanks is not None and [b.shape for b in blanks] != [g.shape[:2] for g in grids]:
+            blanks = None
+        return write_plot3d(Path(path), grids, variant, iblank=blanks)
 
 
 _GRID_SUFFIXES = {".p3d", ".plot3d", ".xyz", ".x", ".g", ".grd", ".fmt", ".grid"}
@@ -286,13 +207,19 @@ def is_grid(path: Path) -> bool:
         return True
     first = [line.split() for line in start.decode("latin-1").splitlines() if line.strip()][:2]
     # A count of blocks, or sizes: whole numbers alone.
-    return bool(first) and len(first[0]) in (1, 3) and all(w.isdigit() for w in first[0])
+    whole = bool(first) and all(w.isdigit() for w in first[0])
+    if whole and len(first[0]) == 2:
+        # Two sizes or a point: a grid has as many numbers as its sizes ask for.
+        try:
+            decode_plot3d(path.read_bytes())
+        except (FormatError, OSError):
+            return False
+        return True
+    return whole and len(first[0]) in (1, 3)
 
 
 def read_grids(path: str | os.PathLike[str]) -> GridFile:
-    """Read the surfaces of a Plot3D file.
-
-    Text, plain numbers or Fortran records, one block or several, three coordinates.
+    """Read the surfaces of a Plot3D file of any variant, see :func:`moldloft.grids.read_plot3d`.
 
     Raises
     ------
@@ -300,132 +227,22 @@ def read_grids(path: str | os.PathLike[str]) -> GridFile:
         When it is no such file, or holds volumes.
     """
     path = Path(path)
-    data = _bytes(path)
-    if b"\0" not in data[:4096]:
-        return _text_grids(path, data)
-    for layout in ("stream", "records"):
-        for counted in (True, False):
-            grids = _binary_grids(data, layout, counted)
-            if grids is not None:
-                return GridFile(path, _flat(path, grids), layout, counted)
-    raise FairingError(
-        f"error: `{path}` is no Plot3D grid: its length does not follow from its sizes"
-    )
-
-
-def _flat(path: Path, grids: list[Floats]) -> list[Floats]:
-    out = []
-    for k, grid in enumerate(grids):
-        thick = [axis for axis in range(3) if grid.shape[axis] > 1]
-        if len(thick) != 2:
-            size = " x ".join(map(str, grid.shape[:3]))
-            raise FairingError(f"error: {path}: block {k + 1} is {size}: expected a surface")
-        one = next(axis for axis in range(3) if grid.shape[axis] == 1)
-        surface = np.ascontiguousarray(np.squeeze(grid, axis=one))
-        if not np.isfinite(surface).all():
-            raise FairingError(f"error: {path}: block {k + 1} has a point that is not finite")
-        out.append(surface)
-    return out
-
-
-def _shaped(sizes: list[int], numbers: Floats) -> Floats:
-    ni, nj, nk = sizes
-    grid = np.moveaxis(numbers.reshape(3, nk, nj, ni), 0, 3).transpose(2, 1, 0, 3)
-    return np.asarray(grid, np.float64)
-
-
-def _text_grids(path: Path, data: bytes) -> GridFile:
-    words: list[str] = []
-    lines: list[int] = []
-    for number, line in enumerate(data.decode("latin-1").splitlines(), 1):
-        own = line.replace(",", " ").split()
-        words += own
-        lines += [number] * len(own)
-    first = data.decode("latin-1").split("\n", 1)[0].split()
-    counted = len(first) == 1
-
-    def whole(at: int) -> int:
-        if at >= len(words):
-            raise FairingError(f"error: `{path}` ends before its sizes do")
-        if not words[at].isdigit() or int(words[at]) < 1:
-            raise FairingError(f"error: {path}:{lines[at]}: expected a size, found `{words[at]}`")
-        return int(words[at])
-
-    blocks = whole(0) if counted else 1
-    at = 1 if counted else 0
-    if blocks > len(words):
-        raise FairingError(f"error: {path}:1: {blocks} blocks do not fit into the file")
-    sizes = [[whole(at + 3 * b + c) for c in range(3)] for b in range(blocks)]
-    at += 3 * blocks
-    grids: list[Floats] = []
-    for size in sizes:
-        count = 3 * math.prod(size)
-        part = words[at : at + count]
-        if len(part) < count:
-            raise FairingError(
-                f"error: `{path}` ends early: expected {count} coordinates of block "
-                f"{len(grids) + 1}, found {len(part)}"
-            )
-        values = [_number(w) for w in part]
-        if None in values:
-            bad = values.index(None)
-            raise FairingError(
-                f"error: {path}:{lines[at + bad]}: expected a number, found `{part[bad]}`"
-            )
-        grids.append(_shaped(size, np.array(values, np.float64)))
-        at += count
-    if at < len(words):
-        raise FairingError(f"error: {path}:{lines[at]}: {len(words) - at} numbers too many")
-    return GridFile(path, _flat(path, grids), "text", counted)
-
-
-def _binary_grids(data: bytes, layout: str, counted: bool) -> list[Floats] | None:
-    at = 0
-
-    def take(length: int) -> bytes | None:
-        nonlocal at
-        if layout == "records":
-            if data[at : at + 4] != struct.pack("<i", length):
-                return None
-            at += 4
-        part = data[at : at + length]
-        at += length
-        if layout == "records":
-            if data[at : at + 4] != struct.pack("<i", length):
-                return None
-            at += 4
-        return part if len(part) == length else None
-
-    blocks = 1
-    if counted:
-        head = take(4)
-        if head is None:
-            return None
-        (blocks,) = struct.unpack("<i", head)
-    if not 1 <= blocks <= len(data) // 12 + 1:
-        return None
-    head = take(12 * blocks)
-    if head is None:
-        return None
-    sizes = np.frombuffer(head, "<i4").reshape(-1, 3)
-    if (sizes < 1).any():
-        return None
-    counts = [3 * math.prod(int(n) for n in own) for own in sizes]
-    for width, kind in ((8, "<f8"), (4, "<f4")):
-        start = at
-        grids: list[Floats] = []
-        for own, count in zip(sizes.tolist(), counts, strict=True):
-            if count * width > len(data):
-                break
-            part = take(count * width)
-            if part is None:
-                break
-            numbers = np.frombuffer(part, kind).astype(np.float64)
-            grids.append(_shaped(own, numbers))
-        if len(grids) == blocks and at == len(data):
-            return grids
-        at = start
-    return None
+    try:
+        blocks, variant, iblank = decode_plot3d(_bytes(path))
+    except FormatError as error:
+        raise _at(path, error) from error
+    surfaces = []
+    for k, grid in enumerate(blocks):
+        size = grid.shape[:-1] if grid.ndim == 4 else (*grid.shape[:-1], 1)
+        if sum(n > 1 for n in size) != 2:
+            sizes = " x ".join(map(str, size))
+            raise FairingError(f"{path}: block {k + 1} is {sizes}: expected a surface")
+        one = size.index(1)
+        whole = grid.reshape(*size, 3)
+        surfaces.append(np.ascontiguousarray(np.squeeze(whole, axis=one)))
+        if iblank is not None:
+            iblank[k] = np.squeeze(iblank[k].reshape(size), axis=one)
+    return GridFile(path, surfaces, variant, iblank)
 
 
 def write_vts(path: str | os.PathLike[str], points: Floats, fields: dict[str, Any]) -> None:
@@ -435,37 +252,11 @@ def write_vts(path: str | os.PathLike[str], points: Floats, fields: dict[str, An
     """
     from moldloft.files import Output, commit
 
-    path = Path(path)
-    commit(path.parent, [Output(path.name, encode_vts(points, fields))])
-
-
-def encode_vts(points: Floats, fields: dict[str, Any]) -> bytes:
-    """The bytes of :func:`write_vts`."""
-    m, n = points.shape[:2]
-    blob = b""
-    arrays = []
-
-    def add(name: str, values: Any) -> str:
-        nonlocal blob
+    def shaped(values: Any) -> Floats:
         grid = np.asarray(values, np.float64)
-        parts = 1 if grid.ndim == 2 else grid.shape[2]
-        # i runs fastest.
-        data = np.ascontiguousarray(np.swapaxes(grid, 0, 1)).astype("<f8").tobytes()
-        offset = len(blob)
-        blob += struct.pack("<Q", len(data)) + data
-        return (
-            f'<DataArray type="Float64" Name="{name}" NumberOfComponents="{parts}" '
-            f'format="appended" offset="{offset}"/>\n'
-        )
+        return np.ascontiguousarray(grid.reshape(*grid.shape[:2], 1, -1))
 
-    place = add("Points", points)
-    arrays = [add(name, values) for name, values in fields.items()]
-    extent = f"0 {m - 1} 0 {n - 1} 0 0"
-    head = (
-        '<?xml version="1.0"?>\n<VTKFile type="StructuredGrid" version="1.0" '
-        'byte_order="LittleEndian" header_type="UInt64">\n'
-        f'<StructuredGrid WholeExtent="{extent}">\n<Piece Extent="{extent}">\n'
-        f"<PointData>\n{''.join(arrays)}</PointData>\n<Points>\n{place}</Points>\n"
-        '</Piece>\n</StructuredGrid>\n<AppendedData encoding="raw">\n_'
-    )
-    return head.encode() + blob + b"\n</AppendedData>\n</VTKFile>\n"
+    path = Path(path)
+    named = [(name, shaped(values)) for name, values in fields.items()]
+    data = _core.grid_with_fields(shaped(points), named)
+    commit(path.parent, [Output(path.name, data)])

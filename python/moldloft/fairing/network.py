@@ -222,15 +222,15 @@ def network(
         closed = len(own) > 1 and own[0] == own[-1]
         own = own[:-1] if closed else own
         if len(set(own)) < len(own):
-            raise FairingError(f"error: curve {k + 1} passes twice through a point")
+            raise FairingError(f"curve {k + 1} passes twice through a point")
         least = 2 * degree + 2 if closed else degree + 2
         if len(own) < least:
             raise FairingError(
-                f"error: expected at least {least} points of curve {k + 1}, found {len(own)}"
+                f"expected at least {least} points of curve {k + 1}, found {len(own)}"
             )
         lists.append((own, closed))
     if not lists:
-        raise FairingError("error: there are no curves")
+        raise FairingError("there are no curves")
     uses = np.zeros(count, int)
     ends = np.zeros(count, int)
     for own, closed in lists:
@@ -244,9 +244,7 @@ def network(
             "none": np.zeros(count, bool),
         }.get(fixed)
         if kept is None:
-            raise FairingError(
-                f"error: fixed points are corners, ends, none or numbers, not `{fixed}`"
-            )
+            raise FairingError(f"fixed points are corners, ends, none or numbers, not `{fixed}`")
         still = [int(i) for i in np.flatnonzero(kept)]
     else:
         still = [_number(i, count) for i in fixed]
@@ -331,7 +329,5 @@ def _agreed(found: list[tuple[int, Finding]], uses: NDArray[np.int_]) -> list[tu
 def _number(given: Any, count: int) -> int:
     k = int(given)
     if not 0 <= k < count:
-        raise FairingError(
-            f"error: expected points from 0 to {count - 1}, found {k}", index=max(k, 0)
-        )
+        raise FairingError(f"expected points from 0 to {count - 1}, found {k}", index=max(k, 0))
     return k

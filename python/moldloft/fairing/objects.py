@@ -52,7 +52,7 @@ def sampled(model: Model, name: str, tol: float | None) -> Sampled:
         value = model.eval(name)
         points = np.asarray(value, np.float64) if not isinstance(value, (str, list)) else None
         if points is None or points.ndim not in (2, 3) or points.shape[-1] != 3:
-            raise FairingError(f"error: `{name}` is neither a curve, a surface nor rows of points")
+            raise FairingError(f"`{name}` is neither a curve, a surface nor rows of points")
         return Sampled(points, "control", None)
     facts = document.object(name)
     kind = facts["class"]
@@ -60,7 +60,7 @@ def sampled(model: Model, name: str, tol: float | None) -> Sampled:
         return _curve(model, name, tol)
     if kind == "surface":
         return _surface(model, name, tol)
-    raise FairingError(f"error: `{name}` is a {kind}: only curves and surfaces are faired")
+    raise FairingError(f"`{name}` is a {kind}: only curves and surfaces are faired")
 
 
 def _corners(model: Model, name: str) -> tuple[list[float], bool]:

@@ -164,11 +164,11 @@ def patches(
     True
     """
     if as_ not in ("control", "fit"):
-        raise FairingError(f"error: points of a surface are `control` or `fit`, not `{as_}`")
+        raise FairingError(f"points of a surface are `control` or `fit`, not `{as_}`")
     if seams not in ("position", "tangent", "curvature"):
-        raise FairingError(f"error: seams keep position, tangent or curvature, not `{seams}`")
+        raise FairingError(f"seams keep position, tangent or curvature, not `{seams}`")
     if not surfaces:
-        raise FairingError("error: expected surfaces, found none")
+        raise FairingError("expected surfaces, found none")
     started = time.perf_counter()
     before: list[SplineSurface] = []
     at: list[tuple[Floats, Floats] | None] = []

@@ -56,7 +56,7 @@ def needed() -> Any:
         from matplotlib.figure import Figure
     except ImportError as error:
         raise Error(
-            "error: plots need Matplotlib, which is not installed: pip install 'moldloft[plot]'"
+            "plots need Matplotlib, which is not installed: pip install 'moldloft[plot]'"
         ) from error
     return matplotlib, Figure
 
@@ -67,7 +67,7 @@ def _saved(draw: Any, size: tuple[float, float], path: str | PathLike[str]) -> N
     path = Path(path)
     kind = path.suffix.lower().removeprefix(".")
     if kind not in ("png", "svg"):
-        raise Error(f"error: a plot is .png or .svg, not `{path}`")
+        raise Error(f"a plot is .png or .svg, not `{path}`")
     matplotlib, figure_class = needed()
     with matplotlib.rc_context(STYLE):
         figure = figure_class(figsize=size, layout="constrained")

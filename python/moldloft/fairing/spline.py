@@ -237,7 +237,7 @@ class Spline:
         if t is None:
             refuse_repeats(rows, closed)
         elif len(t) != len(rows) or not (np.diff(t) > 0).all() or t[0] < 0 or t[-1] > 1:
-            raise FairingError(f"error: expected {len(rows)} rising parameters in [0, 1]")
+            raise FairingError(f"expected {len(rows)} rising parameters in [0, 1]")
         if own is not None:
             count = len(own) if closed else len(own) - degree - 1
         elif count is None:
@@ -246,10 +246,10 @@ class Spline:
             low, high = through.domain
             period = high - low
         if closed and own is not None and period is None:
-            raise FairingError("error: a closed curve with knots needs a period")
+            raise FairingError("a closed curve with knots needs a period")
         if not degree + 1 <= count <= len(rows):
             raise FairingError(
-                f"error: expected {degree + 2} to {len(rows)} control points, as many as there "
+                f"expected {degree + 2} to {len(rows)} control points, as many as there "
                 f"are points at most; found {count}"
             )
         form = "closed" if closed else "clamped"

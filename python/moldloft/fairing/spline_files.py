@@ -39,7 +39,7 @@ def encoded(curves: Sequence[Spline], path: Path) -> bytes:
     if ending == ".json":
         return _json(curves)
     known = ", ".join((*POINTS, *SPLINES))
-    raise FairingError(f"error: `{path}`: expected an ending of {known}")
+    raise FairingError(f"`{path}`: expected an ending of {known}")
 
 
 def _number(x: float) -> str:

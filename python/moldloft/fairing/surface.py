@@ -27,7 +27,7 @@ __all__ = ["Look", "SplineSurface", "SurfaceFairing", "fair_surface"]
 def _vector(v: ArrayLike) -> list[float]:
     flat = [float(c) for c in np.asarray(v, np.float64).ravel()]
     if len(flat) != 3:
-        raise FairingError(f"error: expected a vector of three numbers, found {len(flat)}")
+        raise FairingError(f"expected a vector of three numbers, found {len(flat)}")
     return flat
 
 
@@ -282,12 +282,12 @@ class SplineSurface:
 def _weights(given: ArrayLike, shape: tuple[int, ...]) -> Floats:
     weights = np.asarray(given, np.float64)
     if weights.shape != tuple(shape):
-        raise FairingError(f"error: expected weights {tuple(shape)}, found {weights.shape}")
+        raise FairingError(f"expected weights {tuple(shape)}, found {weights.shape}")
     bad = np.argwhere(~(np.isfinite(weights) & (weights > 0)))
     if len(bad):
         i, j = (int(k) for k in bad[0])
         raise FairingError(
-            f"error: weight ({i + 1}, {j + 1}) is {weights[i, j]:g}, expected a positive number"
+            f"weight ({i + 1}, {j + 1}) is {weights[i, j]:g}, expected a positive number"
         )
     return np.ascontiguousarray(weights.ravel())
 
@@ -315,7 +315,7 @@ class _Axis:
         rows = [int(b) for b in breaks]
         if rows and (closed or knots is not None):
             what = "a closed direction" if closed else "a direction with knots of its own"
-            raise FairingError(f"error: {what} has no breaks of its points")
+            raise FairingError(f"{what} has no breaks of its points")
         line = np.column_stack([np.arange(count, dtype=np.float64), np.zeros((count, 2))])
         if knots is None:
             core, at, marks = _core.Spline.interpolate(line, degree, "uniform", closed, rows)
@@ -324,12 +324,12 @@ class _Axis:
             return cls(degree, closed, core.knots, period, at, marks, rows, False)
         own = np.ascontiguousarray(np.asarray(knots, np.float64).ravel())
         if closed:
-            raise FairingError("error: knots of your own are for open directions of a fit")
+            raise FairingError("knots of your own are for open directions of a fit")
         at = np.arange(count) / (count - 1)
         axis = cls(degree, closed, own, None, at, [], rows, True)
         if not degree + 2 <= axis.count <= count:
             raise FairingError(
-                f"error: expected {2 * degree + 3} to {count + degree + 1} knots for {count} "
+                f"expected {2 * degree + 3} to {count + degree + 1} knots for {count} "
                 f"points, found {len(own)}"
             )
         return axis
@@ -367,7 +367,7 @@ def _parameters(given: ArrayLike) -> Floats:
     if np.ndim(given) == 0:
         count = int(np.asarray(given))
         if count < 2:
-            raise FairingError(f"error: expected 2 parameters or more, found {count}")
+            raise FairingError(f"expected 2 parameters or more, found {count}")
         return np.linspace(0, 1, count)
     return np.ascontiguousarray(given, np.float64)
 
@@ -516,9 +516,9 @@ def _rims(rims: str | Mapping[str, str]) -> list[str]:
     by_name = dict.fromkeys(_RIMS, rims) if isinstance(rims, str) else dict(rims)
     for name, word in by_name.items():
         if name not in _RIMS:
-            raise FairingError(f"error: rims are {', '.join(_RIMS)}, not `{name}`")
+            raise FairingError(f"rims are {', '.join(_RIMS)}, not `{name}`")
         if word not in known:
-            raise FairingError(f"error: a rim keeps {', '.join(known)}, not `{word}`")
+            raise FairingError(f"a rim keeps {', '.join(known)}, not `{word}`")
     return [by_name.get(name, "corners") for name in _RIMS]
 
 
@@ -537,17 +537,15 @@ def _conditions(
         for place, vector in rows:
             uv = [float(t) for t in place]
             if len(uv) != 2 or not all(0 <= t <= 1 for t in uv):
-                raise FairingError(f"error: expected u and v from 0 to 1, found {place}")
+                raise FairingError(f"expected u and v from 0 to 1, found {place}")
             x, y, z = _vector(vector)
             if not np.isfinite([x, y, z]).all() or (word == "normal" and not any((x, y, z))):
-                raise FairingError(f"error: {word} at {uv[0]:g}, {uv[1]:g}: no such direction")
+                raise FairingError(f"{word} at {uv[0]:g}, {uv[1]:g}: no such direction")
             out.append((word, (uv[0], uv[1]), (x, y, z)))
             labels.append(f"{word} at {uv[0]:g}, {uv[1]:g}")
     for word in keep:
         if word not in ("area", "volume"):
-            raise FairingError(
-                f"error: `{word}` of a surface cannot be kept; what can: area, volume"
-            )
+            raise FairingError(f"`{word}` of a surface cannot be kept; what can: area, volume")
         out.append((word, (0.0, 0.0), (0.0, 0.0, 0.0)))
         labels.append(f"keep {word}")
     return out, labels
@@ -632,14 +630,14 @@ def fair_surface(
         When there is too little to fair or something is wrong.
     """
     if as_ not in ("control", "fit"):
-        raise FairingError(f"error: points of a surface are `control` or `fit`, not `{as_}`")
+        raise FairingError(f"points of a surface are `control` or `fit`, not `{as_}`")
     if mode not in ("optimum", "faithful", "sweeps"):
         raise FairingError(
-            f"error: there is no mode `{mode}` of surfaces; there are: optimum, faithful, sweeps"
+            f"there is no mode `{mode}` of surfaces; there are: optimum, faithful, sweeps"
         )
     conditions, labels = _conditions(through, normals, keep)
     if conditions and mode != "optimum":
-        raise FairingError("error: only the optimum keeps conditions; take mode `optimum`")
+        raise FairingError("only the optimum keeps conditions; take mode `optimum`")
     started = time.perf_counter()
     marks = (list(breaks[0]), list(breaks[1]))
     at: tuple[Floats, Floats] | None = None
@@ -652,7 +650,7 @@ def fair_surface(
             few = (2 * least if closed[axis] else least) + 2
             if data.shape[axis] < few:
                 raise FairingError(
-                    f"error: expected at least {few} points along {name}, found {data.shape[axis]}"
+                    f"expected at least {few} points along {name}, found {data.shape[axis]}"
                 )
         if as_ == "fit":
             surface, at, marks = SplineSurface._interpolated(
@@ -664,7 +662,7 @@ def fair_surface(
             )
     m, n = surface._core.shape
     if tol is not None and np.ndim(tol) == 2 and np.shape(tol) != (m, n):
-        raise FairingError(f"error: expected tolerances {(m, n)}, found {np.shape(tol)}")
+        raise FairingError(f"expected tolerances {(m, n)}, found {np.shape(tol)}")
     word, way = direction(motion)
     pair = ends if isinstance(ends, (tuple, list)) else (ends, ends)
     chosen = {

@@ -54,8 +54,8 @@ impl Jumps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Random;
     use moldloft_spline::KnotVector;
+    use moldloft_testing::Lcg;
 
     #[test]
     fn uniform_cubic_jumps_are_fourth_differences() {
@@ -73,15 +73,16 @@ mod tests {
     /// Farin, Rein, Sapidis and Worsey (1987): the two lines through the neighbours, and their mean.
     #[test]
     fn removing_the_jump_is_the_published_formula() {
-        let mut random = Random::new(7);
+        let mut random = Lcg::new(7);
         for _ in 0..200 {
             let mut u = vec![0.0];
             for _ in 0..11 {
-                u.push(u.last().unwrap() + 0.02 + (random.unit() + 0.5));
+                u.push(u.last().unwrap() + 0.02 + (random.centred() + 0.5));
             }
             let space = Space::open(KnotVector::new(3, u.clone()).unwrap()).unwrap();
-            let mut d: Vec<Vec3<f64>> =
-                (0..8).map(|_| Vec3::of(random.unit(), random.unit(), random.unit())).collect();
+            let mut d: Vec<Vec3<f64>> = (0..8)
+                .map(|_| Vec3::of(random.centred(), random.centred(), random.centred()))
+                .collect();
             let jumps = Jumps::of(&space);
             for k in 0..jumps.rows.len() {
                 // d[j] has the middle knot u[j + 2].
@@ -108,11 +109,11 @@ mod tests {
     /// The formula against the two one-sided derivatives, for all degrees and with multiple knots.
     #[test]
     fn jumps_are_differences_of_one_sided_derivatives() {
-        let mut random = Random::new(3);
+        let mut random = Lcg::new(3);
         for degree in 1..=6 {
             let mut knots = vec![0.0; degree + 1];
             for k in 1..7 {
-                let t = f64::from(k) + 0.6 * random.unit();
+                let t = f64::from(k) + 0.6 * random.centred();
                 knots.extend(std::iter::repeat_n(t, if k == 4 && degree > 1 { 2 } else { 1 }));
             }
             knots.extend(vec![7.0; degree + 1]);

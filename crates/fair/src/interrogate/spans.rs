@@ -92,19 +92,19 @@ mod tests {
 
     #[test]
     fn samples_are_those_of_de_boor_s_triangle() {
-        let mut random = crate::testing::Random::new(5);
+        let mut random = moldloft_testing::Lcg::new(5);
         for degree in 1..=6 {
             let count = 2 * degree + 6;
             let mut inner: Vec<f64> =
-                (0..count - degree - 1).map(|_| 0.5 + random.unit()).collect();
+                (0..count - degree - 1).map(|_| 0.5 + random.centred()).collect();
             inner.sort_by(f64::total_cmp);
             let knots = [vec![0.0; degree + 1], inner, vec![1.0; degree + 1]].concat();
             let open = Space::open(KnotVector::new(degree, knots).unwrap()).unwrap();
             for space in [open, Space::closed(degree, count).unwrap()] {
                 let points: Vec<Vec3<f64>> = (0..count)
-                    .map(|_| Vec3::of(random.unit(), random.unit(), random.unit()))
+                    .map(|_| Vec3::of(random.centred(), random.centred(), random.centred()))
                     .collect();
-                let weights: Vec<f64> = (0..count).map(|_| 1.0 + random.unit()).collect();
+                let weights: Vec<f64> = (0..count).map(|_| 1.0 + random.centred()).collect();
                 for weights in [None, Some(&weights[..])] {
                     let mut spans = space.spans();
                     let shares = [0.0, 0.3, 1.0];

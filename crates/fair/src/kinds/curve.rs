@@ -4,7 +4,7 @@ use super::shapes::{self, Ended};
 use super::{Intent, Own, Places, end, faithful, fault, measure, role};
 use crate::FairError;
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
 use std::sync::Arc;
 
 /// A fair B-spline curve within a tolerance of the one through its points.
@@ -87,16 +87,16 @@ pub struct FairCurve<T: Real> {
 const TOGETHER: f64 = 1e-9;
 
 /// The field of the joins.
-const JOINS: usize = 9;
+const JOINS: FieldId = FairCurve::<f64>::JOINS;
 
 /// The fields of the weights and the knots.
-const WEIGHTS: usize = 10;
-const KNOTS: usize = 11;
+const WEIGHTS: FieldId = FairCurve::<f64>::WEIGHTS;
+const KNOTS: FieldId = FairCurve::<f64>::KNOTS;
 
 /// The fields of the spacing, the goal and the direction.
-const SPACING: usize = 12;
-const GOAL: usize = 13;
-const ALONG: usize = 14;
+const SPACING: FieldId = FairCurve::<f64>::SPACING;
+const GOAL: FieldId = FairCurve::<f64>::GOAL;
+const ALONG: FieldId = FairCurve::<f64>::ALONG;
 
 impl<T: Real> FairCurve<T> {
     /// Weights and knots, where they have a meaning.
@@ -241,10 +241,10 @@ impl<T: Real> Build<T> for FairCurve<T> {
             tolerance: self.tolerance,
             degree: self.degree,
             closed: self.closed == 1,
-            role: role(&self.r#as, 3)?,
-            measure: measure(&self.measure, 2)?,
-            faithful: faithful(&self.mode, 6)?,
-            end: end(&self.ends, 5)?,
+            role: role(&self.r#as, Self::AS)?,
+            measure: measure(&self.measure, Self::MEASURE)?,
+            faithful: faithful(&self.mode, Self::MODE)?,
+            end: end(&self.ends, Self::ENDS)?,
             breaks: self.breaks.unwrap_or_default(),
             joins: neighbours.map(|n| n.map(|(_, derivatives)| derivatives)),
             own,
@@ -252,7 +252,12 @@ impl<T: Real> Build<T> for FairCurve<T> {
             goal: super::goal(&self.goal, GOAL)?,
             motion,
         };
-        let places = Places { points: 0, tolerance: 1, degree: 7, breaks: 4 };
+        let places = Places {
+            points: Self::POINTS,
+            tolerance: Self::TOLERANCE,
+            degree: Self::DEGREE,
+            breaks: Self::BREAKS,
+        };
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
         let joins = neighbours.map(|n| n.map(|(k, _)| k));
         let about = |e: FairError| match e {
@@ -275,7 +280,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
         if intent.role == super::Role::Fit && !intent.faithful && alone && !index {
             let curve = intent.near(&points).map_err(about)?;
             let [first, .., last] = self.points.as_slice() else {
-                return Err(Fault::new("too-few-items", "a curve needs points").in_field(0));
+                return Err(Fault::new("too-few-items", "a curve needs points").in_field(Self::POINTS));
             };
             // A free end leaves its point, and a closed curve has no ends.
             let kept = !intent.closed && (intent.end.kept() > 0 || self.tolerance.re() == 0.0);
@@ -287,9 +292,10 @@ impl<T: Real> Build<T> for FairCurve<T> {
             Some(weights) => shapes::rational(&space, &control, weights),
             None => shapes::curve(&space, &control),
         };
-        let curve = made.map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+        let curve =
+            made.map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
         let [first, .., last] = self.points.as_slice() else {
-            return Err(Fault::new("too-few-items", "a curve needs points").in_field(0));
+            return Err(Fault::new("too-few-items", "a curve needs points").in_field(Self::POINTS));
         };
         // A free end leaves its point, and a closed curve has no ends.
         let kept = |at: usize| !intent.closed && (intent.end.kept() > 0 || joins[at].is_some());

@@ -43,8 +43,8 @@ impl<T: Real> Build<T> for Fair<T> {
             degree: 3,
             closed: self.closed == 1,
             role: Role::Control,
-            measure: measure(&self.measure, 2)?,
-            faithful: faithful(&self.mode, 3)?,
+            measure: measure(&self.measure, Self::MEASURE)?,
+            faithful: faithful(&self.mode, Self::MODE)?,
             end: crate::End::Points(2),
             breaks: Vec::new(),
             joins: [None; 2],
@@ -53,7 +53,12 @@ impl<T: Real> Build<T> for Fair<T> {
             goal: crate::Goal::Fairest,
             motion: crate::Motion::Ball,
         };
-        let places = Places { points: 0, tolerance: 1, degree: 0, breaks: 0 };
+        let places = Places {
+            points: Self::POINTS,
+            tolerance: Self::TOLERANCE,
+            degree: Self::POINTS,
+            breaks: Self::POINTS,
+        };
         let faired = intent.faired_points(&self.points).map_err(|e| fault(e, &places))?;
         Ok(Value::Vectors(Arc::new(Vectors::row(faired))))
     }
@@ -88,7 +93,12 @@ impl<T: Real> Build<T> for Jumps<T> {
             (_, ..5) => Err(FairError::TooFew { expected: 5, actual: n }),
             _ => Space::floating(3, n),
         };
-        let places = Places { points: 0, tolerance: 0, degree: 0, breaks: 0 };
+        let places = Places {
+            points: Self::POINTS,
+            tolerance: Self::POINTS,
+            degree: Self::POINTS,
+            breaks: Self::POINTS,
+        };
         let jumps = crate::Jumps::of(&space.map_err(|e| fault(e, &places))?);
         let length = |k: usize| {
             let (columns, factors) = jumps.rows.row(k);
@@ -130,7 +140,7 @@ impl<T: Real> Build<T> for Curvature<T> {
                     format!("the curve stands still at t = {}", t.re()),
                 )
                 .expected("a parameter at which the curve moves on")
-                .in_field(1));
+                .in_field(Self::T));
             }
             let cross = d1.cross(d2);
             // A straight stretch: the root of zero has no derivative.
@@ -145,7 +155,7 @@ impl<T: Real> Build<T> for Curvature<T> {
             }
             other => Err(Fault::wrong_class(moldloft_registry::Class::Number, other.class())
                 .expected("a number or an farray")
-                .in_field(1)),
+                .in_field(Self::T)),
         }
     }
 }

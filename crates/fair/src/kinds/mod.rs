@@ -16,7 +16,7 @@ use crate::{
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Fault, Row};
+use moldloft_registry::{Fault, FieldId, Row};
 use moldloft_spline::{KnotVector, MovingSpline};
 
 /// All kinds and functions of this crate, in the order of the reference.
@@ -70,7 +70,7 @@ pub(crate) struct Intent<T> {
 }
 
 /// The way in which points get their parameters that is called `name`.
-pub(crate) fn spacing(name: &str, field: usize) -> Result<Spacing, Fault> {
+pub(crate) fn spacing(name: &str, field: FieldId) -> Result<Spacing, Fault> {
     let axis = |x, y, z| Spacing::Along(Vec3::of(x, y, z));
     Ok(match name {
         "chord" => Spacing::Chord,
@@ -90,7 +90,7 @@ pub(crate) fn spacing(name: &str, field: usize) -> Result<Spacing, Fault> {
 pub(crate) const BUDGET: f64 = 0.8;
 
 /// The goal called `name`.
-pub(crate) fn goal(name: &str, field: usize) -> Result<Goal, Fault> {
+pub(crate) fn goal(name: &str, field: FieldId) -> Result<Goal, Fault> {
     Ok(match name {
         "near" => Goal::Near(BUDGET),
         "budget" => Goal::Budget(BUDGET),
@@ -143,13 +143,13 @@ pub(crate) enum Role {
 /// The places of the arguments that can be at fault.
 #[derive(Clone, Copy)]
 pub(crate) struct Places {
-    pub points: usize,
-    pub tolerance: usize,
-    pub degree: usize,
-    pub breaks: usize,
+    pub points: FieldId,
+    pub tolerance: FieldId,
+    pub degree: FieldId,
+    pub breaks: FieldId,
 }
 
-fn unknown(noun: &str, found: &str, all: &[&str], field: usize) -> Fault {
+fn unknown(noun: &str, found: &str, all: &[&str], field: FieldId) -> Fault {
     let all: Vec<_> = all.iter().map(|n| format!("\"{n}\"")).collect();
     Fault::new("unknown-name", format!("there is no {noun} \"{found}\""))
         .expected(all.join(", "))
@@ -158,7 +158,7 @@ fn unknown(noun: &str, found: &str, all: &[&str], field: usize) -> Fault {
 }
 
 /// The role called `name`, an argument in `field`.
-pub(crate) fn role(name: &str, field: usize) -> Result<Role, Fault> {
+pub(crate) fn role(name: &str, field: FieldId) -> Result<Role, Fault> {
     Ok(match name {
         "fit" => Role::Fit,
         "control" => Role::Control,
@@ -168,13 +168,13 @@ pub(crate) fn role(name: &str, field: usize) -> Result<Role, Fault> {
 }
 
 /// The measure called `name`.
-pub(crate) fn measure(name: &str, field: usize) -> Result<Measure, Fault> {
+pub(crate) fn measure(name: &str, field: FieldId) -> Result<Measure, Fault> {
     let all = Measure::ALL.map(Measure::name);
     Measure::named(name).ok_or_else(|| unknown("measure", name, &all, field))
 }
 
 /// True for the mode "faithful", false for "optimum".
-pub(crate) fn faithful(name: &str, field: usize) -> Result<bool, Fault> {
+pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, Fault> {
     match name {
         "optimum" => Ok(false),
         "faithful" => Ok(true),
@@ -183,7 +183,7 @@ pub(crate) fn faithful(name: &str, field: usize) -> Result<bool, Fault> {
 }
 
 /// The end condition called `name`.
-pub(crate) fn end(name: &str, field: usize) -> Result<End, Fault> {
+pub(crate) fn end(name: &str, field: FieldId) -> Result<End, Fault> {
     let all = ["free", "position", "tangent", "curvature"];
     End::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
 }

@@ -134,7 +134,12 @@ impl<T: Real> Joined<T> {
             "corners" => all.filter(|&i| ends[i] > 0 && ends[i] == uses[i]).collect(),
             _ => {
                 let known = ["corners", "ends", "none"];
-                return Err(super::unknown("way to keep ends", which, &known, 4));
+                return Err(super::unknown(
+                    "way to keep ends",
+                    which,
+                    &known,
+                    FairNet::<f64>::KEEP,
+                ));
             }
         })
     }
@@ -152,7 +157,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                     .expected("points that stand in the lists of the curves")
                     .related(b.key, "is in none of them")
                     .in_item(k)
-                    .in_field(3));
+                    .in_field(Self::BREAKS));
             };
             marked.push(at);
         }
@@ -160,9 +165,15 @@ impl<T: Real> Build<T> for FairNet<T> {
         let marks_of = |own: &[usize]| -> Vec<usize> {
             (0..own.len()).filter(|&k| marked.contains(&own[k])).collect()
         };
-        let places = Places { points: 0, tolerance: 1, degree: 6, breaks: 3 };
-        let (spaced, goal) = (super::spacing(&self.spacing, 9)?, super::goal(&self.goal, 10)?);
-        let index = matches!(spaced, Spacing::Uniform) || super::faithful(&self.mode, 7)?;
+        let places = Places {
+            points: Self::CURVES,
+            tolerance: Self::TOLERANCE,
+            degree: Self::DEGREE,
+            breaks: Self::BREAKS,
+        };
+        let spaced = super::spacing(&self.spacing, Self::SPACING)?;
+        let goal = super::goal(&self.goal, Self::GOAL)?;
+        let index = matches!(spaced, Spacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
         let (mut strands, mut ats) = (Vec::new(), Vec::new());
         for (k, (own, closed)) in joined.curves.iter().enumerate() {
             let space = match (closed, own.len()) {
@@ -172,13 +183,13 @@ impl<T: Real> Build<T> for FairNet<T> {
                 }
                 (false, n) => Space::floating(degree, n),
             };
-            let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(0))?;
+            let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
             if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
                 return Err(Fault::new("point-twice", "a curve passes twice through a point")
                     .expected("different points; only the first may come again, at the end")
                     .related(joined.points[own[twice]].key, "stands twice in the list")
                     .in_item(k)
-                    .in_field(0));
+                    .in_field(Self::CURVES));
             }
             let (marks, ends) = (marks_of(own), [End::Points(0); 2]);
             let list: Vec<Vec3<T>> = own.iter().map(|&i| joined.points[i].xyz).collect();
@@ -193,7 +204,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                     }
                     other => other,
                 };
-                Some(at.map_err(|e| fault(e, &places).in_item(k).in_field(0))?)
+                Some(at.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?)
             };
             let plain = at.as_ref().map(|at| at.iter().map(|t| t.re()).collect());
             ats.push(at);
@@ -212,11 +223,11 @@ impl<T: Real> Build<T> for FairNet<T> {
             Some(_) => {
                 return Err(Fault::new("zero-direction", "the direction has no length")
                     .expected("a direction such as {0, 1, 0}")
-                    .in_field(5));
+                    .in_field(Self::ALONG));
             }
         };
-        let measure = measure(&self.measure, 2)?;
-        let passes = super::faithful(&self.mode, 7)?.then_some(self.passes);
+        let measure = measure(&self.measure, Self::MEASURE)?;
+        let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
         let kept = joined.kept(&self.keep)?;
         let mut still = vec![self.tolerance.re() == 0.0; joined.points.len()];
         kept.iter().chain(&marked).for_each(|&i| still[i] = true);
@@ -240,7 +251,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                 i.filter(|&&i| !closed && still[i]).and_then(|&i| joined.points[i].key)
             };
             let ends = [end(own.first()), end(own.last())];
-            let about = |e: FairError| fault(e, &places).in_item(k).in_field(0);
+            let about = |e: FairError| fault(e, &places).in_item(k).in_field(Self::CURVES);
             if let Some(at) = &ats[k] {
                 // At the parameters of the points given: the moved ones are near them.
                 let curve = through(degree, &points, at, &marks_of(own), *closed).map_err(about)?;
@@ -251,7 +262,7 @@ impl<T: Real> Build<T> for FairNet<T> {
                 interpolate_with_corners(degree, &points, Spacing::Uniform, *closed, &marks)
                     .map_err(about)?;
             let curve = shapes::curve(&sharp.fit.space, &sharp.points)
-                .map_err(|e| Fault::new("no-spline", e.to_string()).in_item(k).in_field(0))?;
+                .map_err(|e| Fault::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES))?;
             Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
         };
         let curves: Result<Vec<_>, Fault> = joined.curves.iter().enumerate().map(curve).collect();
@@ -295,7 +306,7 @@ impl<T: Real> Build<T> for NetCurve<T> {
         let Value::List(curves) = &self.net else {
             return Err(Fault::wrong_class(Class::List, self.net.class())
                 .expected("a network of curves, such as a FairNet")
-                .in_field(0));
+                .in_field(Self::NET));
         };
         match curves.get(self.index.wrapping_sub(1)) {
             Some(Value::Curve(curve)) => Ok(Value::Curve(curve.clone())),
@@ -305,7 +316,7 @@ impl<T: Real> Build<T> for NetCurve<T> {
             None => Err(Fault::new("out-of-range", format!("there is no curve {}", self.index))
                 .expected(format!("a number from 1 to {}", curves.len()))
                 .found(self.index.to_string())
-                .in_field(1)),
+                .in_field(Self::INDEX)),
         }
     }
 }

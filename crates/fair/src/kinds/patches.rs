@@ -54,15 +54,15 @@ pub struct FairPatches<T: Real> {
 
 impl<T: Real> Build<T> for FairPatches<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let measure = measure(&self.measure, 2)?;
-        let fit = match role(&self.r#as, 3)? {
+        let measure = measure(&self.measure, Self::MEASURE)?;
+        let fit = match role(&self.r#as, Self::AS)? {
             Role::Fit => true,
             Role::Control => false,
             Role::Points => {
                 return Err(Fault::new("unknown-name", "surfaces have no role \"points\"")
                     .expected("\"fit\" or \"control\"")
                     .found("\"points\"")
-                    .in_field(3));
+                    .in_field(Self::AS));
             }
         };
         let keeps = match &*self.seams {
@@ -71,11 +71,16 @@ impl<T: Real> Build<T> for FairPatches<T> {
             "curvature" => End::Curvature,
             word => {
                 let known = ["position", "tangent", "curvature"];
-                return Err(super::unknown("way to keep a seam", word, &known, 5));
+                return Err(super::unknown("way to keep a seam", word, &known, Self::SEAMS));
             }
         };
         let Rims([south, east, north, west]) = self.rims;
-        let places = Places { points: 0, tolerance: 1, degree: 4, breaks: 0 };
+        let places = Places {
+            points: Self::SURFACES,
+            tolerance: Self::TOLERANCE,
+            degree: Self::DEGREE,
+            breaks: Self::SURFACES,
+        };
         let degree = self.degree;
         let mut sheets = Vec::new();
         let mut given: Vec<Vec3<T>> = Vec::new();
@@ -85,7 +90,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
                     .expected("a grid [m, n] of vectors")
                     .found(format!("a row {}", grid.shape))
                     .in_item(k)
-                    .in_field(0));
+                    .in_field(Self::SURFACES));
             };
             let made = || -> Result<(PatchNet, Vec<Vec3<T>>), FairError> {
                 if let Some(actual) = [m, n].into_iter().find(|&c| c < degree + 2) {
@@ -137,18 +142,18 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 );
                 Fault::new("contradiction", text)
                     .expected("a larger tolerance, or surfaces that run on more smoothly")
-                    .in_field(5)
+                    .in_field(Self::SEAMS)
             }
             FairError::TurnsBack => Fault::new("turns-back", e.to_string())
                 .expected("surfaces that run on where their neighbours end")
-                .in_field(0),
+                .in_field(Self::SURFACES),
             e => fault(e, &places),
         };
         let faired = solve().map_err(contradicted)?;
         let surface = |(sheet, points): (&PatchNet, Vec<Vec3<T>>)| {
             let [u, v] = sheet.spaces.each_ref().map(|s| s.knot_vector().0);
             let surface = BSplineSurface::new(u, v, points, None)
-                .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+                .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::SURFACES))?;
             Ok(Value::Surface(SurfaceRef::new(surface, 0)))
         };
         let surfaces: Result<Vec<_>, Fault> = sheets.iter().zip(faired).map(surface).collect();
@@ -178,7 +183,7 @@ impl<T: Real> Build<T> for NetSurf<T> {
         let Value::List(surfaces) = &self.net else {
             return Err(Fault::wrong_class(Class::List, self.net.class())
                 .expected("surfaces that are faired together, a FairPatches")
-                .in_field(0));
+                .in_field(Self::NET));
         };
         match surfaces.get(self.index.wrapping_sub(1)) {
             Some(Value::Surface(surface)) => Ok(Value::Surface(surface.clone())),
@@ -188,7 +193,7 @@ impl<T: Real> Build<T> for NetSurf<T> {
             None => Err(Fault::new("out-of-range", format!("there is no surface {}", self.index))
                 .expected(format!("a number from 1 to {}", surfaces.len()))
                 .found(self.index.to_string())
-                .in_field(1)),
+                .in_field(Self::INDEX)),
         }
     }
 }

@@ -63,7 +63,9 @@ pub struct FairSnake<T: Real> {
 impl<T: Real> Build<T> for FairSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let [first, .., last] = self.magnets.as_slice() else {
-            return Err(Fault::new("too-few-items", "a snake needs magnets").in_field(0));
+            return Err(
+                Fault::new("too-few-items", "a snake needs magnets").in_field(Self::MAGNETS)
+            );
         };
         let surface = first.surface.clone();
         for (k, magnet) in self.magnets.iter().enumerate() {
@@ -80,10 +82,10 @@ impl<T: Real> Build<T> for FairSnake<T> {
                     .found("two different surfaces")
                     .related(magnet.point.key, "lies on another surface")
                     .in_item(k)
-                    .in_field(0));
+                    .in_field(Self::MAGNETS));
             }
         }
-        let end = match end(&self.ends, 3)? {
+        let end = match end(&self.ends, Self::ENDS)? {
             crate::End::Free => crate::End::Position,
             kept => kept,
         };
@@ -92,8 +94,8 @@ impl<T: Real> Build<T> for FairSnake<T> {
             degree: self.degree,
             closed: false,
             role: Role::Fit,
-            measure: measure(&self.measure, 2)?,
-            faithful: faithful(&self.mode, 4)?,
+            measure: measure(&self.measure, Self::MEASURE)?,
+            faithful: faithful(&self.mode, Self::MODE)?,
             end,
             breaks: Vec::new(),
             joins: [None; 2],
@@ -102,7 +104,12 @@ impl<T: Real> Build<T> for FairSnake<T> {
             goal: crate::Goal::Near(super::BUDGET),
             motion: crate::Motion::Ball,
         };
-        let places = Places { points: 0, tolerance: 1, degree: 5, breaks: 0 };
+        let places = Places {
+            points: Self::MAGNETS,
+            tolerance: Self::TOLERANCE,
+            degree: Self::DEGREE,
+            breaks: Self::MAGNETS,
+        };
         let path: Vec<_> =
             self.magnets.iter().map(|m| Vec3::new(m.uv[0], m.uv[1], T::zero())).collect();
         let ends = [first.point.key, last.point.key];
@@ -113,7 +120,7 @@ impl<T: Real> Build<T> for FairSnake<T> {
         }
         let (space, control) = intent.spline(&path).map_err(|e| fault(e, &places))?;
         let path = shapes::curve(&space, &control)
-            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::MAGNETS))?;
         let shape = OnSurface { surface: surface.clone(), path, ends };
         Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)))
     }

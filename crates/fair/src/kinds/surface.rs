@@ -4,7 +4,7 @@ use super::{ACCURACY, Own, Places, Role, faithful, fault, indices, measure, role
 use crate::{Bound, End, FairError, Limit, Network, Space, Spacing, interpolate_with_corners};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, Class, Context, Fault, FromValue, Kind, SurfaceRef, Value, Vectors,
+    ArrayShape, Build, Class, Context, Fault, FieldId, FromValue, Kind, SurfaceRef, Value, Vectors,
 };
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
@@ -83,8 +83,8 @@ pub struct FairSurf<T: Real> {
 }
 
 /// The fields of weights and knots.
-const WEIGHTS: usize = 10;
-const KNOTS: [usize; 2] = [11, 12];
+const WEIGHTS: FieldId = FairSurf::<f64>::WEIGHTS;
+const KNOTS: [FieldId; 2] = [FairSurf::<f64>::KNOTS_U, FairSurf::<f64>::KNOTS_V];
 
 /// Weights of control points.
 struct Weights {
@@ -154,10 +154,10 @@ impl<T: Real> FromValue<T> for Rims {
         let known = ["corners", "position", "tangent", "curvature"];
         let one = |word: &str| match word {
             "corners" => Ok(End::Free),
-            "free" => Err(super::unknown("way to keep a rim", word, &known, 9)),
-            _ => {
-                End::named(word).ok_or_else(|| super::unknown("way to keep a rim", word, &known, 9))
-            }
+            "free" => Err(super::unknown("way to keep a rim", word, &known, FairSurf::<f64>::RIMS)),
+            _ => End::named(word).ok_or_else(|| {
+                super::unknown("way to keep a rim", word, &known, FairSurf::<f64>::RIMS)
+            }),
         };
         let text = |value: &Value<T>| <Arc<str> as FromValue<T>>::from_value(value);
         match value {
@@ -216,22 +216,27 @@ impl<T: Real> Build<T> for FairSurf<T> {
             return Err(Fault::new("wrong-shape", "a surface needs a grid of points")
                 .expected("a grid [m, n] of vectors")
                 .found(format!("a row {}", grid.shape))
-                .in_field(0));
+                .in_field(Self::POINTS));
         };
-        let measure = measure(&self.measure, 2)?;
-        let fitted_first = match role(&self.r#as, 3)? {
+        let measure = measure(&self.measure, Self::MEASURE)?;
+        let fitted_first = match role(&self.r#as, Self::AS)? {
             Role::Fit => true,
             Role::Control => false,
             Role::Points => {
                 return Err(Fault::new("unknown-name", "surfaces have no role \"points\"")
                     .expected("\"fit\" or \"control\"")
                     .found("\"points\"")
-                    .in_field(3));
+                    .in_field(Self::AS));
             }
         };
-        let places = Places { points: 0, tolerance: 1, degree: 4, breaks: 5 };
-        let along_v = Places { breaks: 6, ..places };
-        let passes = faithful(&self.mode, 7)?.then_some(self.passes);
+        let places = Places {
+            points: Self::POINTS,
+            tolerance: Self::TOLERANCE,
+            degree: Self::DEGREE,
+            breaks: Self::BREAKS_U,
+        };
+        let along_v = Places { breaks: Self::BREAKS_V, ..places };
+        let passes = faithful(&self.mode, Self::MODE)?.then_some(self.passes);
         let [marks_u, marks_v] = [(&self.breaks_u, m, &places), (&self.breaks_v, n, &along_v)].map(
             |(breaks, count, places)| {
                 let numbers = breaks.as_deref().unwrap_or_default();
@@ -288,7 +293,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
         let [u, v] = spaces.map(|s| s.knot_vector().0);
         let weights = weights.map(|w| w.into_iter().map(T::from).collect());
         let surface = BSplineSurface::new(u, v, points, weights)
-            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(0))?;
+            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
         Ok(Value::Surface(SurfaceRef::new(surface, 0)))
     }
 }

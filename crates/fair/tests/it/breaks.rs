@@ -5,12 +5,12 @@ use moldloft_fair::*;
 use moldloft_num::Vec3;
 
 /// A roof with a 60 degree knuckle and noise.
-fn knuckle(random: &mut Random) -> (Vec<Vec3<f64>>, usize) {
+fn knuckle(random: &mut Lcg) -> (Vec<Vec3<f64>>, usize) {
     let (s, c) = (std::f64::consts::FRAC_PI_6.sin(), std::f64::consts::FRAC_PI_6.cos());
     let points = (0..41)
         .map(|i| {
             let t = f64::from(i) - 20.0;
-            Vec3::of(c * t, -s * t.abs(), 0.0) + Vec3::of(0.0, 0.03 * random.unit(), 0.0)
+            Vec3::of(c * t, -s * t.abs(), 0.0) + Vec3::of(0.0, 0.03 * random.centred(), 0.0)
         })
         .collect();
     (points, 20)
@@ -18,7 +18,7 @@ fn knuckle(random: &mut Random) -> (Vec<Vec3<f64>>, usize) {
 
 #[test]
 fn a_knuckle_is_found_and_kept_to_the_bit() {
-    let (points, at) = knuckle(&mut Random(1));
+    let (points, at) = knuckle(&mut Lcg::new(1));
     let plain = Job::of_points(3, points.clone(), false, 0.02).unwrap();
     let found = findings(&plain);
     let [Finding::Corner { index, turn }] = found[..] else { panic!("{found:?}") };
@@ -69,7 +69,7 @@ fn several_are_found_and_noise_is_not() {
         let job = Job::of_points(3, f.points.clone(), f.closed, f.tolerance).unwrap();
         assert_eq!(findings(&job), [], "{}", f.name);
     }
-    let (mut points, at) = knuckle(&mut Random(3));
+    let (mut points, at) = knuckle(&mut Lcg::new(3));
     points[9].y += 2.0;
     points[31].x -= 1.5;
     let job = Job::of_points(3, points, false, 0.02).unwrap();

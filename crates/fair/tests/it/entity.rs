@@ -30,14 +30,14 @@ fn curve<T: Scalar>(value: Value<T>) -> CurveRef<T> {
 }
 
 fn noisy(n: usize, seed: u64) -> Vec<Vec3<f64>> {
-    let mut random = Random(seed);
+    let mut random = Lcg::new(seed);
     (0..n)
         .map(|i| {
             let t = i as f64 / (n - 1) as f64;
             Vec3::of(
                 t,
-                0.2 * t * (1.0 - t) + 2e-3 * random.unit(),
-                0.1 * t * t + 2e-3 * random.unit(),
+                0.2 * t * (1.0 - t) + 2e-3 * random.centred(),
+                0.1 * t * t + 2e-3 * random.centred(),
             )
         })
         .collect()
@@ -182,11 +182,11 @@ fn closed_curves_breaks_and_snakes() {
 #[test]
 fn surfaces_are_fair_and_have_derivatives() {
     let (m, n) = (12, 9);
-    let mut random = Random(6);
+    let mut random = Lcg::new(6);
     let points: Vec<_> = (0..m * n)
         .map(|k| {
             let (u, v) = ((k / n) as f64 / 11.0, (k % n) as f64 / 8.0);
-            Vec3::of(u, v, 0.2 * u * v + 2e-3 * random.unit())
+            Vec3::of(u, v, 0.2 * u * v + 2e-3 * random.centred())
         })
         .collect();
     for role in ["fit", "control"] {
@@ -253,7 +253,7 @@ fn faults_name_their_argument() {
     let fault = |points: &[Vec3<f64>], tolerance: f64, named: Vec<(&str, Value<f64>)>| {
         let f = call::<f64>("FairCurve", vec![list(points), Value::Number(tolerance)], named)
             .unwrap_err();
-        (f.id, f.place.map(|p| p.field))
+        (f.id, f.field())
     };
     assert_eq!(fault(&points[..4], 0.1, vec![]), ("too-few-items", Some(0)));
     assert_eq!(fault(&points, -0.1, vec![]), ("out-of-range", Some(1)));

@@ -48,9 +48,9 @@ fn least_squares_reproduces_and_averages() {
 /// The trace of the notes: a noisy section interpolated, then faired.
 #[test]
 fn interpolated_then_faired() {
-    let mut random = Random(1);
+    let mut random = Lcg::new(1);
     let points: Vec<_> =
-        naca().iter().map(|p| *p + Vec3::of(0.0, 3e-4 * random.unit(), 0.0)).collect();
+        naca().iter().map(|p| *p + Vec3::of(0.0, 3e-4 * random.centred(), 0.0)).collect();
     let fit = interpolate(3, &points, Spacing::Centripetal, false).unwrap();
     let job = Job::new(fit.space, fit.points.clone(), 3e-4).unwrap();
     let before = job.value(Measure::Jumps, &fit.points).unwrap();

@@ -1,16 +1,7 @@
-//! The data of the figures: bodies and sections, rounded or with noise of a generator of our own.
+//! The data of the figures: bodies and sections, rounded or with noise.
 
 use moldloft_num::Vec3;
-
-/// The linear congruential generator u <- (1103515245 u + 12345) mod 2^31; values in [-1/2, 1/2).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn unit(&mut self) -> f64 {
-        self.0 = (1_103_515_245 * self.0 + 12_345) % (1 << 31);
-        self.0 as f64 / (1u64 << 31) as f64 - 0.5
-    }
-}
+pub use moldloft_testing::Lcg;
 
 /// Rounding to `digits` decimals as array programs do it: the scaled number, halves to even.
 pub fn round(x: f64, digits: i32) -> f64 {
@@ -74,10 +65,10 @@ pub fn f2a() -> Fixture {
 
 pub fn f2b() -> Fixture {
     let truth = waisted();
-    let mut random = Random(1);
+    let mut random = Lcg::new(1);
     let noisy = |p: &Vec3<f64>| {
-        random.unit();
-        Vec3::of(p.x, p.y + 2e-4 * random.unit(), 0.0)
+        random.centred();
+        Vec3::of(p.x, p.y + 2e-4 * random.centred(), 0.0)
     };
     let points = truth.iter().map(noisy).collect();
     Fixture { name: "F2b", truth, points, tolerance: 2e-4, closed: false }
@@ -86,8 +77,8 @@ pub fn f2b() -> Fixture {
 pub fn f3() -> Fixture {
     let turn = |i: usize| std::f64::consts::TAU * i as f64 / 64.0;
     let truth: Vec<_> = (0..64).map(|i| Vec3::of(turn(i).cos(), turn(i).sin(), 0.0)).collect();
-    let mut random = Random(1);
-    let mut draw = || 2e-3 * random.unit();
+    let mut random = Lcg::new(1);
+    let mut draw = || 2e-3 * random.centred();
     let points = truth
         .iter()
         .map(|p| {

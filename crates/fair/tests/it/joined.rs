@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// A bent hull side, cut at `cut` along u: the nets of both parts, with noise of up to `noise`.
 fn halves(noise: f64) -> [Vec<Vec3<f64>>; 2] {
-    let mut random = Random(5);
+    let mut random = Lcg::new(5);
     let all: Vec<Vec<Vec3<f64>>> = (0..16)
         .map(|i| {
             (0..8)
@@ -20,7 +20,7 @@ fn halves(noise: f64) -> [Vec<Vec3<f64>>; 2] {
                         - 1.0;
                     let z = f64::from(j) / 7.0;
                     let y = (1.2 - x * x) * (0.3 + z - 0.4 * z * z);
-                    Vec3::of(x, y + noise * random.unit(), z)
+                    Vec3::of(x, y + noise * random.centred(), z)
                 })
                 .collect()
         })
@@ -246,15 +246,15 @@ fn patches_have_exact_derivatives() {
 fn patches_say_what_is_wrong() {
     let fault = |named| call::<f64>(halves(4e-3), 2e-2, named).unwrap_err();
     let wrong = fault(vec![("seams", Value::text("smooth"))]);
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("unknown-name", Some(5)));
+    assert_eq!((wrong.id, wrong.field()), ("unknown-name", Some(5)));
     let wrong = fault(vec![("as", Value::text("points"))]);
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("unknown-name", Some(3)));
+    assert_eq!((wrong.id, wrong.field()), ("unknown-name", Some(3)));
     let wrong = fault(vec![("degree", Value::Number(7.0))]);
     assert_eq!(wrong.id, "too-few-items");
     let mut bent = halves(0.0);
     bent[1].iter_mut().skip(8).for_each(|p| p.y += 0.5 * p.x);
     let wrong = call::<f64>(bent, 1e-3, vec![]).unwrap_err();
-    assert_eq!((wrong.id, wrong.place.map(|p| p.field)), ("contradiction", Some(5)));
+    assert_eq!((wrong.id, wrong.field()), ("contradiction", Some(5)));
     // A tolerance of zero leaves all as it is.
     let still = call::<f64>(halves(4e-3), 0.0, vec![("as", Value::text("control"))]).unwrap();
     assert!(place(&still, 0, 1.0, 0.0).bits_eq(halves(4e-3)[0][72]));

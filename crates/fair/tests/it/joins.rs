@@ -24,12 +24,12 @@ fn list<T: Real>(points: &[Vec3<T>]) -> Value<T> {
 
 /// One long noisy line cut in three: the middle one meets both others.
 fn three() -> [Vec<Vec3<f64>>; 3] {
-    let mut random = Random(8);
+    let mut random = Lcg::new(8);
     let all: Vec<_> = (0..31)
         .map(|i| {
             let t = f64::from(i) / 15.0;
-            let y = 0.4 * (2.0 * t).sin() + 1e-3 * random.unit();
-            Vec3::of(t, y, 0.1 * t * t + 1e-3 * random.unit())
+            let y = 0.4 * (2.0 * t).sin() + 1e-3 * random.centred();
+            Vec3::of(t, y, 0.1 * t * t + 1e-3 * random.centred())
         })
         .collect();
     [all[..=9].to_vec(), all[9..=21].to_vec(), all[21..].to_vec()]
@@ -137,7 +137,7 @@ fn what_cannot_be_joined_is_refused() {
     let fault = |points: &[Vec3<f64>], tolerance: f64, named: Vec<(&str, Value<f64>)>| {
         let Err(f) = call(vec![list(points), Value::Number(tolerance)], named) else { panic!() };
         let text = f.message.clone();
-        (f.id, f.place.map(|p| (p.field, p.item)), text)
+        (f.id, f.field().map(|field| (field, f.item())), text)
     };
     let joins = |all: Vec<Value<f64>>| ("joins", Value::list(all));
     let one = || joins(vec![neighbour(&fore, false)]);

@@ -22,11 +22,11 @@ fn call<T: Scalar>(
 
 /// Point objects of a hull: station i, waterline j has the key 7 i + j.
 fn hull() -> Vec<Vec3<f64>> {
-    let mut random = Random(3);
+    let mut random = Lcg::new(3);
     (0..9 * 7)
         .map(|k| {
             let (x, z) = (f64::from(k / 7) / 4.0 - 1.0, f64::from(k % 7) / 6.0);
-            let y = (1.0 - x * x) * (0.3 + z - 0.4 * z * z) + 4e-3 * random.unit();
+            let y = (1.0 - x * x) * (0.3 + z - 0.4 * z * z) + 4e-3 * random.centred();
             Vec3::of(x, y, z)
         })
         .collect()
@@ -109,7 +109,7 @@ fn one_direction_breaks_and_one_curve_of_a_network() {
     let Value::Curve(one) = one else { panic!() };
     assert!(one.jet(0.3, Order::Zero)[0].bits_eq(net[4].jet(0.3, Order::Zero)[0]));
     let fault = call::<f64>("NetCurve", vec![value, number(17.0)], vec![]).unwrap_err();
-    assert_eq!((fault.id, fault.place.map(|p| p.field)), ("out-of-range", Some(1)));
+    assert_eq!((fault.id, fault.field()), ("out-of-range", Some(1)));
 }
 
 #[test]
@@ -197,7 +197,7 @@ fn knuckle_lines_stay_and_are_sharp() {
     let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points)));
     let named = vec![("breaks_v", Value::list([Value::Number(8.0)]))];
     let fault = call::<f64>("FairSurf", vec![grid, number(2e-3)], named).unwrap_err();
-    assert_eq!((fault.id, fault.place.map(|p| p.field)), ("out-of-range", Some(6)));
+    assert_eq!((fault.id, fault.field()), ("out-of-range", Some(6)));
 }
 
 /// Rims that keep curvature are those of the surface before, to the bit; corners alone are not.
@@ -242,7 +242,7 @@ fn rims_keep_what_they_are_asked_to() {
     for rims in [Value::text("loose"), Value::list([Value::text("position")]), number(1.0)] {
         let grid = Value::Vectors(Arc::new(Vectors::grid(9, 7, points.clone())));
         let fault = call("FairSurf", vec![grid, number(0.1)], vec![("rims", rims)]).unwrap_err();
-        assert_eq!(fault.place.map(|p| p.field), Some(9), "{fault:?}");
+        assert_eq!(fault.field(), Some(9), "{fault:?}");
     }
 }
 
@@ -300,7 +300,7 @@ fn faults_of_networks_name_their_argument() {
     let points = hull();
     let fault = |curves: Value<f64>, named: Vec<(&str, Value<f64>)>| {
         let f = call("FairNet", vec![curves, number(2e-3)], named).unwrap_err();
-        (f.id, f.place.map(|p| p.field), f.place.and_then(|p| p.item))
+        (f.id, f.field(), f.item())
     };
     let list = |keys: &[usize]| Value::list(keys.iter().map(|&k| object(&points, k)));
     let good = list(&[0, 1, 2, 3, 4]);

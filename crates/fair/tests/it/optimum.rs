@@ -303,21 +303,25 @@ fn a_closed_curve_can_keep_centroid_and_area() {
 
 #[test]
 fn all_degrees_knots_and_weights() {
-    let mut random = Random(33);
+    let mut random = Lcg::new(33);
     for degree in [2, 3, 4, 5, 7] {
         let mut knots = vec![0.0; degree + 1];
         for k in 1..20 {
-            knots.push(f64::from(k) + 0.8 * random.unit());
+            knots.push(f64::from(k) + 0.8 * random.centred());
         }
         knots.extend(vec![20.0; degree + 1]);
         let space = Space::open(moldloft_spline::KnotVector::new(degree, knots).unwrap()).unwrap();
         let n = space.count();
         let points: Vec<_> = (0..n)
             .map(|i| {
-                Vec3::of(i as f64 + 0.1 * random.unit(), 0.1 * random.unit(), 0.1 * random.unit())
+                Vec3::of(
+                    i as f64 + 0.1 * random.centred(),
+                    0.1 * random.centred(),
+                    0.1 * random.centred(),
+                )
             })
             .collect();
-        let weights: Vec<_> = (0..n).map(|_| 1.0 + 0.5 * random.unit()).collect();
+        let weights: Vec<_> = (0..n).map(|_| 1.0 + 0.5 * random.centred()).collect();
         for weights in [None, Some(weights)] {
             let mut job = Job::new(space.clone(), points.clone(), 0.03).unwrap();
             job.weights = weights;
@@ -343,17 +347,18 @@ fn all_degrees_knots_and_weights() {
 /// Dense sampling never finds more than the certified distance: random curves of all kinds.
 #[test]
 fn the_certified_deviation_is_never_exceeded() {
-    let mut random = Random(77);
-    let count = if std::env::var_os("MOLDLOFT_SOAK").is_some() { 10_000 } else { 1_000 };
+    let mut random = Lcg::new(77);
+    let count = moldloft_testing::rounds(1_000, 10_000);
     for round in 0..count {
         let degree = 2 + round % 4;
         let n = 12 + round % 9;
-        let point = |random: &mut Random| Vec3::of(random.unit(), random.unit(), random.unit());
+        let point =
+            |random: &mut Lcg| Vec3::of(random.centred(), random.centred(), random.centred());
         let points: Vec<_> = (0..n).map(|_| point(&mut random)).collect();
-        let tolerance = 0.3 * (random.unit() + 0.5);
+        let tolerance = 0.3 * (random.centred() + 0.5);
         let mut job = Job::of_points(degree, points, round % 3 == 0, tolerance).unwrap();
         if round % 5 == 0 {
-            job.weights = Some((0..n).map(|_| 1.0 + random.unit()).collect());
+            job.weights = Some((0..n).map(|_| 1.0 + random.centred()).collect());
         }
         let result = if round % 2 == 0 {
             knot_removal(&job, &KnotRemovalOptions::faithful(3 * n)).unwrap().points
@@ -423,13 +428,13 @@ fn a_seam_gets_continuous_curvature_at_either_end() {
 fn the_optimum_is_continuous() {
     let f = f1b();
     let base = best(&job(&f), Measure::Second).points;
-    let mut random = Random(9);
+    let mut random = Lcg::new(9);
     for _ in 0..20 {
         let by = 1e-8;
         let shaken: Vec<_> = f
             .points
             .iter()
-            .map(|p| *p + Vec3::of(by * random.unit(), by * random.unit(), 0.0))
+            .map(|p| *p + Vec3::of(by * random.centred(), by * random.centred(), 0.0))
             .collect();
         let job = Job::of_points(3, shaken, false, f.tolerance).unwrap();
         let other = best(&job, Measure::Second).points;

@@ -27,11 +27,11 @@ fn numbers<T: Real>(all: &[f64]) -> Value<T> {
 
 /// A wavy row, its weights and its knots.
 fn row() -> (Vec<Vec3<f64>>, Vec<f64>, Vec<f64>) {
-    let mut random = Random(4);
+    let mut random = Lcg::new(4);
     let points = (0..12)
         .map(|i| {
             let t = f64::from(i) / 11.0;
-            Vec3::of(3.0 * t, (2.0 * t).sin() + 0.02 * random.unit(), 0.3 * t * t + 1.0)
+            Vec3::of(3.0 * t, (2.0 * t).sin() + 0.02 * random.centred(), 0.3 * t * t + 1.0)
         })
         .collect();
     let weights = (0..12).map(|i| 1.0 + 0.4 * f64::from(i % 3)).collect();
@@ -99,11 +99,11 @@ fn rational_curves_stay_within_the_tolerance_and_have_derivatives() {
 
 #[test]
 fn rational_surfaces_have_derivatives() {
-    let mut random = Random(6);
+    let mut random = Lcg::new(6);
     let points: Vec<Vec3<f64>> = (0..48)
         .map(|k| {
             let (x, y) = (f64::from(k / 6), f64::from(k % 6));
-            Vec3::of(x, y, 0.1 * x * y + 0.05 * random.unit())
+            Vec3::of(x, y, 0.1 * x * y + 0.05 * random.centred())
         })
         .collect();
     let weights: Vec<f64> = (0..48).map(|k| 1.0 + 0.1 * f64::from(k % 5)).collect();
@@ -142,7 +142,7 @@ fn wrong_weights_and_knots_are_refused() {
     let refused = |named: Named<f64>| {
         let list = Value::list(points.iter().map(|&p| Value::Vector(p)));
         let fault = call("FairCurve", vec![list, Value::Number(0.01)], named).unwrap_err();
-        (fault.id, fault.place.map(|p| p.field))
+        (fault.id, fault.field())
     };
     let control = || ("as", Value::text("control"));
     assert_eq!(refused(vec![("weights", numbers(&weights))]), ("not-control", Some(10)));

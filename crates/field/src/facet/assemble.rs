@@ -9,12 +9,12 @@
 //! Where a cell has several vertices for a piece of surface, the polygons round two neighbouring crossings may use
 //! different ones: then they part on the face between the crossings, and the gap there is filled.
 
-use super::block::{Block, Crossing, SIDE, Several};
 use super::cell::{face_edges, start_corner};
 use super::grid::Grid;
+use super::types::{Block, Crossing, SIDE, Several};
 use super::vertex::{Placed, Solver, Surfaces};
+use crate::expr::tape::Tape;
 use crate::set::Leaf;
-use crate::tape::Tape;
 use moldloft_num::Vec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;

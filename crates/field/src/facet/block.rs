@@ -1,84 +1,17 @@
 //! Eight by eight by eight cells: signs at the corners, crossings of the edges, vertices.
 
-use super::cell::{Case, NONE, case, face_edges, start_corner};
+use super::cell::{case, face_edges, start_corner};
 use super::grid::Grid;
-use super::settle::{Ring, Settled, Settling};
-use super::split::Split;
+use super::place_vertices::{PieceVertices, Placement};
+use super::types::{Block, Crossing, Ring, SIDE, Several, Vertex, cell_index};
 use super::vertex::{Placed, Solver, Surfaces};
+use crate::expr::tape::{Room, Tape};
 use crate::set::Leaf;
-use crate::tape::{Room, Tape};
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 
-/// Cells along a side.
-pub(super) const SIDE: usize = 8;
 /// Corners along a side.
 const CORNERS: usize = SIDE + 1;
-
-/// Where the surface crosses an edge of the grid.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Crossing {
-    /// Lattice position of the edge's start, within the block.
-    pub(super) at: [u8; 3],
-    /// Axis of the edge.
-    pub(super) axis: u8,
-    /// True when the edge runs from solid to air.
-    pub(super) outward: bool,
-    /// The leaf that decides there.
-    pub(super) leaf: u32,
-    /// Where.
-    pub(super) point: Vec3,
-}
-
-/// The vertex of a piece of surface in a cell.
-#[derive(Clone, Debug)]
-pub(super) struct Vertex {
-    pub(super) placed: Placed,
-    /// The cell, in the block.
-    pub(super) cell: [u8; 3],
-    /// True when the cell has several vertices, or its vertex is not in it: nothing is known of its triangles
-    /// then.
-    pub(super) doubtful: bool,
-    /// True when it is not on all the surfaces that the crossings show.
-    pub(super) blunt: bool,
-    pub(super) surfaces: Surfaces,
-}
-
-/// What a block contributes.
-#[derive(Clone, Debug)]
-pub(super) struct Block {
-    /// Position in blocks.
-    pub(super) at: [u32; 3],
-    /// Signs of every cell's corners.
-    signs: Box<[u8; SIDE * SIDE * SIDE]>,
-    /// Its ambiguous faces whose middle is solid.
-    joins: Box<[u8; SIDE * SIDE * SIDE]>,
-    /// First vertex of every cell.
-    first: Box<[u32; SIDE * SIDE * SIDE]>,
-    pub(super) vertices: Vec<Vertex>,
-    /// The pieces of surface that have several vertices, in the order of cells.
-    pub(super) splits: Vec<Several>,
-    /// Crossings of the edges that start in the block, its far faces excepted.
-    pub(super) crossings: Vec<Crossing>,
-    /// How many cells the surface passes through.
-    pub(super) active: usize,
-}
-
-/// A piece of surface with several vertices.
-#[derive(Clone, Debug)]
-pub(super) struct Several {
-    /// The cell, in the block, …
-    pub(super) cell: [u8; 3],
-    /// … and which of its pieces.
-    pub(super) number: u8,
-    /// Where its vertices but the first are.
-    more: u32,
-    pub(super) split: Split,
-}
-
-fn cell_index(c: [usize; 3]) -> usize {
-    (c[0] * SIDE + c[1]) * SIDE + c[2]
-}
 
 fn corner_index(c: [usize; 3]) -> usize {
     (c[0] * CORNERS + c[1]) * CORNERS + c[2]
@@ -94,241 +27,164 @@ pub(super) struct Scratch {
     solver: Solver,
 }
 
-impl Several {
-    /// The number of the vertex of a group; `plain` is that of the first.
-    fn vertex(&self, plain: usize, group: u8) -> usize {
-        if group == 0 { plain } else { self.more as usize + group as usize - 1 }
-    }
-}
-
-impl Block {
-    /// True when the surface cuts off the first corner of the ambiguous face on a cell's low side.
-    pub(super) fn first_apart(&self, cell: [usize; 3], axis: usize) -> bool {
-        let k = cell_index(cell);
-        (self.signs[k] & 1 == 1) != (self.joins[k] >> (2 * axis) & 1 == 1)
-    }
-
-    /// The case of a cell.
-    pub(super) fn case(&self, cell: [usize; 3]) -> &'static Case {
-        case(self.signs[cell_index(cell)], self.joins[cell_index(cell)])
-    }
-
-    /// The vertex in `cell` of the piece that crosses `edge`.
-    pub(super) fn vertex(&self, cell: [usize; 3], edge: usize) -> Option<usize> {
-        let number = self.case(cell).loop_of[edge];
-        if number == NONE {
-            return None;
-        }
-        let plain = self.plain(cell, edge);
-        Some(match self.several(cell, number) {
-            None => plain,
-            Some(several) => several.vertex(plain, several.split.group[edge]),
-        })
-    }
-
-    /// The first vertex in `cell` of the piece that crosses `edge`.
-    pub(super) fn plain(&self, cell: [usize; 3], edge: usize) -> usize {
-        self.first[cell_index(cell)] as usize + self.case(cell).loop_of[edge] as usize
-    }
-
-    /// The piece of surface that a vertex stands for, by its number in the cell.
-    pub(super) fn piece(&self, vertex: usize) -> u8 {
-        let cell = self.vertices[vertex].cell;
-        let number = vertex - self.first[cell_index(cell.map(|x| x as usize))] as usize;
-        let later = || {
-            let mut own = self.splits.iter().rev().filter(|s| s.cell == cell);
-            own.find(|s| s.more as usize <= vertex).map_or(0, |s| s.number)
-        };
-        let loops = self.case(cell.map(|x| x as usize)).loops as usize;
-        if number < loops { number as u8 } else { later() }
-    }
-
-    /// True when a piece of surface in `cell` has several vertices.
-    pub(super) fn has_several(&self, cell: [usize; 3], number: u8) -> bool {
-        self.several(cell, number).is_some()
-    }
-
-    /// A piece of surface in `cell`, if it has several vertices.
-    fn several(&self, cell: [usize; 3], number: u8) -> Option<&Several> {
-        if self.splits.is_empty() {
-            return None;
-        }
-        let key = (cell.map(|x| x as u8), number);
-        let k = self.splits.binary_search_by_key(&key, |s| (s.cell, s.number)).ok()?;
-        Some(&self.splits[k])
-    }
-
-    /// The vertices from that of one crossed edge of `cell` to that of another of the same piece.
-    pub(super) fn path(&self, cell: [usize; 3], from: usize, to: usize) -> SmallVec<[usize; 4]> {
-        let (number, plain) = (self.case(cell).loop_of[from], self.plain(cell, from));
-        match self.several(cell, number) {
-            None => SmallVec::from_slice(&[plain]),
-            Some(several) => {
-                let path = several.split.path(from, to);
-                path.into_iter().map(|k| several.vertex(plain, k)).collect()
-            }
+/// Computes the block; the point where the set has no value is the error.
+pub(super) fn compute(
+    grid: &Grid,
+    at: [u32; 3],
+    tape: &Tape<f64>,
+    leaves: &[Leaf],
+    scratch: &mut Scratch,
+) -> Result<Block, Vec3> {
+    let base = at.map(|b| b as usize * SIDE);
+    let corner = |c: [usize; 3]| grid.corner([0, 1, 2].map(|k| base[k] + c[k]));
+    let Scratch { points, values, room, registers, solver } = scratch;
+    points.clear();
+    for i in 0..CORNERS {
+        for j in 0..CORNERS {
+            points.extend((0..CORNERS).map(|k| corner([i, j, k])));
         }
     }
+    values.resize(points.len(), 0.0);
+    tape.bulk(points, values, room);
+    if let Some(k) = values.iter().position(|v| v.is_nan()) {
+        return Err(points[k]);
+    }
 
-    /// Computes the block; the point where the set has no value is the error.
-    pub(super) fn compute(
-        grid: &Grid,
-        at: [u32; 3],
-        tape: &Tape<f64>,
-        leaves: &[Leaf],
-        scratch: &mut Scratch,
-    ) -> Result<Self, Vec3> {
-        let base = at.map(|b| b as usize * SIDE);
-        let corner = |c: [usize; 3]| grid.corner([0, 1, 2].map(|k| base[k] + c[k]));
-        let Scratch { points, values, room, registers, solver } = scratch;
-        points.clear();
-        for i in 0..CORNERS {
-            for j in 0..CORNERS {
-                points.extend((0..CORNERS).map(|k| corner([i, j, k])));
-            }
-        }
-        values.resize(points.len(), 0.0);
-        tape.bulk(points, values, room);
-        if let Some(k) = values.iter().position(|v| v.is_nan()) {
-            return Err(points[k]);
-        }
-
-        let mut crossing_at = vec![u32::MAX; 3 * CORNERS * CORNERS * CORNERS];
-        let (mut edges, mut places) = (Vec::new(), Vec::new());
-        for i in 0..CORNERS {
-            for j in 0..CORNERS {
-                for k in 0..CORNERS {
-                    let c = [i, j, k];
-                    let here = corner_index(c);
-                    for axis in 0..3 {
-                        if c[axis] == SIDE {
-                            continue;
-                        }
-                        let there = here + [CORNERS * CORNERS, CORNERS, 1][axis];
-                        let (f0, f1) = (values[here], values[there]);
-                        if (f0 <= 0.0) == (f1 <= 0.0) {
-                            continue;
-                        }
-                        crossing_at[3 * here + axis] = edges.len() as u32;
-                        edges.push(Edge::new([points[here], points[there]], [f0, f1]));
-                        places.push((c.map(|x| x as u8), axis as u8, f0 <= 0.0));
-                    }
-                }
-            }
-        }
-        let found = cross(tape, &mut edges, room);
-        let deciding = tape.winners(&found, registers);
-        let mut crossings: Vec<Crossing> = places
-            .into_iter()
-            .zip(found.into_iter().zip(deciding))
-            .map(|((at, axis, outward), (point, leaf))| Crossing { at, axis, outward, leaf, point })
-            .collect();
-
-        let mut block = Self {
-            at,
-            signs: Box::new([0; SIDE * SIDE * SIDE]),
-            joins: Box::new([0; SIDE * SIDE * SIDE]),
-            first: Box::new([0; SIDE * SIDE * SIDE]),
-            vertices: Vec::new(),
-            splits: Vec::new(),
-            crossings: Vec::new(),
-            active: 0,
-        };
-        if crossings.is_empty() {
-            return Ok(block);
-        }
-        for i in 0..SIDE {
-            for j in 0..SIDE {
-                for k in 0..SIDE {
-                    let cell = [i, j, k];
-                    let mut signs = 0usize;
-                    for c in 0..8 {
-                        let at = corner_index([i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)]);
-                        signs |= usize::from(values[at] <= 0.0) << c;
-                    }
-                    let index = cell_index(cell);
-                    block.signs[index] = signs as u8;
-                    if signs == 0 || signs == 255 {
+    let mut crossing_at = vec![u32::MAX; 3 * CORNERS * CORNERS * CORNERS];
+    let (mut edges, mut places) = (Vec::new(), Vec::new());
+    for i in 0..CORNERS {
+        for j in 0..CORNERS {
+            for k in 0..CORNERS {
+                let c = [i, j, k];
+                let here = corner_index(c);
+                for axis in 0..3 {
+                    if c[axis] == SIDE {
                         continue;
                     }
-                    block.active += 1;
-                    block.first[index] = block.vertices.len() as u32;
-                    let sides = Box3 { low: corner(cell), high: corner([i + 1, j + 1, k + 1]) };
-                    for face in (0..6).filter(|&f| case(signs as u8, 0).ambiguous[f]) {
-                        // The same middle, bit for bit, from both cells of the face.
-                        let (axis, mut at) = (face / 2, cell);
-                        at[axis] += face % 2;
-                        let half = |k: usize| if k == axis { 0.0 } else { 0.5 * grid.step };
-                        let middle = corner(at) + Vec3::new(half(0), half(1), half(2));
-                        let solid = tape.eval::<f64>(&middle, registers) <= 0.0;
-                        let on = |e: usize| {
-                            let start = start_corner(e);
-                            let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
-                            &crossings[crossing_at[3 * corner_index(c) + e / 4] as usize]
-                        };
-                        let mut touch = || {
-                            let ring = face_edges(axis, face % 2).map(on);
-                            let first = signs >> ((face % 2) << axis) & 1 == 1;
-                            touching(ring, first, face, &sides, leaves, grid.goal, solver)
-                        };
-                        // Bodies that only touch there stay apart.
-                        block.joins[index] |= u8::from(solid && !touch()) << face;
+                    let there = here + [CORNERS * CORNERS, CORNERS, 1][axis];
+                    let (f0, f1) = (values[here], values[there]);
+                    if (f0 <= 0.0) == (f1 <= 0.0) {
+                        continue;
                     }
-                    let case = block.case(cell);
-                    let pieces = case.loops > 1;
-                    let small = cell.map(|x| x as u8);
-                    let mut more: SmallVec<[Vertex; 4]> = SmallVec::new();
-                    for number in 0..case.loops {
-                        let edges: Ring = (0..12)
-                            .filter(|&e| case.loop_of[e] == number)
-                            .map(|e| {
-                                let start = start_corner(e);
-                                let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
-                                let at = crossing_at[3 * corner_index(c) + e / 4];
-                                (e, &crossings[at as usize])
-                            })
-                            .collect();
-                        let mut settling = Settling {
-                            tape,
-                            leaves,
-                            cell: &sides,
-                            goal: grid.goal,
-                            solver,
-                            registers,
-                        };
-                        match settling.settle(&edges, &case.next) {
-                            Settled::One { placed, surfaces, blunt } => {
-                                let (cell, doubtful) = (small, pieces || placed.strayed);
-                                let vertex = Vertex { placed, cell, doubtful, blunt, surfaces };
-                                block.vertices.push(vertex);
-                            }
-                            Settled::Several(mut split) => {
-                                let vertex = |(placed, surfaces): (Placed, Surfaces)| Vertex {
-                                    placed,
-                                    cell: small,
-                                    doubtful: true,
-                                    blunt: false,
-                                    surfaces,
-                                };
-                                let mut own = std::mem::take(&mut split.vertices).into_iter();
-                                block.vertices.extend(own.next().map(vertex));
-                                // The first vertices of all pieces come before the others.
-                                let place = block.first[index] + u32::from(case.loops);
-                                let several = place + more.len() as u32;
-                                more.extend(own.map(vertex));
-                                let (cell, more) = (small, several);
-                                block.splits.push(Several { cell, number, more, split });
-                            }
-                        }
-                    }
-                    block.vertices.extend(more);
+                    crossing_at[3 * here + axis] = edges.len() as u32;
+                    edges.push(Edge::new([points[here], points[there]], [f0, f1]));
+                    places.push((c.map(|x| x as u8), axis as u8, f0 <= 0.0));
                 }
             }
         }
-        crossings.retain(|c| c.at.iter().all(|&x| (x as usize) < SIDE));
-        block.crossings = crossings;
-        Ok(block)
     }
+    let found = cross(tape, &mut edges, room);
+    let deciding = tape.winners(&found, registers);
+    let mut crossings: Vec<Crossing> = places
+        .into_iter()
+        .zip(found.into_iter().zip(deciding))
+        .map(|((at, axis, outward), (point, leaf))| Crossing { at, axis, outward, leaf, point })
+        .collect();
+
+    let mut block = Block {
+        at,
+        signs: Box::new([0; SIDE * SIDE * SIDE]),
+        joins: Box::new([0; SIDE * SIDE * SIDE]),
+        first: Box::new([0; SIDE * SIDE * SIDE]),
+        vertices: Vec::new(),
+        splits: Vec::new(),
+        crossings: Vec::new(),
+        active: 0,
+    };
+    if crossings.is_empty() {
+        return Ok(block);
+    }
+    for i in 0..SIDE {
+        for j in 0..SIDE {
+            for k in 0..SIDE {
+                let cell = [i, j, k];
+                let mut signs = 0usize;
+                for c in 0..8 {
+                    let at = corner_index([i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)]);
+                    signs |= usize::from(values[at] <= 0.0) << c;
+                }
+                let index = cell_index(cell);
+                block.signs[index] = signs as u8;
+                if signs == 0 || signs == 255 {
+                    continue;
+                }
+                block.active += 1;
+                block.first[index] = block.vertices.len() as u32;
+                let sides = Box3 { low: corner(cell), high: corner([i + 1, j + 1, k + 1]) };
+                for face in (0..6).filter(|&f| case(signs as u8, 0).ambiguous[f]) {
+                    // The same middle, bit for bit, from both cells of the face.
+                    let (axis, mut at) = (face / 2, cell);
+                    at[axis] += face % 2;
+                    let half = |k: usize| if k == axis { 0.0 } else { 0.5 * grid.step };
+                    let middle = corner(at) + Vec3::new(half(0), half(1), half(2));
+                    let solid = tape.eval::<f64>(&middle, registers) <= 0.0;
+                    let on = |e: usize| {
+                        let start = start_corner(e);
+                        let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
+                        &crossings[crossing_at[3 * corner_index(c) + e / 4] as usize]
+                    };
+                    let mut touch = || {
+                        let ring = face_edges(axis, face % 2).map(on);
+                        let first = signs >> ((face % 2) << axis) & 1 == 1;
+                        touching(ring, first, face, &sides, leaves, grid.goal, solver)
+                    };
+                    // Bodies that only touch there stay apart.
+                    block.joins[index] |= u8::from(solid && !touch()) << face;
+                }
+                let case = block.case(cell);
+                let pieces = case.loops > 1;
+                let small = cell.map(|x| x as u8);
+                let mut more: SmallVec<[Vertex; 4]> = SmallVec::new();
+                for number in 0..case.loops {
+                    let edges: Ring = (0..12)
+                        .filter(|&e| case.loop_of[e] == number)
+                        .map(|e| {
+                            let start = start_corner(e);
+                            let c = [i + (start & 1), j + (start >> 1 & 1), k + (start >> 2)];
+                            let at = crossing_at[3 * corner_index(c) + e / 4];
+                            (e, &crossings[at as usize])
+                        })
+                        .collect();
+                    let mut placement = Placement {
+                        tape,
+                        leaves,
+                        cell: &sides,
+                        goal: grid.goal,
+                        solver,
+                        registers,
+                    };
+                    match placement.vertices(&edges, &case.next) {
+                        PieceVertices::One { placed, surfaces, blunt } => {
+                            let (cell, doubtful) = (small, pieces || placed.strayed);
+                            let vertex = Vertex { placed, cell, doubtful, blunt, surfaces };
+                            block.vertices.push(vertex);
+                        }
+                        PieceVertices::Several(mut split) => {
+                            let vertex = |(placed, surfaces): (Placed, Surfaces)| Vertex {
+                                placed,
+                                cell: small,
+                                doubtful: true,
+                                blunt: false,
+                                surfaces,
+                            };
+                            let mut own = std::mem::take(&mut split.vertices).into_iter();
+                            block.vertices.extend(own.next().map(vertex));
+                            // The first vertices of all pieces come before the others.
+                            let place = block.first[index] + u32::from(case.loops);
+                            let several = place + more.len() as u32;
+                            more.extend(own.map(vertex));
+                            let (cell, more) = (small, several);
+                            block.splits.push(Several { cell, number, more, split });
+                        }
+                    }
+                }
+                block.vertices.extend(more);
+            }
+        }
+    }
+    crossings.retain(|c| c.at.iter().all(|&x| (x as usize) < SIDE));
+    block.crossings = crossings;
+    Ok(block)
 }
 
 /// True when the two pieces of air on an ambiguous face whose solid corners would be joined come together at

@@ -13,66 +13,35 @@ mod assemble;
 mod block;
 mod cell;
 mod crossing;
+mod divide;
 mod grid;
+pub(crate) mod memo;
+mod padded_bounds;
+mod place_vertices;
 mod refine;
-mod settle;
+mod remove_intersections;
+pub(crate) mod sheets;
+pub(crate) mod shells;
 mod simplify;
 mod split;
-mod untangle;
+pub(crate) mod types;
 pub(crate) mod vertex;
 
 use crate::error::solid_box;
-use crate::form::Form;
+use crate::expr::form::Form;
+use crate::expr::tape::Tape;
 use crate::set::{Attributes, Leaf};
-use crate::tape::Tape;
 use crate::{FieldError, Set};
-use block::Block;
 pub use crossing::crossing_faces;
 use grid::Grid;
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
 use moldloft_num::{Box3, Vec3};
 use refine::{Rule, refine};
-use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// How fine facets are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Resolution {
-    /// Cells of side (longest side of the box) / 2^depth.
-    Depth(u32),
-    /// As that depth, but no coarser than the thinnest side of the box at level 5, a half of it at 6 and so on.
-    Level(u32),
-    /// Triangle centres at most about this far from the surface: estimated by |f| / |f'| and kept by
-    /// refining, not proved.
-    Accuracy(f64),
-}
-
-/// How facets are made.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// How fine they are.
-    pub resolution: Resolution,
-    /// The most cells that the surface may pass through.
-    pub limit: f64,
-    /// Vertices stay on edges and corners even where triangles then cut others: integrals over the body do not
-    /// mind, and lose most by edges that are cut off.
-    pub sharp: bool,
-    /// Set it to true from elsewhere to stop.
-    pub cancel: Option<Arc<AtomicBool>>,
-}
-
-impl Options {
-    /// Facets of that resolution, at most 20 million cells.
-    pub fn new(resolution: Resolution) -> Self {
-        Self { resolution, limit: 2e7, sharp: false, cancel: None }
-    }
-
-    pub(crate) fn cancelled(&self) -> bool {
-        self.cancel.as_ref().is_some_and(|c| c.load(Ordering::Relaxed))
-    }
-}
+use types::Block;
+use types::Reuse;
+pub use types::{Options, Resolution};
 
 /// The boundary of a set within a box.
 #[derive(Clone, Debug)]
@@ -114,19 +83,6 @@ struct Memory {
 impl std::fmt::Debug for Memory {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         write!(f, "{} blocks", self.blocks.len())
-    }
-}
-
-/// Blocks of an earlier division by position.
-struct Reuse<'a> {
-    blocks: FxHashMap<[u32; 3], &'a (Arc<Tape<f64>>, Arc<Block>)>,
-}
-
-impl Reuse<'_> {
-    /// The old block, if the set was the same there.
-    fn get(&self, at: [u32; 3], tape: &Tape<f64>) -> Option<Arc<Block>> {
-        let (old, block) = self.blocks.get(&at)?;
-        (old.leaf == tape.leaf && old.same(tape)).then(|| block.clone())
     }
 }
 
@@ -290,12 +246,12 @@ fn at_step(
     let reuse = before
         .filter(|b| b.memory.grid == grid)
         .map(|b| Reuse { blocks: b.memory.blocks.iter().map(|pair| (pair.1.at, pair)).collect() });
-    let divided = grid::divide(&grid, &compiled.tape, &compiled.leaves, options, reuse.as_ref())?;
+    let divided = divide::divide(&grid, &compiled.tape, &compiled.leaves, options, reuse.as_ref())?;
     let leaves = compiled.leaves;
     // A face of the set that lies in a face of the box is the set's.
     let own = compiled.places.len().saturating_sub(CAPS.len());
     let own_leaves = compiled.places[..own].iter().map(|&l| l as usize + 1).max().unwrap_or(0);
-    let mut made = untangle::assembled(&grid, &leaves, &divided.blocks, options.sharp);
+    let mut made = remove_intersections::assembled(&grid, &leaves, &divided.blocks, options.sharp);
     let rule = Rule { turn: TURN, accuracy, shortest: 0.2 * step, goal: grid.goal };
     refine(&mut made, &leaves, &compiled.tape, rule);
 
@@ -343,7 +299,9 @@ fn undecided(grid: &Grid, mesh: &Mesh, doubtful: &[(u32, [usize; 3])]) -> Vec<Bo
     let faces = mesh.faces();
     let corners = |f: usize| [faces[f][0], faces[f][1], faces[f][2]];
     let mut bad = vec![false; positions.len()];
-    for face in untangle::crossing(positions, faces.len(), corners, doubtful).into_iter().flatten()
+    for face in remove_intersections::crossing(positions, faces.len(), corners, doubtful)
+        .into_iter()
+        .flatten()
     {
         corners(face).into_iter().for_each(|v| bad[v as usize] = true);
     }

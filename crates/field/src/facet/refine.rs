@@ -9,8 +9,8 @@
 use super::assemble::Assembled;
 use super::crossing::crossings;
 use super::vertex::{Solver, Surfaces};
+use crate::expr::tape::Tape;
 use crate::set::Leaf;
-use crate::tape::Tape;
 use moldloft_num::{Box3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;

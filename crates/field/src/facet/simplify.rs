@@ -7,7 +7,7 @@
 use super::refine::{Normals, normals};
 use super::{Facets, crossing_faces, distance, vertex};
 use crate::FieldError;
-use crate::tape::Tape;
+use crate::expr::tape::Tape;
 use moldloft_mesh::{Mesh, TopologyBuilder};
 use moldloft_num::Vec3;
 use smallvec::SmallVec;

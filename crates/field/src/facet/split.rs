@@ -6,52 +6,11 @@
 //! are two edges: cut through both runs of A, their vertices lie on A and B and on A and C. With A B C D there are two
 //! corners; the cut through A and C, or B and D, has them. Parts are cut again while they have no common point.
 
-use super::block::Crossing;
-use super::settle::{Ring, Settling};
+use super::place_vertices::Placement;
+use super::types::{Crossing, Ring, Split};
 use super::vertex::{Placed, Surfaces};
 use moldloft_num::Vec3;
 use smallvec::SmallVec;
-
-/// The vertices of a piece of surface and how they hang together.
-#[derive(Clone, Debug)]
-pub(super) struct Split {
-    pub(super) vertices: SmallVec<[(Placed, Surfaces); 2]>,
-    /// The vertex of each crossed edge.
-    pub(super) group: [u8; 12],
-    /// The tree of vertices: the one towards the first, which is its own.
-    pub(super) parent: SmallVec<[u8; 2]>,
-}
-
-impl Split {
-    /// The vertices from that of one edge to that of another.
-    pub(super) fn path(&self, from: usize, to: usize) -> SmallVec<[u8; 4]> {
-        let up = |k: usize| {
-            let mut way: SmallVec<[u8; 4]> = SmallVec::from_slice(&[self.group[k]]);
-            while let Some(&last) = way.last() {
-                let parent = self.parent[last as usize];
-                if parent == last {
-                    break;
-                }
-                way.push(parent);
-            }
-            way
-        };
-        let (mut here, mut there) = (up(from), up(to));
-        // Both ways end at the first vertex; the last that they share is where they part.
-        let mut meeting = 0;
-        while let (Some(&a), Some(&b)) = (here.last(), there.last()) {
-            if a != b {
-                break;
-            }
-            meeting = a;
-            here.pop();
-            there.pop();
-        }
-        here.push(meeting);
-        here.extend(there.into_iter().rev());
-        here
-    }
-}
 
 /// More runs than this are left alone, as are cells that take more searches.
 const MOST_RUNS: usize = 8;
@@ -75,14 +34,14 @@ struct Part {
 }
 
 struct Splitting<'s, 'a, 'c> {
-    settling: &'s mut Settling<'a>,
+    placement: &'s mut Placement<'a>,
     ring: Ring<'c>,
     runs: Vec<Run>,
     searches: usize,
 }
 
 /// The vertices of the piece of surface with these crossings, if there are several that will do.
-pub(super) fn split(settling: &mut Settling, edges: &Ring, next: &[u8; 12]) -> Option<Split> {
+pub(super) fn split(placement: &mut Placement, edges: &Ring, next: &[u8; 12]) -> Option<Split> {
     let mut ring: Ring = SmallVec::new();
     let mut at = edges.first()?.0;
     for _ in 0..edges.len() {
@@ -94,18 +53,18 @@ pub(super) fn split(settling: &mut Settling, edges: &Ring, next: &[u8; 12]) -> O
     let leaf = |k: usize| ring[k % n].1.leaf;
     let start = (0..n).find(|&k| leaf(k) != leaf(k + n - 1))?;
     ring.rotate_left(start);
-    let runs = runs_of(settling, &ring);
+    let runs = runs_of(placement, &ring);
     if !(4..=MOST_RUNS).contains(&runs.len()) {
         return None;
     }
     let whole: SmallVec<[usize; 8]> = (0..runs.len()).collect();
-    let mut splitting = Splitting { settling, ring, runs, searches: 0 };
+    let mut splitting = Splitting { placement, ring, runs, searches: 0 };
     let part = splitting.cut(&whole, true)?;
     splitting.finish(part)
 }
 
 /// The runs of a ring, with those that show on the cell's sides only.
-fn runs_of(settling: &mut Settling, ring: &Ring) -> Vec<Run> {
+fn runs_of(placement: &mut Placement, ring: &Ring) -> Vec<Run> {
     let n = ring.len();
     let mut runs: Vec<Run> = Vec::new();
     let mut start = 0;
@@ -116,22 +75,22 @@ fn runs_of(settling: &mut Settling, ring: &Ring) -> Vec<Run> {
         }
         let mut run = Run { leaf: p.1.leaf, places: start..k + 1, change: None };
         start = k + 1;
-        let Some(side) = settling.shared_side(p.0, q.0) else {
+        let Some(side) = placement.shared_side(p.0, q.0) else {
             runs.push(run);
             continue;
         };
         let pair = [p.1.leaf, q.1.leaf];
-        let found = settling.change(p.1, q.1, &side).map(|c| c.point);
+        let found = placement.change(p.1, q.1, &side).map(|c| c.point);
         let at = found.unwrap_or((p.1.point + q.1.point) * 0.5);
-        match settling.stranger(at, &pair) {
+        match placement.blocking_leaf(at, &pair) {
             None => {
                 run.change = found;
                 runs.push(run);
             }
             Some(leaf) => {
                 let hidden = |p: &Crossing| Crossing { leaf, ..*p };
-                let first = settling.change(p.1, &hidden(q.1), &side);
-                let second = settling.change(&hidden(p.1), q.1, &side);
+                let first = placement.change(p.1, &hidden(q.1), &side);
+                let second = placement.change(&hidden(p.1), q.1, &side);
                 run.change = first.map(|c| c.point);
                 runs.push(run);
                 let change = second.map(|c| c.point);
@@ -172,8 +131,8 @@ impl Splitting<'_, '_, '_> {
             if self.searches > MOST_SEARCHES {
                 return None;
             }
-            let placed = self.settling.place(&surfaces, start);
-            if placed.residual <= self.settling.goal && self.on_surface(placed.point, &surfaces) {
+            let placed = self.placement.place(&surfaces, start);
+            if placed.residual <= self.placement.goal && self.on_surface(placed.point, &surfaces) {
                 return Some((placed, surfaces));
             }
         }
@@ -182,7 +141,7 @@ impl Splitting<'_, '_, '_> {
 
     /// True when no other primitive cuts the point off, to a few roundings.
     fn on_surface(&mut self, at: Vec3, surfaces: &[u32]) -> bool {
-        self.settling.stranger(at, surfaces).is_none()
+        self.placement.blocking_leaf(at, surfaces).is_none()
     }
 
     /// The vertices of these runs: one or, if `several`, more.

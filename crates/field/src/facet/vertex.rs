@@ -1,9 +1,9 @@
 //! Where the vertex of a piece of surface in a cell goes: onto all the primitives that the piece
 //! shows, and into the cell.
 
-use crate::algebra::Gradient;
+use crate::expr::algebra::Gradient;
+use crate::expr::tape::Tape;
 use crate::set::Leaf;
-use crate::tape::Tape;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -66,7 +66,7 @@ impl Solver {
 
     /// As [`Solver::place`], up to two cells away: the thin end of a wedge may pass between the grid's
     /// corners for that long.
-    pub(crate) fn stray(
+    pub(crate) fn outside_cell(
         &mut self,
         leaves: &[Leaf],
         surfaces: &[u32],

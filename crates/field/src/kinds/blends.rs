@@ -4,7 +4,7 @@ use super::read::{Shape, fault, field, set};
 use super::region::corners;
 use crate::{Blend, FieldError, Primitive, check_rail, check_rails, liming, liming_on_rail, zhang};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Point, Value};
 
 /// The surface through the four curves in which two bodies meet two others:
 /// lambda L1 L2 - (1 - lambda) L3 L4. With one rail, L4 = L3, it touches both bodies where the rail does.
@@ -49,15 +49,15 @@ impl<T: Real> Build<T> for Liming<T> {
         if let Some(l4) = &self.l4 {
             return field(liming([l1, l2], [l3, &l4.primitive], self.lambda));
         }
-        if let Some(over) = corners(&self.low, &self.high, 6)? {
-            checked(check_rail([&l1.re(), &l2.re()], &l3.re(), &over))?;
+        if let Some(over) = corners(&self.low, &self.high, Self::HIGH)? {
+            checked(check_rail([&l1.re(), &l2.re()], &l3.re(), &over), Self::L3)?;
         }
         field(liming_on_rail([l1, l2], l3, self.lambda, self.contact))
     }
 }
 
-fn checked(outcome: Result<(), FieldError>) -> Result<(), Fault> {
-    outcome.map_err(|e| fault(&e).in_field(2))
+fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), Fault> {
+    outcome.map_err(|e| fault(&e).in_field(field))
 }
 
 /// The transition from one body, which it touches at its rail, to another, which it touches at its own:
@@ -98,8 +98,8 @@ pub struct Zhang<T: Real> {
 impl<T: Real> Build<T> for Zhang<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let [l1, l2, l3, l4] = [&self.l1, &self.l2, &self.l3, &self.l4].map(|s| &s.primitive);
-        if let Some(over) = corners(&self.low, &self.high, 6)? {
-            checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over))?;
+        if let Some(over) = corners(&self.low, &self.high, Self::HIGH)? {
+            checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over), Self::L3)?;
         }
         field(zhang([l1, l2], [l3, l4], self.lambda, self.contact))
     }
@@ -170,12 +170,15 @@ macro_rules! corner_blend {
                 let bodies = [&self.l1.primitive, &self.l2.primitive];
                 let setbacks = [self.width, self.other.unwrap_or(self.width)];
                 let blend = $make(bodies, setbacks, self.lambda).map_err(|e| fault(&e))?;
-                if let Some(over) = corners(&self.low, &self.high, 5)? {
+                if let Some(over) = corners(&self.low, &self.high, Self::HIGH)? {
                     let sign = |p: &Primitive<T>| if $name == "rounded" { -p } else { p.clone() };
                     let signed = bodies.map(sign);
                     let rail = crate::setback_rail([&signed[0], &signed[1]], setbacks);
                     let rail = rail.map_err(|e| fault(&e))?;
-                    checked(check_rail([&signed[0].re(), &signed[1].re()], &rail.re(), &over))?;
+                    checked(
+                        check_rail([&signed[0].re(), &signed[1].re()], &rail.re(), &over),
+                        Self::WIDTH,
+                    )?;
                 }
                 finished(blend, [&self.l1, &self.l2], $name)
             }
@@ -250,8 +253,8 @@ pub struct Transition<T: Real> {
 impl<T: Real> Build<T> for Transition<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let [l1, l2, l3, l4] = [&self.l1, &self.l2, &self.l3, &self.l4].map(|s| &s.primitive);
-        if let Some(over) = corners(&self.low, &self.high, 6)? {
-            checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over))?;
+        if let Some(over) = corners(&self.low, &self.high, Self::HIGH)? {
+            checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over), Self::L3)?;
         }
         let blend = crate::transition([l1, l2], [l3, l4], self.lambda, self.contact);
         finished(blend.map_err(|e| fault(&e))?, [&self.l1, &self.l2], "transition")

@@ -2,9 +2,9 @@
 
 use super::read::{Solid, fault};
 use super::region::region;
+use crate::facet::sheets::Mixed;
 use crate::facet::{Facets, Options, Resolution};
-use crate::sheets::Mixed;
-use crate::{FieldError, Leaf, Lifter, Set, cache, facet_mixed};
+use crate::{FacetMemo, FieldError, Leaf, Lifter, Set, facet_mixed};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, Context, Facets as Body, Fault, Group, Kind, Point, Value};
 use std::sync::Arc;
@@ -52,7 +52,7 @@ impl<T: Real> Build<T> for SetBody<T> {
             (Some(_), Some(_)) => {
                 return Err(Fault::new("argument-twice", "depth and accuracy are both given")
                     .expected("one of them")
-                    .in_field(4));
+                    .in_field(Self::ACCURACY));
             }
             (Some(depth), None) => Resolution::Depth(depth),
             (None, Some(accuracy)) => Resolution::Accuracy(accuracy.re()),
@@ -61,22 +61,23 @@ impl<T: Real> Build<T> for SetBody<T> {
         let set = &self.set.0;
         let plain = set.re();
         if plain.is_nothing() {
-            return Err(Fault::new("empty-set", "the set is empty").in_field(0));
+            return Err(Fault::new("empty-set", "the set is empty").in_field(Self::SET));
         }
-        let region = region(&plain, &self.low, &self.high, 2)?;
+        let region = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let lifter = Lifter::of(set, &plain, region.corners);
         let simplify = self.simplify.map(T::re);
-        let body = facets_of(&plain, &region.over, &options(resolution, context))
-            .and_then(|pieces| match simplify {
-                Some(accuracy) => pieces.simplified(accuracy),
-                None => Ok(pieces),
-            })
-            .and_then(|pieces| pieces.body(&lifter))
-            .map_err(|e| fault(&e))?;
+        let body =
+            facets_of(&plain, &region.over, &options(resolution, context), &context.kept.of())
+                .and_then(|pieces| match simplify {
+                    Some(accuracy) => pieces.simplified(accuracy),
+                    None => Ok(pieces),
+                })
+                .and_then(|pieces| pieces.body(&lifter))
+                .map_err(|e| fault(&e))?;
         if body.triangles.is_empty() && body.wires.is_empty() && body.dots.is_empty() {
             return Err(Fault::new("empty-set", "the set has no surface in the box")
                 .expected("a set whose surface passes through the box")
-                .in_field(0));
+                .in_field(Self::SET));
         }
         Ok(Value::Mesh(Arc::new(body)))
     }
@@ -91,19 +92,20 @@ pub enum Pieces {
     Mixed(Arc<Mixed>),
 }
 
-/// The facets of a set within a box.
+/// The facets of a set within a box, from the memo when they are there.
 ///
 /// # Errors
 /// As [`crate::facet`].
-pub fn facets_of(
+fn facets_of(
     set: &Set,
     over: &moldloft_num::Box3,
     options: &Options,
+    memo: &FacetMemo,
 ) -> Result<Pieces, FieldError> {
     if set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
         Ok(Pieces::Mixed(Arc::new(facet_mixed(set, over, options)?)))
     } else {
-        Ok(Pieces::Solid(cache::facet(set, over, options)?))
+        Ok(Pieces::Solid(memo.facet(set, over, options)?))
     }
 }
 

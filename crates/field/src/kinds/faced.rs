@@ -28,7 +28,7 @@ impl<T: Real> Build<T> for Polyhedron<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let (points, triangles) = (&self.body.points[..], &self.body.triangles[..]);
         set(faced(&Sides { points, triangles, sides: None, rounds: &[] }))
-            .map_err(|f| f.in_field(0))
+            .map_err(|f| f.in_field(Self::BODY))
     }
 }
 
@@ -75,7 +75,7 @@ impl<T: Real> Build<T> for FaceSet<T> {
             )
             .expected(format!("{m} numbers, one for each triangle"))
             .found(n.to_string())
-            .in_field(1));
+            .in_field(Self::FACES));
         }
         let vectors = self.rounds.unwrap_or_default();
         if !vectors.len().is_multiple_of(5) {
@@ -83,7 +83,7 @@ impl<T: Real> Build<T> for FaceSet<T> {
             return Err(Fault::new("wrong-count", format!("{n} vectors make no round faces"))
                 .expected("five vectors for each")
                 .found(n.to_string())
-                .in_field(2));
+                .in_field(Self::ROUNDS));
         }
         let round = |(k, v): (usize, &[Vec3<T>])| {
             let (sweep, scale, side) = (v[4].x, v[4].y, v[4].z.re());
@@ -93,7 +93,7 @@ impl<T: Real> Build<T> for FaceSet<T> {
                 return Err(Fault::new("out-of-range", text)
                     .expected("the number of a face")
                     .found(side.to_string())
-                    .in_field(2)
+                    .in_field(Self::ROUNDS)
                     .in_item(5 * k + 4));
             }
             let profile = if sweep.re() == 0.0 {
@@ -122,6 +122,6 @@ impl<T: Real> Build<T> for FaceSet<T> {
             }
             made => made,
         };
-        Ok(crate::set_value(made.map_err(|e| fault(&e).in_field(0))?))
+        Ok(crate::set_value(made.map_err(|e| fault(&e).in_field(Self::BODY))?))
     }
 }

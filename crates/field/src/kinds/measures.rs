@@ -3,14 +3,15 @@
 use super::body::options;
 use super::read::{Solid, fault, primitive_of, set_of};
 use super::region::{Region, around, region};
-use crate::curved::Curved;
 use crate::facet::{Facets, Resolution};
+use crate::measure::curved::{self, Curved};
+use crate::query::foot;
 use crate::{
-    FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, cache, facet_mixed, foot,
+    FacetMemo, FieldError, Lifter, Membership, Moments, Primitive, Set, bracket, facet_mixed,
 };
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{
-    Array, Build, Class, Context, Fault, FromValue, Kind, Point, Value, Vectors,
+    Array, Build, Class, Context, Fault, FieldId, FromValue, Kind, Point, Value, Vectors,
 };
 use std::sync::Arc;
 
@@ -48,8 +49,9 @@ fn moments<T: Real>(
         None => USUAL * size,
     };
     let mut before: Option<(Arc<Facets>, f64)> = None;
+    let memo = context.kept.of::<FacetMemo>();
     for depth in DEPTHS[0]..=DEPTHS[1] {
-        let facets = cache::facet(&solid, &region.over, &sharp(depth, context))?;
+        let facets = memo.facet(&solid, &region.over, &sharp(depth, context))?;
         if facets.mesh.faces().is_empty() {
             return Ok(none());
         }
@@ -97,7 +99,7 @@ macro_rules! measure {
             fn build(self, $context: &Context) -> Result<Value<T>, Fault> {
                 let $this = self;
                 let $set = &$this.set.0;
-                let $region = region(&$set.re(), &$this.low, &$this.high, 2)?;
+                let $region = region(&$set.re(), &$this.low, &$this.high, [Self::SET, Self::HIGH])?;
                 $body
             }
         }
@@ -127,7 +129,7 @@ measure!(
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
         if m.volume().re() <= 0.0 {
-            return Err(empty());
+            return Err(empty(Self::SET));
         }
         Ok(Value::Vector(m.centroid()))
     }
@@ -143,16 +145,16 @@ measure!(
     |this, set, region, context| {
         let m = moments(set, &region, this.accuracy, context).map_err(|e| fault(&e))?;
         if m.volume().re() <= 0.0 {
-            return Err(empty());
+            return Err(empty(Self::SET));
         }
         Ok(Value::Vectors(Arc::new(Vectors::row(m.inertia().to_vec()))))
     }
 );
 
-fn empty() -> Fault {
+fn empty(set: FieldId) -> Fault {
     Fault::new("empty-set", "the set has no volume in the box")
         .expected("a solid in the box")
-        .in_field(0)
+        .in_field(set)
 }
 
 measure!(
@@ -163,7 +165,10 @@ measure!(
     "How well two values, of a box divided once more, agree; by default 1e-6 of the area.",
     "assert abs(area(set(sphere({0, 0, 0}, 1))) - 12.56637) < 1e-5;",
     |this, set, region, context| {
-        refined(this.accuracy, context, |options| area(set, &region, options))
+        let memo = context.kept.of();
+        refined(this.accuracy, Self::ACCURACY, context, |options| {
+            area(set, &region, options, &memo)
+        })
     }
 );
 
@@ -175,20 +180,21 @@ measure!(
     "How well two values, of a box divided once more, agree; by default 1e-6 of the length.",
     "set ring = set(abs(sphere({0, 0, 0}, 1))) & set(abs(plane({0, 0, 1}, {0, 0, 0.6}))); assert abs(wire_length(ring) - 5.0265482) < 1e-5;",
     |this, set, region, context| {
-        refined(this.accuracy, context, |options| length(set, &region, options))
+        refined(this.accuracy, Self::ACCURACY, context, |options| length(set, &region, options))
     }
 );
 
 /// A measure at resolutions that are made finer until two agree.
 fn refined<T: Real>(
     accuracy: Option<T>,
+    field: FieldId,
     context: &Context,
     measure: impl Fn(&crate::Options) -> Result<T, FieldError>,
 ) -> Result<Value<T>, Fault> {
     let asked = match accuracy {
-        Some(a) => {
-            Some(crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(3))?)
-        }
+        Some(a) => Some(
+            crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(field))?,
+        ),
         None => None,
     };
     let mut found = T::zero();
@@ -208,6 +214,7 @@ fn area<T: Real>(
     set: &Set<T>,
     region: &Region<T>,
     options: &crate::Options,
+    memo: &FacetMemo,
 ) -> Result<T, FieldError> {
     let plain = set.re();
     let lifter = Lifter::of(set, &plain, region.corners);
@@ -218,7 +225,7 @@ fn area<T: Real>(
         Ok(Curved::new(&facets.flat()).area(&positions, &primitives, counts))
     };
     if plain.leaves().iter().all(|l| !l.primitive.is_sheet()) {
-        return own(&*cache::facet(&plain, &region.over, options)?);
+        return own(&*memo.facet(&plain, &region.over, options)?);
     }
     let mixed = facet_mixed(&plain, &region.over, options)?;
     let mut area = own(&mixed.solid)?;
@@ -240,7 +247,7 @@ fn length<T: Real>(
     let lifter = Lifter::of(set, &plain, region.corners);
     let mut sum = T::zero();
     for wire in &facet_mixed(&plain, &region.over, options)?.wires {
-        sum += crate::curved::length(wire, &lifter.primitives_on(&wire.on)?);
+        sum += curved::length(wire, &lifter.primitives_on(&wire.on)?);
     }
     Ok(sum)
 }
@@ -270,7 +277,7 @@ pub struct VolumeBracket<T: Real> {
 impl<T: Real> Build<T> for VolumeBracket<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let set = self.set.0.re();
-        let region = region(&set, &self.low, &self.high, 2)?;
+        let region = region(&set, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let volume = bracket(&set, &region.over, self.depth).map_err(|e| fault(&e))?.volume();
         let ends = vec![T::from(volume.low.max(0.0)), T::from(volume.high)];
         Ok(Value::Numbers(Arc::new(Array::row(ends))))
@@ -396,7 +403,7 @@ pub struct Range<T: Real> {
 impl<T: Real> Build<T> for Range<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let over = Box3 { low: self.low.xyz.re(), high: self.high.xyz.re() };
-        let over = crate::error::solid_box(over).map_err(|e| fault(&e).in_field(2))?;
+        let over = crate::error::solid_box(over).map_err(|e| fault(&e).in_field(Self::HIGH))?;
         let range = match self.shape {
             Either::Field(f) => f.re().range(&over),
             Either::Set(s) => s.re().range(&over),
@@ -460,14 +467,14 @@ impl<T: Real> Build<T> for NearestPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let set = &self.set.0;
         let plain = set.re();
-        let over = region(&plain, &self.low, &self.high, 3)?.over;
+        let over = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?.over;
         let accuracy = self.accuracy.map_or(1e-6 * over.diagonal(), T::re);
         let p = self.point.xyz;
         let found = crate::nearest(&plain, p.re(), &over, accuracy).map_err(|e| fault(&e))?;
         let Some(found) = found else {
             return Err(Fault::new("no-surface", "the set has no surface in the box")
                 .expected("a set whose surface passes through the box")
-                .in_field(0));
+                .in_field(Self::SET));
         };
         let near = 1e-9 * over.diagonal();
         Ok(Value::Vector(foot::nearest(set, p, found.point, near)))
@@ -502,7 +509,7 @@ impl<T: Real> Build<T> for FirstHit<T> {
         let size = direction.re().norm();
         if size == 0.0 {
             let none = FieldError::Degenerate { what: "direction of the ray" };
-            return Err(fault(&none).in_field(2));
+            return Err(fault(&none).in_field(Self::DIRECTION));
         }
         let none = || {
             Fault::new("no-hit", "the ray does not meet the set").expected("a ray that meets it")
@@ -510,7 +517,8 @@ impl<T: Real> Build<T> for FirstHit<T> {
         let length = match self.length {
             Some(length) => length.re(),
             None => {
-                let over = around(&plain).map_err(|e| fault(&e).in_field(0))?.ok_or_else(none)?;
+                let over =
+                    around(&plain).map_err(|e| fault(&e).in_field(Self::SET))?.ok_or_else(none)?;
                 (over.centre().distance(start.re()) + over.diagonal()) / size
             }
         };
@@ -555,10 +563,11 @@ impl<T: Real> Build<T> for Distance<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let [a, b] = [&self.a.0, &self.b.0];
         let [p, q] = [a.re(), b.re()];
-        let over = region(&(p.clone() | q.clone()), &self.low, &self.high, 3)?.over;
+        let over =
+            region(&(p.clone() | q.clone()), &self.low, &self.high, [Self::A, Self::HIGH])?.over;
         let accuracy = self.accuracy.map_or(1e-5 * over.diagonal(), T::re);
-        let found = crate::gap(&p, &q, &over, accuracy).map_err(|e| fault(&e))?;
-        let Some(found) = found else { return Err(empty()) };
+        let found = crate::distance(&p, &q, &over, accuracy).map_err(|e| fault(&e))?;
+        let Some(found) = found else { return Err(empty(Self::A)) };
         if found.distance == 0.0 {
             return Ok(Value::Number(T::zero()));
         }
@@ -598,9 +607,10 @@ impl<T: Real> Build<T> for Components<T> {
         if set.is_nothing() {
             return Ok(Value::Number(T::zero()));
         }
-        let over = region(&set, &self.low, &self.high, 2)?.over;
+        let over = region(&set, &self.low, &self.high, [Self::SET, Self::HIGH])?.over;
         let options = options(Resolution::Level(self.depth), context);
-        let facets = cache::facet(&set, &over, &options).map_err(|e| fault(&e))?;
+        let facets = context.kept.of::<FacetMemo>().facet(&set, &over, &options);
+        let facets = facets.map_err(|e| fault(&e))?;
         Ok(Value::Number(T::from(facets.bodies() as f64)))
     }
 }
@@ -624,7 +634,7 @@ pub struct Bounds<T: Real> {
 impl<T: Real> Build<T> for Bounds<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let found = crate::bounds(&self.set.0.re(), self.accuracy.re()).map_err(|e| fault(&e))?;
-        let Some(over) = found else { return Err(empty()) };
+        let Some(over) = found else { return Err(empty(Self::SET)) };
         let ends = vec![Vec3::lifted(over.low), Vec3::lifted(over.high)];
         Ok(Value::Vectors(Arc::new(Vectors::row(ends))))
     }

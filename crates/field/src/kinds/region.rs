@@ -3,13 +3,13 @@
 use super::read::fault;
 use crate::{Set, bounds};
 use moldloft_num::{Box3, Real, Vec3};
-use moldloft_registry::{Fault, Point};
+use moldloft_registry::{Fault, FieldId, Point};
 
-/// The box of two corners, if both are given; `field` is the place of the second.
+/// The box of two corners, if both are given; `field` is the second.
 pub fn corners<T: Real>(
     low: &Option<Point<T>>,
     high: &Option<Point<T>>,
-    field: usize,
+    field: FieldId,
 ) -> Result<Option<Box3>, Fault> {
     match (low, high) {
         (Some(low), Some(high)) => {
@@ -33,7 +33,7 @@ pub struct Region<T> {
 /// differ, and are no simple fractions, so that the grid falls on no symmetry.
 const WIDENED: [f64; 3] = [0.0213, 0.0231, 0.0197];
 
-/// The box that was given, or one found around the set.
+/// The box that was given, or one found around the set: the arguments of the set and of the second corner.
 ///
 /// # Errors
 /// A set without end, or without a point.
@@ -41,18 +41,18 @@ pub fn region<T: Real>(
     set: &Set<f64>,
     low: &Option<Point<T>>,
     high: &Option<Point<T>>,
-    field: usize,
+    [of, second]: [FieldId; 2],
 ) -> Result<Region<T>, Fault> {
-    if let Some(over) = corners(low, high, field)? {
+    if let Some(over) = corners(low, high, second)? {
         let corners = low.as_ref().zip(high.as_ref()).map(|(l, h)| [l.xyz, h.xyz]);
         return Ok(Region { over, corners });
     }
-    let over = around(set).map_err(|e| fault(&e).in_field(0))?;
+    let over = around(set).map_err(|e| fault(&e).in_field(of))?;
     match over {
         Some(over) => Ok(Region { over, corners: None }),
         None => Err(Fault::new("empty-set", "the set is empty: it has no box")
             .expected("a set with points in it, or a box")
-            .in_field(0)),
+            .in_field(of)),
     }
 }
 

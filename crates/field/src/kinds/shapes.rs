@@ -4,10 +4,12 @@ use super::read::{fault, field_value};
 use crate::shapes::{Beside, Inside, Near, Tube};
 use crate::{FieldError, Primitive};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Facets, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, Context, CurveRef, Facets, Fault, FieldId, Kind, SurfaceRef, Value,
+};
 use std::sync::Arc;
 
-fn positive<T: Real>(what: &'static str, value: T, field: usize) -> Result<T, Fault> {
+fn positive<T: Real>(what: &'static str, value: T, field: FieldId) -> Result<T, Fault> {
     crate::error::positive(what, value).map_err(|e: FieldError| fault(&e).in_field(field))
 }
 
@@ -29,7 +31,7 @@ pub struct TubeOf<T: Real> {
 
 impl<T: Real> Build<T> for TubeOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let radius = positive("radius", self.radius, 1)?;
+        let radius = positive("radius", self.radius, Self::RADIUS)?;
         Ok(field_value(Primitive::user(Arc::new(Tube::new(self.curve, radius)))))
     }
 }
@@ -52,7 +54,7 @@ pub struct PlateOf<T: Real> {
 
 impl<T: Real> Build<T> for PlateOf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let thickness = positive("thickness", self.thickness, 1)?;
+        let thickness = positive("thickness", self.thickness, Self::THICKNESS)?;
         let near = Near::new(self.surface, Beside::Plate(thickness));
         Ok(field_value(Primitive::user(Arc::new(near))))
     }
@@ -104,7 +106,7 @@ impl<T: Real> Build<T> for InsideOf<T> {
                 Err(Fault::new("not-closed", "the body is not closed, so it has no inside")
                     .expected("a closed, oriented body")
                     .found(found)
-                    .in_field(0))
+                    .in_field(Self::BODY))
             }
         }
     }

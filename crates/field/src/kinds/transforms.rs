@@ -131,7 +131,7 @@ impl<T: Real> Build<T> for Scaled<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let centre = self.centre.map_or_else(Vec3::zero, |p| p.xyz);
         let map = Affine::scaling(centre, self.factor);
-        self.shape.mapped(&map).map_err(|f| f.in_field(1))
+        self.shape.mapped(&map).map_err(|f| f.in_field(Self::FACTOR))
     }
 }
 
@@ -156,7 +156,7 @@ impl<T: Real> Build<T> for Stretched<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         if self.factor.re() == 0.0 {
             let zero = crate::FieldError::Degenerate { what: "factor: it is 0" };
-            return Err(fault(&zero).in_field(2));
+            return Err(fault(&zero).in_field(Self::FACTOR));
         }
         self.shape.mapped(&Affine::stretch(&self.axis, self.factor))
     }

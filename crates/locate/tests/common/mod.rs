@@ -1,9 +1,10 @@
 //! Shapes with closed forms, and random numbers.
 
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 use moldloft_num::{Curve, CurveFormula, Jet, Surface, SurfaceFormula, Vec3};
 use moldloft_spline::{BSplineSurface, KnotVector};
+pub use moldloft_testing::Random;
 
 /// The sphere of radius r about c, without its poles' neighbourhood when `cap` is below 1.
 pub struct Sphere {
@@ -68,28 +69,12 @@ impl CurveFormula for Line {
     }
 }
 
-/// A plain generator (SplitMix64).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-    pub fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * self.next()
-    }
-}
-
 /// The 20 x 20 bicubic surface of the comparisons: an even net with random heights in [0, 1].
 pub fn bumpy(n: usize, seed: u64) -> BSplineSurface<f64> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let k = KnotVector::clamped_uniform(3, n).unwrap();
     let net = (0..n * n)
-        .map(|i| Vec3::of((i / n) as f64 * 0.5, (i % n) as f64 * 0.5, random.next()))
+        .map(|i| Vec3::of((i / n) as f64 * 0.5, (i % n) as f64 * 0.5, random.unit()))
         .collect();
     BSplineSurface::new(k.clone(), k, net, None).unwrap()
 }

@@ -38,12 +38,12 @@ fn fair_error(error: FairError) -> PyErr {
         FairError::Coincident { first } => Some(first + 1),
         _ => None,
     };
-    raised::FairingError::new_err((format!("error: {error}"), Vec::<Py<PyAny>>::new(), index))
+    raised::FairingError::new_err((error.to_string(), Vec::<Py<PyAny>>::new(), index))
 }
 
 /// A refusal that is not about one point.
 fn refused(message: impl std::fmt::Display) -> PyErr {
-    raised::FairingError::new_err((format!("error: {message}"),))
+    raised::FairingError::new_err((message.to_string(),))
 }
 
 fn vectors(points: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {

@@ -3,7 +3,7 @@
 use super::set::{array, attributes};
 use crate::error::plain_error;
 use moldloft_field::{Facets, Pieces, crossing_faces};
-use moldloft_io::{Strands, obj, ply, stl, threemf, vtk};
+use moldloft_io::{LinesAndPoints, obj, ply, stl, threemf, vtk};
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, measure};
 use moldloft_num::{Box3, Plane, Vec3};
 use moldloft_picture::{Line, Options, patch_colour, render};
@@ -19,13 +19,13 @@ pub struct PyFacets {
     over: Box3,
     /// Solids and sheets in one.
     mesh: Mesh,
-    strands: Strands,
+    loose: LinesAndPoints,
 }
 
 impl PyFacets {
     pub fn new(pieces: Pieces, over: Box3) -> Self {
         let solid = solid_of(&pieces);
-        let mut strands = Strands::default();
+        let mut loose = LinesAndPoints::default();
         let mut mesh = solid.mesh.clone();
         if let Pieces::Mixed(mixed) = &pieces {
             let mut builder = TopologyBuilder::extending((**solid.mesh.topology()).clone());
@@ -47,11 +47,11 @@ impl PyFacets {
             for wire in &mixed.wires {
                 let mut points = wire.points.clone();
                 points.extend(wire.points.first().copied().filter(|_| wire.closed));
-                strands.wires.push(("wire".into(), points));
+                loose.wires.push(("wire".into(), points));
             }
-            strands.dots = mixed.points.iter().map(|d| ("point".into(), d.point)).collect();
+            loose.dots = mixed.points.iter().map(|d| ("point".into(), d.point)).collect();
         }
-        Self { pieces, over, mesh, strands }
+        Self { pieces, over, mesh, loose }
     }
 
     /// The facets of a set without sheets, to be taken over from.
@@ -107,11 +107,11 @@ impl PyFacets {
     }
 
     fn wires<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray2<f64>>> {
-        self.strands.wires.iter().map(|(_, points)| array(py, points)).collect()
+        self.loose.wires.iter().map(|(_, points)| array(py, points)).collect()
     }
 
     fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        let points: Vec<Vec3> = self.strands.dots.iter().map(|(_, p)| *p).collect();
+        let points: Vec<Vec3> = self.loose.dots.iter().map(|(_, p)| *p).collect();
         array(py, &points)
     }
 
@@ -194,11 +194,11 @@ impl PyFacets {
         format: &str,
         stem: &str,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let (mesh, strands) = (&self.mesh, &self.strands);
-        let refused = |name: &'static str| strands.refused(name).map_err(plain_error);
+        let (mesh, loose) = (&self.mesh, &self.loose);
+        let refused = |name: &'static str| loose.refused(name).map_err(plain_error);
         let bytes = match format {
-            "obj" => obj::write_with(mesh, strands),
-            "vtp" => vtk::polydata_with(mesh, strands, &[]),
+            "obj" => obj::write_with(mesh, loose),
+            "vtp" => vtk::polydata_with(mesh, loose, &[]),
             "stl" => {
                 refused("stl")?;
                 stl::write(mesh, stem)
@@ -237,7 +237,7 @@ impl PyFacets {
             colour: [0x30, 0x36, 0x40],
             width: 3.0,
         };
-        let lines: Vec<Line> = self.strands.wires.iter().map(line).collect();
+        let lines: Vec<Line> = self.loose.wires.iter().map(line).collect();
         let options = Options { width, height, edges: false, ..Options::default() };
         let png = py.detach(|| render(&self.mesh, &lines, &options)).map_err(plain_error)?;
         Ok(PyBytes::new(py, &png))

@@ -7,7 +7,7 @@ use crate::arrays;
 use crate::error::plain_error;
 use crate::work::interruptible;
 use moldloft_field::{
-    Affine, Attributes, Caster, FieldError, Light, Membership, Options, Pieces, Portrait, Ray,
+    Affine, Attributes, Caster, FieldError, Light, Membership, Options, Pieces, Ray, RayTrace,
     Resolution, Set, facet_mixed,
 };
 use moldloft_num::{Box3, Vec3};
@@ -387,9 +387,9 @@ impl PySet {
         let found = self.long(py, move |set, _| {
             let over = region(&(set | &other), given(corners))?;
             let accuracy = accuracy.unwrap_or(1e-5 * over.diagonal());
-            moldloft_field::gap(set, &other, &over, accuracy)
+            moldloft_field::distance(set, &other, &over, accuracy)
         })?;
-        let row = |g: moldloft_field::Gap| {
+        let row = |g: moldloft_field::Distance| {
             (g.distance, g.at_least, g.first.to_array(), g.second.to_array())
         };
         Ok(found.map(row))
@@ -450,7 +450,7 @@ impl PySet {
                 moldloft_picture::PALETTE[index % 16]
             })
             .collect();
-        let view = Portrait {
+        let view = RayTrace {
             size,
             eye: Vec3::from(eye),
             centre: Vec3::from(centre),
@@ -467,7 +467,7 @@ impl PySet {
         let rgb = self.long(py, move |set, cancel| {
             let over = region(set, given(corners))?;
             let options = Options { cancel: Some(cancel), ..Options::new(Resolution::Depth(1)) };
-            moldloft_field::portrait(set, &over, &view, &options)
+            moldloft_field::ray_trace(set, &over, &view, &options)
         })?;
         let png = moldloft_picture::encoded(&rgb, size[0], size[1]).map_err(plain_error)?;
         Ok(PyBytes::new(py, &png))

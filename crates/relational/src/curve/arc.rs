@@ -39,7 +39,7 @@ impl<T: Real> Build<T> for Arc<T> {
             Fault::new("out-of-range", format!("there is no arc of type {}", r#type))
                 .expected("a type from 1 to 6")
                 .found(r#type.to_string())
-                .in_field(3)
+                .in_field(Self::TYPE)
         })?;
         let end = match r#type {
             2 => None,
@@ -47,7 +47,7 @@ impl<T: Real> Build<T> for Arc<T> {
             6 => p1.key,
             _ => p3.key,
         };
-        let curve = arc.map_err(faults::of_arc)?;
+        let curve = arc.map_err(|error| faults::of_arc(error, Self::P1))?;
         Ok(Value::Curve(CurveRef::new(Ended { curve, ends: [p1.key, end] }, 0)))
     }
 }

@@ -1,7 +1,7 @@
 use crate::curve::Ended;
 use crate::faults;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
 use moldloft_spline::BSplineCurve;
 
 /// A B-spline curve: C(t) = sum N_i(t) P_i with clamped uniform knots (de Boor 1978).
@@ -28,10 +28,10 @@ pub struct BCurve<T: Real> {
 impl<T: Real> Build<T> for BCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { points, degree } = self;
-        let ends = ends(&points)?;
+        let ends = ends(&points, Self::POINTS)?;
         let degree = degree.min(points.len() - 1);
         let curve = BSplineCurve::uniform(degree, points.iter().map(|p| p.xyz).collect())
-            .map_err(|error| faults::of_spline(error, 0, 1))?;
+            .map_err(|error| faults::of_spline(error, Self::POINTS, Self::DEGREE))?;
         Ok(Value::Curve(match curve.power_form() {
             Some(curve) => CurveRef::new(Ended { curve, ends }, 0),
             None => CurveRef::new(Ended { curve, ends }, 0),
@@ -42,12 +42,13 @@ impl<T: Real> Build<T> for BCurve<T> {
 /// The objects of the first and the last point.
 pub(crate) fn ends<T: Real>(
     points: &[Point<T>],
+    field: FieldId,
 ) -> Result<[Option<moldloft_num::trace::Key>; 2], Fault> {
     match points {
         [first, .., last] => Ok([first.key, last.key]),
         _ => Err(Fault::new("too-few-items", "a curve needs at least 2 points")
             .expected("at least 2 points")
             .found(points.len().to_string())
-            .in_field(0)),
+            .in_field(field)),
     }
 }

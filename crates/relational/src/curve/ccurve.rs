@@ -3,7 +3,7 @@ use crate::arguments::EndRule;
 use crate::curve::Ended;
 use crate::faults;
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline};
 
 /// An interpolating spline: the twice differentiable piecewise cubic through the points, with
@@ -37,20 +37,22 @@ pub struct CCurve<T: Real> {
 
 impl<T: Real> Build<T> for CCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let names = bcurve::ends(&self.points)?;
-        let ends = clamped_ends(self.ends, self.start, self.end)?;
+        let names = bcurve::ends(&self.points, Self::POINTS)?;
+        let ends = clamped_ends(self.ends, self.start, self.end, [Self::START, Self::END])?;
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
         let curve = match self.degree {
             1 => InterpolatingSpline::polyline(&points),
             2 if points.len() > 3 => InterpolatingSpline::of_type(2, &points),
             _ => InterpolatingSpline::with_ends(&points, ends),
         }
-        .map_err(|error| faults::of_interpolation(error, "point", [0, 1, 2]))?;
+        .map_err(|error| {
+            faults::of_interpolation(error, "point", [Self::POINTS, Self::DEGREE, Self::ENDS])
+        })?;
         Ok(Value::Curve(CurveRef::new(Ended { curve, ends: names }, 0)))
     }
 }
 
-/// The conditions of a rule with these slopes, which are fields 3 and 4.
+/// The conditions of a rule with these slopes, which are those of `fields`.
 ///
 /// # Errors
 /// A fault when clamped ends have no slopes, or others have.
@@ -58,6 +60,7 @@ pub fn clamped_ends<T: Real>(
     rule: EndRule,
     start: Option<Vec3<T>>,
     end: Option<Vec3<T>>,
+    fields: [FieldId; 2],
 ) -> Result<Ends<T>, Fault> {
     match (rule.ends(), start, end) {
         (Some(ends), None, None) => Ok(ends),
@@ -65,12 +68,12 @@ pub fn clamped_ends<T: Real>(
         (None, start, _) => {
             Err(Fault::new("missing-argument", "clamped ends need the slopes `start` and `end`")
                 .expected("start = {x, y, z}, end = {x, y, z}")
-                .in_field(if start.is_none() { 3 } else { 4 }))
+                .in_field(fields[usize::from(start.is_some())]))
         }
         (Some(_), start, _) => {
             Err(Fault::new("unused-argument", "slopes are for clamped ends only")
                 .help("add ends = \"clamped\", or leave the slopes out")
-                .in_field(if start.is_some() { 3 } else { 4 }))
+                .in_field(fields[usize::from(start.is_none())]))
         }
     }
 }

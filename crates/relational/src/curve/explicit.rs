@@ -29,7 +29,7 @@ pub struct XCurve<T: Real> {
 
 impl<T: Real> Build<T> for XCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let names = bcurve::ends(&self.points).map_err(|fault| fault.in_field(1))?;
+        let names = bcurve::ends(&self.points, Self::POINTS)?;
         let AxisName(axis) = self.axis;
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
         let (first, last) = (points[0][axis], points[points.len() - 1][axis]);
@@ -46,19 +46,20 @@ impl<T: Real> Build<T> for XCurve<T> {
                 .expected(format!("{name} ascending from point to point, or descending"))
                 .found(format!("{} after {}", points[k][axis].re(), points[k - 1][axis].re()))
                 .in_item(k)
-                .in_field(1));
+                .in_field(Self::POINTS));
         }
         let Some(ends) = self.ends.ends() else {
             return Err(Fault::new("unknown-ends", "an explicit spline cannot be clamped")
                 .expected("\"notaknot\", \"natural\", \"bessel\", \"quadratic\" or \"periodic\"")
                 .found("\"clamped\"")
-                .in_field(2));
+                .in_field(Self::ENDS));
         };
         let mut knots: Vec<T> = points.iter().map(|p| (p[axis] - first) / (last - first)).collect();
         knots[0] = T::zero();
         knots[points.len() - 1] = T::one();
         let curve = InterpolatingSpline::with_knots(&knots, &points, ends).map_err(|error| {
-            let fault = faults::of_interpolation(error, "point", [1, 0, 2]);
+            let fault =
+                faults::of_interpolation(error, "point", [Self::POINTS, Self::AXIS, Self::ENDS]);
             match error {
                 InterpolationError::NotClosed { .. } => {
                     fault.help("an explicit spline never closes: its axis runs on")

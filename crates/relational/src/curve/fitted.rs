@@ -1,6 +1,8 @@
 use super::Ended;
 use moldloft_num::{Curve, Order, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Value};
+use moldloft_registry::{
+    Build, Context, CurveRef, Fault, FieldId, Found, FoundStatus, Kind, Value,
+};
 use moldloft_spline::{MovingSpline, SplineError};
 
 /// A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
@@ -33,7 +35,7 @@ pub struct BFitCurve<T: Real> {
 impl<T: Real> Build<T> for BFitCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { curve, degree, points, accuracy } = self;
-        fit(&curve, degree, None, points, accuracy)
+        fit(&curve, degree, None, points, accuracy, [Self::POINTS, Self::ACCURACY])
     }
 }
 
@@ -63,8 +65,8 @@ impl<T: Real> Build<T> for NUBFitCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { curve, degree, knots, accuracy } = self;
         let points = knots.len() + degree - 1;
-        let all = clamped(degree, &knots, 2)?;
-        fit(&curve, degree, Some(all), points, accuracy)
+        let all = clamped(degree, &knots, Self::KNOTS)?;
+        fit(&curve, degree, Some(all), points, accuracy, [Self::KNOTS, Self::ACCURACY])
     }
 }
 
@@ -77,6 +79,7 @@ fn fit<T: Real>(
     knots: Option<Vec<T>>,
     points: usize,
     accuracy: Option<T>,
+    [of, within]: [FieldId; 2],
 ) -> Result<Value<T>, Fault> {
     let count = (SAMPLES * points).max(64);
     let samples: Vec<_> = (0..=count)
@@ -84,7 +87,7 @@ fn fit<T: Real>(
         .map(|t| (t, curve.jet(T::from(t), Order::Zero)[0]))
         .collect();
     let spline = MovingSpline::fitted(degree, knots, points, &samples);
-    let spline = spline.map_err(|error| no_fit(error).in_field(2))?;
+    let spline = spline.map_err(|error| no_fit(error).in_field(of))?;
     let residual = {
         let gap = |(t, p): &(f64, moldloft_num::Vec3<T>)| {
             spline.jet(T::from(*t), Order::Zero)[0].re().distance(p.re())
@@ -92,7 +95,7 @@ fn fit<T: Real>(
         samples.iter().map(gap).fold(0.0, f64::max)
     };
     near_enough(residual, accuracy, "curve")
-        .map_err(|fault| fault.related(curve.key, "is the curve").in_field(3))?;
+        .map_err(|fault| fault.related(curve.key, "is the curve").in_field(within))?;
     let ends = curve.end_points();
     let fitted = CurveRef::new(Ended { curve: spline, ends }, 0).with_found(report(residual));
     Ok(Value::Curve(fitted))
@@ -138,7 +141,7 @@ pub fn report(residual: f64) -> Found {
 }
 
 /// The knot vector of pieces that meet at `knots`, which are those of field `field`.
-pub fn clamped<T: Real>(degree: usize, knots: &[T], field: usize) -> Result<Vec<T>, Fault> {
+pub fn clamped<T: Real>(degree: usize, knots: &[T], field: FieldId) -> Result<Vec<T>, Fault> {
     let (first, last) = (knots.first().map(|k| k.re()), knots.last().map(|k| k.re()));
     if (first, last) != (Some(0.0), Some(1.0)) || knots.len() < 2 {
         let ends = |x: Option<f64>| x.map_or("nothing".into(), |x| x.to_string());

@@ -26,7 +26,7 @@ foil_kind!(
     )]
     FoilCurve {
         /// Three, four or five points.
-        points: Point<T>,
+        points (POINTS): Point<T>,
     }
 );
 

@@ -1,6 +1,6 @@
 use super::{Ended, bcurve};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
 use moldloft_spline::{KnotError, MovingSpline, SplineError};
 
 /// A rational B-spline curve: C(t) = sum w_i N_i(t) P_i / sum w_i N_i(t).
@@ -31,21 +31,23 @@ pub struct NURBCurve<T: Real> {
 
 impl<T: Real> Build<T> for NURBCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let names = bcurve::ends(&self.points)?;
+        let names = bcurve::ends(&self.points, Self::POINTS)?;
         let points = self.points.iter().map(|p| p.xyz).collect();
-        let curve = spline(points, self.degree, self.knots, self.weights)?;
+        let fields = [Self::POINTS, Self::DEGREE, Self::KNOTS, Self::WEIGHTS];
+        let curve = spline(points, self.degree, self.knots, self.weights, fields)?;
         let clamped = curve.clamped_ends();
         let ends = [0, 1].map(|k| if clamped[k] { names[k] } else { None });
         Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
     }
 }
 
-/// The rational spline of fields 0 (points), 1 (degree), 2 (knots) and 3 (weights).
+/// The rational spline of points, degree, knots and weights, which are those of `fields`.
 pub fn spline<T: Real>(
     points: Vec<Vec3<T>>,
     degree: usize,
     knots: Option<Vec<T>>,
     weights: Option<Vec<T>>,
+    [of, number, list, each]: [FieldId; 4],
 ) -> Result<MovingSpline<T>, Fault> {
     // A degree that is only the default yields to few points; with knots it is meant.
     let degree = if knots.is_none() { degree.min(points.len() - 1) } else { degree };
@@ -54,7 +56,7 @@ pub fn spline<T: Real>(
         let fault = Fault::new("no-spline", error.to_string());
         match error {
             SplineError::Knots(KnotError::Degree { degree }) => {
-                fault.expected("a degree from 1 to 25").found(degree.to_string()).in_field(1)
+                fault.expected("a degree from 1 to 25").found(degree.to_string()).in_field(number)
             }
             SplineError::Knots(_) | SplineError::Domain { .. } => fault
                 .expected(format!("{} ascending knots", count + degree + 1))
@@ -62,17 +64,18 @@ pub fn spline<T: Real>(
                     "list all knots: those of the ends as well, degree + 1 times for an end \
                        at a point",
                 )
-                .in_field(2),
+                .in_field(list),
             SplineError::Weight { index, weight } => fault
                 .expected("a positive weight")
                 .found(weight.to_string())
                 .in_item(index)
-                .in_field(3),
-            SplineError::Count { expected, actual } => {
-                fault.expected(format!("{expected} weights")).found(actual.to_string()).in_field(3)
-            }
-            SplineError::NotFinite { index } => fault.in_item(index).in_field(0),
-            SplineError::Outside { .. } => fault.in_field(2),
+                .in_field(each),
+            SplineError::Count { expected, actual } => fault
+                .expected(format!("{expected} weights"))
+                .found(actual.to_string())
+                .in_field(each),
+            SplineError::NotFinite { index } => fault.in_item(index).in_field(of),
+            SplineError::Outside { .. } => fault.in_field(list),
         }
     })
 }

@@ -45,7 +45,7 @@ impl<T: Real> Build<T> for OffsetCurve<T> {
                         .expected("a tangent that is not along the normal of the plane")
                         .found(format!("none at t = {t}"))
                         .related(key, "is the curve")
-                        .in_field(0));
+                        .in_field(Self::CURVE));
                 };
                 if progress < worst.0 {
                     worst = (progress, t);
@@ -60,7 +60,7 @@ impl<T: Real> Build<T> for OffsetCurve<T> {
                 .found(format!("{} where t = {t}", d.abs()))
                 .help("offset by less, or to the other side, or only a part of the curve")
                 .related(key, "is bent too much there")
-                .in_field(1));
+                .in_field(Self::DISTANCE));
         }
         Ok(Value::Curve(CurveRef::new(shape, nesting)))
     }

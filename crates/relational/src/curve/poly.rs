@@ -1,7 +1,7 @@
 use crate::arguments::{Snake, common_surface};
 use moldloft_num::trace::{Key, Piece, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, SurfaceRef, Value};
 
 /// Curves end to end: piece k of N is run from t = (k - 1) / N to k / N, or between the breaks
 /// given.
@@ -26,7 +26,7 @@ pub struct PolyCurve<T: Real> {
 
 impl<T: Real> Build<T> for PolyCurve<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        chain(self.curves, self.breaks, None, context)
+        chain(self.curves, self.breaks, None, context, [Self::CURVES, Self::BREAKS])
     }
 }
 
@@ -54,18 +54,18 @@ pub struct PolySnake<T: Real> {
 impl<T: Real> Build<T> for PolySnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let items: Vec<_> = self.snakes.iter().map(|s| (s.curve.key, &s.surface)).collect();
-        let Some(_) = items.first() else { return Err(too_few("snake")) };
-        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(0))?;
+        let Some(_) = items.first() else { return Err(too_few("snake", Self::SNAKES)) };
+        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::SNAKES))?;
         let curves = self.snakes.into_iter().map(|s| s.curve).collect();
-        chain(curves, self.breaks, Some(surface), context)
+        chain(curves, self.breaks, Some(surface), context, [Self::SNAKES, Self::BREAKS])
     }
 }
 
-fn too_few(noun: &str) -> Fault {
+fn too_few(noun: &str, field: FieldId) -> Fault {
     Fault::new("too-few-items", format!("a chain needs at least 1 {noun}"))
         .expected(format!("at least 1 {noun}"))
         .found("0")
-        .in_field(0)
+        .in_field(field)
 }
 
 fn chain<T: Real>(
@@ -73,13 +73,14 @@ fn chain<T: Real>(
     breaks: Option<Vec<T>>,
     surface: Option<SurfaceRef<T>>,
     context: &Context,
+    [pieces, at]: [FieldId; 2],
 ) -> Result<Value<T>, Fault> {
     if curves.is_empty() {
-        return Err(too_few("curve"));
+        return Err(too_few("curve", pieces));
     }
-    let ends = shares(curves.len(), breaks, 1)?;
+    let ends = shares(curves.len(), breaks, at)?;
     for k in 1..curves.len() {
-        check_joint(&curves, k, surface.is_some(), context.tolerance)?;
+        check_joint(&curves, k, surface.is_some(), context.tolerance, pieces)?;
     }
     let trace = trace(&curves, &ends);
     let shape = Chain { curves, ends, trace };
@@ -97,7 +98,7 @@ fn chain<T: Real>(
 pub fn shares<T: Real>(
     count: usize,
     breaks: Option<Vec<T>>,
-    field: usize,
+    field: FieldId,
 ) -> Result<Vec<T>, Fault> {
     let Some(breaks) = breaks else {
         return Ok((0..=count).map(|k| T::from(k as f64 / count as f64)).collect());
@@ -135,6 +136,7 @@ fn check_joint<T: Real>(
     k: usize,
     on_surface: bool,
     tolerance: f64,
+    field: FieldId,
 ) -> Result<(), Fault> {
     let (before, after) = (&curves[k - 1], &curves[k]);
     let gap_of = |s: f64, t: f64| before.end(s).re().distance(after.end(t).re());
@@ -146,7 +148,7 @@ fn check_joint<T: Real>(
             .related(before.key, "ends on one side of the gap")
             .related(after.key, "begins on the other")
             .in_item(k)
-            .in_field(0)
+            .in_field(field)
     };
     // Written so that NaN is refused.
     if gap.is_nan() || gap > tolerance {

@@ -1,7 +1,7 @@
 use crate::arguments::{Bead, Ring, common_curve};
 use moldloft_num::trace::{Mark, Root, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, find_root};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Value};
 use moldloft_spline::BSplineCurve;
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub struct SubCurve<T: Real> {
 
 impl<T: Real> Build<T> for SubCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        part(self.bead1, self.bead2)
+        part(self.bead1, self.bead2, Self::BEAD2)
     }
 }
 
@@ -45,7 +45,7 @@ pub struct SubSnake<T: Real> {
 
 impl<T: Real> Build<T> for SubSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        part(self.ring1.0, self.ring2.0)
+        part(self.ring1.0, self.ring2.0, Self::RING2)
     }
 }
 
@@ -73,7 +73,7 @@ pub struct BSubCurve<T: Real> {
 
 impl<T: Real> Build<T> for BSubCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        redistributed(self.beads, self.degree)
+        redistributed(self.beads, self.degree, [Self::BEADS, Self::DEGREE])
     }
 }
 
@@ -98,7 +98,8 @@ pub struct BSubSnake<T: Real> {
 
 impl<T: Real> Build<T> for BSubSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        redistributed(self.rings.into_iter().map(|ring| ring.0).collect(), self.degree)
+        let beads = self.rings.into_iter().map(|ring| ring.0).collect();
+        redistributed(beads, self.degree, [Self::RINGS, Self::DEGREE])
     }
 }
 
@@ -127,8 +128,8 @@ fn like<T: Real>(curve: &CurveRef<T>, shape: impl Curve<T> + 'static) -> CurveRe
     }
 }
 
-fn part<T: Real>(from: Bead<T>, to: Bead<T>) -> Result<Value<T>, Fault> {
-    let along = common_curve([&from, &to], 1)?;
+fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>, Fault> {
+    let along = common_curve([&from, &to], field)?;
     let marks = [&from, &to].map(|bead| Mark { t: bead.t, point: bead.key });
     let trace = match (along.trace(), along.key) {
         (Trace::Point(point), _) => Trace::Point(point),
@@ -147,28 +148,32 @@ fn part<T: Real>(from: Bead<T>, to: Bead<T>) -> Result<Value<T>, Fault> {
     Ok(Value::Curve(found))
 }
 
-fn redistributed<T: Real>(beads: Vec<Bead<T>>, degree: usize) -> Result<Value<T>, Fault> {
-    let [first, rest @ ..] = beads.as_slice() else { return Err(too_few(0)) };
-    let Some(last) = rest.last() else { return Err(too_few(1)) };
+fn redistributed<T: Real>(
+    beads: Vec<Bead<T>>,
+    degree: usize,
+    [list, number]: [FieldId; 2],
+) -> Result<Value<T>, Fault> {
+    let [first, rest @ ..] = beads.as_slice() else { return Err(too_few(0, list)) };
+    let Some(last) = rest.last() else { return Err(too_few(1, list)) };
     for (k, bead) in rest.iter().enumerate() {
-        common_curve([first, bead], 0).map_err(|fault| fault.in_item(k + 1).in_field(0))?;
+        common_curve([first, bead], list).map_err(|fault| fault.in_item(k + 1).in_field(list))?;
     }
     if beads.len() == 2 {
-        return part(first.clone(), last.clone());
+        return part(first.clone(), last.clone(), list);
     }
     let (curve, _) = whole(first);
     let coefficients = beads.iter().map(|b| Vec3::new(whole(b).1, T::zero(), T::zero())).collect();
     let law = BSplineCurve::uniform(degree.min(beads.len() - 1), coefficients)
-        .map_err(|error| crate::faults::of_spline(error, 0, 1))?;
+        .map_err(|error| crate::faults::of_spline(error, list, number))?;
     let trace = Trace::Own([first.key, last.key]);
     Ok(Value::Curve(like(&curve, Run { curve: curve.clone(), law: Law::Spline(law), trace })))
 }
 
-fn too_few(found: usize) -> Fault {
+fn too_few(found: usize, field: FieldId) -> Fault {
     Fault::new("too-few-items", "a law needs at least 2 beads")
         .expected("at least 2 beads")
         .found(found.to_string())
-        .in_field(0)
+        .in_field(field)
 }
 
 /// The parameter of the curve at that of its run.

@@ -1,7 +1,7 @@
 use crate::arguments::Bead;
 use crate::chebyshev::{DEEPEST, MOST_PIECES, NODES, Piece, Way, nodes};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingPoint, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, MovingPoint, Value};
 
 /// The way of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
 /// `bead` at the parameter t1 + t (t2 - t1).
@@ -13,7 +13,7 @@ use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingPoint, Valu
 #[derive(Kind)]
 #[kind(
     class = Curve,
-    sweep = [0, 1],
+    sweep = [bead, point],
     columns = "relabel bead point",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
                AbsBead b(c, 0.5); Line l(A, C); ProjPoint foot(b, l); BlendPoint m({b, foot}); \
@@ -37,7 +37,7 @@ impl<T: Real> Build<T> for ProcCurve<T> {
         let Self { bead, point, t1, t2 } = self;
         let at = |t: f64| {
             let place = t1 * (1.0 - t) + t2 * t;
-            point.at(place).map_err(|fault| no_locus("point", place.re(), &fault))
+            point.at(place).map_err(|fault| no_locus("point", place.re(), &fault, Self::POINT))
         };
         let mut size = 0.0f64;
         let pieces = halved(&stretches(&bead, [t1, t2]), |a, b| {
@@ -60,12 +60,12 @@ impl<T: Real> Build<T> for ProcCurve<T> {
 pub const ACCURACY: f64 = 1e-12;
 
 /// The fault of a `noun` that has no value with the bead at `t`.
-pub fn no_locus(noun: &str, t: f64, fault: &Fault) -> Fault {
+pub fn no_locus(noun: &str, t: f64, fault: &Fault, field: FieldId) -> Fault {
     let whole = Fault::new("no-locus", format!("the {noun} has no place with the bead at {t}"))
         .expected(format!("a {noun} wherever the bead is"))
         .found(fault.message.clone())
         .help("sweep only a part of the curve: give t1 and t2")
-        .in_field(1);
+        .in_field(field);
     fault.related.iter().fold(whole, |whole, (key, label)| whole.related(Some(*key), label.clone()))
 }
 

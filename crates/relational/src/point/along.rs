@@ -1,6 +1,6 @@
 use crate::arguments::{Bead, Magnet, Ring, Snake, Start};
 use moldloft_num::{Order, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, SurfaceRef, Value};
 use moldloft_spline::inv_arclen;
 
 fn on<T: Real>(curve: CurveRef<T>, t: T) -> Result<Value<T>, Fault> {
@@ -8,7 +8,7 @@ fn on<T: Real>(curve: CurveRef<T>, t: T) -> Result<Value<T>, Fault> {
 }
 
 /// The bead at a signed length along a curve.
-fn at_length<T: Real>(start: Start<T>, length: T) -> Result<Value<T>, Fault> {
+fn at_length<T: Real>(start: Start<T>, length: T, fields: [FieldId; 2]) -> Result<Value<T>, Fault> {
     let Start { curve, t } = start;
     let speed = |k: i32| curve.jet(T::from(f64::from(k) / 16.0), Order::First)[1].re().norm();
     let size = (0..=16).map(speed).fold(0.0, f64::max);
@@ -16,7 +16,7 @@ fn at_length<T: Real>(start: Start<T>, length: T) -> Result<Value<T>, Fault> {
         return Err(Fault::new("no-length", "the curve has no length")
             .expected("a curve with length")
             .related(curve.key, "stands still")
-            .in_field(0));
+            .in_field(fields[0]));
     }
     let found = inv_arclen(&*curve, t, length, 1e-12 * size);
     let found = found.map_err(|error| {
@@ -24,7 +24,7 @@ fn at_length<T: Real>(start: Start<T>, length: T) -> Result<Value<T>, Fault> {
             .expected(format!("a length up to {} on that side", error.available))
             .found(error.asked.to_string())
             .related(curve.key, "is too short")
-            .in_field(1)
+            .in_field(fields[1])
     })?;
     on(curve, found)
 }
@@ -47,7 +47,7 @@ pub struct ArcLenBead<T: Real> {
 
 impl<T: Real> Build<T> for ArcLenBead<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        at_length(self.start, self.length)
+        at_length(self.start, self.length, [Self::START, Self::LENGTH])
     }
 }
 
@@ -74,9 +74,9 @@ impl<T: Real> Build<T> for ArcLenRing<T> {
             return Err(Fault::new("wrong-class", "expected a snake or a ring on one")
                 .expected("a snake, or a ring on one")
                 .found("a curve that lies on no surface")
-                .in_field(0));
+                .in_field(Self::START));
         }
-        at_length(self.start, self.length)
+        at_length(self.start, self.length, [Self::START, Self::LENGTH])
     }
 }
 

@@ -3,7 +3,8 @@ use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
 use moldloft_num::{Axis, Order, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SolidRef, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, FieldId, Found, FoundStatus, Kind, Point, SolidRef,
+    SurfaceRef, Value,
 };
 use moldloft_spline::{arclen, curve_integral};
 
@@ -31,7 +32,7 @@ pub struct OffsetPoint<T: Real> {
 
 impl<T: Real> Build<T> for OffsetPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let n = normal(&self.magnet).map_err(|fault| fault.in_field(0))?;
+        let n = normal(&self.magnet).map_err(|fault| fault.in_field(Self::MAGNET))?;
         let [u, v] = self.magnet.uv;
         free(self.magnet.surface.jet(u, v, Order::Zero).p + n * self.distance)
     }
@@ -40,14 +41,14 @@ impl<T: Real> Build<T> for OffsetPoint<T> {
 /// The unit tangent of a curve at a bead.
 ///
 /// # Errors
-/// `no-tangent`, in field 0, where the curve stands still.
-pub fn tangent<T: Real>(bead: &Bead<T>) -> Result<Vec3<T>, Fault> {
+/// `no-tangent`, in `field`, where the curve stands still.
+pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, Fault> {
     bead.curve.jet(bead.t, Order::First)[1].normalized().ok_or_else(|| {
         Fault::new("no-tangent", "the curve has no tangent there")
             .expected("a place where the curve moves on")
             .found(format!("no speed at t = {}", bead.t.re()))
             .related(bead.key, "lies there")
-            .in_field(0)
+            .in_field(field)
     })
 }
 
@@ -68,7 +69,7 @@ pub struct TanPoint<T: Real> {
 
 impl<T: Real> Build<T> for TanPoint<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let along = tangent(&self.bead)?;
+        let along = tangent(&self.bead, Self::BEAD)?;
         free(self.bead.curve.jet(self.bead.t, Order::Zero)[0] + along * self.distance)
     }
 }
@@ -159,7 +160,7 @@ impl<T: Real> Build<T> for BlendPoint<T> {
             return Err(Fault::new("wrong-length", "each point needs one weight")
                 .expected(format!("{count} weights"))
                 .found(weights.len().to_string())
-                .in_field(1));
+                .in_field(Self::WEIGHTS));
         }
         let (mut sum, mut whole) = (Vec3::zero(), 0.0);
         for (point, weight) in points.iter().zip(weights) {
@@ -220,7 +221,7 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
                         .expected("points, curves, surfaces or solids")
                         .found(other.class().a())
                         .in_item(k)
-                        .in_field(0));
+                        .in_field(Self::OBJECTS));
                 }
             };
             if *first.get_or_insert(kind) != kind {
@@ -229,7 +230,7 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
                     .found(format!("{kind} as well"))
                     .help("take the centroids of each class, and blend them")
                     .in_item(k)
-                    .in_field(0));
+                    .in_field(Self::OBJECTS));
             }
             size += s;
             moment += m;
@@ -237,7 +238,7 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
         if size.re() <= 0.0 {
             return Err(Fault::new("no-size", "the shapes have no size to weigh them by")
                 .expected("curves with length, or surfaces with area")
-                .in_field(0));
+                .in_field(Self::OBJECTS));
         }
         free(moment / size)
     }

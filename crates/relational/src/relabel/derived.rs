@@ -40,7 +40,7 @@ impl<T: Real> Build<T> for ArcLenRelabel<T> {
                 .found(format!("the speeds {} and {}", slope(0.0), slope(1.0)))
                 .related(curve.key, "is the curve")
                 .help("take the curve without a relabel that is dense at its ends")
-                .in_field(0));
+                .in_field(Self::CURVE));
         }
         let mut places = vec![0.0];
         let mut ends = curve.breaks();
@@ -209,7 +209,7 @@ impl<T: Real> Build<T> for InvRelabel<T> {
                     .expected(format!("the value {end} at t = {end}"))
                     .found(value.to_string())
                     .related(law.key, "is the relabel")
-                    .in_field(0));
+                    .in_field(Self::RELABEL));
             }
             if slope < NO_SLOPE {
                 return Err(Fault::new("zero-slope", "this relabel cannot be undone")
@@ -217,7 +217,7 @@ impl<T: Real> Build<T> for InvRelabel<T> {
                     .found(format!("the slope {slope} at t = {end}"))
                     .related(law.key, "is the relabel")
                     .help("give it a weight below 1, or leave it away on the parent")
-                    .in_field(0));
+                    .in_field(Self::RELABEL));
             }
         }
         Ok(Value::Relabel(RelabelRef::new(Inverse { law }, context.nesting)))

@@ -95,11 +95,11 @@ impl<T: Real> Build<T> for Relabel<T> {
             _ => spline::Relabel::partial(degree, self.values),
         };
         law(made, |fault, error| match error {
-            RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(0),
-            RelabelError::Ends { .. } => {
-                fault.help("or add partial = 1 to leave a part of the curve out").in_field(0)
-            }
-            _ => fault.in_field(0),
+            RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(Self::VALUES),
+            RelabelError::Ends { .. } => fault
+                .help("or add partial = 1 to leave a part of the curve out")
+                .in_field(Self::VALUES),
+            _ => fault.in_field(Self::VALUES),
         })
     }
 }
@@ -123,7 +123,9 @@ pub struct CosRelabel<T: Real> {
 
 impl<T: Real> Build<T> for CosRelabel<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        law(spline::Relabel::cosine(self.dense.0, self.weight), |fault, _| fault.in_field(1))
+        law(spline::Relabel::cosine(self.dense.0, self.weight), |fault, _| {
+            fault.in_field(Self::WEIGHT)
+        })
     }
 }
 
@@ -139,7 +141,7 @@ pub struct GeoRelabel<T: Real> {
 
 impl<T: Real> Build<T> for GeoRelabel<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        law(spline::Relabel::geometric(self.ratio), |fault, _| fault.in_field(0))
+        law(spline::Relabel::geometric(self.ratio), |fault, _| fault.in_field(Self::RATIO))
     }
 }
 
@@ -163,7 +165,9 @@ pub struct TanhRelabel<T: Real> {
 
 impl<T: Real> Build<T> for TanhRelabel<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        law(spline::Relabel::tanh(self.dense.0, self.strength), |fault, _| fault.in_field(0))
+        law(spline::Relabel::tanh(self.dense.0, self.strength), |fault, _| {
+            fault.in_field(Self::STRENGTH)
+        })
     }
 }
 
@@ -192,10 +196,12 @@ impl<T: Real> Build<T> for TableRelabel<T> {
         let run = [self.parameters.first(), self.parameters.last()].map(|x| x.map(|x| x.re()));
         let table = spline::Relabel::table(self.parameters, self.values);
         law(table, |fault, error| match error {
-            RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(1),
-            RelabelError::Unordered { index } => fault.in_item(*index).in_field(0),
-            RelabelError::Ends { .. } => fault.in_field(usize::from(run == ends)),
-            _ => fault.in_field(1),
+            RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(Self::VALUES),
+            RelabelError::Unordered { index } => fault.in_item(*index).in_field(Self::PARAMETERS),
+            RelabelError::Ends { .. } => {
+                fault.in_field(if run == ends { Self::VALUES } else { Self::PARAMETERS })
+            }
+            _ => fault.in_field(Self::VALUES),
         })
     }
 }

@@ -7,7 +7,7 @@ use moldloft_locate::implicit::refined;
 use moldloft_locate::roots::{curve_curve, curve_level, curve_surface};
 use moldloft_locate::{PlainCurve, PlainSurface, Status, nearest_on_curve, nearest_on_surface};
 use moldloft_num::{Order, Plane, Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Found, Kind, Point, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Found, Kind, Point, Value};
 use std::sync::Arc;
 
 const ANOTHER: &str = "to choose another one, give a bead near it instead of the curve";
@@ -32,6 +32,7 @@ pub(super) fn crossing<T: Real>(
     along: &Along<T>,
     target: &Target<T>,
     point: Option<Vec3<T>>,
+    field: FieldId,
     context: &Context,
 ) -> Result<(T, Found), Fault> {
     match target {
@@ -47,14 +48,14 @@ pub(super) fn crossing<T: Real>(
                 )
                 .expected("the point through which the sphere goes")
                 .found("nothing")
-                .in_field(2));
+                .in_field(field));
             };
             let radius = (point - *centre).norm();
             if radius.re() <= 0.0 {
                 return Err(Fault::new("coincident-points", "the sphere has no radius")
                     .expected("a point away from the centre")
                     .found("the centre itself")
-                    .in_field(2));
+                    .in_field(field));
             }
             on_level(along, LevelOf::Sphere { centre: *centre, radius }, "sphere")
         }
@@ -136,7 +137,7 @@ fn foot<T: Real>(along: &Along<T>, point: Vec3<T>, ends: bool) -> Result<(T, Fou
     Ok((t, found(&solution.report, ANOTHER)))
 }
 
-fn axis_plane<T: Real>(axis: &str, value: T, field: usize) -> Result<LevelOf<T>, Fault> {
+fn axis_plane<T: Real>(axis: &str, value: T, field: FieldId) -> Result<LevelOf<T>, Fault> {
     let k = axis_number(axis, field)?;
     let mut normal = [0.0; 3];
     normal[k] = 1.0;
@@ -145,7 +146,7 @@ fn axis_plane<T: Real>(axis: &str, value: T, field: usize) -> Result<LevelOf<T>,
 }
 
 /// 0, 1, 2 for "x", "y", "z".
-pub(super) fn axis_number(axis: &str, field: usize) -> Result<usize, Fault> {
+pub(super) fn axis_number(axis: &str, field: FieldId) -> Result<usize, Fault> {
     ["x", "y", "z"].iter().position(|name| *name == axis).ok_or_else(|| {
         Fault::new("unknown-axis", format!("there is no axis \"{axis}\""))
             .expected("\"x\", \"y\" or \"z\"")
@@ -220,8 +221,8 @@ bead_and_ring!(
      Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, \"v\", 0.4); XPlane p(1.5); \
      IntRing r(s, p);",
     |along, this, context| {
-        crossing(along, &this.target, this.point.as_ref().map(|p| p.xyz), context)
-            .map_err(|fault| fault.in_field(1))
+        crossing(along, &this.target, this.point.as_ref().map(|p| p.xyz), Self::POINT, context)
+            .map_err(|fault| fault.in_field(Self::TARGET))
     }
 );
 
@@ -242,8 +243,8 @@ bead_and_ring!(
      Line l(A, B); Line m(C, D); RuledSurf S(l, m); UVSnake s(S, \"u\", 0.4); \
      XYZRing r(s, \"z\", 1);",
     |along, this, _context| {
-        axis_plane(&this.axis, this.value, 1)
-            .and_then(|level| on_level(along, level, "plane").map_err(|fault| fault.in_field(2)))
+        axis_plane(&this.axis, this.value, Self::AXIS)
+            .and_then(|level| on_level(along, level, "plane").map_err(|fault| fault.in_field(Self::VALUE)))
     }
 );
 

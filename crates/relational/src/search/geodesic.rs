@@ -68,7 +68,8 @@ impl<T: Real> Build<T> for GeoSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { m1, m2, turns_u, turns_v } = self;
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
-        let surface = common_surface(&items, Fault::in_field)?;
+        let fields = [Self::M1, Self::M2];
+        let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
         let sheet = Sheet { round: seam::round(&surface), surface: &surface };
         let plain = [m1.uv, m2.uv].map(|w| w.map(|x| x.re()));
         let ways = ways(&sheet, plain, [turns_u, turns_v])?;
@@ -122,7 +123,7 @@ fn ways<T: Real>(
                         "close the surface by a full turn, or by curves that end where they begin",
                     )
                     .related(sheet.surface.key, "is open")
-                    .in_field(2 + a));
+                    .in_field([GeoSnake::<T>::TURNS_U, GeoSnake::<T>::TURNS_V][a]));
             }
             Some(turns) => each[a] = vec![f64::from(turns)],
             None if sheet.round[a] && to[a] != from[a] => {
@@ -304,7 +305,7 @@ fn solved<T: Real>(
         return Err(Fault::new("coincident-points", "the geodesic has no length")
             .expected("two magnets in different places")
             .found("one place")
-            .in_field(1));
+            .in_field(GeoSnake::<T>::M2));
     }
     let mut places: Vec<[f64; 2]> = vec![from, to];
     let mut steps = 0;

@@ -66,7 +66,7 @@ impl<T: Real> Build<T> for IntPoint<T> {
                     .expected("a plane, a surface, a magnet or a field")
                     .found(found)
                     .help("where a curve meets one of these, use IntBead or IntMagnet")
-                    .in_field(k));
+                    .in_field([Self::SHAPE1, Self::SHAPE2, Self::SHAPE3][k]));
                 }
             });
         }
@@ -98,7 +98,7 @@ fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, 
         return Err(Fault::new("missing-argument", "fields have no middle to begin at")
             .expected("a point near the common point")
             .found("nothing")
-            .in_field(3));
+            .in_field(IntPoint::<T>::NEAR));
     };
     let at = |shape: &Shape<T>, x: Vec3<T>| match shape {
         Shape::Field(field) => field.value_and_gradient(x),

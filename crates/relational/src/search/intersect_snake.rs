@@ -11,7 +11,7 @@ use moldloft_locate::{PlainSurface, Report, Status};
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, slope_scale};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, FieldId, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
 };
 
 /// The curve along which a surface meets a plane or another surface, as a snake of the first; its
@@ -53,7 +53,7 @@ pub struct IntSnake<T: Real> {
 impl<T: Real> Build<T> for IntSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, target, start, end, point } = self;
-        let (shape, found) = cut(&surface, target, [start, end], point, context)?;
+        let (shape, found) = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
         let nesting = context.nesting;
         Ok(Value::Curve(CurveRef::snake(shape, surface.surface, nesting).with_found(found)))
     }
@@ -85,9 +85,24 @@ pub struct IntCurve<T: Real> {
 impl<T: Real> Build<T> for IntCurve<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, target, start, end, point } = self;
-        let (shape, found) = cut(&surface, target, [start, end], point, context)?;
+        let (shape, found) = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
         Ok(Value::Curve(CurveRef::new(InSpace(shape), context.nesting).with_found(found)))
     }
+}
+
+/// The fields that an intersection may fail for.
+#[derive(Clone, Copy)]
+struct Fields {
+    target: FieldId,
+    ends: [FieldId; 2],
+}
+
+impl<T: Real> IntSnake<T> {
+    const FIELDS: Fields = Fields { target: Self::TARGET, ends: [Self::START, Self::END] };
+}
+
+impl<T: Real> IntCurve<T> {
+    const FIELDS: Fields = Fields { target: Self::TARGET, ends: [Self::START, Self::END] };
 }
 
 /// A cut that is not known as a curve on its surface.
@@ -114,6 +129,7 @@ fn cut<T: Real>(
     target: Target<T>,
     [start, end]: [Option<Magnet<T>>; 2],
     point: Option<Point<T>>,
+    fields: Fields,
     context: &Context,
 ) -> Result<(Cut<T>, Found), Fault> {
     let (other, second_start) = match target {
@@ -133,10 +149,10 @@ fn cut<T: Real>(
             )
             .expected("a plane, a surface, a magnet or a field")
             .found("a curve or a point")
-            .in_field(1));
+            .in_field(fields.target));
         }
     };
-    for (field, magnet) in [(2, &start), (3, &end)] {
+    for (field, magnet) in fields.ends.into_iter().zip([&start, &end]) {
         if let Some(magnet) = magnet {
             let named = magnet.surface.key.is_some() || surface.surface.key.is_some();
             let same = if named {
@@ -155,7 +171,7 @@ fn cut<T: Real>(
         }
     }
     let keys = [start.as_ref().and_then(|m| m.key), end.as_ref().and_then(|m| m.key)];
-    let (shape, found) = traced(surface, other, second_start, [start, end], context)?;
+    let (shape, found) = traced(surface, other, second_start, [start, end], fields, context)?;
     let closed = shape.closed;
     let trace = match (keys, closed) {
         // A closed snake ends where it begins.
@@ -243,6 +259,7 @@ fn traced<T: Real>(
     second: Second<T>,
     second_start: Option<[f64; 2]>,
     ends: [Option<Magnet<T>>; 2],
+    fields: Fields,
     context: &Context,
 ) -> Result<(Cut<T>, Found), Fault> {
     let first = &onto.surface;
@@ -270,7 +287,7 @@ fn traced<T: Real>(
             let chosen = (0..all.len()).min_by(|&a, &b| away(&all[a]).total_cmp(&away(&all[b])));
             let Some(chosen) = chosen else {
                 if let Some(touch) = found.touches.first() {
-                    return Err(touching(touch.x).in_field(1));
+                    return Err(touching(touch.x).in_field(fields.target));
                 }
                 let x = plain.jet(from[0], from[1], Order::Zero).p;
                 let residual = match crossing.other {
@@ -292,7 +309,9 @@ fn traced<T: Real>(
                     last: from.into_iter().collect(),
                     alternatives: Vec::new(),
                 };
-                return Err(no_intersection(&report, "surface", second.name()).in_field(1));
+                return Err(
+                    no_intersection(&report, "surface", second.name()).in_field(fields.target)
+                );
             };
             if given.is_some() {
                 status = FoundStatus::Fallback;
@@ -315,7 +334,7 @@ fn traced<T: Real>(
         }
     };
     let begin = branch.stations[0].q;
-    let shape = set_up(first, second.clone(), &crossing, branch, onto, &ends, context)?;
+    let shape = set_up(first, second.clone(), &crossing, branch, onto, (&ends, fields), context)?;
     let found = Found {
         status,
         residual: 0.0,
@@ -335,7 +354,7 @@ fn set_up<T: Real>(
     crossing: &Crossing<'_>,
     mut branch: Branch,
     onto: &Onto<T>,
-    ends: &[Option<Magnet<T>>; 2],
+    (ends, fields): (&[Option<Magnet<T>>; 2], Fields),
     context: &Context,
 ) -> Result<Cut<T>, Fault> {
     // Stations of the given ends.
@@ -371,7 +390,7 @@ fn set_up<T: Real>(
                 .found("a magnet away from it")
                 .help("make it by IntRing, IntMagnet or IntBead with the same surface or plane")
                 .related(magnet.key, "is the magnet")
-                .in_field(2 + k));
+                .in_field(fields.ends[k]));
             }
         }
     }
@@ -380,7 +399,7 @@ fn set_up<T: Real>(
         return Err(Fault::new("missing-argument", "a closed branch with an end needs a start")
             .expected("a magnet or ring where it starts")
             .found("an end only")
-            .in_field(2));
+            .in_field(fields.ends[0]));
     }
     let mut reversed = false;
     let whole = closed && places[1].is_none();
@@ -441,7 +460,7 @@ fn set_up<T: Real>(
     for (k, end) in branch.ends.iter().enumerate() {
         let given = places[k].is_some();
         if !given && matches!(end, End::Tangent | End::Lost) {
-            return Err(lost("a place where they are tangent").in_field(1));
+            return Err(lost("a place where they are tangent").in_field(fields.target));
         }
     }
     let stops = with_joints(first, &second, crossing, &branch);
@@ -472,7 +491,7 @@ fn set_up<T: Real>(
         }
         _ => None,
     };
-    let failed = || lost("a place where they are nearly tangent").in_field(1);
+    let failed = || lost("a place where they are nearly tangent").in_field(fields.target);
     let fits = fitted(crossing, &stops).ok_or_else(failed)?;
     let both = Both { first: first.clone(), second: second.clone() };
     let mut pieces = Vec::with_capacity(fits.len());

@@ -117,7 +117,7 @@ impl<T: Real> Build<T> for ProjMagnet<T> {
             None => foot(&self.surface, self.point.xyz, false),
             Some(mirror) => on_ray(&self.surface, self.point.xyz, rays(mirror)),
         };
-        magnet(self.surface, place.map_err(|fault| fault.in_field(1))?)
+        magnet(self.surface, place.map_err(|fault| fault.in_field(Self::SURFACE))?)
     }
 }
 
@@ -165,7 +165,7 @@ pub struct IntMagnet<T: Real> {
 impl<T: Real> Build<T> for IntMagnet<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let (_, found, uv) =
-            piercing(&self.curve, &self.surface).map_err(|fault| fault.in_field(1))?;
+            piercing(&self.curve, &self.surface).map_err(|fault| fault.in_field(Self::SURFACE))?;
         magnet(self.surface, (uv, found))
     }
 }
@@ -193,12 +193,13 @@ pub struct XYZMagnet<T: Real> {
 
 impl<T: Real> Build<T> for XYZMagnet<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (a, b) = (axis_number(&self.axis1, 1)?, axis_number(&self.axis2, 3)?);
+        let (a, b) =
+            (axis_number(&self.axis1, Self::AXIS1)?, axis_number(&self.axis2, Self::AXIS2)?);
         if a == b {
             return Err(Fault::new("same-axis", "the two coordinates are the same one")
                 .expected("two different axes")
                 .found(format!("\"{}\" twice", self.axis1))
-                .in_field(3));
+                .in_field(Self::AXIS2));
         }
         let mut p = [T::zero(); 3];
         (p[a], p[b]) = (self.value1, self.value2);
@@ -209,7 +210,7 @@ impl<T: Real> Build<T> for XYZMagnet<T> {
             self.surface.surface.jet(T::from(0.5), T::from(0.5), Order::Zero).p.re()[3 - a - b],
         );
         let place = on_ray(&self.surface, Vec3::from(p), Rays::Along(Vec3::from(d)))
-            .map_err(|fault| fault.in_field(2))?;
+            .map_err(|fault| fault.in_field(Self::VALUE1))?;
         magnet(self.surface, place)
     }
 }
@@ -244,7 +245,7 @@ impl<T: Real> Build<T> for TanMagnet<T> {
             Fault::new("singular-normal", "the surface has no tangent plane at the magnet")
                 .expected("a magnet away from poles and cusps")
                 .found(format!("(u, v) = ({}, {})", u.re(), v.re()))
-                .in_field(0)
+                .in_field(Self::MAGNET)
         };
         let e1 = j.u.normalized().ok_or_else(singular)?;
         let e2 = (j.v - e1 * e1.dot(j.v)).normalized().ok_or_else(singular)?;

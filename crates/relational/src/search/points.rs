@@ -60,9 +60,9 @@ impl<T: Real> Build<T> for ProjPoint<T> {
                 let ([u, v], found) = foot(&onto, self.point.xyz, false)?;
                 Point::free(onto.surface.jet(u, v, Order::Zero).p).with_found(found)
             }
-            MirrorOrSurface::Field(field) => {
-                Point::free(foot_on_level(&field, self.point.xyz).map_err(|f| f.in_field(1))?)
-            }
+            MirrorOrSurface::Field(field) => Point::free(
+                foot_on_level(&field, self.point.xyz).map_err(|f| f.in_field(Self::MIRROR))?,
+            ),
         };
         Ok(Value::Point(Box::new(point)))
     }

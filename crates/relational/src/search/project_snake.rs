@@ -11,7 +11,8 @@ use moldloft_locate::{OUTSIDE, PlainSurface, Range, newton};
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldRef, Found, FoundStatus, Kind, Mirror, SurfaceRef, Value,
+    Build, Context, CurveRef, Fault, FieldId, FieldRef, Found, FoundStatus, Kind, Mirror,
+    SurfaceRef, Value,
 };
 use std::sync::OnceLock;
 
@@ -61,10 +62,10 @@ impl<T: Real> Build<T> for ProjSnake<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { curve, surface, mirror, ends } = self;
         let rays = mirror.as_ref().map(rays);
-        let (path, found) = projected(curve, surface, rays)?;
+        let (path, found) = projected(curve, surface, rays, [Self::CURVE, Self::SURFACE])?;
         let keys = match ends {
             None => [None, None],
-            Some(magnets) => end_keys(&path, &magnets, context.tolerance)?,
+            Some(magnets) => end_keys(&path, &magnets, context.tolerance, Self::ENDS)?,
         };
         let surface = path.surface.clone();
         let shape = Projected { trace: Trace::Own(keys), path };
@@ -96,14 +97,15 @@ impl<T: Real> Build<T> for ProjCurve<T> {
                 Ok(Value::Curve(CurveRef::new(shape, context.nesting)))
             }
             MirrorOrSurface::Surface(onto) => {
-                let (path, found) = projected(self.curve, onto, None)?;
+                let (path, found) = projected(self.curve, onto, None, [Self::CURVE, Self::MIRROR])?;
                 let shape = Projected { trace: Trace::own(), path };
                 Ok(Value::Curve(CurveRef::new(shape, context.nesting).with_found(found)))
             }
             MirrorOrSurface::Field(field) => {
                 for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
                     let p = self.curve.jet(T::from(t), Order::Zero)[0];
-                    super::points::foot_on_level(&field, p).map_err(|f| f.in_field(1))?;
+                    super::points::foot_on_level(&field, p)
+                        .map_err(|f| f.in_field(Self::MIRROR))?;
                 }
                 let shape = OntoField { curve: self.curve, field };
                 Ok(Value::Curve(CurveRef::new(shape, context.nesting)))
@@ -166,12 +168,13 @@ fn end_keys<T: Real>(
     path: &Path<T>,
     magnets: &[Magnet<T>],
     tolerance: f64,
+    field: FieldId,
 ) -> Result<[Option<Key>; 2], Fault> {
     let [first, last] = magnets else {
         return Err(Fault::new("wrong-length", "a snake has two ends")
             .expected("two magnets")
             .found(magnets.len().to_string())
-            .in_field(3));
+            .in_field(field));
     };
     for (k, magnet) in [first, last].into_iter().enumerate() {
         let w = path.place(T::from(k as f64), Order::Zero)[0];
@@ -189,7 +192,7 @@ fn end_keys<T: Real>(
             .help("make it by ProjMagnet from the same end of the curve")
             .related(magnet.key, "is the magnet")
             .in_item(k)
-            .in_field(3));
+            .in_field(field));
         }
     }
     Ok([first.key, last.key])
@@ -219,15 +222,16 @@ fn projected<T: Real>(
     curve: CurveRef<T>,
     onto: Onto<T>,
     rays: Option<Rays<T>>,
+    [of, on]: [FieldId; 2],
 ) -> Result<(Path<T>, Found), Fault> {
     let begin = curve.end(0.0);
     let (uv, mut found) = match rays {
         None => foot(&onto, begin, false),
         Some(rays) => on_ray(&onto, begin, rays),
     }
-    .map_err(|fault| fault.in_field(1))?;
+    .map_err(|fault| fault.in_field(on))?;
     if found.status == FoundStatus::EdgeClamped {
-        return Err(leaves(0.0));
+        return Err(leaves(0.0, of));
     }
     let corners = [0.0, 0.5, 1.0].map(|t| curve.end(t).re());
     let size = moldloft_locate::pieces::size_of(&moldloft_num::Box3::around(corners));
@@ -242,7 +246,7 @@ fn projected<T: Real>(
     };
     let uv = uv.map(|x| x.re());
     let s = path.ray_length(uv);
-    let node = path.solved(0.0, [uv[0], uv[1], s]).ok_or_else(|| grazes(0.0))?;
+    let node = path.solved(0.0, [uv[0], uv[1], s]).ok_or_else(|| grazes(0.0, on))?;
     path.nodes.push(node);
     let mut step = STEP;
     while let Some(&last) = path.nodes.last().filter(|node| node.t < 1.0) {
@@ -265,7 +269,7 @@ fn projected<T: Real>(
             None if step > LEAST_STEP => step *= 0.5,
             None => {
                 let at_edge = last.q[..2].iter().any(|x| *x < 1e-4 || *x > 1.0 - 1e-4);
-                return Err(if at_edge { leaves(last.t) } else { grazes(last.t) });
+                return Err(if at_edge { leaves(last.t, of) } else { grazes(last.t, on) });
             }
         }
     }
@@ -273,20 +277,20 @@ fn projected<T: Real>(
     Ok((path, found))
 }
 
-fn leaves(t: f64) -> Fault {
+fn leaves(t: f64, field: FieldId) -> Fault {
     Fault::new("leaves-surface", "the projection of the curve leaves the surface")
         .expected("a curve whose projection lies on the surface from end to end")
         .found(format!("the edge of the surface at t = {t:.6} of the curve"))
         .help("use a part of the curve (SubCurve), or a larger surface")
-        .in_field(0)
+        .in_field(field)
 }
 
-fn grazes(t: f64) -> Fault {
+fn grazes(t: f64, field: FieldId) -> Fault {
     Fault::new("grazing-projection", "the projection grazes the surface")
         .expected("lines of projection that cross the surface at an angle")
         .found(format!("a line tangent to it at t = {t:.6} of the curve"))
         .help("project away from a point, along another direction, or from nearer to the surface")
-        .in_field(1)
+        .in_field(field)
 }
 
 impl<T: Real> Path<T> {

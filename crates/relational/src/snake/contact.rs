@@ -40,7 +40,7 @@ impl<T: Real> Build<T> for ContactSnake<T> {
                     "of the image of a fillet, take the contacts of the original and their images",
                 )
                 .related(fillet.key, "touches nothing")
-                .in_field(0));
+                .in_field(Self::FILLET));
         };
         let trace = edge_trace(&fillet, if side == 1 { 0 } else { 2 });
         let surface = curve.surface.as_deref().cloned().expect("a contact lies on a surface");

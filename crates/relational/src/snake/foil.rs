@@ -1,6 +1,6 @@
 use super::through::{flat, snake};
 use crate::arguments::{Magnet, common_surface};
-use crate::foil::{POINTS, foil_kind};
+use crate::foil::foil_kind;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, Context, Fault, Kind, Value};
 
@@ -22,9 +22,9 @@ foil_kind!(
     )]
     FoilSnake {
         /// Three, four or five magnets of one surface.
-        magnets: Magnet<T>,
+        magnets (MAGNETS): Magnet<T>,
         /// How lengths are measured in the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
-        metric: Option<Vec3<T>>,
+        metric (METRIC): Option<Vec3<T>>,
     }
 );
 
@@ -32,7 +32,7 @@ impl<T: Real> Build<T> for FoilSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let (magnets, arguments) = self.parts();
         let items: Vec<_> = magnets.iter().map(|m| (m.key, &m.surface)).collect();
-        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(POINTS))?;
+        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::MAGNETS))?;
         let places: Vec<_> = magnets.iter().map(|m| flat(m.uv)).collect();
         let (path, closed, nesting) = arguments.profile(&places)?;
         let [first, last] = [0, magnets.len() - 1].map(|k| magnets[k].key);

@@ -57,7 +57,7 @@ impl<T: Real> Build<T> for EdgeSnake<T> {
                 return Err(Fault::new("out-of-range", format!("there is no edge {other}"))
                     .expected("an edge from 1 to 4")
                     .found(other.to_string())
-                    .in_field(0));
+                    .in_field(Self::EDGE));
             }
         };
         let [from, to] = ends.map(|(u, v)| Vec3::of(u, v, 0.0));
@@ -98,7 +98,7 @@ impl<T: Real> Build<T> for UVSnake<T> {
                 other => Err(Fault::new("unknown-parameter", format!("there is no \"{other}\""))
                     .expected("\"u\" or \"v\"")
                     .found(format!("\"{other}\""))
-                    .in_field(1)),
+                    .in_field(Self::PARAMETER)),
             }
         };
         let path = Segment { from: held(0.0)?, to: held(1.0)? };

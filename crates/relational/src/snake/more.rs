@@ -4,26 +4,32 @@ use crate::curve::{Moved, Oblique, clamped_ends, spline};
 use crate::faults;
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::InterpolatingSpline;
 
-/// The places of magnets, and the surface that they all lie on; they are the list in field 0.
-fn places<T: Real>(magnets: &[Magnet<T>]) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), Fault> {
+/// The places of magnets, and the surface that they all lie on; they are the list in `field`.
+fn places<T: Real>(
+    magnets: &[Magnet<T>],
+    field: FieldId,
+) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), Fault> {
     if magnets.len() < 2 {
         return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
             .expected("at least 2 magnets")
             .found(magnets.len().to_string())
-            .in_field(0));
+            .in_field(field));
     }
     let items: Vec<_> = magnets.iter().map(|m| (m.key, &m.surface)).collect();
-    let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(0))?;
+    let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(field))?;
     Ok((surface, magnets.iter().map(|m| flat(m.uv)).collect()))
 }
 
-/// The three places of fields 0, 1 and 2.
-fn three<T: Real>(m: [&Magnet<T>; 3]) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), Fault> {
+/// The three places of these fields.
+fn three<T: Real>(
+    m: [&Magnet<T>; 3],
+    fields: [FieldId; 3],
+) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), Fault> {
     let items = m.map(|m| (m.key, &m.surface));
-    let surface = common_surface(&items, |fault, k| fault.in_field(k))?;
+    let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
     Ok((surface, m.map(|m| flat(m.uv))))
 }
 
@@ -52,12 +58,12 @@ pub struct ArcSnake<T: Real> {
 impl<T: Real> Build<T> for ArcSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { m1, m2, m3, r#type } = self;
-        let (surface, places) = three([&m1, &m2, &m3])?;
+        let (surface, places) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let Some(arc) = moldloft_spline::Arc::of_type(r#type, places) else {
             return Err(Fault::new("out-of-range", format!("there is no arc of type {}", r#type))
                 .expected("a type from 1 to 6")
                 .found(r#type.to_string())
-                .in_field(3));
+                .in_field(Self::TYPE));
         };
         let end = match r#type {
             2 => None,
@@ -65,7 +71,7 @@ impl<T: Real> Build<T> for ArcSnake<T> {
             6 => m1.key,
             _ => m3.key,
         };
-        snake(surface, arc.map_err(faults::of_arc)?, [m1.key, end], 0)
+        snake(surface, arc.map_err(|error| faults::of_arc(error, Self::M1))?, [m1.key, end], 0)
     }
 }
 
@@ -98,15 +104,18 @@ pub struct CSnake<T: Real> {
 
 impl<T: Real> Build<T> for CSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (surface, places) = places(&self.magnets)?;
+        let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let level = |slope: Option<Vec3<T>>| slope.map(|d| Vec3::new(d.x, d.y, T::zero()));
-        let ends = clamped_ends(self.ends, level(self.start), level(self.end))?;
+        let ends =
+            clamped_ends(self.ends, level(self.start), level(self.end), [Self::START, Self::END])?;
         let path = match self.degree {
             1 => InterpolatingSpline::polyline(&places),
             2 if places.len() > 3 => InterpolatingSpline::of_type(2, &places),
             _ => InterpolatingSpline::with_ends(&places, ends),
         }
-        .map_err(|error| faults::of_interpolation(error, "magnet", [0, 1, 2]))?;
+        .map_err(|error| {
+            faults::of_interpolation(error, "magnet", [Self::MAGNETS, Self::DEGREE, Self::ENDS])
+        })?;
         let names = [0, places.len() - 1].map(|k| self.magnets[k].key);
         snake(surface, path, names, 0)
     }
@@ -137,9 +146,10 @@ pub struct NURBSnake<T: Real> {
 
 impl<T: Real> Build<T> for NURBSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let (surface, places) = places(&self.magnets)?;
+        let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let names = [0, places.len() - 1].map(|k| self.magnets[k].key);
-        let path = spline(places, self.degree, self.knots, self.weights)?;
+        let fields = [Self::MAGNETS, Self::DEGREE, Self::KNOTS, Self::WEIGHTS];
+        let path = spline(places, self.degree, self.knots, self.weights, fields)?;
         let clamped = path.clamped_ends();
         let ends = [0, 1].map(|k| if clamped[k] { names[k] } else { None });
         snake(surface, path, ends, 0)
@@ -177,7 +187,7 @@ pub struct ConicSnake<T: Real> {
 impl<T: Real> Build<T> for ConicSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { m1, m2, m3, a1, a2, r#type } = self;
-        let (surface, [centre, p, q]) = three([&m1, &m2, &m3])?;
+        let (surface, [centre, p, q]) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let path = Oblique { centre, first: p - centre, second: q - centre, a1, a2, kind: r#type };
         snake(surface, path, [None, None], 0)
     }
@@ -207,7 +217,8 @@ impl<T: Real> Build<T> for RelSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { snake: Snake { curve, surface }, m1, m2 } = self;
         let items = [(curve.key, &surface), (m1.key, &m1.surface), (m2.key, &m2.surface)];
-        common_surface(&items, |fault, k| fault.in_field(k))?;
+        let fields = [Self::SNAKE, Self::M1, Self::M2];
+        common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
         let nesting = curve.depth;
         let path = Moved::path(curve, flat(m1.uv), flat(m2.uv));
         snake(surface, path, [m1.key, m2.key], nesting)

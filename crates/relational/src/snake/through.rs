@@ -45,7 +45,8 @@ impl<T: Real> Build<T> for LineSnake<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { m1, m2 } = self;
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
-        let surface = common_surface(&items, Fault::in_field)?;
+        let fields = [Self::M1, Self::M2];
+        let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
         let path = Segment { from: flat(m1.uv), to: flat(m2.uv) };
         snake(surface, path, [m1.key, m2.key], 0)
     }
@@ -80,14 +81,14 @@ impl<T: Real> Build<T> for BSnake<T> {
             return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
                 .expected("at least 2 magnets")
                 .found(magnets.len().to_string())
-                .in_field(0));
+                .in_field(Self::MAGNETS));
         };
         let ends = [first.key, last.key];
         let items: Vec<_> = magnets.iter().map(|m| (m.key, &m.surface)).collect();
-        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(0))?;
+        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::MAGNETS))?;
         let path = magnets.iter().map(|m| flat(m.uv)).collect();
         let path = BSplineCurve::uniform(degree.min(magnets.len() - 1), path)
-            .map_err(|error| faults::of_spline(error, 0, 1))?;
+            .map_err(|error| faults::of_spline(error, Self::MAGNETS, Self::DEGREE))?;
         snake(surface, path, ends, 0)
     }
 }

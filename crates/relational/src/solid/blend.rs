@@ -1,7 +1,7 @@
 use super::layers::on;
 use moldloft_num::trace::{Faces, Turn};
 use moldloft_num::{Box3, Jet, Order, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, SolidRef, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SolidRef, SurfaceRef, Value};
 
 /// A solid between six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: their transfinite blend, the three
 /// ruled solids less the three of edges plus that of the corners (Gordon and Hall 1973).
@@ -33,22 +33,25 @@ pub struct BlendSolid<T: Real> {
 
 impl<T: Real> Build<T> for BlendSolid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let six = |found: usize, what: &str, field: usize| {
+        let six = |found: usize, what: &str, field: FieldId| {
             Fault::new("wrong-length", format!("a solid has 6 faces, but here are {found} {what}"))
                 .expected(format!("6 {what}"))
                 .found(found.to_string())
                 .in_field(field)
         };
-        let surfaces: [SurfaceRef<T>; 6] =
-            self.surfaces.try_into().map_err(|s: Vec<_>| six(s.len(), "surfaces", 0))?;
+        let surfaces: [SurfaceRef<T>; 6] = self
+            .surfaces
+            .try_into()
+            .map_err(|s: Vec<_>| six(s.len(), "surfaces", Self::SURFACES))?;
         let given = self.turns.unwrap_or_else(|| vec![0; 6]);
-        let given: [usize; 6] = given.try_into().map_err(|t: Vec<_>| six(t.len(), "turns", 1))?;
+        let given: [usize; 6] =
+            given.try_into().map_err(|t: Vec<_>| six(t.len(), "turns", Self::TURNS))?;
         if let Some(k) = given.iter().position(|&t| t > 7) {
             return Err(Fault::new("out-of-range", format!("there is no turn {}", given[k]))
                 .expected("a number from 0 to 7")
                 .found(given[k].to_string())
                 .in_item(k)
-                .in_field(1));
+                .in_field(Self::TURNS));
         }
         let solid = Blend { surfaces, turns: given.map(|t| Turn(t as u8)) };
         solid.check()?;
@@ -132,7 +135,7 @@ impl<T: Real> Blend<T> {
             .related(self.surfaces[a].key, "is the one face")
             .related(self.surfaces[b].key, "is the other")
             .in_item(b)
-            .in_field(0);
+            .in_field(BlendSolid::<T>::SURFACES);
         let mut turns = Vec::new();
         Err(if self.search(&mut turns, tolerance) {
             let list: Vec<String> = turns.iter().map(|t| t.0.to_string()).collect();

@@ -3,7 +3,7 @@ use crate::arguments::EndRule;
 use crate::faults;
 use moldloft_num::trace::{Faces, Law, Layers, Turn};
 use moldloft_num::{Curve, Jet, Order, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, SolidRef, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SolidRef, SurfaceRef, Value};
 use moldloft_spline::{InterpolatingSpline, InterpolationError, KnotVector};
 use smallvec::SmallVec;
 
@@ -61,9 +61,9 @@ pub struct BLoftSolid<T: Real> {
 
 impl<T: Real> Build<T> for BLoftSolid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let count = several(&self.surfaces)?;
+        let count = several(&self.surfaces, Self::SURFACES)?;
         let knots = KnotVector::clamped_uniform(self.degree.min(count - 1), count)
-            .map_err(|error| faults::of_spline(error.into(), 0, 1))?;
+            .map_err(|error| faults::of_spline(error.into(), Self::SURFACES, Self::DEGREE))?;
         let solid = Loft { layers: self.surfaces, across: Across::Blend(knots) };
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
     }
@@ -100,11 +100,11 @@ const TRIALS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 impl<T: Real> Build<T> for CLoftSolid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { surfaces, ends } = self;
-        several(&surfaces)?;
+        several(&surfaces, Self::SURFACES)?;
         if matches!(ends, EndRule::Clamped | EndRule::Periodic) {
             return Err(Fault::new("unknown-ends", "a solid is neither clamped nor periodic")
                 .expected("\"notaknot\", \"natural\", \"bessel\" or \"quadratic\"")
-                .in_field(1));
+                .in_field(Self::ENDS));
         }
         let solid = Loft { layers: surfaces, across: Across::Spline(ends) };
         for (u, v) in TRIALS.iter().flat_map(|&u| TRIALS.map(|v| (u, v))) {
@@ -112,22 +112,26 @@ impl<T: Real> Build<T> for CLoftSolid<T> {
             if let Err(error) = solid.spline(ends, &points)
                 && points.iter().any(|p| p.re() != points[0].re())
             {
-                return Err(faults::of_interpolation(error, "surface", [0, 0, 1])
-                    .help(format!("this happens at u = {u}, v = {v}")));
+                return Err(faults::of_interpolation(
+                    error,
+                    "surface",
+                    [Self::SURFACES, Self::SURFACES, Self::ENDS],
+                )
+                .help(format!("this happens at u = {u}, v = {v}")));
             }
         }
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
     }
 }
 
-fn several<T: Real>(surfaces: &[SurfaceRef<T>]) -> Result<usize, Fault> {
+fn several<T: Real>(surfaces: &[SurfaceRef<T>], field: FieldId) -> Result<usize, Fault> {
     if surfaces.len() >= 2 {
         return Ok(surfaces.len());
     }
     Err(Fault::new("too-few-items", "a solid needs at least 2 surfaces")
         .expected("at least 2 surfaces")
         .found(surfaces.len().to_string())
-        .in_field(0))
+        .in_field(field))
 }
 
 enum Across {

@@ -76,8 +76,8 @@ pub struct SweepSolid<T: Real> {
 impl<T: Real> Build<T> for SweepSolid<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, path, frame, up } = self;
-        let mode = Mode::of(&frame, up, [2, 3])?;
-        let moving = Moving::new(path, mode, 1)?;
+        let mode = Mode::of(&frame, up, [Self::FRAME, Self::UP])?;
+        let moving = Moving::new(path, mode, Self::PATH)?;
         Ok(Value::Solid(SolidRef::new(Swept { surface, moving }, context.nesting)))
     }
 }

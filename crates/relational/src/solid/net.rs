@@ -1,7 +1,7 @@
 use crate::faults;
 use moldloft_num::trace::Faces;
 use moldloft_num::{Jet, Order, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, SolidRef, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Point, SolidRef, Value};
 use moldloft_spline::KnotVector;
 
 /// A B-spline solid of a net of points: X(u, v, w) = sum N_i(u) N_j(v) N_k(w) P_ijk, with clamped
@@ -53,13 +53,17 @@ impl<T: Real> Build<T> for BSolid<T> {
             return Err(Fault::new("wrong-length", message)
                 .expected(format!("{nu} x {nv} x {nw} points, at least 2 each way"))
                 .found(points.len().to_string())
-                .in_field(0));
+                .in_field(Self::POINTS));
         }
-        let knots = |degree: usize, n: usize, field: usize| {
+        let knots = |degree: usize, n: usize, field: FieldId| {
             KnotVector::clamped_uniform(degree.min(n - 1), n)
-                .map_err(|error| faults::of_spline(error.into(), 0, field))
+                .map_err(|error| faults::of_spline(error.into(), Self::POINTS, field))
         };
-        let knots = [knots(degree_u, nu, 4)?, knots(degree_v, nv, 5)?, knots(degree_w, nw, 6)?];
+        let knots = [
+            knots(degree_u, nu, Self::DEGREE_U)?,
+            knots(degree_v, nv, Self::DEGREE_V)?,
+            knots(degree_w, nw, Self::DEGREE_W)?,
+        ];
         let corners = std::array::from_fn(|c| {
             let at = |axis: usize| if c >> axis & 1 == 1 { size[axis] - 1 } else { 0 };
             points[(at(0) * nv + at(1)) * nw + at(2)].key

@@ -39,7 +39,7 @@ const TRIALS: usize = 64;
 impl<T: Real> Build<T> for ArcLoftSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { c1, c2, c3, r#type } = self;
-        let loft = ArcLoft { masters: Masters::new(vec![c1, c2, c3], 0)?, kind: r#type };
+        let loft = ArcLoft { masters: Masters::new(vec![c1, c2, c3], Self::C1)?, kind: r#type };
         let at = |k: usize| k as f64 / TRIALS as f64;
         let bad: Vec<usize> = (0..=TRIALS).filter(|&k| loft.trouble(at(k)).is_some()).collect();
         if let [first, .., last] | [first @ last] = bad[..] {
@@ -53,7 +53,7 @@ impl<T: Real> Build<T> for ArcLoftSurf<T> {
                 .expected(expected)
                 .found(format!("no such arc at {} of {} parameters", bad.len(), TRIALS + 1))
                 .help("move the second curve out of the line of the others")
-                .in_field(1));
+                .in_field(Self::C2));
         }
         Ok(Value::Surface(SurfaceRef::new(Columns(loft), context.nesting)))
     }

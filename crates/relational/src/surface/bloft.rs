@@ -31,9 +31,9 @@ impl<T: Real> Build<T> for BLoftSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { curves, degree } = self;
         let count = curves.len();
-        let masters = Masters::new(curves, 0)?;
+        let masters = Masters::new(curves, Self::CURVES)?;
         let knots = KnotVector::clamped_uniform(degree.min(count - 1), count)
-            .map_err(|error| faults::of_spline(error.into(), 0, 1))?;
+            .map_err(|error| faults::of_spline(error.into(), Self::CURVES, Self::DEGREE))?;
         Ok(Value::Surface(SurfaceRef::new(Blend { masters, knots }, context.nesting)))
     }
 }

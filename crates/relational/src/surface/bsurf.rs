@@ -2,7 +2,7 @@ use super::free_knots::{FreeKnots, FreeNet};
 use crate::faults;
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Scalar, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Point, Scalar, SurfaceRef, Value};
 use moldloft_spline::{BSplineSurface, KnotVector};
 
 /// A B-spline surface of a net of points: S(u, v) = sum N_i(u) N_j(v) P_ij, with clamped uniform
@@ -38,7 +38,12 @@ pub struct BSurf<T: Real> {
 impl<T: Real> Build<T> for BSurf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { points, nu, nv, degree_u, degree_v } = self;
-        let net = Net::new(points, [nu, nv], [degree_u, degree_v], [None, None], None)?;
+        let fields = NetFields {
+            points: Self::POINTS,
+            degrees: [Self::DEGREE_U, Self::DEGREE_V],
+            knots: [Self::DEGREE_U, Self::DEGREE_V],
+        };
+        let net = Net::new(points, [nu, nv], [degree_u, degree_v], [None, None], None, fields)?;
         Ok(Value::Surface(SurfaceRef::new(net, 0)))
     }
 }
@@ -92,7 +97,7 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
                 return Err(Fault::new("wrong-length", "there must be a weight for each point")
                     .expected(format!("{} weights", points.len()))
                     .found(weights.len().to_string())
-                    .in_field(5));
+                    .in_field(Self::WEIGHTS));
             }
             if let Some(k) = weights.iter().position(|w| w.re() <= 0.0) {
                 let found = weights[k].re();
@@ -100,14 +105,19 @@ impl<T: Scalar> Build<T> for NURBSurf<T> {
                     .expected("positive weights")
                     .found(found.to_string())
                     .in_item(k)
-                    .in_field(5));
+                    .in_field(Self::WEIGHTS));
             }
         }
         let plain = |knots: &Option<Vec<T>>| {
             knots.as_ref().map(|k| k.iter().map(|x| x.re()).collect::<Vec<f64>>())
         };
         let knots = [plain(&knots_u), plain(&knots_v)];
-        let net = Net::new(points, [nu, nv], [degree_u, degree_v], knots, weights)?;
+        let fields = NetFields {
+            points: Self::POINTS,
+            degrees: [Self::DEGREE_U, Self::DEGREE_V],
+            knots: [Self::KNOTS_U, Self::KNOTS_V],
+        };
+        let net = Net::new(points, [nu, nv], [degree_u, degree_v], knots, weights, fields)?;
         if knots_u.is_none() && knots_v.is_none() {
             return Ok(Value::Surface(SurfaceRef::new(net, 0)));
         }
@@ -169,14 +179,21 @@ impl<T: Real> Surface<T> for Net<T> {
     }
 }
 
+/// The fields of a net.
+struct NetFields {
+    points: FieldId,
+    degrees: [FieldId; 2],
+    knots: [FieldId; 2],
+}
+
 impl<T: Real> Net<T> {
-    /// The fields of the net, its extents, degrees and knots are 0; 1, 2; 3, 4; 6, 7.
     fn new(
         points: Vec<Point<T>>,
         [nu, nv]: [usize; 2],
         [degree_u, degree_v]: [usize; 2],
         [knots_u, knots_v]: [Option<Vec<f64>>; 2],
         weights: Option<Vec<T>>,
+        fields: NetFields,
     ) -> Result<Self, Fault> {
         if nu.checked_mul(nv) != Some(points.len()) || nu < 2 || nv < 2 {
             return Err(Fault::new(
@@ -185,12 +202,12 @@ impl<T: Real> Net<T> {
             )
             .expected(format!("{nu} x {nv} points"))
             .found(points.len().to_string())
-            .in_field(0));
+            .in_field(fields.points));
         }
-        let knots = |given: Option<Vec<f64>>, degree: usize, n: usize, [d, k]: [usize; 2]| {
+        let knots = |given: Option<Vec<f64>>, degree: usize, n: usize, [d, k]: [FieldId; 2]| {
             let Some(given) = given else {
                 return KnotVector::clamped_uniform(degree.min(n - 1), n)
-                    .map_err(|error| faults::of_spline(error.into(), 0, d));
+                    .map_err(|error| faults::of_spline(error.into(), fields.points, d));
             };
             let found = given.len();
             if found != n + degree + 1 {
@@ -205,8 +222,8 @@ impl<T: Real> Net<T> {
             let knots = KnotVector::new(degree, given);
             Ok(knots.map_err(|error| faults::of_spline(error.into(), k, d))?.normalized())
         };
-        let u = knots(knots_u, degree_u, nu, [3, 6])?;
-        let v = knots(knots_v, degree_v, nv, [4, 7])?;
+        let u = knots(knots_u, degree_u, nu, [fields.degrees[0], fields.knots[0]])?;
+        let v = knots(knots_v, degree_v, nv, [fields.degrees[1], fields.knots[1]])?;
         // The corners are interpolated where the knots are clamped.
         let clamped = |k: &KnotVector| {
             let (low, high) = k.domain();
@@ -222,7 +239,7 @@ impl<T: Real> Net<T> {
         ];
         let net = points.iter().map(|p| p.xyz).collect();
         let surface = BSplineSurface::new(u, v, net, weights)
-            .map_err(|error| faults::of_spline(error, 0, 3))?;
+            .map_err(|error| faults::of_spline(error, fields.points, fields.degrees[0]))?;
         Ok(Self { surface, corners })
     }
 }

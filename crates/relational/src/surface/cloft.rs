@@ -4,7 +4,7 @@ use crate::arguments::EndRule;
 use crate::faults;
 use moldloft_num::trace::Edges;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
 
 /// A surface that passes through its master curves: S(u, v) is the interpolating spline through
@@ -72,18 +72,26 @@ impl<T: Real> Build<T> for CLoftSurf<T> {
         let count = curves.len();
         if degree == 2 && count > 3 {
             let error = InterpolationError::Type { actual: degree };
-            return Err(faults::of_interpolation(error, "curve", [0, 1, 2]));
+            return Err(faults::of_interpolation(
+                error,
+                "curve",
+                [Self::CURVES, Self::DEGREE, Self::ENDS],
+            ));
         }
-        let slopes = slopes(ends, start, end)?;
+        let slopes = slopes(ends, start, end, [Self::START, Self::END])?;
         let knots = if degree == 1 { Knots::Polyline } else { Knots::Chords };
-        let loft = Loft { masters: Masters::new(curves, 0)?, knots, ends, slopes };
+        let loft = Loft { masters: Masters::new(curves, Self::CURVES)?, knots, ends, slopes };
         for u in TRIALS {
             let points: Points<T> = loft.masters.at(T::from(u));
             if let Err(error) = loft.spline(&points)
                 && !is_one_point(&points)
             {
-                return Err(faults::of_interpolation(error, "curve", [0, 1, 2])
-                    .help(format!("this happens at u = {u}")));
+                return Err(faults::of_interpolation(
+                    error,
+                    "curve",
+                    [Self::CURVES, Self::DEGREE, Self::ENDS],
+                )
+                .help(format!("this happens at u = {u}")));
             }
         }
         Ok(Value::Surface(SurfaceRef::new(loft, context.nesting)))
@@ -95,18 +103,19 @@ fn slopes<T: Real>(
     ends: EndRule,
     start: Option<Vec3<T>>,
     end: Option<Vec3<T>>,
+    fields: [FieldId; 2],
 ) -> Result<Option<[Vec3<T>; 2]>, Fault> {
     match (ends, start, end) {
         (EndRule::Clamped, Some(start), Some(end)) => Ok(Some([start, end])),
         (EndRule::Clamped, start, _) => {
             Err(Fault::new("missing-argument", "clamped ends need the slopes `start` and `end`")
                 .expected("start = {x, y, z}, end = {x, y, z}")
-                .in_field(if start.is_none() { 3 } else { 4 }))
+                .in_field(fields[usize::from(start.is_some())]))
         }
         (_, None, None) => Ok(None),
         (_, start, _) => Err(Fault::new("unused-argument", "slopes are for clamped ends only")
             .help("add ends = \"clamped\", or leave the slopes out")
-            .in_field(if start.is_some() { 3 } else { 4 })),
+            .in_field(fields[usize::from(start.is_none())])),
     }
 }
 
@@ -119,16 +128,20 @@ impl<T: Real> Build<T> for XLoftSurf<T> {
             return Err(Fault::new("unknown-ends", message)
                 .expected("\"notaknot\", \"natural\", \"bessel\" or \"quadratic\"")
                 .found(found)
-                .in_field(2));
+                .in_field(Self::ENDS));
         }
-        let masters = Masters::new(curves, 1)?;
+        let masters = Masters::new(curves, Self::CURVES)?;
         let loft = Loft { masters, knots: Knots::Axis(axis - 1), ends, slopes: None };
         for u in TRIALS {
             let points: Points<T> = loft.masters.at(T::from(u));
             let Err(error) = loft.spline(&points) else { continue };
             let name = ["x", "y", "z"][axis - 1];
             let InterpolationError::Coincident { second, .. } = error else {
-                return Err(faults::of_interpolation(error, "curve", [1, 1, 2]));
+                return Err(faults::of_interpolation(
+                    error,
+                    "curve",
+                    [Self::CURVES, Self::CURVES, Self::ENDS],
+                ));
             };
             let values: Vec<String> = points.iter().map(|p| p[axis - 1].re().to_string()).collect();
             let message = format!("{name} does not go one way from curve to curve at u = {u}");
@@ -139,7 +152,7 @@ impl<T: Real> Build<T> for XLoftSurf<T> {
                 .found(format!("{name} = {}", values.join(", ")))
                 .help("take another axis, or a CLoftSurf")
                 .in_item(second)
-                .in_field(1));
+                .in_field(Self::CURVES));
         }
         Ok(Value::Surface(SurfaceRef::new(loft, context.nesting)))
     }

@@ -4,7 +4,7 @@ use super::corners;
 use super::masters::along;
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Box3, Jet, Real, SurfaceFormula, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, SurfaceRef, Value};
 
 /// A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing
 /// parameter: the bilinear Coons patch P_u + P_v - P_uv (Coons 1967).
@@ -28,7 +28,7 @@ pub struct BlendSurf<T: Real> {
 
 impl<T: Real> Build<T> for BlendSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let boundary = Boundary::new(self.curves, 0)?;
+        let boundary = Boundary::new(self.curves, Self::CURVES)?;
         let patch = Patch { boundary, lift: None };
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
     }
@@ -55,7 +55,7 @@ pub struct BlendCenter<T: Real> {
 
 impl<T: Real> Build<T> for BlendCenter<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let boundary = Boundary::new(self.curves, 0)?;
+        let boundary = Boundary::new(self.curves, Self::CURVES)?;
         let half = T::from(0.5);
         let lift = Some((self.centre.xyz - boundary.coons(half, half)) * T::from(16.0));
         let patch = Patch { boundary, lift };
@@ -77,7 +77,7 @@ const MEETING: f64 = 1e-9;
 impl<T: Real> Boundary<T> {
     /// # Errors
     /// `wrong-length` and `open-corner`, in field `field`.
-    pub fn new(curves: Vec<CurveRef<T>>, field: usize) -> Result<Self, Fault> {
+    pub fn new(curves: Vec<CurveRef<T>>, field: FieldId) -> Result<Self, Fault> {
         if !(3..=4).contains(&curves.len()) {
             return Err(Fault::new("wrong-length", "a patch has 3 or 4 sides")
                 .expected("3 or 4 curves")

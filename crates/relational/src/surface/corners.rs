@@ -1,7 +1,7 @@
 //! Whether the sides of a patch meet at its corners.
 
 use moldloft_num::Vec3;
-use moldloft_registry::Fault;
+use moldloft_registry::{Fault, FieldId};
 
 /// A corner: side `a` at its end `s` is side `b` at its end `t`.
 type Corner = [(usize, usize); 2];
@@ -24,7 +24,7 @@ pub fn check(
     tolerance: f64,
     distance: impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
     place: impl Fn(Vec3<f64>) -> String,
-    field: usize,
+    field: FieldId,
 ) -> Result<(), Fault> {
     let corners = of(ends.len());
     let meets = |mask: u32, [(a, s), (b, t)]: Corner| {

@@ -41,13 +41,13 @@ pub struct DevSurf<T: Real> {
 impl<T: Real> Build<T> for DevSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { c1, c2, along } = self;
-        let (a, b) = match along.among(&["both", "c1", "c2"], 2)? {
+        let (a, b) = match along.among(&["both", "c1", "c2"], Self::ALONG)? {
             "both" => (1.0, 1.0),
             "c1" => (0.0, 1.0),
             _ => (1.0, 0.0),
         };
-        let pairing = pair([&c1, &c2])?;
-        let masters = Masters::new(vec![c1, c2], 0)?;
+        let pairing = pair([&c1, &c2]).map_err(|fault| fault.in_field(Self::C2))?;
+        let masters = Masters::new(vec![c1, c2], Self::C1)?;
         let plate = Plate::new(masters, pairing, a, b)?;
         Ok(Value::Surface(SurfaceRef::new(Columns(plate), context.nesting)))
     }
@@ -111,7 +111,7 @@ impl<T: Real> Plate<T> {
                 .found(format!("a cone about its {which}, where u would stand still"))
                 .help("leave `along` out, and build the neighbour on an EdgeSnake of this surface; or move the ends of the curves")
                 .related(masters.curves()[curve - 1].key, "has the fan at its end")
-                .in_field(2));
+                .in_field(DevSurf::<T>::ALONG));
         }
         let phases: Vec<_> = pairing.phases.iter().map(|(at, phase)| (of(*at).0, *phase)).collect();
         let stations: Vec<_> = pairing.stations.iter().map(|at| of(*at)).collect();

@@ -76,7 +76,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), Fault> 
             .found(found)
             .help("make the plate by DevSurf, or expand a narrower part of the surface")
             .related(surface.key, "is curved both ways")
-            .in_field(0))
+            .in_field(ExpandedSurf::<T>::SURFACE))
     };
     for u in places.windows(2).map(|w| 0.5 * (w[0] + w[1])) {
         let jets = [0.02, 0.5, 0.98].map(|v| surface.jet(T::from(u), T::from(v), Order::Second));

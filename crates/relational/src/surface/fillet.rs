@@ -160,7 +160,7 @@ impl<T: Real> Fillet<T> {
                         .expected("a tangent along which the fillet may leave")
                         .found(format!("none at ({}, {}, {})", at.x, at.y, at.z))
                         .help(help)
-                        .in_field(k));
+                        .in_field([FilletSurf::<T>::SNAKE1, FilletSurf::<T>::SNAKE2][k]));
                 }
                 sums[k] += directions[k].dot(chord);
             }
@@ -191,7 +191,7 @@ impl<T: Real> Fillet<T> {
                         .expected("a tangent within 90 degrees of the way to the other snake")
                         .found(format!("{angle:.1} degrees"))
                         .help("move the snakes apart, let both run the same way, or choose another direction")
-                        .in_field(k));
+                        .in_field([FilletSurf::<T>::SNAKE1, FilletSurf::<T>::SNAKE2][k]));
                 }
             }
             // The curve itself must not go back either: its control polygon is short enough.
@@ -206,7 +206,7 @@ impl<T: Real> Fillet<T> {
                         .expected("a fillet that goes from snake 1 to snake 2")
                         .found(format!("a speed of {speed:.3e} along the chord of {length:.3e}"))
                         .help("lower m1 or m2")
-                        .in_field(2));
+                        .in_field(FilletSurf::<T>::M1));
                 }
             }
         }
@@ -215,7 +215,7 @@ impl<T: Real> Fillet<T> {
                 .expected("two snakes with a way from the one to the other")
                 .found("no distance between them")
                 .help("choose another snake for one of the two")
-                .in_field(1));
+                .in_field(FilletSurf::<T>::SNAKE2));
         }
         if !self.closed {
             return Ok(());
@@ -230,7 +230,7 @@ impl<T: Real> Fillet<T> {
                 .expected("equal ends and tangents at both ends of the snakes")
                 .found(format!("control points {gap:.3e} apart"))
                 .help("choose directions that do not depend on the snakes' own tangents: \"u\", \"v\" or \"chord\"")
-                .in_field(7));
+                .in_field(FilletSurf::<T>::CLOSED));
         }
         Ok(())
     }

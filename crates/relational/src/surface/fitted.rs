@@ -4,7 +4,7 @@ use super::free_knots::{FreeKnots, FreeNet};
 use crate::curve::fitted::{clamped, near_enough, no_fit, report};
 use crate::faults;
 use moldloft_num::{Order, Real, Surface, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Scalar, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Scalar, SurfaceRef, Value};
 use moldloft_spline::{KnotVector, MovingSpline};
 
 /// A B-spline surface fitted to another by least squares: with clamped uniform knots and the corners
@@ -45,13 +45,16 @@ pub struct BFitSurf<T: Real> {
 impl<T: Scalar> Build<T> for BFitSurf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, degree_u, degree_v, nu, nv, accuracy } = self;
-        let knots = |degree: usize, n: usize, field: usize| -> Result<FreeKnots<T>, Fault> {
+        let knots = |degree: usize, n: usize, k: usize| -> Result<FreeKnots<T>, Fault> {
+            let number = [Self::NU, Self::NV][k];
+            let of = [Self::DEGREE_U, Self::DEGREE_V][k];
             let knots = KnotVector::clamped_uniform(degree, n)
-                .map_err(|error| faults::of_spline(error.into(), field, field - 2))?;
+                .map_err(|error| faults::of_spline(error.into(), number, of))?;
             let knots = knots.as_slice().iter().map(|&k| T::from(k)).collect();
             Ok(FreeKnots { degree, knots })
         };
-        fit(&surface, [knots(degree_u, nu, 3)?, knots(degree_v, nv, 4)?], accuracy, 5)
+        let knots = [knots(degree_u, nu, 0)?, knots(degree_v, nv, 1)?];
+        fit(&surface, knots, accuracy, [Self::NU, Self::NV, Self::ACCURACY])
     }
 }
 
@@ -87,23 +90,25 @@ pub struct NUBFitSurf<T: Real> {
 impl<T: Scalar> Build<T> for NUBFitSurf<T> {
     fn build(self, _: &Context) -> Result<Value<T>, Fault> {
         let Self { surface, degree_u, degree_v, knots_u, knots_v, accuracy } = self;
-        let knots = |degree: usize, knots: &[T], field: usize| -> Result<FreeKnots<T>, Fault> {
+        let knots = |degree: usize, knots: &[T], field: FieldId| -> Result<FreeKnots<T>, Fault> {
             Ok(FreeKnots { degree, knots: clamped(degree, knots, field)? })
         };
-        let knots = [knots(degree_u, &knots_u, 3)?, knots(degree_v, &knots_v, 4)?];
-        fit(&surface, knots, accuracy, 5)
+        let knots =
+            [knots(degree_u, &knots_u, Self::KNOTS_U)?, knots(degree_v, &knots_v, Self::KNOTS_V)?];
+        fit(&surface, knots, accuracy, [Self::KNOTS_U, Self::KNOTS_V, Self::ACCURACY])
     }
 }
 
 /// So many places of the surface per control point are compared, in each direction.
 const SAMPLES: usize = 6;
 
-/// The fit with these knots, of fields 3 and 4.
+/// The fit with these knots; the fields are theirs, or those of the numbers of points, and that of the
+/// accuracy.
 fn fit<T: Real>(
     surface: &SurfaceRef<T>,
     knots: [FreeKnots<T>; 2],
     accuracy: Option<T>,
-    field: usize,
+    fields: [FieldId; 3],
 ) -> Result<Value<T>, Fault> {
     let points = [0, 1].map(|k| knots[k].knots.len() - knots[k].degree - 1);
     let places = points.map(|n| {
@@ -115,7 +120,7 @@ fn fit<T: Real>(
     surface.grid(us, vs, &mut samples, None);
     let along = |k: usize, row: &[(f64, Vec3<T>)]| {
         MovingSpline::fitted(knots[k].degree, Some(knots[k].knots.clone()), points[k], row)
-            .map_err(|error| no_fit(error).in_field(3 + k))
+            .map_err(|error| no_fit(error).in_field(fields[k]))
     };
     // rows[j] are the control points of the fit along u at v_j.
     let mut rows = Vec::with_capacity(vs.len());
@@ -139,6 +144,6 @@ fn fit<T: Real>(
         }
     }
     near_enough(residual, accuracy, "surface")
-        .map_err(|fault| fault.related(surface.key, "is the surface").in_field(field))?;
+        .map_err(|fault| fault.related(surface.key, "is the surface").in_field(fields[2]))?;
     Ok(Value::Surface(SurfaceRef::new(fitted, 0).with_found(report(residual))))
 }

@@ -28,7 +28,7 @@ foil_kind!(
     )]
     FoilLoftSurf {
         /// Three, four or five curves.
-        curves: CurveRef<T>,
+        curves (CURVES): CurveRef<T>,
     }
 );
 
@@ -38,7 +38,7 @@ const TRIALS: usize = 32;
 impl<T: Real> Build<T> for FoilLoftSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let (curves, section) = self.parts();
-        let masters = Masters::new(curves, 0)?;
+        let masters = Masters::new(curves, Self::CURVES)?;
         let at = |u: f64| section.lifted(&masters.at(T::from(u)));
         let first = at(0.0)?;
         for k in 0..=TRIALS {

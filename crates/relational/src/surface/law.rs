@@ -2,7 +2,7 @@
 
 use crate::faults;
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::Fault;
+use moldloft_registry::{Fault, FieldId};
 use moldloft_spline::BSplineCurve;
 
 /// A law along a parameter: the first coordinate of the clamped uniform B-spline of degree 3 or less
@@ -12,7 +12,7 @@ use moldloft_spline::BSplineCurve;
 /// `too-few-items` for none.
 pub fn law<T: Real>(
     values: Option<Vec<T>>,
-    field: usize,
+    field: FieldId,
 ) -> Result<Option<BSplineCurve<T>>, Fault> {
     let Some(mut values) = values else { return Ok(None) };
     match values[..] {

@@ -204,7 +204,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
             return Err(Fault::new("no-area", "two factors of 0 leave no surface")
                 .expected("at most one factor of 0")
                 .found(format!("{zeros} factors of 0"))
-                .in_field(3));
+                .in_field(Self::SX));
         }
         let map = Linear::Stretch { from: from.xyz, to: to.xyz, factors };
         let image = Image { surface, map };
@@ -240,7 +240,7 @@ impl<T: Real> Build<T> for ProjSurf<T> {
             )
             .expected("a plane")
             .found("a line or point")
-            .in_field(1));
+            .in_field(Self::MIRROR));
         }
         Ok(Value::Surface(SurfaceRef::new(Foot { surface, mirror }, context.nesting)))
     }

@@ -2,7 +2,7 @@
 
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
 use moldloft_num::{Jet, Order, Real, Uni1, Vec3};
-use moldloft_registry::{CurveRef, Fault};
+use moldloft_registry::{CurveRef, Fault, FieldId};
 use smallvec::SmallVec;
 
 /// A short list of positions: those of a few masters stay on the stack.
@@ -14,7 +14,7 @@ pub struct Masters<T: Real>(Vec<CurveRef<T>>);
 impl<T: Real> Masters<T> {
     /// # Errors
     /// `too-few-items`, in field `field`, for fewer than two curves.
-    pub fn new(curves: Vec<CurveRef<T>>, field: usize) -> Result<Self, Fault> {
+    pub fn new(curves: Vec<CurveRef<T>>, field: FieldId) -> Result<Self, Fault> {
         if curves.len() >= 2 {
             return Ok(Self(curves));
         }

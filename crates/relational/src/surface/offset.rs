@@ -79,7 +79,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), Fault> {
             .found(format!("none at ({}, {}, {})", at.x, at.y, at.z))
             .help("offset a part of the surface that leaves this place out")
             .related(surface.key, "is singular there")
-            .in_field(0));
+            .in_field(OffsetSurf::<T>::SURFACE));
         }
         let Some(bends) = curvatures(surface, u, v) else { continue };
         // How the offset moves on, as a share of the surface's own way: at most 0 where it folds.
@@ -101,7 +101,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), Fault> {
                 ))
                 .help("offset by less, or to the other side, or only a part of the surface")
                 .related(surface.key, "is bent too much there")
-                .in_field(1))
+                .in_field(OffsetSurf::<T>::DISTANCE))
         }
         _ => Ok(()),
     }

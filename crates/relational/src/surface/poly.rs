@@ -39,10 +39,10 @@ impl<T: Real> Build<T> for PolySurf<T> {
             return Err(Fault::new("too-few-items", "a join needs at least 1 surface")
                 .expected("at least 1 surface")
                 .found("0")
-                .in_field(0));
+                .in_field(Self::SURFACES));
         }
-        let by_u = along.among(&["u", "v"], 1)? == "u";
-        let ends = crate::curve::shares(surfaces.len(), breaks, 2)?;
+        let by_u = along.among(&["u", "v"], Self::ALONG)? == "u";
+        let ends = crate::curve::shares(surfaces.len(), breaks, Self::BREAKS)?;
         let sides = Sides { surfaces, by_u };
         for k in 1..sides.surfaces.len() {
             sides.check_seam(k, context.tolerance)?;
@@ -102,7 +102,7 @@ impl<T: Real> Sides<T> {
             .related(self.surfaces[k - 1].key, "ends on one side of the gap")
             .related(self.surfaces[k].key, "begins on the other")
             .in_item(k)
-            .in_field(0);
+            .in_field(PolySurf::<T>::SURFACES);
         let meets = |from: f64, to: f64, turned: bool| gap(from, to, turned).0 <= tolerance;
         Err(if meets(1.0, 0.0, true) {
             fault.help(format!("they meet when {across} of piece {} runs the other way", k + 1))

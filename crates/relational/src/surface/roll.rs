@@ -65,7 +65,7 @@ const BEYOND: f64 = 0.05;
 impl<T: Scalar> Build<T> for RollFillet<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { surface1, surface2, radius, side1, side2, radii } = self;
-        for (field, side) in [(3, side1), (4, side2)] {
+        for (field, side) in [(Self::SIDE1, side1), (Self::SIDE2, side2)] {
             if side == 0 {
                 return Err(Fault::new("out-of-range", "a ball lies on one side or on the other")
                     .expected("1 or -1")
@@ -75,8 +75,8 @@ impl<T: Scalar> Build<T> for RollFillet<T> {
         }
         let least = radii.iter().flatten().map(|r| r.re()).fold(f64::INFINITY, f64::min);
         let too_small = match radius.re() {
-            r if r <= 0.0 => Some((r, 2)),
-            _ => (least <= 0.0).then_some((least, 5)),
+            r if r <= 0.0 => Some((r, Self::RADIUS)),
+            _ => (least <= 0.0).then_some((least, Self::RADII)),
         };
         if let Some((found, field)) = too_small {
             return Err(Fault::new("out-of-range", format!("a ball of radius {found}"))
@@ -84,7 +84,7 @@ impl<T: Scalar> Build<T> for RollFillet<T> {
                 .found(found.to_string())
                 .in_field(field));
         }
-        let radii = law(radii, 5)?;
+        let radii = law(radii, Self::RADII)?;
         let sides = [f64::from(side1), f64::from(side2)];
         let spine = spine([&surface1, &surface2], sides.map(|s| radius * s), context)?;
         let found = spine.found.clone();
@@ -137,7 +137,7 @@ fn spine<T: Scalar>(
                 .help("choose a smaller radius, or give magnets where the ball is meant to roll")
                 .related(onto[0].surface.key, "is the first surface")
                 .related(onto[1].surface.key, "is the second surface")
-                .in_field(2);
+                .in_field(RollFillet::<T>::RADIUS);
         }
         Fault::new("no-ball", message)
             .expected("surfaces that a ball of that radius touches both, on the sides that are meant")
@@ -145,7 +145,7 @@ fn spine<T: Scalar>(
             .help("choose the sides (side1, side2), give magnets near the places of contact, or another radius")
             .related(onto[0].surface.key, "is the first surface")
             .related(onto[1].surface.key, "is the second surface")
-            .in_field(2)
+            .in_field(RollFillet::<T>::RADIUS)
     })?;
     match met {
         Value::Curve(curve) => Ok(curve),
@@ -308,7 +308,8 @@ impl<T: Real> Rolled<T> {
         for i in 0..=STATIONS {
             let t = i as f64 / STATIONS as f64;
             let radius = self.ball.radius(T::from(t)).re();
-            let field = if self.ball.radii.is_some() { 5 } else { 2 };
+            let varies = self.ball.radii.is_some();
+            let field = if varies { RollFillet::<T>::RADII } else { RollFillet::<T>::RADIUS };
             let Some(q) = self.contact(t) else {
                 return Err(Fault::new(
                     "no-ball",
@@ -331,7 +332,7 @@ impl<T: Real> Rolled<T> {
                 .found(format!("a contact at (u, v) = ({}, {})", q[2 * which], q[2 * which + 1]))
                 .help("choose radii nearer to `radius`, or enlarge the surface")
                 .related(self.ball.surfaces[which].key, "is too small there")
-                .in_field(5));
+                .in_field(RollFillet::<T>::RADII));
             }
             for k in 0..2 {
                 let surface = &self.ball.surfaces[k];

@@ -21,7 +21,7 @@ pub struct RuledSurf<T: Real> {
 
 impl<T: Real> Build<T> for RuledSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
-        let masters = Masters::new(vec![self.c1, self.c2], 0)?;
+        let masters = Masters::new(vec![self.c1, self.c2], Self::C1)?;
         let knots = KnotVector::clamped_uniform(1, 2).expect("two knots at each end");
         Ok(Value::Surface(SurfaceRef::new(Blend { masters, knots }, context.nesting)))
     }

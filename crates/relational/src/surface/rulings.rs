@@ -193,7 +193,7 @@ impl<T: Real> Search<'_, T> {
                     )
             }
         };
-        fault.related(a.key, "is the first curve").related(b.key, "is the second curve").in_field(1)
+        fault.related(a.key, "is the first curve").related(b.key, "is the second curve")
     }
 
     /// Phases and stations of a way through the levels.

@@ -6,7 +6,7 @@ use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{
     Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
 };
-use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SurfaceRef, Value};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
 /// and w a patch of its parameter plane.
@@ -47,19 +47,19 @@ impl<T: Real> Build<T> for SubSurf<T> {
             return Err(Fault::new("wrong-length", "a sub-surface has 2, 3 or 4 sides")
                 .expected("2, 3 or 4 snakes and magnets")
                 .found(sides.len().to_string())
-                .in_field(0));
+                .in_field(Self::SIDES));
         }
         let keys = |side: &Side<T>| match side {
             Side::Snake(snake) => snake.curve.key,
             Side::Magnet(magnet) => magnet.key,
         };
         let items: Vec<_> = sides.iter().map(|side| (keys(side), side.surface())).collect();
-        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(0))?;
+        let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::SIDES))?;
         if sides.iter().all(|side| matches!(side, Side::Magnet(_))) {
             return Err(Fault::new("no-area", "a sub-surface needs a side with length")
                 .expected("at least one snake")
                 .found("magnets only")
-                .in_field(0));
+                .in_field(Self::SIDES));
         }
         let shape = match <[Side<T>; 2]>::try_from(sides) {
             Ok(ends) => {
@@ -67,7 +67,7 @@ impl<T: Real> Build<T> for SubSurf<T> {
                 Patch { surface, layout: Layout::Between(ends), corners }
             }
             Err(sides) => {
-                check_corners(&sides)?;
+                check_corners(&sides, Self::SIDES)?;
                 let (south, north) = (&sides[0], &sides[2]);
                 let corners = [end(south, 0.0), end(south, 1.0), end(north, 0.0), end(north, 1.0)];
                 Patch { surface, layout: Layout::Round(sides), corners }
@@ -108,12 +108,12 @@ fn end<T: Real>(side: &Side<T>, t: f64) -> Vec3<T> {
     place(side, T::from(t))
 }
 
-fn check_corners<T: Real>(sides: &[Side<T>]) -> Result<(), Fault> {
+fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), Fault> {
     let ends: Vec<[Vec3<f64>; 2]> =
         sides.iter().map(|side| [0.0, 1.0].map(|t| end(side, t).re())).collect();
     let apart = |p: Vec3<f64>, q: Vec3<f64>| (p.x - q.x).abs().max((p.y - q.y).abs());
     let says = |p: Vec3<f64>| format!("(u, v) = ({}, {})", p.x, p.y);
-    corners::check(&ends, MEETING, apart, says, 0)
+    corners::check(&ends, MEETING, apart, says, field)
 }
 
 /// How many steps the patch is tried with in each direction.
@@ -236,7 +236,7 @@ impl<T: Real> Patch<T> {
                 at.x, at.y
             ))
             .help("let opposite sides run the same way, and none cross another")
-            .in_field(0))
+            .in_field(SubSurf::<T>::SIDES))
     }
 }
 

@@ -3,7 +3,9 @@ use super::masters::{along, is_closed};
 use crate::lifted::tangent;
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3, surface_jet_of};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Scalar, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, Context, CurveRef, Fault, FieldId, Kind, Scalar, SurfaceRef, Value,
+};
 use moldloft_spline::{BSplineCurve, KnotVector};
 
 /// A curve carried along a path by a frame that moves with it: S(u, v) = path(v) + F(v) (profile(u) -
@@ -46,9 +48,14 @@ pub struct SweepSurf<T: Real> {
 impl<T: Scalar> Build<T> for SweepSurf<T> {
     fn build(self, context: &Context) -> Result<Value<T>, Fault> {
         let Self { profile, path, frame, up, twist, scale } = self;
-        let mode = Mode::of(&frame, up, [2, 3])?;
-        let moving = Moving::new(path, mode, 1)?;
-        let shape = Sweep { profile, moving, twist: law(twist, 4)?, scale: law(scale, 5)? };
+        let mode = Mode::of(&frame, up, [Self::FRAME, Self::UP])?;
+        let moving = Moving::new(path, mode, Self::PATH)?;
+        let shape = Sweep {
+            profile,
+            moving,
+            twist: law(twist, Self::TWIST)?,
+            scale: law(scale, Self::SCALE)?,
+        };
         Ok(Value::Surface(SurfaceRef::new(shape, context.nesting)))
     }
 }
@@ -69,7 +76,7 @@ impl<T: Real> Mode<T> {
     ///
     /// # Errors
     /// `unknown-frame` and `unused-argument`.
-    pub fn of(frame: &str, up: Option<Vec3<T>>, fields: [usize; 2]) -> Result<Self, Fault> {
+    pub fn of(frame: &str, up: Option<Vec3<T>>, fields: [FieldId; 2]) -> Result<Self, Fault> {
         match frame {
             "minimal" if up.is_none() => Ok(Mode::Minimal),
             "fixed" if up.is_none() => Ok(Mode::Fixed),
@@ -107,7 +114,7 @@ const CORNER: f64 = 1e-4;
 impl<T: Real> Moving<T> {
     /// # Errors
     /// `zero-tangent`, `corner-in-path` and `no-frame`, in field `field`.
-    pub fn new(path: CurveRef<T>, mode: Mode<T>, field: usize) -> Result<Self, Fault> {
+    pub fn new(path: CurveRef<T>, mode: Mode<T>, field: FieldId) -> Result<Self, Fault> {
         let zero = Vec3::zero();
         let mut moving = Self { path, mode, nodes: Vec::new(), first: [zero; 3] };
         moving.check().map_err(|fault| fault.in_field(field))?;

@@ -15,7 +15,7 @@ use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingCurve, Surf
 #[derive(Kind)]
 #[kind(
     class = Surface,
-    sweep = [0, 1],
+    sweep = [bead, curve],
     columns = "relabel bead curve",
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); AbsPoint C(3, 2, 1); BCurve c({A, B, C}); \
                AbsBead b(c, 0.5); AbsPoint D(0, 0, 3); AbsPoint E(3, 0, 3); Line l(D, E); \
@@ -43,7 +43,7 @@ impl<T: Real> Build<T> for ProcSurf<T> {
         let Self { bead, curve, t1, t2 } = self;
         let at = |t: f64| {
             let place = t1 * (1.0 - t) + t2 * t;
-            curve.at(place).map_err(|fault| no_locus("curve", place.re(), &fault))
+            curve.at(place).map_err(|fault| no_locus("curve", place.re(), &fault, Self::CURVE))
         };
         let mut size = 0.0f64;
         let pieces = halved(&stretches(&bead, [t1, t2]), |from, to| {

@@ -49,14 +49,14 @@ impl<T: Real> Build<T> for TanBoundary<T> {
                 .expected(format!("a number from 1 to {}", sides.len()))
                 .found(free[k].to_string())
                 .in_item(k)
-                .in_field(1));
+                .in_field(Self::FREE));
         }
         let snake = |k: usize, curve: &CurveRef<T>| {
             let surface = curve.surface.as_deref().filter(|_| !free.contains(&(k + 1)))?.clone();
             Some(Snake { curve: curve.clone(), surface })
         };
         let snakes: Vec<_> = sides.iter().enumerate().map(|(k, c)| snake(k, c)).collect();
-        let boundary = Boundary::new(sides, 0)?;
+        let boundary = Boundary::new(sides, Self::SIDES)?;
         let patch = Patch::new(boundary, snakes)?;
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
     }
@@ -140,7 +140,7 @@ impl<T: Real> Patch<T> {
                 .help("leave the side free, or move the snake off the pole of its surface")
                 .related(snake.curve.key, "is the side")
                 .in_item(k)
-                .in_field(0));
+                .in_field(TanBoundary::<T>::SIDES));
             }
         }
         let (neighbours, at_begin) = NEIGHBOURS[k];
@@ -164,7 +164,7 @@ impl<T: Real> Patch<T> {
                     .help(format!("begin side {} with a tangent to the surface (TanPoint), make it a snake of the same surface, or list side {} as free", other + 1, k + 1))
                     .related(key, "leaves the tangent plane")
                     .in_item(k)
-                    .in_field(0));
+                    .in_field(TanBoundary::<T>::SIDES));
             }
             *component = basis(&at).map(|e| e.dot(d));
         }

@@ -65,7 +65,9 @@ impl<T: Real> Build<T> for TrimSurf<T> {
         let Self { surface, loops, whole, rim, nu, nv } = self;
         let mut items = vec![(surface.key, &surface)];
         items.extend(loops.iter().map(|s| (s.curve.key, &s.surface)));
-        common_surface(&items, |fault, k| fault.in_item(k.saturating_sub(1)).in_field(1))?;
+        common_surface(&items, |fault, k| {
+            fault.in_item(k.saturating_sub(1)).in_field(Self::LOOPS)
+        })?;
         let mut hems = Vec::new();
         let mut cycles = Vec::new();
         if whole == 1 {
@@ -144,7 +146,7 @@ impl<T: Real> Trimmed<T> {
                     .expected("three vertices or more")
                     .found(total.to_string())
                     .help("give the snakes more divisions")
-                    .in_field(1));
+                    .in_field(TrimSurf::<T>::LOOPS));
             }
             for &(hem, backwards) in cycle {
                 let n = at[hem].len() - 1;
@@ -212,7 +214,7 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Faul
             .help("let neighbouring snakes begin and end in common magnets")
             .related(snakes[k].curve.key, "ends there")
             .in_item(k)
-            .in_field(1))
+            .in_field(TrimSurf::<T>::LOOPS))
     };
     let mut cycles = Vec::new();
     // The loop so far, where it began and where it has come to.
@@ -323,7 +325,7 @@ impl<T: Real> Region<T> {
                 .help(
                     "move the snakes apart; give the outer loop first, or whole = 1 for holes only",
                 )
-                .in_field(1))
+                .in_field(TrimSurf::<T>::LOOPS))
         };
         for (k, polygon) in polygons.iter().enumerate().skip(1) {
             if let Some(p) = polygon.iter().find(|p| !within(&polygons[0], **p)) {

@@ -1,6 +1,6 @@
 //! The arguments of a command, taken one after another.
 
-use super::Fault;
+use super::CommandError;
 use super::words::{Kind, Token, UNITS, feet_and_inches};
 use crate::{Axis, Expr, LineId, PointId};
 
@@ -40,9 +40,12 @@ impl<'a> Args<'a> {
     }
 
     /// A fault that shows how the verb is used.
-    pub fn wants(&self, what: &str) -> Fault {
+    pub fn wants(&self, what: &str) -> CommandError {
         let found = self.peek().map_or("the end".to_owned(), |t| format!("`{}`", t.text));
-        Fault::text(format!("expected {what}, found {found}"), format!("use: {}", self.usage))
+        CommandError::text(
+            format!("expected {what}, found {found}"),
+            format!("use: {}", self.usage),
+        )
     }
 
     /// Whether the next token is this keyword: in full, or at least three letters of it.
@@ -85,7 +88,7 @@ impl<'a> Args<'a> {
     }
 
     /// A name in letters or quotes.
-    pub fn name(&mut self, what: &str) -> Result<String, Fault> {
+    pub fn name(&mut self, what: &str) -> Result<String, CommandError> {
         match self.peek() {
             Some(t) if t.kind == Kind::Word || t.kind == Kind::Text => {
                 self.skip();
@@ -96,7 +99,7 @@ impl<'a> Args<'a> {
     }
 
     /// A plain number.
-    pub fn number(&mut self, what: &str) -> Result<f64, Fault> {
+    pub fn number(&mut self, what: &str) -> Result<f64, CommandError> {
         match self.peek().map(|t| &t.kind) {
             Some(Kind::Number(x, unit)) if unit.as_deref().is_none_or(|u| u == "DEG") => {
                 self.skip();
@@ -111,7 +114,7 @@ impl<'a> Args<'a> {
         matches!(self.peek().map(|t| &t.kind), Some(Kind::Number(..)))
     }
 
-    fn label(&mut self, what: &str) -> Result<u32, Fault> {
+    fn label(&mut self, what: &str) -> Result<u32, CommandError> {
         let fault = self.wants(what);
         let x = self.number(what)?;
         if x.fract() == 0.0 && x >= 1.0 && x <= f64::from(MAX_LABEL) {
@@ -122,17 +125,17 @@ impl<'a> Args<'a> {
     }
 
     /// The label of a point.
-    pub fn point(&mut self) -> Result<PointId, Fault> {
+    pub fn point(&mut self) -> Result<PointId, CommandError> {
         self.label("the number of a point").map(PointId)
     }
 
     /// The label of a line.
-    pub fn line(&mut self) -> Result<LineId, Fault> {
+    pub fn line(&mut self) -> Result<LineId, CommandError> {
         self.label("the number of a line").map(LineId)
     }
 
     /// A whole number from 1.
-    pub fn count(&mut self, what: &str) -> Result<u32, Fault> {
+    pub fn count(&mut self, what: &str) -> Result<u32, CommandError> {
         self.label(what)
     }
 
@@ -146,15 +149,15 @@ impl<'a> Args<'a> {
 
     /// A value: a number with an optional unit, a name, or an expression in quotes. Lengths with a
     /// unit are converted to `unit`, the unit of the object.
-    pub fn value(&mut self, unit: Option<&str>) -> Result<Expr, Fault> {
+    pub fn value(&mut self, unit: Option<&str>) -> Result<Expr, CommandError> {
         let Some(token) = self.peek() else { return Err(self.wants("a value")) };
         let size = |name: &str| UNITS.iter().find(|u| u.0 == name).map(|u| u.1);
-        let convert = |x: f64, from: &str| -> Result<f64, Fault> {
+        let convert = |x: f64, from: &str| -> Result<f64, CommandError> {
             match (size(from), unit.and_then(size)) {
                 _ if from == "DEG" => Ok(x),
                 (Some(_), Some(_)) if unit == Some(from) => Ok(x),
                 (Some(a), Some(b)) => Ok(x * a / b),
-                _ => Err(Fault::text(
+                _ => Err(CommandError::text(
                     format!("{} has a unit, but the object has none", token.text),
                     "SET UNITS first (MM, CM, M, IN or FT)",
                 )),
@@ -166,7 +169,7 @@ impl<'a> Args<'a> {
             Kind::Text | Kind::Word => match feet_and_inches(&token.text) {
                 Some(feet) => Expr::number(convert(feet, "FT")?),
                 None => Expr::parse(&token.text).map_err(|why| {
-                    Fault::text(
+                    CommandError::text(
                         format!("in `{}`: {why}", token.text),
                         "write a number or an expression like \"2*W1+0.5\"",
                     )
@@ -178,7 +181,7 @@ impl<'a> Args<'a> {
     }
 
     /// `IN lo hi`, if it is next.
-    pub fn range(&mut self) -> Result<Option<[f64; 2]>, Fault> {
+    pub fn range(&mut self) -> Result<Option<[f64; 2]>, CommandError> {
         let is_in =
             self.peek().is_some_and(|t| t.kind == Kind::Word && t.text.eq_ignore_ascii_case("IN"));
         if !is_in {
@@ -189,7 +192,7 @@ impl<'a> Args<'a> {
         if low < high {
             Ok(Some([low, high]))
         } else {
-            Err(Fault::text(
+            Err(CommandError::text(
                 format!("the range {low} to {high} is empty"),
                 "give the lower end first",
             ))
@@ -197,7 +200,7 @@ impl<'a> Args<'a> {
     }
 
     /// Nothing may be left.
-    pub fn end(&self) -> Result<(), Fault> {
+    pub fn end(&self) -> Result<(), CommandError> {
         if self.tokens.is_empty() { Ok(()) } else { Err(self.wants("the end of the command")) }
     }
 }

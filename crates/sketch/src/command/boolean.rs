@@ -1,10 +1,10 @@
 //! UNION, CUT, COMMON.
 
-use super::Fault;
+use super::CommandError;
 use super::args::Args;
 use super::session::{Reply, Session};
-use crate::faces::{self, Operation, Walls};
-use crate::merge::{self, Placed};
+use crate::solid::faces::{self, Operation, Walls};
+use crate::solid::merge::{self, Placed};
 use crate::{
     Align, Axis, Dimension, Expr, Face, FaceId, Free, Line, Measure, Object, Planes, Point,
     PointId, Role, Source,
@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 impl Session {
     /// Combines two bodies. The result keeps the dimensions of both; where they meet, new points take
     /// the planes that they lie in, so it stays parametric.
-    pub(super) fn combine(&mut self, args: &mut Args, verb: &str) -> Result<(), Fault> {
+    pub(super) fn combine(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
         let operation = match verb {
             "UNION" => Operation::Union,
             "CUT" => Operation::Cut,
@@ -33,7 +33,7 @@ impl Session {
         for name in &names {
             let object = self.known(name)?.clone();
             if object.drawing.section.is_some() {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     114,
                     format!("{} is a cross section; only solids are combined", object.name),
                     "EXTRUDE it first",
@@ -41,19 +41,19 @@ impl Session {
             }
             let at = self.placed(&object)?;
             let Some(solid) = self.solid_of(&straight(&object)) else {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     701,
                     format!("{} has no faces yet", object.name),
                     format!("GENERATE FACES {}", object.name),
                 ));
             };
-            let mesh = crate::export::Facets::of(&solid.mesh(1.0));
+            let mesh = crate::format::export::Facets::of(&solid.mesh(1.0));
             let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices[v as usize]);
             let walls = Walls { triangles: mesh.triangles.iter().map(corners).collect() };
             parts.push((object, at, walls));
         }
         if parts[0].0.name.eq_ignore_ascii_case(&parts[1].0.name) {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("{verb} wants two objects, not {} twice", parts[0].0.name),
                 "COPY makes another",
             ));
@@ -73,7 +73,7 @@ impl Session {
             .positions(&planes)
             .map(|p| planes.ids().iter().copied().zip(p).collect::<BTreeMap<PointId, Vec3>>())
         else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 404,
                 "together they are not fully dimensioned",
                 "give both all dimensions first",
@@ -87,10 +87,14 @@ impl Session {
         let Some((vertices, fit)) =
             faces::combine(&positions, &edges, [walls[0], walls[1]], operation)
         else {
-            return Err(Fault::new(200, "there are too many pieces", "combine smaller objects"));
+            return Err(CommandError::new(
+                200,
+                "there are too many pieces",
+                "combine smaller objects",
+            ));
         };
         if fit.faces.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 701,
                 format!("{verb} of {} and {} leaves nothing", parts[0].0.name, parts[1].0.name),
                 "MOVE one of them, or CHECK the dimensions",
@@ -114,7 +118,7 @@ impl Session {
         merge::settle(&mut result, &mut report, &lay);
         let points = |f: &Face| f.loops().flatten().all(|p| result.drawing.points.contains_key(p));
         if !faces.iter().all(points) {
-            return Err(Fault::new(701, "the faces do not close", "MERGE them instead"));
+            return Err(CommandError::new(701, "the faces do not close", "MERGE them instead"));
         }
         result.faces = (1..).map(FaceId).zip(faces).collect();
         let lost: Vec<String> = curves.into_iter().filter(|c| !result.has_name(c)).collect();
@@ -131,7 +135,7 @@ impl Session {
             self.out.push(Reply::warning(text));
         }
         self.insert(result);
-        self.tell_validity()
+        self.report_validity()
     }
 }
 

@@ -1,16 +1,16 @@
 //! Commands that draw curves.
 
-use super::Fault;
+use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point};
 use super::session::{Reply, Session};
-use crate::curve::{Curve, CurveFault, CurveKind, trace};
-use crate::solid::{CurveTrouble, Trouble};
+use crate::solid::curve::{Curve, CurveFault, CurveKind, trace};
+use crate::solid::{UnbuiltCurve, UnbuiltReason};
 use crate::{Object, PointId};
 use moldloft_syntax::number::plain;
 
 impl Session {
-    pub(super) fn corner_curve(&mut self, args: &mut Args, verb: &str) -> Result<(), Fault> {
+    pub(super) fn corner_curve(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
         let start = |a: &Args| a.at("LINES") || a.at("CORNER");
         let option = |a: &Args| verb == "ELLIPSE" && (a.tokens_at(0, "ARC") || a.at("FULL"));
         let name = if start(args) || option(args) { None } else { Some(self.new_name(args)?) };
@@ -34,7 +34,7 @@ impl Session {
             let Some(m) =
                 common.filter(|_| (a.p.min(a.q), a.p.max(a.q)) != (b.p.min(b.q), b.p.max(b.q)))
             else {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     300,
                     "the two lines have no common end",
                     "name two lines that meet",
@@ -61,7 +61,10 @@ impl Session {
                     .collect();
                 let [a, b] = ends[..] else {
                     let text = format!("{} lines meet at point {m}", ends.len());
-                    return Err(Fault::text(text, format!("name their ends: CORNER {m} a b")));
+                    return Err(CommandError::text(
+                        text,
+                        format!("name their ends: CORNER {m} a b"),
+                    ));
                 };
                 vec![a, m, b]
             }
@@ -71,7 +74,7 @@ impl Session {
         for (k, &p) in points.iter().enumerate() {
             require_point(&object, p)?;
             if points[..k].contains(&p) {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     300,
                     format!("point {p} twice in a corner"),
                     "name three points",
@@ -112,7 +115,11 @@ impl Session {
         self.add_curve(curve)
     }
 
-    pub(super) fn chain_curve(&mut self, args: &mut Args, least: usize) -> Result<(), Fault> {
+    pub(super) fn chain_curve(
+        &mut self,
+        args: &mut Args,
+        least: usize,
+    ) -> Result<(), CommandError> {
         let start = |a: &Args| a.at("LINES") || a.at("POINTS");
         let name = if start(args) { None } else { Some(self.new_name(args)?) };
         let object = self.active()?.clone();
@@ -137,7 +144,7 @@ impl Session {
                 let next = if at == line.p { line.q } else { line.p };
                 let back = points.len() > 1 && points[points.len() - 2] == next;
                 if back || (at != line.p && at != line.q) {
-                    return Err(Fault::new(
+                    return Err(CommandError::new(
                         300,
                         format!("line {}-{} does not go on from point {at}", line.p, line.q),
                         "name lines in a row",
@@ -173,12 +180,12 @@ impl Session {
         self.add_curve(curve)
     }
 
-    fn options(&mut self, args: &mut Args, curve: &mut Curve) -> Result<(), Fault> {
+    fn options(&mut self, args: &mut Args, curve: &mut Curve) -> Result<(), CommandError> {
         loop {
             if args.take("STEPS") {
                 let n = args.count("a number of chords")?;
                 if n > 720 {
-                    return Err(Fault::text("a curve has at most 720 chords", "give fewer"));
+                    return Err(CommandError::text("a curve has at most 720 chords", "give fewer"));
                 }
                 curve.steps = Some(n);
             } else if args.take("KEEP") {
@@ -193,7 +200,7 @@ impl Session {
         }
     }
 
-    fn add_curve(&mut self, curve: Curve) -> Result<(), Fault> {
+    fn add_curve(&mut self, curve: Curve) -> Result<(), CommandError> {
         let mut object: Object = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         let at = |p: PointId| layout.point(&view.planes, p);
@@ -214,37 +221,37 @@ impl Session {
         let name = curve.name.clone();
         object.curves.insert(name.to_ascii_lowercase(), curve);
         if let Some(solid) = self.solid_of(&object)
-            && let Some(trouble) = solid.trouble.iter().find(|t| t.curve == name)
+            && let Some(unbuilt) = solid.unbuilt.iter().find(|t| t.curve == name)
         {
-            self.out.push(trouble_reply(trouble));
+            self.out.push(unbuilt_reply(unbuilt));
         }
         *self.active_mut()? = object;
         Ok(())
     }
 }
 
-fn curve_fault(name: &str, fault: &CurveFault) -> Fault {
+fn curve_fault(name: &str, fault: &CurveFault) -> CommandError {
     match fault {
-        CurveFault::NoValue { reads } => Fault::text(
+        CurveFault::NoValue { reads } => CommandError::text(
             format!("{name} reads {reads}, which has no value"),
             format!("VARIABLE {reads} defines it"),
         ),
-        CurveFault::NotPositive { value } => Fault::new(
+        CurveFault::NotPositive { value } => CommandError::new(
             310,
             format!("{name} has the size {}", plain(*value)),
             "give a positive size",
         ),
-        CurveFault::Degenerate => Fault::new(
+        CurveFault::Degenerate => CommandError::new(
             300,
             format!("the lines of {name} are parallel, or two of its points coincide"),
             "choose lines that meet at an angle",
         ),
-        CurveFault::TooLarge { largest } => Fault::new(
+        CurveFault::TooLarge { largest } => CommandError::new(
             310,
             format!("{name} is too large: its tangent point falls beyond a line"),
             format!("at most {} fits", plain(super::dims::rounded(*largest))),
         ),
-        CurveFault::Undetermined => Fault::new(
+        CurveFault::Undetermined => CommandError::new(
             404,
             format!("the points of {name} are not determined yet"),
             "CONVERT says what is missing",
@@ -253,33 +260,33 @@ fn curve_fault(name: &str, fault: &CurveFault) -> Fault {
 }
 
 /// A curve that is not built in, as a warning.
-pub(super) fn trouble_reply(trouble: &CurveTrouble) -> Reply {
-    let name = &trouble.curve;
-    let fault = match &trouble.why {
-        Trouble::Fault(fault) => curve_fault(name, fault),
-        Trouble::Crowded(p) => Fault::new(
+pub(super) fn unbuilt_reply(unbuilt: &UnbuiltCurve) -> Reply {
+    let name = &unbuilt.curve;
+    let fault = match &unbuilt.why {
+        UnbuiltReason::Curve(fault) => curve_fault(name, fault),
+        UnbuiltReason::Crowded(p) => CommandError::new(
             0,
             format!("{name} stays a curve: more than three lines meet at point {p}"),
             "KEEP says so",
         ),
-        Trouble::Taken(p) => Fault::new(
+        UnbuiltReason::Taken(p) => CommandError::new(
             0,
             format!("{name} stays a curve: another one has taken the corner at point {p}"),
             "remove one of them",
         ),
-        Trouble::Face(f) => Fault::new(
+        UnbuiltReason::Face(f) => CommandError::new(
             0,
             format!("face {f} is not plane with {name} and has not four edges"),
             "bend the opposite edge, or divide the face",
         ),
-        Trouble::NoEdge => Fault::new(
+        UnbuiltReason::NoEdge => CommandError::new(
             0,
             format!(
                 "{name} stays a curve: its lines are no edges of faces, or it is not inscribed in them"
             ),
             "KEEP says so",
         ),
-        Trouble::Overlap(p, q) => Fault::new(
+        UnbuiltReason::Overlap(p, q) => CommandError::new(
             310,
             format!("{name} and its neighbour do not fit on the line from {p} to {q} together"),
             "make one of them smaller",

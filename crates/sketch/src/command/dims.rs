@@ -1,12 +1,12 @@
 //! Commands about dimensions, variables and settings.
 
-use super::Fault;
+use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point, set_letters};
 use super::session::{Reply, Session};
 use super::solids::Question;
 use super::words::UNITS;
-use crate::layout::agree;
+use crate::dimension::layout::agree;
 use crate::{
     Axis, Dimension, DimensionFault, Expr, Measure, Naming, Object, PointId, Reference, Role,
     Variable, chain, chain_text,
@@ -15,7 +15,7 @@ use moldloft_syntax::number::plain;
 use std::sync::Arc;
 
 impl Session {
-    pub(super) fn dimension(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn dimension(&mut self, args: &mut Args) -> Result<(), CommandError> {
         const KINDS: [&str; 4] = ["LENGTH", "SLOPE", "ANGLE", "EQUAL"];
         let kind = |a: &Args| KINDS.into_iter().find(|k| a.at(k));
         let axis_next = args.peek().is_some_and(|t| Axis::of(&t.text).is_some());
@@ -39,7 +39,7 @@ impl Session {
         }) {
             Some(axis) => axis,
             None => {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     105,
                     format!("points {p} and {q} are no principal line, so the axis is unknown"),
                     format!("DIMENSION X {p} {q}, or Y, or Z"),
@@ -47,7 +47,7 @@ impl Session {
             }
         };
         if object.drawing.lines.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 398,
                 format!("there are no planes on axis {axis}: no line fixes any point there"),
                 "draw lines first",
@@ -82,7 +82,7 @@ impl Session {
         q: PointId,
         value: Expr,
         range: Option<[f64; 2]>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), CommandError> {
         let object = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         let planes = &view.planes;
@@ -97,7 +97,7 @@ impl Session {
             }
             let path = crate::why(&object.drawing, axis, p, q).unwrap_or_default();
             let path: Vec<String> = path.iter().map(|r| r.text(&object.drawing)).collect();
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 396,
                 format!("points {p} and {q} lie in one {axis} plane, by {}", path.join(", ")),
                 "dimension two different planes, or retype a line of the path",
@@ -128,7 +128,7 @@ impl Session {
                         plain(a),
                         plain((a - m).abs())
                     );
-                    return Err(Fault::new(
+                    return Err(CommandError::new(
                         396,
                         text,
                         format!("change or delete one of {}", names.join(", ")),
@@ -136,7 +136,7 @@ impl Session {
                 }
                 _ => {
                     let text = format!("the chain {} determines it already", chain_text(&way));
-                    return Err(Fault::new(
+                    return Err(CommandError::new(
                         396,
                         text,
                         format!("give values to {}", names.join(", ")),
@@ -147,10 +147,10 @@ impl Session {
         let measure = Measure::Along { axis, p, q };
         let object = self.active_mut()?;
         object.add_dimension(Dimension { name, measure, value: Some(value), role, range });
-        self.tell_counts()
+        self.report_counts()
     }
 
-    fn derived(&mut self, args: &mut Args, name: String, kind: &str) -> Result<(), Fault> {
+    fn derived(&mut self, args: &mut Args, name: String, kind: &str) -> Result<(), CommandError> {
         args.skip();
         let first = args.line()?;
         let object = self.active()?.clone();
@@ -159,7 +159,11 @@ impl Session {
         if let Some(second) = second {
             require_line(&object, second)?;
             if second == first {
-                return Err(Fault::new(300, format!("line {first} twice"), "name two lines"));
+                return Err(CommandError::new(
+                    300,
+                    format!("line {first} twice"),
+                    "name two lines",
+                ));
             }
         }
         let measure = match (kind, second) {
@@ -197,14 +201,19 @@ impl Session {
             }
         }
         self.active_mut()?.add_dimension(Dimension { role, ..dimension });
-        self.tell_counts()
+        self.report_counts()
     }
 
     /// A derived dimension without a value: it only shows what the others make it.
-    fn measured(&mut self, object: &Object, name: String, measure: Measure) -> Result<(), Fault> {
+    fn measured(
+        &mut self,
+        object: &Object,
+        name: String,
+        measure: Measure,
+    ) -> Result<(), CommandError> {
         let (view, layout) = self.laid_out(object);
         let Some(x) = layout.measured(object, &view.planes, &measure) else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 404,
                 format!("{name} cannot be measured yet: its points are not determined"),
                 "give it a value, or the missing dimensions; CHECK lists them",
@@ -224,12 +233,12 @@ impl Session {
         name: String,
         axis: Axis,
         (p, q): (PointId, PointId),
-    ) -> Result<(), Fault> {
+    ) -> Result<(), CommandError> {
         let (view, layout) = self.laid_out(object);
         let (Some(e), Some(a), Some(b)) =
             (view.estimate(), view.planes.plane(axis, p), view.planes.plane(axis, q))
         else {
-            return Err(Fault::text("there is no estimate of this sketch", "give a value"));
+            return Err(CommandError::text("there is no estimate of this sketch", "give a value"));
         };
         let scale = crate::scale(object, &view.planes, &layout, e);
         let value = rounded((e.plane(axis, b) - e.plane(axis, a)) * scale);
@@ -260,7 +269,7 @@ impl Session {
     }
 
     /// A name that is free for a dimension, variable or curve.
-    pub(super) fn new_name(&mut self, args: &mut Args) -> Result<String, Fault> {
+    pub(super) fn new_name(&mut self, args: &mut Args) -> Result<String, CommandError> {
         let name = args.name("a name")?;
         let object = self.active()?;
         let fine = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '.')
@@ -268,7 +277,7 @@ impl Session {
             && name.len() <= 64
             && !name.ends_with('.');
         if !fine {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("`{name}` cannot be read in expressions"),
                 "use a letter, then letters, digits, `_` and `.`",
             ));
@@ -276,13 +285,13 @@ impl Session {
         if crate::FUNCTIONS.contains(&name.to_ascii_lowercase().as_str())
             || name.eq_ignore_ascii_case("pi")
         {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("{name} means something in expressions"),
                 "choose another name",
             ));
         }
         if object.has_name(&name) {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("{name} exists already"),
                 format!("SET {name} changes its value; or choose another name"),
             ));
@@ -291,7 +300,7 @@ impl Session {
     }
 
     /// `X 2/3 Y 1/1 Z 0/2`.
-    pub(super) fn tell_counts(&mut self) -> Result<(), Fault> {
+    pub(super) fn report_counts(&mut self) -> Result<(), CommandError> {
         let object = self.active_arc()?;
         let worked = self.worked(&object);
         let layout = &worked.layout;
@@ -307,7 +316,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn set(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn set(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if args.at("POINT") && args.number_at(1) {
             args.skip();
             let p = args.point()?;
@@ -349,7 +358,7 @@ impl Session {
             let unit = args.name("MM, CM, M, IN or FT")?.to_ascii_uppercase();
             args.end()?;
             if !UNITS.iter().any(|u| u.0 == unit) {
-                return Err(Fault::text(
+                return Err(CommandError::text(
                     format!("there is no unit {unit}"),
                     "units are MM, CM, M, IN, FT",
                 ));
@@ -391,11 +400,11 @@ impl Session {
             Some(near) => format!("did you mean {near}?"),
             None => "LIST DIMENSIONS and LIST VARIABLES show what there is".to_owned(),
         };
-        Err(Fault::text(format!("there is no dimension or variable {name}"), next))
+        Err(CommandError::text(format!("there is no dimension or variable {name}"), next))
     }
 
     /// Changes or adds a dimension, unless that makes a new fault.
-    fn put(&mut self, dimension: Dimension) -> Result<(), Fault> {
+    fn put(&mut self, dimension: Dimension) -> Result<(), CommandError> {
         in_range(&dimension.name, dimension.value.as_ref(), dimension.range)?;
         let old = self.active_arc()?;
         let before = self.worked(&old);
@@ -420,11 +429,11 @@ impl Session {
             }
         }
         self.replace_active(object);
-        self.tell_counts()?;
-        self.tell_validity()
+        self.report_counts()?;
+        self.report_validity()
     }
 
-    fn put_variable(&mut self, variable: Variable) -> Result<(), Fault> {
+    fn put_variable(&mut self, variable: Variable) -> Result<(), CommandError> {
         in_range(&variable.name, Some(&variable.value), variable.range)?;
         let old = self.active_arc()?;
         let before = self.worked(&old);
@@ -437,10 +446,10 @@ impl Session {
             return Err(dimension_fault(fault));
         }
         self.replace_active(object);
-        self.tell_validity()
+        self.report_validity()
     }
 
-    pub(super) fn variable(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn variable(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let name = self.new_name(args)?;
         let units = self.active()?.units.clone();
         let value = args.value(units.as_deref())?;
@@ -449,23 +458,23 @@ impl Session {
         self.put_variable(Variable { name, value, range })
     }
 
-    pub(super) fn unset(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn unset(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let name = args.name("the name of a dimension")?;
         args.end()?;
         let object = self.active_mut()?;
         match object.dimensions.get_mut(&name.to_ascii_lowercase()) {
             Some(d) => d.value = None,
             None => {
-                return Err(Fault::text(
+                return Err(CommandError::text(
                     format!("there is no dimension {name}"),
                     "LIST DIMENSIONS shows what there is",
                 ));
             }
         }
-        self.tell_counts()
+        self.report_counts()
     }
 
-    pub(super) fn reference(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn reference(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let point = args.point()?;
         let object = self.active()?.clone();
         require_point(&object, point)?;
@@ -487,34 +496,34 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn reverse(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn reverse(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let name = args.name("the name of a dimension")?;
         args.end()?;
         let object = self.active_mut()?;
         let dimension = object.dimensions.get_mut(&name.to_ascii_lowercase());
         let Some(Dimension { measure: Measure::Along { p, q, .. }, .. }) = dimension else {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("there is no dimension {name} along an axis"),
                 "LIST DIMENSIONS shows what there is",
             ));
         };
         std::mem::swap(p, q);
-        self.tell_validity()
+        self.report_validity()
     }
 
-    pub(super) fn convert(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn convert(&mut self, args: &mut Args) -> Result<(), CommandError> {
         self.take_object(args)?;
         args.end()?;
         let object = self.active()?.clone();
         if object.drawing.points.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 101,
                 format!("object {} has no points yet", object.name),
                 "draw some, or INPUT it",
             ));
         }
         if object.drawing.lines.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 102,
                 format!("object {} has no lines", object.name),
                 "draw some",
@@ -535,14 +544,14 @@ impl Session {
             let text =
                 format!("dimensions are missing, {}; {}", missing.join(", "), lines.join("; "));
             let next = "give them, or see ESTIMATE for suggested values".to_owned();
-            return Err(Fault::new(404, text, next));
+            return Err(CommandError::new(404, text, next));
         }
         self.out.push(Reply::note(format!(
             "{}: {} points are exact",
             object.name,
             view.planes.ids().len()
         )));
-        self.tell_validity()
+        self.report_validity()
     }
 }
 
@@ -568,11 +577,11 @@ fn along(
 }
 
 /// Refuses a plain number outside its range.
-fn in_range(name: &str, value: Option<&Expr>, range: Option<[f64; 2]>) -> Result<(), Fault> {
+fn in_range(name: &str, value: Option<&Expr>, range: Option<[f64; 2]>) -> Result<(), CommandError> {
     match (value.and_then(Expr::literal), range) {
         (Some(x), Some([low, high])) if !(low..=high).contains(&x) => {
             let (low, high) = (plain(low), plain(high));
-            Err(Fault::text(
+            Err(CommandError::text(
                 format!("{name} = {} is outside its range, {low} to {high}", plain(x)),
                 format!("give a number in it, or another range: SET {name} {} IN lo hi", plain(x)),
             ))
@@ -590,14 +599,14 @@ pub(super) fn rounded(x: f64) -> f64 {
 }
 
 /// A fault of a dimension in words.
-pub(super) fn dimension_fault(fault: &DimensionFault) -> Fault {
+pub(super) fn dimension_fault(fault: &DimensionFault) -> CommandError {
     match fault {
-        DimensionFault::Redundant { name, path } => Fault::new(
+        DimensionFault::Redundant { name, path } => CommandError::new(
             396,
             format!("{name} is determined already by {}; it agrees", path.join(", ")),
             "delete it, or keep it as a reference",
         ),
-        DimensionFault::Contradictory { name, asked, measured, path } => Fault::new(
+        DimensionFault::Contradictory { name, asked, measured, path } => CommandError::new(
             396,
             format!(
                 "{name} asks {}, but the others make it {}, which differs by {}, via {}",
@@ -608,20 +617,20 @@ pub(super) fn dimension_fault(fault: &DimensionFault) -> Fault {
             ),
             "change or delete one of them",
         ),
-        DimensionFault::NoValue { name, reads } => Fault::text(
+        DimensionFault::NoValue { name, reads } => CommandError::text(
             format!("{name} reads {reads}, which has no value"),
             format!("VARIABLE {reads} defines it"),
         ),
-        DimensionFault::Cycle { names } => Fault::text(
+        DimensionFault::Cycle { names } => CommandError::text(
             format!("{} depend on each other in a circle", names.join(", ")),
             "give one of them a number",
         ),
-        DimensionFault::NotFinite { name } => Fault::new(
+        DimensionFault::NotFinite { name } => CommandError::new(
             300,
             format!("the value of {name} is not a finite number"),
             "look for a division by zero",
         ),
-        DimensionFault::Unsolved { name, residual } => Fault::new(
+        DimensionFault::Unsolved { name, residual } => CommandError::new(
             411,
             format!(
                 "{name} cannot be satisfied near the drawing; it is missed by {}",

@@ -1,6 +1,6 @@
 //! Commands that draw: objects, points, lines, types, alignments.
 
-use super::Fault;
+use super::CommandError;
 use super::args::Args;
 use super::session::{MAX_POINTS, Reply, Session};
 use super::words::Kind;
@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl Session {
-    pub(super) fn sketch(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn sketch(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let shape = |t: &str| ["2D", "3D"].iter().any(|d| t.eq_ignore_ascii_case(d));
         let named = args
             .peek()
@@ -19,7 +19,7 @@ impl Session {
         if name.is_empty() || name.chars().count() > 32 {
             let text =
                 format!("an object's name has 1 to 32 characters, not {}", name.chars().count());
-            return Err(Fault::text(text, "choose a shorter name"));
+            return Err(CommandError::text(text, "choose a shorter name"));
         }
         let section = if args.take_short("2D") {
             let plane = args.peek().map(|t| t.text.to_ascii_uppercase());
@@ -44,7 +44,7 @@ impl Session {
                 self.state.active = Some(key);
             }
             Some(old) if !old.drawing.points.is_empty() => {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     113,
                     format!(
                         "{} cannot change between a section and space: it has points",
@@ -58,7 +58,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn point(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn point(&mut self, args: &mut Args) -> Result<(), CommandError> {
         // POINT 7 1 2 has a label, POINT 1 2 has none.
         let at_word = args.second().is_some_and(|t| t.text.eq_ignore_ascii_case("AT"));
         let labelled = at_word || args.len() >= 3;
@@ -68,14 +68,14 @@ impl Session {
             (args.number("the screen coordinate u")?, args.number("the screen coordinate v")?);
         args.end()?;
         if u.abs().max(v.abs()) > 1e9 {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 "the page ends at 1e9",
                 "draw smaller; dimensions give the size",
             ));
         }
         let object = self.active_or_noname()?;
         if object.drawing.points.len() >= MAX_POINTS {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 200,
                 format!("an object has at most {MAX_POINTS} points"),
                 "begin another object",
@@ -98,14 +98,14 @@ impl Session {
     }
 
     /// The active object; an unnamed one is begun when there is none (manual: NONAME).
-    fn active_or_noname(&mut self) -> Result<&mut Object, Fault> {
+    fn active_or_noname(&mut self) -> Result<&mut Object, CommandError> {
         if self.state.active.is_none() {
             self.insert(Object::new("NONAME", None));
         }
         self.active_mut()
     }
 
-    pub(super) fn line(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn line(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let from = |a: &Args| a.second().is_some_and(|t| t.text.eq_ignore_ascii_case("FROM"));
         let three =
             args.len() >= 3 && args.second().is_some_and(|t| matches!(t.kind, Kind::Number(..)));
@@ -120,14 +120,14 @@ impl Session {
             require_point(object, end)?;
         }
         if p == q {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 300,
                 format!("a line from point {p} to itself has no length"),
                 "give two points",
             ));
         }
         if let Some(other) = object.drawing.line_between(p, q).filter(|l| Some(*l) != id) {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("line {other} joins points {p} and {q} already"),
                 format!("use line {other}"),
             ));
@@ -163,7 +163,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn polyline(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn polyline(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let mut points = Vec::new();
         while args.at_number() {
             points.push(args.point()?);
@@ -196,12 +196,12 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn split(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn split(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let id = args.line()?;
         let part = args.number("a part of the length between 0 and 1")?;
         args.end()?;
         if !(part > 0.0 && part < 1.0) {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 300,
                 format!("{part} is not inside the line"),
                 "give a part between 0 and 1",
@@ -232,29 +232,33 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn weld(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn weld(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let (p, q) = (args.point()?, args.point()?);
         args.end()?;
         let object = self.active_mut()?;
         require_point(object, p)?;
         require_point(object, q)?;
         if p == q {
-            return Err(Fault::new(300, format!("point {p} is itself already"), "give two points"));
+            return Err(CommandError::new(
+                300,
+                format!("point {p} is itself already"),
+                "give two points",
+            ));
         }
         object.draw().weld(p.min(q), p.max(q));
         let gone = object.drop_dangling();
-        self.tell_gone(gone);
+        self.report_gone(gone);
         Ok(())
     }
 
-    pub(super) fn tell_gone(&mut self, gone: Vec<String>) {
+    pub(super) fn report_gone(&mut self, gone: Vec<String>) {
         if !gone.is_empty() {
             let text = format!("removed with their points or lines: {}", gone.join(", "));
             self.out.push(Reply::warning(text));
         }
     }
 
-    pub(super) fn delete(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn delete(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let kinds = ["POINT", "LINE", "FACE", "CURVE", "DIMENSION", "VARIABLE"];
         // A keyword counts only with something after it, so an object may be called POINT.
         let kind = kinds.into_iter().find(|k| args.at(k) && args.len() > 1);
@@ -294,7 +298,7 @@ impl Session {
                 "FACE" => {
                     let id = FaceId(args.count("the number of a face")?);
                     if object.faces.remove(&id).is_none() {
-                        return Err(Fault::text(
+                        return Err(CommandError::text(
                             format!("there is no face {id}"),
                             "LIST FACES shows what there is",
                         ));
@@ -303,7 +307,7 @@ impl Session {
                 _ => {
                     let name = args.name("a name")?;
                     if kind == "CURVE" && object.curves.is_empty() {
-                        return Err(Fault::new(
+                        return Err(CommandError::new(
                             105,
                             format!("object {} has no curves", object.name),
                             "ARC, CIRCLE, QUADRATIC, CUBIC and ELLIPSE draw them",
@@ -317,7 +321,7 @@ impl Session {
                     };
                     if !found {
                         let word = kind.to_ascii_lowercase();
-                        return Err(Fault::text(
+                        return Err(CommandError::text(
                             format!("there is no {word} {name}"),
                             format!("LIST {kind}S shows what there is"),
                         ));
@@ -326,11 +330,11 @@ impl Session {
             }
         }
         let gone = self.active_mut()?.drop_dangling();
-        self.tell_gone(gone);
+        self.report_gone(gone);
         Ok(())
     }
 
-    pub(super) fn axes(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn axes(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let object = self.active_mut()?;
         let mut projection = object.drawing.projection;
         if args.at_number() {
@@ -347,7 +351,7 @@ impl Session {
             let strokes: Vec<[f64; 2]> =
                 object.drawing.lines.values().map(|l| object.drawing.stroke(l)).collect();
             projection = Projection::cluster(&strokes).ok_or_else(|| {
-                Fault::text(
+                CommandError::text(
                     "the lines do not show three directions",
                     "give the angles: AXES 345 40 90",
                 )
@@ -355,7 +359,7 @@ impl Session {
         } else if !args.at("SCALE") {
             let name = args.name("angles, AUTO or the name of a projection")?;
             projection = Projection::preset(&name).ok_or_else(|| {
-                Fault::text(
+                CommandError::text(
                     format!("there is no projection {name}"),
                     format!("there are {}", Projection::PRESETS.join(", ")),
                 )
@@ -370,7 +374,7 @@ impl Session {
         if projection.scale.iter().any(|s| !(*s > 0.0 && *s < 1e6))
             || projection.angle_deg.iter().any(|a| a.abs() > 1e6)
         {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 405,
                 "a scale is not positive, or an angle is out of bounds",
                 "give positive scales and degrees",
@@ -397,7 +401,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn types(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn types(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if args.take("AUTO") {
             args.end()?;
             let drawing = self.active_mut()?.draw();
@@ -430,7 +434,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn align(&mut self, args: &mut Args, set: bool) -> Result<(), Fault> {
+    pub(super) fn align(&mut self, args: &mut Args, set: bool) -> Result<(), CommandError> {
         let axis = args.axis().ok_or_else(|| args.wants("an axis"))?;
         let first = args.point()?;
         let mut others = vec![args.point()?];
@@ -448,7 +452,7 @@ impl Session {
             if set && first != q {
                 aligns.push(Align { axis, p: first, q });
             } else if !set && aligns.len() == before {
-                return Err(Fault::text(
+                return Err(CommandError::text(
                     format!("points {first} and {q} are not aligned on {axis}"),
                     "WHY shows what ties them",
                 ));
@@ -459,20 +463,20 @@ impl Session {
 }
 
 /// A type, by letter or axes.
-pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Free>, Fault> {
+pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Free>, CommandError> {
     let word = args.name("a type: X, Y, Z, H, P, F, O, XY, XZ or YZ")?;
     if word.eq_ignore_ascii_case("NONE") {
         return Ok(None);
     }
     let free = drawing.letters.free(&word, drawing.section).ok_or_else(|| {
-        Fault::new(
+        CommandError::new(
             406,
             format!("{word} is no line type"),
             "types are X, Y, Z, H, P, F, O, XY, XZ, YZ",
         )
     })?;
     match drawing.section {
-        Some(normal) if free.contains(normal) => Err(Fault::new(
+        Some(normal) if free.contains(normal) => Err(CommandError::new(
             406,
             format!("in this cross section no line runs along {normal}"),
             "use F for lines that are parallel to neither axis",
@@ -482,7 +486,7 @@ pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Fre
 }
 
 /// The point must exist.
-pub(super) fn require_point(object: &Object, p: PointId) -> Result<(), Fault> {
+pub(super) fn require_point(object: &Object, p: PointId) -> Result<(), CommandError> {
     if object.drawing.points.contains_key(&p) {
         return Ok(());
     }
@@ -491,18 +495,18 @@ pub(super) fn require_point(object: &Object, p: PointId) -> Result<(), Fault> {
     } else {
         (0, format!("there is no point {p} in {}", object.name))
     };
-    Err(Fault::new(code, text, "draw it with POINT, or see LIST POINTS"))
+    Err(CommandError::new(code, text, "draw it with POINT, or see LIST POINTS"))
 }
 
 /// The line must exist.
-pub(super) fn require_line(object: &Object, id: LineId) -> Result<Line, Fault> {
+pub(super) fn require_line(object: &Object, id: LineId) -> Result<Line, CommandError> {
     object.drawing.lines.get(&id).copied().ok_or_else(|| {
         let (code, text) = if object.drawing.lines.is_empty() {
             (102, format!("object {} has no lines", object.name))
         } else {
             (0, format!("there is no line {id} in {}", object.name))
         };
-        Fault::new(code, text, "draw it with LINE, or see LIST LINES")
+        CommandError::new(code, text, "draw it with LINE, or see LIST LINES")
     })
 }
 

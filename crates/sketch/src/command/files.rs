@@ -1,13 +1,13 @@
 //! Commands that read and write: SAVE, INPUT, RUN, EXPORT.
 
-use super::Fault;
+use super::CommandError;
 use super::args::Args;
 use super::session::{Reply, Session};
 use super::words::Kind;
-use crate::json::Json;
-pub(super) use crate::script::measure_text;
-use crate::script::script;
-use crate::twin::{ObjectData, from_json, object_data, to_json};
+use crate::format::json::Json;
+use crate::format::json_format::{ObjectData, from_json, object_data, to_json};
+pub(super) use crate::format::script::measure_text;
+use crate::format::script::script;
 use crate::{Dimension, Measure, Object, Role, Variable, export};
 use moldloft_syntax::number::plain;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ impl Session {
         object_data(object, &worked.view.planes, &worked.layout, worked.solid().cloned())
     }
 
-    pub(super) fn save(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn save(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let mut names: Vec<String> = Vec::new();
         let mut file = None;
         while args.len() > 0 {
@@ -53,11 +53,15 @@ impl Session {
             names = self.state.objects.values().map(|o| o.name.clone()).collect();
         }
         if names.is_empty() {
-            return Err(Fault::new(110, "there is no object to save", "start one with SKETCH"));
+            return Err(CommandError::new(
+                110,
+                "there is no object to save",
+                "start one with SKETCH",
+            ));
         }
         let file = file.unwrap_or_else(|| format!("{}.skt", names[0]));
         if file.trim().is_empty() || file.contains('\0') {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 600,
                 format!("cannot write \"{file}\": it is no name of a file"),
                 "SAVE object AS name.skt",
@@ -73,7 +77,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn input(&mut self, args: &mut Args, rename: bool) -> Result<(), Fault> {
+    pub(super) fn input(&mut self, args: &mut Args, rename: bool) -> Result<(), CommandError> {
         let file = args.name("the name of a file")?;
         let into =
             if rename && args.take_short("INTO") { Some(args.name("a name")?) } else { None };
@@ -81,7 +85,7 @@ impl Session {
         let text = self.read(&file)?;
         let text = if text.trim_start().starts_with(['{', '[']) {
             from_json(&text).map_err(|why| {
-                Fault::new(
+                CommandError::new(
                     399,
                     format!("{file} is no sketch: {why}"),
                     "SAVE writes files that can be read",
@@ -96,7 +100,7 @@ impl Session {
             let added: Vec<String> =
                 self.state.objects.keys().filter(|k| !before.contains(k)).cloned().collect();
             let [one] = &added[..] else {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     110,
                     format!("{file} brought {} objects, so INTO cannot name them", added.len()),
                     "INPUT it without INTO, then RENAME",
@@ -112,7 +116,7 @@ impl Session {
 
     /// `IMPORT file`: the lines of a DXF drawing become points and lines; other files are read as by
     /// INPUT.
-    pub(super) fn import(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn import(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let file = args.name("the name of a file")?;
         args.end()?;
         let text = self.read(&file)?;
@@ -120,11 +124,19 @@ impl Session {
             let words = [crate::command::words::Token { kind: Kind::Text, text: file }];
             return self.input(&mut Args::new(&words, ""), true);
         }
-        let strokes = crate::import::dxf_lines(&text).map_err(|why| {
-            Fault::new(399, format!("{file} is no DXF drawing: {why}"), "EXPORT DXF writes one")
+        let strokes = crate::format::dxf::dxf_lines(&text).map_err(|why| {
+            CommandError::new(
+                399,
+                format!("{file} is no DXF drawing: {why}"),
+                "EXPORT DXF writes one",
+            )
         })?;
         if strokes.is_empty() {
-            return Err(Fault::new(102, format!("{file} has no lines"), "draw LINE or polyline"));
+            return Err(CommandError::new(
+                102,
+                format!("{file} has no lines"),
+                "draw LINE or polyline",
+            ));
         }
         if self.active_object().is_none() {
             let stem = std::path::Path::new(&file).file_stem().map(|s| s.to_string_lossy());
@@ -138,10 +150,10 @@ impl Session {
     }
 
     /// `STROKES u v u v …`: lines by their ends, as a host's canvas has them.
-    pub(super) fn strokes(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn strokes(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let mut strokes = Vec::new();
         while args.at_number() {
-            let mut end = || -> Result<[f64; 2], Fault> {
+            let mut end = || -> Result<[f64; 2], CommandError> {
                 Ok([args.number("the coordinate u of an end")?, args.number("its coordinate v")?])
             };
             strokes.push([end()?, end()?]);
@@ -153,32 +165,32 @@ impl Session {
         self.draw_strokes(&strokes)
     }
 
-    fn draw_strokes(&mut self, strokes: &[crate::import::Stroke]) -> Result<(), Fault> {
+    fn draw_strokes(&mut self, strokes: &[crate::format::dxf::Stroke]) -> Result<(), CommandError> {
         let ends = strokes.iter().flatten();
         let size = ends.fold(0.0, |s: f64, [u, v]| s.max(u.abs()).max(v.abs()));
         let points = self.active()?.drawing.points.len() + 2 * strokes.len();
         if size > 1e9 || points > super::session::MAX_POINTS {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 200,
                 format!("{} lines on this page are too many, or it ends beyond 1e9", strokes.len()),
                 "draw a part of them",
             ));
         }
         let drawing = self.active_mut()?.draw();
-        let (points, lines) = crate::import::draw(drawing, strokes, 1e-6 * size);
+        let (points, lines) = crate::format::dxf::draw(drawing, strokes, 1e-6 * size);
         self.out.push(Reply::note(format!("{points} points and {lines} lines")));
         Ok(())
     }
 
     /// `GIVE name measure = value [ONLY]`: a dimension exactly as it is, for files.
-    pub(super) fn give(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn give(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let name = self.new_name(args)?;
         let object = self.active()?.clone();
-        let line = |args: &mut Args| -> Result<crate::LineId, Fault> {
+        let line = |args: &mut Args| -> Result<crate::LineId, CommandError> {
             let id = args.line()?;
             super::draw::require_line(&object, id).map(|_| id)
         };
-        let point = |args: &mut Args| -> Result<crate::PointId, Fault> {
+        let point = |args: &mut Args| -> Result<crate::PointId, CommandError> {
             let p = args.point()?;
             super::draw::require_point(&object, p).map(|()| p)
         };
@@ -214,7 +226,7 @@ impl Session {
     }
 
     /// `DECLARE name value`: a variable whose value may read names that come later, for files.
-    pub(super) fn declare(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn declare(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let name = self.new_name(args)?;
         let units = self.active()?.units.clone();
         let value = args.value(units.as_deref())?;
@@ -225,18 +237,18 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn export(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn export(&mut self, args: &mut Args) -> Result<(), CommandError> {
         const FORMATS: [&str; 8] = ["STL", "OBJ", "GLTF", "3MF", "DXF", "SVG", "JSON", "SKETCH83"];
         let format = args.name("a format")?.to_ascii_uppercase();
         if format == "STEP" {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 600,
                 "STEP is not written yet",
                 "EXPORT 3MF or GLTF for meshes, DXF for edges and facets",
             ));
         }
         if !FORMATS.contains(&format.as_str()) {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 600,
                 format!("there is no format {format} here"),
                 format!("formats are {}", FORMATS.join(", ")),
@@ -271,16 +283,20 @@ impl Session {
                 let shown: Vec<Arc<Object>> =
                     self.state.objects.values().filter(|o| o.display).map(Arc::clone).collect();
                 if shown.is_empty() {
-                    return Err(Fault::new(112, "nothing is displayed", "DISPLAY shows objects"));
+                    return Err(CommandError::new(
+                        112,
+                        "nothing is displayed",
+                        "DISPLAY shows objects",
+                    ));
                 }
                 let all: Vec<ObjectData> = shown.iter().map(|o| self.data(o)).collect();
                 let pairs: Vec<(&Object, &ObjectData)> =
                     shown.iter().map(|o| &**o).zip(&all).collect();
-                crate::picture::svg(&pairs, &self.state.picture, self.page()).into_bytes()
+                crate::format::svg::svg(&pairs, &self.state.picture, self.page()).into_bytes()
             }
             _ => {
                 let Some(solid) = &data.solid else {
-                    return Err(Fault::new(
+                    return Err(CommandError::new(
                         404,
                         format!("{} has no faces yet, or misses dimensions", object.name),
                         "CONVERT, then GENERATE FACES",

@@ -4,7 +4,7 @@ use super::args::Args;
 use super::dims::{dimension_fault, rounded};
 use super::draw::require_point;
 use super::session::{Reply, Session, View};
-use super::{Fault, words::Kind};
+use super::{CommandError, words::Kind};
 use crate::{
     Axis, DOUBTFUL, Layout, Measure, Object, Planes, Projection, Role, TypeFault, chain, chain_text,
 };
@@ -12,7 +12,11 @@ use moldloft_syntax::number::plain;
 
 impl Session {
     /// The first fault of types that stops a conversion: 300, 400, 401, 402.
-    pub(super) fn first_type_fault(&self, object: &Object, planes: &Planes) -> Option<Fault> {
+    pub(super) fn first_type_fault(
+        &self,
+        object: &Object,
+        planes: &Planes,
+    ) -> Option<CommandError> {
         let drawing = &object.drawing;
         let faults = planes.faults(drawing);
         let untyped: Vec<String> = (faults.iter())
@@ -24,7 +28,7 @@ impl Session {
             })
             .collect();
         if !untyped.is_empty() {
-            return Some(Fault::new(
+            return Some(CommandError::new(
                 402,
                 format!("set line types first: lines {} are untyped", untyped.join(", ")),
                 "TYPE line AS type, or TYPE AUTO",
@@ -36,7 +40,7 @@ impl Session {
             .map(|f| self.type_fault(object, f))
     }
 
-    fn type_fault(&self, object: &Object, fault: &TypeFault) -> Fault {
+    fn type_fault(&self, object: &Object, fault: &TypeFault) -> CommandError {
         let drawing = &object.drawing;
         let text = |path: &[crate::Reason]| {
             path.iter().map(|r| r.text(drawing)).collect::<Vec<_>>().join(", ")
@@ -59,7 +63,7 @@ impl Session {
                     }
                     None => "retype the line or remove an alignment".to_owned(),
                 };
-                Fault::new(
+                CommandError::new(
                     400,
                     format!(
                         "line types contradict: {} cannot run along {axis}, because {} put both ends in the same {axis} plane",
@@ -69,7 +73,7 @@ impl Session {
                     next,
                 )
             }
-            TypeFault::Degraded { line, really, path, .. } => Fault::new(
+            TypeFault::Degraded { line, really, path, .. } => CommandError::new(
                 400,
                 format!(
                     "{} is really {}, because of {}",
@@ -79,19 +83,21 @@ impl Session {
                 ),
                 format!("TYPE {line} AS {}, or retype a line of the path", really.spelling()),
             ),
-            TypeFault::Coincident { p, q } => Fault::new(
+            TypeFault::Coincident { p, q } => CommandError::new(
                 300,
                 format!("points {p} and {q} lie in the same three planes, so they coincide"),
                 format!("WELD {p} {q}, or retype a line between them"),
             ),
-            TypeFault::Loose { point } => Fault::new(
+            TypeFault::Loose { point } => CommandError::new(
                 401,
                 format!("point {point} belongs to no line"),
                 format!("draw a line to it, or DELETE POINT {point}"),
             ),
-            TypeFault::Untyped { line } => {
-                Fault::new(402, format!("line {line} is untyped"), format!("TYPE {line} AS type"))
-            }
+            TypeFault::Untyped { line } => CommandError::new(
+                402,
+                format!("line {line} is untyped"),
+                format!("TYPE {line} AS type"),
+            ),
         }
     }
 
@@ -137,7 +143,7 @@ impl Session {
             .collect()
     }
 
-    pub(super) fn check(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn check(&mut self, args: &mut Args) -> Result<(), CommandError> {
         self.take_object(args)?;
         args.end()?;
         let object = self.active()?.clone();
@@ -164,13 +170,13 @@ impl Session {
         for text in self.loose_lines(&object, &view, &layout) {
             self.out.push(Reply::warning(text));
         }
-        self.tell_validity()?;
-        self.tell_counts()
+        self.report_validity()?;
+        self.report_counts()
     }
 
     /// What a change of values has done to an otherwise finished object: planes that passed each
     /// other, faces that are no longer flat, curves that no longer fit.
-    pub(super) fn tell_validity(&mut self) -> Result<(), Fault> {
+    pub(super) fn report_validity(&mut self) -> Result<(), CommandError> {
         let object = self.active_arc()?;
         let worked = self.worked(&object);
         let (view, layout) = (&worked.view, &worked.layout);
@@ -197,7 +203,7 @@ impl Session {
             for (id, face) in &object.faces {
                 let at: Vec<_> =
                     face.loops().flatten().filter_map(|p| layout.point(planes, *p)).collect();
-                let off = crate::faces::flatness(&at);
+                let off = crate::solid::faces::flatness(&at);
                 let size = at.iter().map(|p| p.distance(at[0])).fold(0.0, f64::max);
                 if off > 1e-6 * size {
                     let mut reply = Reply::warning(format!(
@@ -210,14 +216,14 @@ impl Session {
                     self.out.push(reply);
                 }
             }
-            for trouble in &solid.trouble {
-                self.out.push(super::curves::trouble_reply(trouble));
+            for unbuilt in &solid.unbuilt {
+                self.out.push(super::curves::unbuilt_reply(unbuilt));
             }
         }
         Ok(())
     }
 
-    pub(super) fn why(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn why(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let object = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         let planes = &view.planes;
@@ -271,7 +277,7 @@ impl Session {
         let name = args.name("a dimension, a point, or an axis with two points")?;
         args.end()?;
         let Some(d) = object.dimensions.get(&name.to_ascii_lowercase()) else {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("there is no dimension {name}"),
                 "LIST DIMENSIONS shows what there is",
             ));
@@ -308,12 +314,12 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn estimate(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn estimate(&mut self, args: &mut Args) -> Result<(), CommandError> {
         args.end()?;
         let object = self.active()?.clone();
         let (view, layout) = self.laid_out(&object);
         let Some(e) = view.estimate() else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 101,
                 "there is nothing to estimate, or far too much",
                 "draw points and lines",
@@ -337,7 +343,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn extensions(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn extensions(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let only = args.axis();
         args.end()?;
         let object = self.active()?.clone();
@@ -360,7 +366,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn list(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn list(&mut self, args: &mut Args) -> Result<(), CommandError> {
         const WHAT: [&str; 8] =
             ["POINTS", "LINES", "FACES", "CURVES", "DIMENSIONS", "PLANES", "OBJECTS", "VARIABLES"];
         let what = WHAT.into_iter().find(|w| args.at(w));
@@ -449,7 +455,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn measure(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn measure(&mut self, args: &mut Args) -> Result<(), CommandError> {
         const WHAT: [&str; 4] = ["VOLUME", "AREA", "CENTROID", "INERTIA"];
         let word = |a: &Args| WHAT.into_iter().find(|w| a.at(w));
         if word(args).is_none() {
@@ -465,7 +471,7 @@ impl Session {
         args.end()?;
         let object = self.active()?.clone();
         let Some(solid) = self.solid_of(&object) else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 404,
                 format!("{} has no faces or is not fully dimensioned", object.name),
                 "CONVERT says what is missing; then GENERATE FACES",
@@ -490,7 +496,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn display(&mut self, args: &mut Args, shown: bool) -> Result<(), Fault> {
+    pub(super) fn display(&mut self, args: &mut Args, shown: bool) -> Result<(), CommandError> {
         let name =
             if args.len() == 0 || args.at("ALL") { None } else { Some(args.name("a name")?) };
         args.take("ALL");
@@ -506,14 +512,14 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn show(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn show(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if args.at("FACE") && args.number_at(1) {
             args.skip();
             let id = crate::FaceId(args.count("a face")?);
             args.end()?;
             let object = self.active()?;
             let Some(face) = object.faces.get(&id) else {
-                return Err(Fault::text(
+                return Err(CommandError::text(
                     format!("there is no face {id}"),
                     "LIST FACES shows what there is",
                 ));
@@ -568,7 +574,7 @@ impl Session {
         [w[0] - du, w[1] - dv, w[2] + du, w[3] + dv]
     }
 
-    pub(super) fn zoom(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn zoom(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let [l, b, r, t] = self.window();
         let window = if args.len() == 0 || args.take("FIT") {
             None
@@ -581,7 +587,7 @@ impl Session {
         } else {
             let factor = args.number("a factor")?;
             if !(factor > 0.0 && factor < 1e6) {
-                return Err(Fault::text(
+                return Err(CommandError::text(
                     "the factor must be positive",
                     "ZOOM 2 shows half the page",
                 ));
@@ -592,13 +598,13 @@ impl Session {
         };
         args.end()?;
         if window.is_some_and(|w| !(w[2] - w[0] > 0.0 && w[3] - w[1] > 0.0)) {
-            return Err(Fault::text("the window is empty", "give two opposite corners"));
+            return Err(CommandError::text("the window is empty", "give two opposite corners"));
         }
         self.state.picture.window = window;
         Ok(())
     }
 
-    pub(super) fn pan(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn pan(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let (du, dv) = (args.number("a shift to the right")?, args.number("a shift up")?);
         args.end()?;
         let [l, b, r, t] = self.window();
@@ -606,13 +612,13 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn view_from(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn view_from(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let name = args.name("a projection, TOP, FRONT, SIDE or SKETCH")?.to_ascii_uppercase();
         args.end()?;
         if !["TOP", "FRONT", "SIDE", "SKETCH"].contains(&name.as_str())
             && Projection::preset(&name).is_none()
         {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("there is no view {name}"),
                 format!("views are TOP, FRONT, SIDE, SKETCH, {}", Projection::PRESETS.join(", ")),
             ));

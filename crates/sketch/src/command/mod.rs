@@ -5,15 +5,16 @@ mod boolean;
 mod curves;
 mod dims;
 mod draw;
-mod fault;
+mod error;
 mod files;
 mod info;
 mod objects;
+mod sensitivity;
 mod session;
 mod solids;
 pub mod verbs;
 pub mod words;
 
-pub use fault::Fault;
+pub use error::CommandError;
 pub(crate) use session::Picture;
 pub use session::{Files, NoFiles, OutFile, Reply, Session};

@@ -1,12 +1,12 @@
 //! Commands about whole objects.
 
-use super::Fault;
+use super::CommandError;
 use super::args::Args;
 use super::session::{Reply, Session};
 use std::sync::Arc;
 
 impl Session {
-    pub(super) fn using(&mut self, args: &mut Args, required: bool) -> Result<(), Fault> {
+    pub(super) fn using(&mut self, args: &mut Args, required: bool) -> Result<(), CommandError> {
         if args.len() == 0 && !required {
             return self.active().map(|_| ());
         }
@@ -18,15 +18,15 @@ impl Session {
     }
 
     /// The name of an object to be made: free, and neither too short nor too long.
-    fn free_name(&self, name: &str) -> Result<String, Fault> {
+    fn free_name(&self, name: &str) -> Result<String, CommandError> {
         if name.is_empty() || name.chars().count() > 32 {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 "an object's name has 1 to 32 characters",
                 "choose another name",
             ));
         }
         if let Some(other) = self.object(name) {
-            return Err(Fault::text(
+            return Err(CommandError::text(
                 format!("object {} exists already", other.name),
                 "choose another name, or DELETE it",
             ));
@@ -34,7 +34,7 @@ impl Session {
         Ok(name.to_lowercase())
     }
 
-    pub(super) fn rename(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn rename(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let old = args.name("the old name")?;
         args.take_short("TO");
         let new = args.name("the new name")?;
@@ -55,7 +55,7 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn copy(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn copy(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let old = args.name("the name of an object")?;
         args.take_short("TO");
         let new = args.name("the name of the copy")?;
@@ -67,13 +67,13 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn dump(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn dump(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if let Some(token) = args.peek() {
             self.known(&token.text)?;
         }
         self.take_object(args)?;
         args.end()?;
-        let text = crate::twin::to_json(self.active()?).to_string();
+        let text = crate::format::json_format::to_json(self.active()?).to_string();
         self.out.push(Reply::note(text));
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::args::Args;
 use super::solids::Question;
 use super::words::{self, Command};
-use super::{Fault, verbs};
+use super::{CommandError, verbs};
 use crate::solid::{Solid, solid};
 use crate::{Estimate, Layout, Object, Planes, PointId, solve};
 use indexmap::IndexMap;
@@ -78,8 +78,8 @@ impl Reply {
     }
 }
 
-impl From<Fault> for Reply {
-    fn from(f: Fault) -> Reply {
+impl From<CommandError> for Reply {
+    fn from(f: CommandError) -> Reply {
         let code = (f.code > 0).then_some(f.code);
         let severity = Severity::Error;
         Reply { severity, code, text: f.text, next: Some(f.next), file: None }
@@ -241,7 +241,7 @@ impl Session {
         if self.begun.len() + line.len() > MAX_LINE {
             self.begun.clear();
             let text = format!("the line is longer than {MAX_LINE} bytes");
-            return vec![Fault::text(text, "divide it").into()];
+            return vec![CommandError::text(text, "divide it").into()];
         }
         if let Some(part) = words::continued(line) {
             self.begun.push_str(part);
@@ -326,7 +326,7 @@ impl Session {
         self.forgotten += beyond;
     }
 
-    fn dispatch(&mut self, verb: &'static str, command: &Command) -> Result<(), Fault> {
+    fn dispatch(&mut self, verb: &'static str, command: &Command) -> Result<(), CommandError> {
         let usage = verbs::row(verb).map_or(String::new(), verbs::Verb::usage);
         let args = &mut Args::new(&command.tokens[1..], &usage);
         let answer = matches!(verb, "ACCEPT" | "REJECT" | "REPEAT" | "YES" | "NO")
@@ -494,45 +494,53 @@ impl Session {
         self.out.push(Reply::output(name, bytes));
     }
 
-    pub(crate) fn read(&self, name: &str) -> Result<String, Fault> {
+    pub(crate) fn read(&self, name: &str) -> Result<String, CommandError> {
         if let Some(text) = self.written.get(name).and_then(|b| String::from_utf8(b.clone()).ok()) {
             return Ok(text);
         }
         self.files.read(name).map_err(|why| {
-            Fault::new(600, format!("cannot read \"{name}\": {why}"), "check the name")
+            CommandError::new(600, format!("cannot read \"{name}\": {why}"), "check the name")
         })
     }
 
     /// The object of a name, or 110.
-    pub(crate) fn known(&self, name: &str) -> Result<&Object, Fault> {
+    pub(crate) fn known(&self, name: &str) -> Result<&Object, CommandError> {
         self.object(name).ok_or_else(|| {
             let names = self.state.objects.values().map(|o| o.name.as_str());
             let next = match moldloft_diag::nearest(name, names) {
                 Some(near) => format!("did you mean {near}?"),
                 None => "LIST OBJECTS shows what there is".to_owned(),
             };
-            Fault::new(110, format!("there is no object {name}"), next)
+            CommandError::new(110, format!("there is no object {name}"), next)
         })
     }
 
     /// The active object, to change it.
-    pub(crate) fn active_mut(&mut self) -> Result<&mut Object, Fault> {
+    pub(crate) fn active_mut(&mut self) -> Result<&mut Object, CommandError> {
         let none = || {
-            Fault::new(112, "no object is active", "start one with SKETCH, or name one with USING")
+            CommandError::new(
+                112,
+                "no object is active",
+                "start one with SKETCH, or name one with USING",
+            )
         };
         let key = self.state.active.clone().ok_or_else(none)?;
         self.state.objects.get_mut(&key).map(Arc::make_mut).ok_or_else(none)
     }
 
     /// The active object.
-    pub(crate) fn active(&self) -> Result<&Object, Fault> {
+    pub(crate) fn active(&self) -> Result<&Object, CommandError> {
         self.active_object().ok_or_else(|| {
-            Fault::new(112, "no object is active", "start one with SKETCH, or name one with USING")
+            CommandError::new(
+                112,
+                "no object is active",
+                "start one with SKETCH, or name one with USING",
+            )
         })
     }
 
     /// The active object, shared.
-    pub(crate) fn active_arc(&self) -> Result<Arc<Object>, Fault> {
+    pub(crate) fn active_arc(&self) -> Result<Arc<Object>, CommandError> {
         self.active()?;
         let key = self.state.active.as_deref().unwrap_or_default();
         Ok(Arc::clone(&self.state.objects[key]))
@@ -546,7 +554,7 @@ impl Session {
     }
 
     /// Takes an object's name if one is next, and makes it active.
-    pub(crate) fn take_object(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(crate) fn take_object(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if let Some(token) = args.peek().filter(|t| !matches!(t.kind, words::Kind::Number(..))) {
             let key = token.text.to_lowercase();
             if self.state.objects.contains_key(&key) {
@@ -605,7 +613,7 @@ impl Session {
         solid(object, &view.planes, &layout)
     }
 
-    fn step(&mut self, args: &mut Args, back: bool) -> Result<(), Fault> {
+    fn step(&mut self, args: &mut Args, back: bool) -> Result<(), CommandError> {
         let n = if args.at_number() { args.count("how many steps")? } else { 1 };
         args.end()?;
         let mut done = 0;
@@ -621,14 +629,14 @@ impl Session {
         }
         if done == 0 {
             let what = if back { "there is nothing to undo" } else { "there is nothing to redo" };
-            return Err(Fault::text(what, "HISTORY lists the commands"));
+            return Err(CommandError::text(what, "HISTORY lists the commands"));
         }
         let word = if back { "undone" } else { "done again" };
         self.out.push(Reply::note(format!("{word}: {done}")));
         Ok(())
     }
 
-    fn help(&mut self, args: &mut Args) -> Result<(), Fault> {
+    fn help(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let text = match args.peek() {
             None => {
                 let mut group = "";
@@ -653,9 +661,12 @@ impl Session {
         Ok(())
     }
 
-    pub(crate) fn nested(&mut self, text: &str) -> Result<(), Fault> {
+    pub(crate) fn nested(&mut self, text: &str) -> Result<(), CommandError> {
         if self.depth >= MAX_DEPTH {
-            return Err(Fault::text("files run each other too deeply", "let no file run itself"));
+            return Err(CommandError::text(
+                "files run each other too deeply",
+                "let no file run itself",
+            ));
         }
         self.depth += 1;
         let begun = std::mem::take(&mut self.begun);

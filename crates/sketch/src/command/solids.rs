@@ -1,11 +1,11 @@
 //! Commands that make faces and solids.
 
-use super::Fault;
+use super::CommandError;
 use super::args::Args;
 use super::draw::{require_line, require_point};
 use super::session::{MAX_POINTS, Reply, Session};
-use crate::faces::{Fit, Fitted, Polygon, fit, fit_plane};
-use crate::merge::{self, Placed};
+use crate::solid::faces::{Fit, Fitted, Polygon, fit, fit_plane};
+use crate::solid::merge::{self, Placed};
 use crate::{Axis, Expr, Face, FaceId, Object, PointId};
 use moldloft_num::Vec3;
 use moldloft_syntax::number::plain;
@@ -25,17 +25,20 @@ pub(crate) enum Question {
 
 impl Session {
     /// Where the points of a fully dimensioned object are, or what is missing.
-    pub(super) fn placed(&mut self, object: &Object) -> Result<BTreeMap<PointId, Vec3>, Fault> {
+    pub(super) fn placed(
+        &mut self,
+        object: &Object,
+    ) -> Result<BTreeMap<PointId, Vec3>, CommandError> {
         let (view, layout) = self.laid_out(object);
         if object.drawing.points.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 101,
                 format!("object {} has no points yet", object.name),
                 "draw some, or INPUT it",
             ));
         }
         if object.drawing.lines.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 102,
                 format!("object {} has no lines", object.name),
                 "draw some",
@@ -47,12 +50,12 @@ impl Session {
                 let lines = self.loose_lines(object, &view, &layout);
                 let text =
                     format!("{} is not fully dimensioned; {}", object.name, lines.join("; "));
-                Err(Fault::new(404, text, "CONVERT lists what is missing"))
+                Err(CommandError::new(404, text, "CONVERT lists what is missing"))
             }
         }
     }
 
-    fn wireframe(&mut self, object: &Object) -> Result<(Vec<PointId>, Fitted), Fault> {
+    fn wireframe(&mut self, object: &Object) -> Result<(Vec<PointId>, Fitted), CommandError> {
         let at = self.placed(object)?;
         let ids: Vec<PointId> = at.keys().copied().collect();
         let positions: Vec<Vec3> = at.values().copied().collect();
@@ -99,7 +102,7 @@ impl Session {
             text.join(", ")
         };
         if fitted.too_large {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 200,
                 "the wireframe has too many crossing faces",
                 "divide the object, or give faces with FACE",
@@ -107,21 +110,21 @@ impl Session {
         }
         if let Some(p) = fitted.crossings.first() {
             let at = p.to_array().map(plain).join(" ");
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 701,
                 format!("two lines cross at {at} without a point"),
                 "SPLIT both and WELD the points, or mend the dimensions",
             ));
         }
         if !fitted.open.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 701,
                 format!("faces do not close: lines {} have fewer than two", pairs(&fitted.open)),
                 "add the missing lines, or CHECK types and dimensions",
             ));
         }
         if fitted.fits.is_empty() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 701,
                 "no solid fits these lines",
                 "add missing lines; or give faces with FACE",
@@ -136,7 +139,7 @@ impl Session {
         Ok((ids, fitted))
     }
 
-    pub(super) fn generate(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn generate(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if !args.take("FACES") {
             return Err(args.wants("FACES"));
         }
@@ -214,21 +217,21 @@ impl Session {
                 .collect();
             self.question = Some(Question::Solid { object: object.name.clone(), faces });
         }
-        self.tell_validity()
+        self.report_validity()
     }
 
-    fn take_fit(&mut self, ids: &[PointId], fit: &Fit) -> Result<(), Fault> {
+    fn take_fit(&mut self, ids: &[PointId], fit: &Fit) -> Result<(), CommandError> {
         let object = self.active_mut()?;
         let faces = fit.faces.iter().map(|p| face_of(p, ids));
         object.faces = (1..).map(FaceId).zip(faces).collect();
         Ok(())
     }
 
-    pub(super) fn choose(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn choose(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let n = args.count("the number of a solid")? as usize;
         args.end()?;
         let Some(Question::Solid { object, faces }) = &self.question else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 702,
                 "there is nothing to choose",
                 "GENERATE FACES offers what fits",
@@ -236,14 +239,14 @@ impl Session {
         };
         let (key, count) = (object.to_lowercase(), faces.len());
         let Some(chosen) = faces.get(n - 1).cloned() else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 702,
                 format!("there are {count} solids, not {n}"),
                 "choose one of them",
             ));
         };
         let Some(object) = self.state.objects.get_mut(&key) else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 110,
                 format!("there is no object {key}"),
                 "GENERATE FACES again",
@@ -251,7 +254,7 @@ impl Session {
         };
         Arc::make_mut(object).faces = (1..).map(FaceId).zip(chosen).collect();
         self.state.active = Some(key);
-        self.tell_validity()
+        self.report_validity()
     }
 
     /// Offers the next candidate of which no edge has two faces yet.
@@ -291,7 +294,7 @@ impl Session {
         }
     }
 
-    pub(super) fn answer(&mut self, verb: &str) -> Result<(), Fault> {
+    pub(super) fn answer(&mut self, verb: &str) -> Result<(), CommandError> {
         match (self.question.take(), verb) {
             (Some(Question::Dimension { name, axis, p, q, value }), "YES" | "ACCEPT") => {
                 self.add_along(name, axis, p, q, Expr::number(value), None)
@@ -312,11 +315,13 @@ impl Session {
                         left.remove(0);
                         Ok(())
                     }
-                    "REVERSE" if taken.iter().any(|f| touches(f, &left[0])) => Err(Fault::new(
-                        700,
-                        "this face cannot be reversed: it would disagree with its accepted neighbours",
-                        "ACCEPT or REJECT it",
-                    )),
+                    "REVERSE" if taken.iter().any(|f| touches(f, &left[0])) => {
+                        Err(CommandError::new(
+                            700,
+                            "this face cannot be reversed: it would disagree with its accepted neighbours",
+                            "ACCEPT or REJECT it",
+                        ))
+                    }
                     "REVERSE" => {
                         left[0].iter_mut().for_each(|c| c.reverse());
                         Ok(())
@@ -331,7 +336,7 @@ impl Session {
             }
             (question, _) => {
                 self.question = question;
-                Err(Fault::text(
+                Err(CommandError::text(
                     "no question is open",
                     "GENERATE FACES ASK, or DIMENSION without a value, asks one",
                 ))
@@ -339,7 +344,7 @@ impl Session {
         }
     }
 
-    pub(super) fn face(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn face(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let labelled = args.number_at(0) && args.tokens_at(1, "RUNS");
         let label = if labelled { Some(FaceId(args.count("the number of a face")?)) } else { None };
         args.take_short("RUNS");
@@ -370,7 +375,7 @@ impl Session {
             if !closed(c)
                 && !c.iter().any(|p| object.drawing.lines.values().any(|l| l.p == *p || l.q == *p))
             {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     401,
                     "the points of the face are in no line",
                     "draw its lines first",
@@ -380,10 +385,10 @@ impl Session {
         let mut cycles = cycles.into_iter();
         let outer = cycles.next().unwrap_or_default();
         self.active_mut()?.faces.insert(id, Face { outer, holes: cycles.collect() });
-        self.tell_validity()
+        self.report_validity()
     }
 
-    pub(super) fn extrude(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn extrude(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let axis_next = args.peek().is_some_and(|t| Axis::of(&t.text).is_some());
         if !axis_next && !args.at_number() && args.len() > 1 {
             if let Some(token) = args.peek() {
@@ -396,21 +401,21 @@ impl Session {
         let value = args.value(object.units.as_deref())?;
         args.end()?;
         let Some(normal) = object.drawing.section else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 113,
                 format!("{} is no cross section", object.name),
                 "SKETCH name 2D starts one",
             ));
         };
         if axis.is_some_and(|a| a != normal) {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 113,
                 format!("the section is perpendicular to {normal}"),
                 format!("EXTRUDE {normal} value"),
             ));
         }
         if 2 * object.drawing.points.len() > MAX_POINTS {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 200,
                 format!("an object has at most {MAX_POINTS} points"),
                 "extrude a smaller section",
@@ -420,10 +425,14 @@ impl Session {
         let (_, layout) = self.laid_out(&object);
         let number = value.eval(&|n| layout.values.get(n).copied());
         if number.as_ref().is_ok_and(|x| *x == 0.0 || !x.is_finite()) {
-            return Err(Fault::new(300, "an extrusion by nothing has no volume", "give a length"));
+            return Err(CommandError::new(
+                300,
+                "an extrusion by nothing has no volume",
+                "give a length",
+            ));
         }
         let Some(solid) = merge::extrude(&object, &name, value) else {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 101,
                 format!("object {} has no points yet", object.name),
                 "draw some",
@@ -434,17 +443,17 @@ impl Session {
     }
 
     /// Finds faces when everything is determined; else says what is missing.
-    fn faces_if_complete(&mut self) -> Result<(), Fault> {
+    fn faces_if_complete(&mut self) -> Result<(), CommandError> {
         let object = self.active()?.clone();
         let complete = self.laid_out(&object).1.complete();
         if complete {
             self.generate(&mut Args::new(&[faces_word()], ""))
         } else {
-            self.tell_counts()
+            self.report_counts()
         }
     }
 
-    pub(super) fn revolve(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn revolve(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if !args.at_number() {
             if let Some(token) = args.peek() {
                 self.known(&token.text)?;
@@ -457,14 +466,14 @@ impl Session {
         let mut object = self.active()?.clone();
         let line = require_line(&object, line)?;
         if object.drawing.section.is_none() {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 113,
                 format!("{} is no cross section", object.name),
                 "SKETCH name 2D starts one",
             ));
         }
         if angle == 0.0 || object.drawing.points.len() > 200 {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 300,
                 "nothing to revolve, or more than 200 points",
                 "give an angle and a smaller section",
@@ -484,23 +493,23 @@ impl Session {
         let (low, high) = sides.fold((0.0f64, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
         let size = at.values().map(|p| p.distance(axis[0])).fold(0.0, f64::max);
         if low < -1e-9 * size && high > 1e-9 * size {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 701,
                 "the section lies on both sides of the line",
                 "revolve about a line on its border",
             ));
         }
         let Some(solid) = merge::revolved(&object, &at, axis, angle) else {
-            return Err(Fault::new(300, "the line has no length", "choose another"));
+            return Err(CommandError::new(300, "the line has no length", "choose another"));
         };
         *self.active_mut()? = solid;
         self.out.push(Reply::note(
             "every coordinate is given outright now; edit the section to change it",
         ));
-        self.tell_validity()
+        self.report_validity()
     }
 
-    pub(super) fn clean(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn clean(&mut self, args: &mut Args) -> Result<(), CommandError> {
         if let Some(token) = args.peek() {
             self.known(&token.text)?;
         }
@@ -521,9 +530,9 @@ impl Session {
         self.faces_if_complete()
     }
 
-    pub(super) fn merge(&mut self, args: &mut Args) -> Result<(), Fault> {
+    pub(super) fn merge(&mut self, args: &mut Args) -> Result<(), CommandError> {
         let wrong = || {
-            Fault::new(
+            CommandError::new(
                 191,
                 "MERGE wants: MERGE A [B] [INTO] C",
                 "name the objects to unite, then the one to make",
@@ -549,7 +558,7 @@ impl Session {
             }
             [a, b, i, c] if into(i) => (vec![a.clone(), b.clone()], c.clone()),
             [_, _, i, _] => {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     192,
                     format!("\"INTO\" is misspelt as \"{i}\""),
                     "MERGE A B INTO C",
@@ -575,7 +584,7 @@ impl Session {
         for key in &keys {
             let object = Arc::clone(&self.state.objects[key]);
             if object.drawing.section.is_some() {
-                return Err(Fault::new(
+                return Err(CommandError::new(
                     114,
                     format!("{} is a cross section; only solids are merged", object.name),
                     "EXTRUDE it first",
@@ -586,7 +595,7 @@ impl Session {
         }
         let points: usize = parts.iter().map(|p| p.1.len()).sum();
         if points > MAX_POINTS {
-            return Err(Fault::new(
+            return Err(CommandError::new(
                 200,
                 format!("{points} points are too many"),
                 "merge smaller objects",
@@ -635,7 +644,7 @@ impl Session {
         self.faces_if_complete()
     }
 
-    pub(super) fn transform(&mut self, args: &mut Args, verb: &str) -> Result<(), Fault> {
+    pub(super) fn transform(&mut self, args: &mut Args, verb: &str) -> Result<(), CommandError> {
         let name = args.name("the name of an object")?;
         let object = self.known(&name)?.clone();
         let key = name.to_lowercase();
@@ -648,7 +657,7 @@ impl Session {
             "SCALE" => {
                 let factor = args.number("a factor")?;
                 if !(factor > 0.0 && factor < 1e9) {
-                    return Err(Fault::text(
+                    return Err(CommandError::text(
                         format!("the factor {factor} is not positive"),
                         "MIRROR turns objects over",
                     ));
@@ -663,7 +672,7 @@ impl Session {
                     let angle = args.number("an angle in degrees")?;
                     let quarters = angle / 90.0;
                     if quarters.fract() != 0.0 || quarters.abs() > 1e6 {
-                        return Err(Fault::text(
+                        return Err(CommandError::text(
                             format!(
                                 "{angle} degrees are no quarter turns: lines would lose their types"
                             ),

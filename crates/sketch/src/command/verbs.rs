@@ -1,6 +1,6 @@
 //! The verbs, how they may be shortened, and their help.
 
-use super::Fault;
+use super::CommandError;
 use std::sync::LazyLock;
 
 /// A verb of the language.
@@ -84,7 +84,7 @@ pub fn reference() -> String {
 ///
 /// # Errors
 /// Names the verbs it could be.
-pub fn find(word: &str) -> Result<(&'static str, Option<String>), Fault> {
+pub fn find(word: &str) -> Result<(&'static str, Option<String>), CommandError> {
     let upper = word.to_ascii_uppercase();
     let names = || VERBS.iter().map(|v| v.name);
     if let Some(verb) = names().find(|v| *v == upper) {
@@ -97,7 +97,7 @@ pub fn find(word: &str) -> Result<(&'static str, Option<String>), Fault> {
         // QUADRATIC, PARABOLA and their likes are one command under several names.
         _ => {
             let all = starting.join(" or ");
-            return Err(Fault::text(format!("{all}?"), "type one more letter"));
+            return Err(CommandError::text(format!("{all}?"), "type one more letter"));
         }
     }
     let head: String = upper.chars().take(3).collect();
@@ -113,7 +113,7 @@ pub fn find(word: &str) -> Result<(&'static str, Option<String>), Fault> {
                     return Ok((verb, Some(format!("read {upper} as {verb}"))));
                 }
                 let all = like.join(" or ");
-                return Err(Fault::text(format!("{all}?"), "type one more letter"));
+                return Err(CommandError::text(format!("{all}?"), "type one more letter"));
             }
         }
     }
@@ -121,7 +121,7 @@ pub fn find(word: &str) -> Result<(&'static str, Option<String>), Fault> {
         Some(near) => format!("did you mean {near}?"),
         None => "HELP lists all commands".to_owned(),
     };
-    Err(Fault::text(format!("there is no command {upper}"), next))
+    Err(CommandError::text(format!("there is no command {upper}"), next))
 }
 
 #[cfg(test)]

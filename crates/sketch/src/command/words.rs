@@ -1,6 +1,6 @@
 //! The command preprocessor (routine LSUCMD): a line into commands of words, numbers and texts.
 
-use super::Fault;
+use super::CommandError;
 
 /// What a token is.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub struct Command {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parsed {
     /// The commands, or why one is none.
-    pub commands: Vec<Result<Command, Fault>>,
+    pub commands: Vec<Result<Command, CommandError>>,
 }
 
 /// Whether the command goes on in the next line: the last thing before any comment is `&`.
@@ -70,7 +70,7 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
     let mut start = 0;
     let chars: Vec<(usize, char)> = line.char_indices().collect();
     let mut k = 0;
-    let mut finish = |tokens: &mut Vec<Token>, fault: &mut Option<Fault>, text: &str| {
+    let mut finish = |tokens: &mut Vec<Token>, fault: &mut Option<CommandError>, text: &str| {
         match fault.take() {
             Some(f) => parsed.commands.push(Err(f)),
             None if !tokens.is_empty() => {
@@ -103,7 +103,7 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
                     }
                     None => {
                         let text = format!("a quotation mark has no partner: {}", &line[at..]);
-                        fault = Some(Fault::text(text, "add the closing quotation mark"));
+                        fault = Some(CommandError::text(text, "add the closing quotation mark"));
                         k = chars.len();
                     }
                 }
@@ -126,7 +126,7 @@ pub fn parse(line: &str, longest: Option<usize>) -> Parsed {
     parsed
 }
 
-fn token(text: &str, longest: Option<usize>) -> Result<Token, Fault> {
+fn token(text: &str, longest: Option<usize>) -> Result<Token, CommandError> {
     let first = text.chars().next().unwrap_or(' ');
     if ["2D", "3D"].iter().any(|d| text.eq_ignore_ascii_case(d)) || text.eq_ignore_ascii_case("3MF")
     {
@@ -138,20 +138,20 @@ fn token(text: &str, longest: Option<usize>) -> Result<Token, Fault> {
     }
     if !first.is_alphabetic() && first != '_' {
         let next = "put names in letters, digits, `_` and `.`, anything else in quotation marks";
-        return Err(Fault::text(format!("`{text}` starts with `{first}`"), next));
+        return Err(CommandError::text(format!("`{text}` starts with `{first}`"), next));
     }
     let odd = text.chars().find(|c| !(c.is_alphanumeric() || *c == '_' || *c == '.'));
     if let Some(c) = odd {
         let what = if c == '-' { "a misplaced hyphen".to_owned() } else { format!("`{c}`") };
         let next = "leave blanks between words, or put the text in quotation marks";
-        return Err(Fault::text(format!("{what} in {text}"), next));
+        return Err(CommandError::text(format!("{what} in {text}"), next));
     }
     let text = text.chars().take(longest.unwrap_or(usize::MAX)).collect();
     Ok(Token { kind: Kind::Word, text })
 }
 
 /// A number with an optional unit; the errors are those that LSUCMD caught.
-fn number(text: &str) -> Result<(f64, Option<String>), Fault> {
+fn number(text: &str) -> Result<(f64, Option<String>), CommandError> {
     let bytes = text.as_bytes();
     let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
     let mut end = sign;
@@ -162,7 +162,7 @@ fn number(text: &str) -> Result<(f64, Option<String>), Fault> {
     }
     if points > 1 {
         let many = if points == 2 { "two".to_owned() } else { points.to_string() };
-        return Err(Fault::text(format!("{many} decimal points in {text}"), "leave one"));
+        return Err(CommandError::text(format!("{many} decimal points in {text}"), "leave one"));
     }
     let mantissa = end;
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
@@ -193,14 +193,14 @@ fn number(text: &str) -> Result<(f64, Option<String>), Fault> {
     }
     let next = "write numbers like 12, -3.5, 1e-3 or 6.5ft";
     if rest.contains('-') || text[sign..].starts_with(['+', '-']) || mantissa == sign {
-        return Err(Fault::text(format!("a misplaced hyphen in {text}"), next));
+        return Err(CommandError::text(format!("a misplaced hyphen in {text}"), next));
     }
     match rest.chars().next() {
         Some(c) if c.is_alphabetic() => {
-            Err(Fault::text(format!("the letter {c} inside the number {text}"), next))
+            Err(CommandError::text(format!("the letter {c} inside the number {text}"), next))
         }
-        Some(c) => Err(Fault::text(format!("`{c}` inside the number {text}"), next)),
-        None => Err(Fault::text(format!("the number {text} is too large"), next)),
+        Some(c) => Err(CommandError::text(format!("`{c}` inside the number {text}"), next)),
+        None => Err(CommandError::text(format!("the number {text} is too large"), next)),
     }
 }
 

@@ -1,3 +1,5 @@
+//! Arcs by conjugate half-diameters.
+
 use moldloft_num::trace::Trace;
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};

@@ -1,3 +1,5 @@
+//! Bodies bounded by triangles.
+
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{Build, Context, Facets, Fault, Kind, Value};
 use std::sync::Arc;
@@ -36,7 +38,7 @@ impl<T: Real> Build<T> for MeshBody<T> {
             return Err(Fault::new("wrong-count", format!("{count} corners make no triangles"))
                 .expected("three corners for each triangle")
                 .found(format!("{count} corners"))
-                .in_field(1));
+                .in_field(Self::TRIANGLES));
         }
         let wrong = |v: &u32| *v == 0 || *v as usize > n;
         if let Some(at) = self.triangles.iter().position(wrong) {
@@ -44,7 +46,7 @@ impl<T: Real> Build<T> for MeshBody<T> {
             return Err(Fault::new("out-of-range", format!("there is no vertex {v}"))
                 .expected(format!("a whole number from 1 to {n}"))
                 .found(v.to_string())
-                .in_field(1)
+                .in_field(Self::TRIANGLES)
                 .in_item(at));
         }
         let triangles: Vec<[u32; 3]> =

@@ -1,3 +1,5 @@
+//! Chains of cubics.
+
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
 use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
@@ -23,7 +25,7 @@ impl<T: Real> Build<T> for CubicChain<T> {
             return Err(Fault::new("wrong-count", format!("{n} points make no chain of cubics"))
                 .expected("4, 7, 10, … points: 3 n + 1 for n pieces")
                 .found(format!("{n} points"))
-                .in_field(0));
+                .in_field(Self::POINTS));
         }
         let ends = [self.points.first(), self.points.last()].map(|p| p.and_then(|p| p.key));
         let points = self.points.into_iter().map(|p| p.xyz).collect();

@@ -1,3 +1,5 @@
+//! Faces as surfaces.
+
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
 use moldloft_registry::{Build, Context, Fault, Kind, Point, SurfaceRef, Value};
@@ -39,7 +41,7 @@ fn around<T: Real>(at: &[Vec3<T>]) -> Result<[Vec3<T>; 4], Fault> {
         Fault::new("no-plane", "the corners span no plane")
             .expected("corners of a plane polygon, the first two of them apart")
             .help("give corners that do not lie on one line")
-            .in_field(0)
+            .in_field(FacePatch::<T>::CORNERS)
     };
     let n = at.len();
     let newell =

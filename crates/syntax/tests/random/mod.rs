@@ -1,38 +1,32 @@
 //! Random texts with a fixed seed.
 #![allow(dead_code)] // each test program uses a part of it
 
+use moldloft_testing::Random;
 use std::fmt::Write;
 
 /// How many rounds to run: two per cent of a long run, or all of it with `MOLDLOFT_SOAK=1`.
 pub fn rounds(long: usize) -> usize {
-    if std::env::var("MOLDLOFT_SOAK").is_ok_and(|value| value == "1") { long } else { long / 50 }
+    moldloft_testing::rounds(long / 50, long)
 }
 
-/// Marsaglia's xorshift with 64 bits of state (J. Stat. Softw. 8 (2003), 14).
-pub struct Random(u64);
+/// A generator of texts.
+pub struct RandomText(Random);
 
-impl Random {
+impl RandomText {
     pub fn new(seed: u64) -> Self {
-        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+        RandomText(Random::new(seed))
     }
 
-    pub fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    pub fn below(&mut self, limit: u64) -> u64 {
-        (self.next() >> 11) % limit
+    pub fn below(&mut self, limit: usize) -> usize {
+        self.0.below(limit)
     }
 
     pub fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {
-        from[self.below(from.len() as u64) as usize]
+        from[self.below(from.len())]
     }
 
     pub fn number_value(&mut self) -> f64 {
-        let scale = [1.0, 0.001, 1e6, 1e20, 1e-9][self.below(5) as usize];
+        let scale = [1.0, 0.001, 1e6, 1e20, 1e-9][self.below(5)];
         let whole = self.below(2000) as f64 - 1000.0;
         if self.below(2) == 0 { whole } else { whole * 0.1 * scale }
     }
@@ -281,7 +275,7 @@ impl Random {
     }
 
     /// A program without faults.
-    pub fn program(&mut self, statements: u64) -> String {
+    pub fn program(&mut self, statements: usize) -> String {
         let mut out = String::new();
         self.gap(&mut out);
         for _ in 0..self.below(statements) + 1 {

@@ -293,6 +293,11 @@ impl Parser {
             self.next_as(Role::Prefix);
         }
         let last = self.at;
+        let number = self.tokens[last];
+        if last > first && number.kind == Kind::Number {
+            // `--3` would be two signs: a negative number goes into parentheses, so that the literal keeps its value.
+            self.program.literals[number.payload as usize].wrap_negative = true;
+        }
         let mut expr = operand(self)?;
         for at in (first..last).rev() {
             let sign = self.tokens[at];

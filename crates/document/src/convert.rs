@@ -1,0 +1,63 @@
+//! Between the two forms of a model: programs and model files.
+//!
+//! A model file becomes a program with one statement an object, in the order of the file (parents
+//! first); the way back gives the same objects and numbers. What the language has no words for
+//! travels in comments that begin with `#ms2 `. A program becomes a model file of the objects that
+//! it makes: computed numbers as numbers.
+
+use crate::document::{Document, Source};
+use moldloft_diag::Diagnostic;
+use moldloft_lang::model_file::{prevents_conversion, quoted, to_model_file, to_program};
+use moldloft_syntax::sdl;
+
+/// The forms that a model can be written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A program.
+    Sdl,
+    /// A MultiSurf model file; the version is that of the header, 1.44 without one.
+    ModelFile,
+}
+
+impl Document {
+    /// The model in the other form, or in canonical text of its own.
+    ///
+    /// # Errors
+    /// What is wrong with the model, or which objects the other form cannot hold.
+    ///
+    /// # Example
+    /// ```
+    /// use moldloft_document::{Document, Format, NoFiles, registry};
+    /// let text = "MultiSurf 0.35 /y\nAbsPoint P-1 14 1 0 0 3.6;\nEndModel\n";
+    /// let model = Document::from_text(registry(), Box::new(NoFiles), "p.ms2", text);
+    /// let program = model.convert(Format::Sdl).unwrap();
+    /// assert!(program.ends_with("AbsPoint P_x2d_1(0, 0, 3.6);\n"));
+    /// ```
+    pub fn convert(&self, to: Format) -> Result<String, Vec<Diagnostic>> {
+        let objects = self.graph();
+        let all = self.text_diagnostics.iter().chain(&self.run_diagnostics);
+        let errors: Vec<Diagnostic> =
+            all.filter(|d| prevents_conversion(&self.plain, d)).cloned().collect();
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        match (&self.source, to) {
+            (Source::ModelFile(source), Format::Sdl) => {
+                Ok(to_program(source, self.registry(), &self.plain))
+            }
+            (Source::ModelFile(source), Format::ModelFile) => {
+                let model = source.model();
+                Ok(model.to_canonical(|line| objects.find(model.slice(line.name)).is_none()))
+            }
+            (Source::Program, Format::Sdl) => sdl::format(&self.text()),
+            (Source::Sketch(sketch), Format::Sdl) => {
+                let base = sketch.path.rsplit(['/', '\\']).next().unwrap_or(&sketch.path);
+                Ok(format!("load {};\n", quoted(base)))
+            }
+            (Source::Program | Source::Sketch(_), Format::ModelFile) => {
+                to_model_file(self.modules.get(0), &self.plain)
+            }
+            (Source::None, _) => Ok(String::new()),
+        }
+    }
+}

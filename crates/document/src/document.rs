@@ -1,0 +1,533 @@
+use crate::solve::Solved;
+use indexmap::IndexMap;
+use moldloft_diag::{Diagnostic, Sources};
+use moldloft_lang::World;
+use moldloft_lang::run::interpreter::{Inputs, Settings};
+use moldloft_lang::run::program::{self, Program};
+use moldloft_lang::source::env::{Binding, Evaluation, Param, Seed};
+use moldloft_lang::source::module::Modules;
+use moldloft_lang::source::sketch_file::{self, SketchFile};
+use moldloft_mesh::Mesh;
+use moldloft_model::{Applied, Extent, Graph};
+use moldloft_num::Dual4;
+use moldloft_panel::{Nominal, Panelling};
+use moldloft_registry::{Kept, Registry, Row, Scalar, Value};
+use std::collections::HashSet;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// A model as its user sees it: a text, its parameters, the objects it makes, and what is
+/// computed from them. Opening never fails: what is wrong is in [`Document::diagnostics`].
+pub struct Document {
+    pub(crate) registry: Registry,
+    pub(crate) world: Box<dyn World>,
+    pub(crate) sources: Sources,
+    pub(crate) text_diagnostics: Vec<Diagnostic>,
+    pub(crate) run_diagnostics: Vec<Diagnostic>,
+    pub(crate) source: Source,
+    pub(crate) modules: Modules,
+    /// Values of parameters, and of literals of objects, that differ from the text's.
+    pub(crate) overrides: IndexMap<String, f64>,
+    pub(crate) plain: Evaluation<f64>,
+    pub(crate) dual: Option<Box<Evaluation<Dual4>>>,
+    pub(crate) panelled: Option<(u64, Arc<Panelled>)>,
+    pub(crate) blocked: Option<(u64, Arc<crate::measures::blocks::Blocked>)>,
+    /// The counts of divisions at the text's own values, and the version of the text.
+    nominal: Option<(u64, Nominal)>,
+    pub(crate) applied: Applied,
+    /// The solve sets of the last run.
+    pub(crate) solved: Vec<Solved>,
+    cancelled: Arc<AtomicBool>,
+    /// What calls keep, of the plain run and of those with derivatives alike.
+    kept: Kept,
+    pub(crate) settings: Settings,
+}
+
+/// Where the objects come from.
+pub(crate) enum Source {
+    /// A program; its text is module 0.
+    Program,
+    /// A model file.
+    ModelFile(Box<moldloft_lang::model_file::ModelFileSource>),
+    /// A sketch file: module 0 is an empty program, and the sketch is brought in after it.
+    Sketch(Arc<SketchFile>),
+    /// Nothing: the file could not be read.
+    None,
+}
+
+/// The panels of a model and their positions.
+#[derive(Debug)]
+pub struct Panelled {
+    /// Who computes which vertex.
+    pub panelling: Panelling,
+    /// The mesh.
+    pub mesh: Mesh<f64>,
+}
+
+impl Document {
+    /// Opens the model at `path`.
+    pub fn open(registry: Registry, world: Box<dyn World>, path: &str) -> Self {
+        let mut document = Self::empty(registry, world);
+        match document.world.read(path, None) {
+            Ok(read) => match moldloft_syntax::decode(&read.bytes, &read.name) {
+                Ok(text) => document.take_text(&read.name, text.to_string()),
+                Err(diagnostic) => document.text_diagnostics.push(diagnostic),
+            },
+            Err(error) => {
+                let diagnostic = Diagnostic::error("cannot-read", error.message);
+                document.text_diagnostics.push(diagnostic.maybe_help(error.help));
+            }
+        }
+        document
+    }
+
+    /// A model from a text; the ending of `name` tells a model file (`.ms2`) from a program, and
+    /// without one the first word does.
+    pub fn from_text(registry: Registry, world: Box<dyn World>, name: &str, text: &str) -> Self {
+        let mut document = Self::empty(registry, world);
+        document.take_text(name, text.to_string());
+        document
+    }
+
+    /// As [`Self::from_text`]; setting `cancel` stops a run that is under way, also this first one.
+    pub fn watched(
+        registry: Registry,
+        world: Box<dyn World>,
+        (name, text): (&str, &str),
+        cancel: Arc<AtomicBool>,
+    ) -> Self {
+        let mut document = Self { cancelled: cancel, ..Self::empty(registry, world) };
+        document.take_text(name, text.to_string());
+        document
+    }
+
+    fn empty(registry: Registry, world: Box<dyn World>) -> Self {
+        Self {
+            registry,
+            world,
+            sources: Sources::new(),
+            text_diagnostics: Vec::new(),
+            run_diagnostics: Vec::new(),
+            source: Source::None,
+            modules: Modules::default(),
+            overrides: IndexMap::new(),
+            plain: Evaluation::default(),
+            dual: None,
+            panelled: None,
+            blocked: None,
+            nominal: None,
+            applied: Applied { evaluated: 0, objects: 0, failed: 0 },
+            solved: Vec::new(),
+            cancelled: Arc::default(),
+            kept: Kept::default(),
+            settings: Settings::default(),
+        }
+    }
+
+    fn take_text(&mut self, name: &str, text: String) {
+        let file = self.sources.add(name, text.clone());
+        self.parse(name, text, file);
+        self.run();
+    }
+
+    fn parse(&mut self, name: &str, text: String, file: moldloft_diag::FileId) {
+        let lower = name.to_ascii_lowercase();
+        let model_file = lower.ends_with(".ms2")
+            || (!lower.ends_with(".sdl") && text.trim_start().starts_with("MultiSurf"));
+        let at = (self.modules.len() > 0).then_some(0);
+        if sketch_file::is_sketch(&lower) {
+            let (program, _) = moldloft_syntax::sdl::parse("", file);
+            self.modules.add(name, program, &self.registry, at);
+            self.text_diagnostics = Vec::new();
+            let sketch = SketchFile::open(name, &text, file, &*self.world);
+            self.source = Source::Sketch(Arc::new(sketch));
+        } else if model_file {
+            let (source, diagnostics) =
+                moldloft_lang::model_file::ModelFileSource::parse(text, file);
+            self.text_diagnostics = diagnostics;
+            self.source = Source::ModelFile(Box::new(source));
+        } else {
+            let (program, diagnostics) = moldloft_syntax::sdl::parse(text, file);
+            self.text_diagnostics = diagnostics;
+            self.modules.add(name, program, &self.registry, at);
+            self.source = Source::Program;
+        }
+    }
+
+    /// Replaces the text, as an editor does at every keystroke, and runs it.
+    pub fn set_text(&mut self, text: &str) -> Applied {
+        let file = self.sources.ids().next();
+        let name = file.and_then(|f| self.sources.name(f)).unwrap_or("model.sdl").to_string();
+        let file = match file {
+            Some(file) => {
+                self.sources.replace(file, text);
+                file
+            }
+            None => self.sources.add(name.clone(), text),
+        };
+        // Literals of objects were changed in the old text.
+        let params = &self.plain.env.params;
+        self.overrides
+            .retain(|name, _| !name.contains('.') || params.iter().any(|p| p.name == *name));
+        self.parse(&name, text.to_string(), file);
+        self.run();
+        self.applied
+    }
+
+    /// Runs the model again: only what changed is evaluated.
+    pub fn run(&mut self) -> Applied {
+        self.run_diagnostics.clear();
+        let mut evaluation = std::mem::take(&mut self.plain);
+        let seeds = HashSet::new();
+        self.applied = self.evaluate(&mut evaluation, &|_, x| x, &seeds, true);
+        self.plain = evaluation;
+        self.solved.clear();
+        if !self.plain.env.solves.is_empty() {
+            self.solve();
+        }
+        self.applied
+    }
+
+    /// Runs the source on a graph. `report` says whether what is found goes to the user: a run
+    /// with derivatives repeats what the plain run said.
+    pub(crate) fn evaluate<T: Scalar>(
+        &mut self,
+        evaluation: &mut Evaluation<T>,
+        seed: Seed<'_, T>,
+        seeded_objects: &HashSet<String>,
+        report: bool,
+    ) -> Applied {
+        let mut found = Vec::new();
+        evaluation.graph.obey(self.cancelled.clone());
+        evaluation.graph.keep_in(self.kept.clone());
+        let inputs = Inputs {
+            overrides: &self.overrides,
+            seed,
+            seeded_objects,
+            cancelled: &self.cancelled,
+            settings: self.settings,
+        };
+        let sketch = match &self.source {
+            Source::Sketch(sketch) => Some(sketch.clone()),
+            _ => None,
+        };
+        let program = Program {
+            modules: &mut self.modules,
+            world: &*self.world,
+            registry: &self.registry,
+            sources: &mut self.sources,
+            sketch,
+            converted: moldloft_lang::model_file::converted,
+        };
+        let applied = match &self.source {
+            Source::Program | Source::Sketch(_) => program.run(evaluation, inputs, &mut found),
+            Source::ModelFile(source) => source.run(program, evaluation, inputs, &mut found),
+            Source::None => evaluation.graph.apply(Extent::Whole, |_| ()).1,
+        };
+        if report {
+            found.extend(self.failures(evaluation));
+            found.extend(self.remarks(evaluation));
+            self.run_diagnostics = found;
+        }
+        applied
+    }
+
+    /// The diagnostics of failed objects; what they block is told with them, once.
+    pub(crate) fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+        if evaluation.graph.failed() == 0 {
+            return Vec::new();
+        }
+        let mut blocked: IndexMap<_, Vec<String>> = IndexMap::new();
+        for object in evaluation.graph.objects() {
+            if let Some(by) = object.blocked_by() {
+                blocked.entry(by).or_default().push(object.name.to_string());
+            }
+        }
+        let mut diagnostics = Vec::new();
+        for object in evaluation.graph.objects() {
+            let Some(fault) = object.fault() else { continue };
+            let mut diagnostic = moldloft_lang::source::fault_location::unplaced(fault);
+            diagnostic.message = format!("`{}`: {}", object.name, diagnostic.message);
+            let span = match &self.source {
+                Source::Program | Source::Sketch(_) => {
+                    program::fault_span(&self.modules, &evaluation.env, object, fault)
+                }
+                Source::ModelFile(source) => source.fault_span(object, fault),
+                Source::None => None,
+            };
+            diagnostic = diagnostic.object(&*object.name);
+            if let Some(span) = span {
+                diagnostic = diagnostic.at(span);
+            }
+            for (key, label) in &fault.related {
+                if let Some(span) =
+                    evaluation.graph.get(*key).and_then(|o| self.declared_at(evaluation, o))
+                {
+                    diagnostic = diagnostic.note_at(span, label.clone());
+                }
+            }
+            if let Some(names) = blocked.get(&object.key) {
+                let shown = names.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
+                let more = names.len().saturating_sub(5);
+                let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+                diagnostic =
+                    diagnostic.note(format!("blocked by `{}`: {shown}{more}", object.name));
+            }
+            diagnostics.push(diagnostic);
+        }
+        diagnostics
+    }
+
+    /// The warnings of objects that the user should know something of.
+    pub(crate) fn remarks<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
+        if evaluation.graph.remarked() == 0 {
+            return Vec::new();
+        }
+        let mut diagnostics = Vec::new();
+        for object in evaluation.graph.objects() {
+            for remark in object.value().map(Value::remarks).unwrap_or_default() {
+                let message = format!("`{}`: {}", object.name, remark.message);
+                let mut diagnostic = Diagnostic::warning(remark.id, message).object(&*object.name);
+                if !remark.advice.is_empty() {
+                    diagnostic = diagnostic.help(remark.advice);
+                }
+                if let Some(span) = self.declared_at(evaluation, object) {
+                    diagnostic = diagnostic.at(span);
+                }
+                diagnostics.push(diagnostic);
+            }
+        }
+        diagnostics
+    }
+
+    fn declared_at<T: Scalar>(
+        &self,
+        evaluation: &Evaluation<T>,
+        object: &moldloft_model::Object<T>,
+    ) -> Option<moldloft_diag::Span> {
+        match &self.source {
+            Source::Program | Source::Sketch(_) => {
+                program::declared_at(&self.modules, &evaluation.env, object)
+            }
+            Source::ModelFile(source) => source.declared_at(object),
+            Source::None => None,
+        }
+    }
+
+    /// The counts of divisions at the values of parameters that the text states, when some
+    /// parameter has another: what follows from lengths stays what it is for the text.
+    fn nominal(&mut self) -> Option<Nominal> {
+        if !self.overrides.keys().any(|name| self.params().iter().any(|p| p.name == *name)) {
+            return None;
+        }
+        let version = self.text_version();
+        if let Some((at, nominal)) = &self.nominal
+            && *at == version
+        {
+            return Some(nominal.clone());
+        }
+        let overrides = std::mem::take(&mut self.overrides);
+        let mut evaluation = Evaluation::default();
+        self.evaluate(&mut evaluation, &|_, x| x, &HashSet::new(), false);
+        self.overrides = overrides;
+        let nominal = Panelling::new(&evaluation.graph).ok()?.nominal();
+        self.nominal = Some((version, nominal.clone()));
+        Some(nominal)
+    }
+
+    /// A word that changes with the text, edits of literals included.
+    fn text_version(&self) -> u64 {
+        use std::hash::{DefaultHasher, Hash, Hasher};
+        let mut hasher = DefaultHasher::new();
+        self.text().hash(&mut hasher);
+        hasher.finish()
+    }
+
+    /// All that is wrong or remarkable, in the order of the text's faults, then the run's, then
+    /// what was noticed at the joins when panels were made.
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
+        let mut all: Vec<_> =
+            self.text_diagnostics.iter().chain(&self.run_diagnostics).cloned().collect();
+        if let Some((clock, panelled)) = &self.panelled
+            && *clock == self.plain.graph.last_change()
+        {
+            all.extend(panelled.panelling.remarks().iter().map(|remark| self.told(remark)));
+        }
+        all
+    }
+
+    /// Corners of patches that lie on open edges of others without being joined to them, for checks.
+    ///
+    /// # Errors
+    /// When there would be too many panels.
+    pub fn junctions(&mut self) -> Result<Vec<Diagnostic>, Diagnostic> {
+        let panelled = self.panelled()?;
+        let remarks = panelled.panelling.junctions(&self.plain.graph);
+        Ok(remarks.iter().map(|remark| self.told(remark)).collect())
+    }
+
+    fn told(&self, remark: &moldloft_panel::Remark) -> Diagnostic {
+        let mut diagnostic =
+            Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
+        let object =
+            remark.object().and_then(|name| self.plain.graph.get(self.plain.graph.find(name)?));
+        if let Some(object) = object {
+            diagnostic = diagnostic.object(&*object.name);
+            if let Some(span) = self.declared_at(&self.plain, object) {
+                diagnostic = diagnostic.at(span);
+            }
+        }
+        diagnostic
+    }
+
+    /// True when there is an error.
+    pub fn has_errors(&self) -> bool {
+        self.text_diagnostics.iter().chain(&self.run_diagnostics).any(|d| d.is_error())
+    }
+
+    /// The texts that diagnostics point into.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// The design parameters in order of declaration.
+    pub fn params(&self) -> &[Param] {
+        &self.plain.env.params
+    }
+
+    /// The objects.
+    pub fn graph(&self) -> &Graph<f64> {
+        &self.plain.graph
+    }
+
+    /// What the last change did.
+    pub fn applied(&self) -> Applied {
+        self.applied
+    }
+
+    /// The rows that the model can call.
+    pub fn registry(&self) -> &Registry {
+        &self.registry
+    }
+
+    /// Adds or replaces a row, such as a user's function, and runs again.
+    pub fn add_row(&mut self, row: Row) -> Applied {
+        self.registry.add(row);
+        self.modules.relink(&self.registry);
+        self.run()
+    }
+
+    /// Halves the intervals of all numbers that the program declares by `refined` so often, and
+    /// runs it.
+    ///
+    /// # Errors
+    /// When that is more than [`moldloft_lang::MOST_REFINED`] times.
+    pub fn refine(&mut self, times: u32) -> Result<Applied, Diagnostic> {
+        if times > moldloft_lang::MOST_REFINED {
+            return Err(Diagnostic::error("out-of-range", "this is too fine")
+                .expected(format!("a whole number from 0 to {}", moldloft_lang::MOST_REFINED))
+                .found(times.to_string()));
+        }
+        self.settings.refine = times;
+        Ok(self.run())
+    }
+
+    /// Runs the program with operators applied one after the other to whole arrays: the reference
+    /// that tests compare with.
+    #[doc(hidden)]
+    pub fn with_plain_operators(&mut self) -> Applied {
+        self.settings.plain_operators = true;
+        self.run()
+    }
+
+    /// What the program wrote, by file name; nothing is on the disk yet.
+    pub fn written(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.plain.env.files.written()
+    }
+
+    /// The written files that the host is to make CGNS of, with the names of their blocks: what was
+    /// written is Plot3D, plain binary in double precision.
+    pub fn written_for_cgns(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.plain.env.files.cgns()
+    }
+
+    /// The variables that the program's own files declare: name, type with extents, and value.
+    pub fn variables(&self) -> Vec<(String, String, Value<f64>)> {
+        let names = (0..self.modules.name_count() as u32).map(moldloft_lang::source::module::Name);
+        let mut found = Vec::new();
+        for name in names {
+            let Some(Some(bound)) = self.plain.env.globals.get(name.0 as usize) else { continue };
+            let Binding::Variable { value, .. } = &bound.what else { continue };
+            let modules = (0..self.modules.len()).map(|k| self.modules.get(k));
+            let of_library =
+                modules.clone().any(|m| m.library && m.program.file() == bound.span.file);
+            if !of_library && bound.span.is_known() && !matches!(value, Value::Unset) {
+                let shape = moldloft_lang::value::variables::shape_text(value);
+                found.push((bound.span, self.modules.text(name).to_string(), shape, value.clone()));
+            }
+        }
+        found.sort_by_key(|(span, ..)| (span.file.0, span.start));
+        found.into_iter().map(|(_, name, shape, value)| (name, shape, value)).collect()
+    }
+
+    /// What the program printed.
+    pub fn printed(&self) -> &[String] {
+        &self.plain.env.printed
+    }
+
+    /// Setting this stops a run that is under way.
+    pub fn cancel_handle(&self) -> Arc<AtomicBool> {
+        self.cancelled.clone()
+    }
+
+    /// The text, with direct edits written into it.
+    pub fn text(&self) -> String {
+        match &self.source {
+            Source::Program => self.modules.get(0).program.text_with_edits(),
+            Source::Sketch(sketch) => {
+                self.sources.text(sketch.file).map_or(String::new(), |text| text.to_string())
+            }
+            Source::ModelFile(source) => source.text(),
+            Source::None => String::new(),
+        }
+    }
+
+    /// The planes in which the model is mirrored, as "y" or "xy"; empty for none.
+    pub fn symmetry(&self) -> String {
+        match &self.source {
+            Source::ModelFile(source) => source.symmetry(),
+            _ => moldloft_lang::model_file::header::symmetry(&self.plain.graph),
+        }
+    }
+
+    /// The panels of all shown surfaces, remembered until something changes.
+    ///
+    /// # Errors
+    /// When there would be too many panels.
+    pub fn panelled(&mut self) -> Result<Arc<Panelled>, Diagnostic> {
+        let clock = self.plain.graph.last_change();
+        if let Some((at, panelled)) = &self.panelled
+            && *at == clock
+        {
+            return Ok(panelled.clone());
+        }
+        let unplaced =
+            |f: moldloft_registry::Fault| moldloft_lang::source::fault_location::unplaced(&f);
+        let before = self.panelled.as_ref().map(|(_, p)| p.clone());
+        let before = before.as_ref().map(|p| &p.panelling);
+        let mut panelling =
+            Panelling::renewed(&self.plain.graph, None, before).map_err(unplaced)?;
+        if panelling.is_measured()
+            && let Some(nominal) = self.nominal()
+        {
+            let graph = &self.plain.graph;
+            panelling = Panelling::renewed(graph, Some(&nominal), before).map_err(unplaced)?;
+        }
+        let mesh = panelling.own_mesh().ok_or_else(|| {
+            Diagnostic::error("no-mesh", "the model has no panels").help("show a surface")
+        })?;
+        let panelled = Arc::new(Panelled { panelling, mesh });
+        self.panelled = Some((clock, panelled.clone()));
+        Ok(panelled)
+    }
+}

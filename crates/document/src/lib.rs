@@ -1,0 +1,40 @@
+//! What a user does with a model: open, run, set, rename, convert, solve, measure, derive.
+//!
+//! `text -> run -> Graph -> numbers, panels, derivatives`
+//!
+//! A [`Document`] holds a model as its user sees it: a text, its parameters, the objects it makes.
+//! It is run again at every change; only what changed is evaluated. A run with seeded dual numbers
+//! gives exact derivatives of everything that a plain run computes.
+//!
+//! ```
+//! use moldloft_document::{Document, NoFiles, registry};
+//! use moldloft_registry::Value;
+//!
+//! let text = "param float w = 2 in [1, 3]; AbsPoint A(0, 0, 0); AbsPoint B(w, 0, 0); Line l(A, B);";
+//! let mut model = Document::from_text(registry(), Box::new(NoFiles), "line.sdl", text);
+//! assert!(!model.has_errors());
+//! assert!(matches!(model.eval("l(0.5).x"), Ok(Value::Number(x)) if x == 1.0));
+//! model.set(&[("w".into(), 3.0)]).unwrap();
+//! assert!(matches!(model.eval("l.length"), Ok(Value::Number(x)) if (x - 3.0).abs() < 1e-12));
+//! ```
+//!
+//! Invariant: this crate opens no file; what it reads comes from the host's [`World`].
+
+mod convert;
+mod document;
+mod editor;
+mod measures;
+mod rename;
+mod set;
+mod solve;
+
+pub use convert::Format;
+pub use document::{Document, Panelled};
+pub use editor::{Completion, CompletionKind};
+pub use measures::blocks::Blocked;
+pub use measures::contour_lines::Section;
+pub use measures::floating::{AfloatOptions, FloatAnswer, FloatRequest, Immersion};
+pub use measures::hydrostatics::{Options as FloatOptions, named as named_hydrostatics};
+pub use measures::surface_fields::PatchFields;
+pub use moldloft_lang::{NoFiles, Param, ReadError, ReadText, SolveStatus, World, registry};
+pub use solve::Solved;

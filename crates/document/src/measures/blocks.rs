@@ -1,0 +1,97 @@
+//! Volume meshes of documents.
+
+use crate::Document;
+use moldloft_diag::Diagnostic;
+use moldloft_mesh::{Blocks, BlocksReport};
+use moldloft_num::Vec3;
+use moldloft_panel::Blocking;
+use std::sync::Arc;
+
+/// The blocks of a model with their positions.
+#[derive(Debug)]
+pub struct Blocked {
+    /// Who computes which vertex.
+    pub blocking: Blocking,
+    /// The volume mesh.
+    pub blocks: Blocks,
+    /// Counts, volumes and quality.
+    pub report: BlocksReport,
+}
+
+impl Blocked {
+    /// What is wrong with the mesh: folded cells, and joins that do not hold.
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
+        let folded = self.report.blocks.iter().filter(|b| b.folded > 0).map(|b| {
+            let ([i, j, k], [u, v, w], [x, y, z]) = (b.worst.cell, b.worst.parameters, b.worst.at);
+            let inside_out = b.folded == b.cells;
+            let message = format!(
+                "{} of the {} cells of `{}` have a Jacobian that is not positive",
+                b.folded, b.cells, b.name
+            );
+            let help = if inside_out {
+                "all are: the solid is left-handed; let w run the other way, or swap u and v"
+            } else {
+                "move its faces apart where they cross, or divide it into several solids"
+            };
+            Diagnostic::warning("negative-jacobian", message)
+                .expected("a positive Jacobian at all corners and Gauss points of each cell")
+                .found(format!(
+                    "{:.3e} (scaled {:.3}) in cell ({i}, {j}, {k}) at (u, v, w) = ({u:.3}, {v:.3}, \
+                     {w:.3}), ({x:.6}, {y:.6}, {z:.6})",
+                    b.worst.jacobian, b.worst.scaled_jacobian
+                ))
+                .help(help)
+        });
+        let joins =
+            self.blocking.remarks().iter().map(|r| Diagnostic::warning(r.id(), r.to_string()));
+        folded.chain(joins).collect()
+    }
+}
+
+impl Document {
+    /// The volume mesh of all shown solids, remembered until something changes.
+    ///
+    /// # Errors
+    /// When there are no solids, divisions contradict each other, or there would be too many cells.
+    pub fn blocked(&mut self) -> Result<Arc<Blocked>, Diagnostic> {
+        let clock = self.plain.graph.last_change();
+        if let Some((at, blocked)) = &self.blocked
+            && *at == clock
+        {
+            return Ok(blocked.clone());
+        }
+        let graph = &self.plain.graph;
+        let blocking = Blocking::new(graph)
+            .map_err(|f| moldloft_lang::source::fault_location::unplaced(&f))?;
+        if blocking.is_empty() {
+            return Err(Diagnostic::error("no-blocks", "the model has no solids")
+                .help("declare a solid, such as RuledSolid S(s1, s2)"));
+        }
+        let blocks = blocking
+            .blocks(graph)
+            .ok_or_else(|| Diagnostic::error("no-blocks", "the blocks have no positions"))?;
+        let report = blocks.report();
+        let blocked = Arc::new(Blocked { blocking, blocks, report });
+        self.blocked = Some((clock, blocked.clone()));
+        Ok(blocked)
+    }
+
+    /// Derivatives of all vertices of the volume mesh: `[by][vertex]`.
+    ///
+    /// # Errors
+    /// What is wrong with a name or the mesh.
+    pub fn block_jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
+        let mut columns = Vec::with_capacity(by.len());
+        self.passes(by, |document, evaluation, count| {
+            let blocked = document.blocked().map_err(|d| vec![d])?;
+            let positions = blocked.blocking.positions(&evaluation.graph).ok_or_else(|| {
+                vec![Diagnostic::error("no-blocks", "the blocks have no positions")]
+            })?;
+            for k in 0..count {
+                columns.push(positions.iter().map(|p| p.map(|x| x.eps[k])).collect());
+            }
+            Ok(())
+        })?;
+        Ok(columns)
+    }
+}

@@ -1,0 +1,236 @@
+//! What is computed from a model: expressions, panels, hydrostatics, and their derivatives.
+
+use crate::document::{Document, Source};
+use indexmap::IndexMap;
+use moldloft_diag::Diagnostic;
+use moldloft_lang::run::interpreter::Inputs;
+use moldloft_lang::run::program::Program;
+use moldloft_lang::source::env::Evaluation;
+use moldloft_lang::value::variables::Called as _;
+use moldloft_mesh::{Mesh, measure, measure_patch};
+use moldloft_num::{Dual4, Vec3};
+use moldloft_registry::{Scalar, Value};
+use std::collections::HashSet;
+
+impl Document {
+    /// The value of an expression in the model's names. Besides these it knows `mesh.area`,
+    /// `mesh.volume` and the numbers of the hydrostatics, such as `hydrostatics.volume`.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn eval(&mut self, text: &str) -> Result<Value<f64>, Vec<Diagnostic>> {
+        if let Some((group, number)) = self.whole_name(text) {
+            let panelled = self.panelled().map_err(|d| vec![d])?;
+            return self.whole_number(&panelled.mesh, group, number).map_err(|d| vec![d]);
+        }
+        let mut evaluation = std::mem::take(&mut self.plain);
+        let value = self.eval_in(&mut evaluation, text);
+        self.plain = evaluation;
+        value
+    }
+
+    fn eval_in<T: Scalar>(
+        &mut self,
+        evaluation: &mut Evaluation<T>,
+        text: &str,
+    ) -> Result<Value<T>, Vec<Diagnostic>> {
+        let seeded_objects = HashSet::new();
+        let no_overrides = IndexMap::new();
+        let cancelled = self.cancel_handle();
+        let inputs = Inputs {
+            overrides: &no_overrides,
+            seed: &|_, x| x,
+            seeded_objects: &seeded_objects,
+            cancelled: &cancelled,
+            settings: self.settings,
+        };
+        let program = Program {
+            modules: &mut self.modules,
+            world: &*self.world,
+            registry: &self.registry,
+            sources: &mut self.sources,
+            sketch: None,
+            converted: moldloft_lang::model_file::converted,
+        };
+        program.eval(evaluation, inputs, text)
+    }
+
+    /// The parts of `mesh.area`, `hydrostatics.volume` (unless the model has such an object) or
+    /// `hull.volume` of a surface: numbers of the joined panels.
+    fn whole_name<'t>(&self, text: &'t str) -> Option<(&'t str, &'t str)> {
+        let (group, number) = text.trim().rsplit_once('.')?;
+        let word = number.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let object = self.graph().find(group).and_then(|key| self.graph().get(key));
+        let known = match object {
+            Some(object) => {
+                matches!(object.value(), Some(Value::Surface(_)))
+                    && object.head.shown()
+                    && matches!(number, "area" | "volume")
+            }
+            None => matches!(group, "mesh" | "hydrostatics"),
+        };
+        (known && word).then_some((group, number))
+    }
+
+    /// A number of the whole model.
+    fn whole_number<T: Scalar>(
+        &self,
+        mesh: &Mesh<T>,
+        group: &str,
+        number: &str,
+    ) -> Result<Value<T>, Diagnostic> {
+        let patch = mesh.patches().iter().position(|p| p.info.name == group);
+        let numbers = if patch.is_some() || group == "mesh" {
+            let measures = patch.map_or_else(|| measure(mesh), |k| measure_patch(mesh, k));
+            vec![("area", Value::Number(measures.area)), ("volume", Value::Number(measures.volume))]
+        } else {
+            crate::measures::hydrostatics::numbers(mesh, &self.hydrostatic_options())?
+        };
+        if let Some((_, value)) = numbers.iter().find(|(name, _)| *name == number) {
+            return Ok(value.clone());
+        }
+        let known: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
+        Err(Diagnostic::error("unknown-member", format!("{group} has no `{number}`"))
+            .expected(known.join(", "))
+            .suggest(number, known.iter().copied()))
+    }
+
+    /// Derivatives of expressions by parameters (or literals of objects): `[expression][by]`,
+    /// each of the expression's own shape.
+    ///
+    /// # Errors
+    /// What is wrong with an expression or a name.
+    pub fn derivatives(
+        &mut self,
+        expressions: &[String],
+        by: &[String],
+    ) -> Result<Vec<Vec<Value<f64>>>, Vec<Diagnostic>> {
+        let mut columns: Vec<Vec<Value<f64>>> = vec![Vec::new(); expressions.len()];
+        self.passes(by, |document, evaluation, count| {
+            for (text, column) in expressions.iter().zip(&mut columns) {
+                let value = match document.whole_name(text) {
+                    Some((group, number)) => {
+                        let panelled = document.panelled().map_err(|d| vec![d])?;
+                        let mesh = panelled.panelling.mesh(&evaluation.graph);
+                        let mesh = mesh.ok_or_else(|| vec![no_mesh()])?;
+                        document.whole_number(&mesh, group, number).map_err(|d| vec![d])?
+                    }
+                    None => document.eval_in(evaluation, text)?,
+                };
+                for k in 0..count {
+                    column.push(derivative_part(&value, k).ok_or_else(|| {
+                        vec![
+                            Diagnostic::error(
+                                "not-a-number",
+                                format!("`{text}` has no derivative"),
+                            )
+                            .expected("a number, a vector, or a row or grid of them")
+                            .found(value.called()),
+                        ]
+                    })?);
+                }
+            }
+            Ok(())
+        })?;
+        Ok(columns)
+    }
+
+    /// Derivatives of all mesh vertices: `[by][vertex]`.
+    ///
+    /// # Errors
+    /// What is wrong with a name or the mesh.
+    pub fn jacobian(&mut self, by: &[String]) -> Result<Vec<Vec<Vec3>>, Vec<Diagnostic>> {
+        let mut columns = Vec::with_capacity(by.len());
+        self.passes(by, |document, evaluation, count| {
+            let panelled = document.panelled().map_err(|d| vec![d])?;
+            let positions = panelled.panelling.positions(&evaluation.graph);
+            let positions = positions.ok_or_else(|| vec![no_mesh()])?;
+            for k in 0..count {
+                columns.push(positions.iter().map(|p| p.map(|x| x.eps[k])).collect());
+            }
+            Ok(())
+        })?;
+        Ok(columns)
+    }
+
+    /// Runs the model with seeded numbers, four directions a pass, and hands each pass on with
+    /// the number of directions in use.
+    pub(crate) fn passes(
+        &mut self,
+        by: &[String],
+        mut each: impl FnMut(&mut Self, &mut Evaluation<Dual4>, usize) -> Result<(), Vec<Diagnostic>>,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let mut seeded_objects = HashSet::new();
+        for name in by {
+            if self.params().iter().any(|p| p.name == *name) {
+                continue;
+            }
+            let edit = self.literal(name, 0.0).map_err(|d| vec![d])?;
+            let object = self.plain.graph.get(edit.key).expect("found just now");
+            seeded_objects.insert(object.name.to_string());
+        }
+        let mut evaluation = self.dual.take().unwrap_or_default();
+        let mut outcome = Ok(());
+        for pass in by.chunks(4) {
+            let seed = |name: &str, mut x: Dual4| {
+                for (eps, _) in x.eps.iter_mut().zip(pass).filter(|(_, p)| *p == name) {
+                    *eps = 1.0;
+                }
+                x
+            };
+            let unknowns = self.seeded_unknowns(&mut evaluation, &seed, &seeded_objects);
+            let seed =
+                |name: &str, x: Dual4| unknowns.get(name).copied().unwrap_or_else(|| seed(name, x));
+            self.evaluate(&mut evaluation, &seed, &seeded_objects, false);
+            outcome = each(self, &mut evaluation, pass.len());
+            if outcome.is_err() {
+                break;
+            }
+        }
+        self.dual = Some(evaluation);
+        outcome
+    }
+
+    /// The options of the model's hydrostatics: afloat at z = 0, mirrored as its header says.
+    pub fn hydrostatic_options(&self) -> crate::measures::hydrostatics::Options {
+        crate::measures::hydrostatics::Options {
+            mirrored: self.symmetry().contains('y'),
+            ..Default::default()
+        }
+    }
+
+    /// True when objects come from a program.
+    pub fn is_program(&self) -> bool {
+        matches!(self.source, Source::Program)
+    }
+}
+
+pub(crate) fn no_mesh() -> Diagnostic {
+    Diagnostic::error("no-mesh", "the model has no panels")
+        .help("declare a surface, and show it (visible = 1)")
+}
+
+/// The derivative in direction `k`, in the shape of the value.
+fn derivative_part(value: &Value<Dual4>, k: usize) -> Option<Value<f64>> {
+    use moldloft_registry::{Array, Vectors};
+    use std::sync::Arc;
+    let part = |x: Dual4| x.eps[k];
+    Some(match value {
+        Value::Number(x) => Value::Number(part(*x)),
+        Value::Vector(v) => Value::Vector(v.map(part)),
+        Value::Point(p) => Value::Vector(p.xyz.map(part)),
+        Value::Numbers(a) => Value::Numbers(Arc::new(Array {
+            shape: a.shape,
+            items: a.items.iter().map(|&x| part(x)).collect(),
+        })),
+        Value::Vectors(a) => {
+            let planes = a.planes.each_ref().map(|p| p.iter().map(|&x| part(x)).collect());
+            Value::Vectors(Arc::new(Vectors { shape: a.shape, planes }))
+        }
+        Value::List(items) => {
+            let parts: Option<Vec<_>> = items.iter().map(|v| derivative_part(v, k)).collect();
+            Value::list(parts?)
+        }
+        _ => return None,
+    })
+}

@@ -1,0 +1,8 @@
+//! Numbers and fields of a model: values of expressions, derivatives, hydrostatics, contour lines, blocks.
+
+pub(crate) mod blocks;
+pub(crate) mod contour_lines;
+pub(crate) mod expressions;
+pub(crate) mod floating;
+pub(crate) mod hydrostatics;
+pub(crate) mod surface_fields;

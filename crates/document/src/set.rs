@@ -1,0 +1,255 @@
+//! Direct edits: parameters and literals of objects set to numbers, as the text itself would say them.
+
+use crate::document::{Document, Source};
+use moldloft_diag::Diagnostic;
+use moldloft_lang::run::program;
+use moldloft_lang::value::number_path::NumberPath;
+use moldloft_model::{Applied, Extent};
+use moldloft_registry::Class;
+
+impl Document {
+    /// Sets parameters and literals of objects (`P21.y`), all or none, and evaluates what they
+    /// reach.
+    ///
+    /// # Errors
+    /// What is wrong with the assignments; the model is then as before.
+    pub fn set(&mut self, assignments: &[(String, f64)]) -> Result<Applied, Vec<Diagnostic>> {
+        let before = self.overrides.clone();
+        let mut edits = Vec::new();
+        let mut errors = Vec::new();
+        let mut rerun = false;
+        for (name, value) in assignments {
+            // Minus zero is written as zero, so it is zero.
+            let value = &(value + 0.0);
+            if self.params().iter().any(|p| p.name == *name) {
+                if let Err(diagnostic) = self.check_param(name, *value) {
+                    errors.push(diagnostic);
+                }
+                self.overrides.insert(name.clone(), *value);
+                rerun = true;
+            } else {
+                match self.literal(name, *value).and_then(|edit| self.in_range(name, edit)) {
+                    Ok(edit) => edits.push(edit),
+                    Err(diagnostic) => errors.push(diagnostic),
+                }
+            }
+        }
+        if !errors.is_empty() {
+            self.overrides = before;
+            return Err(errors);
+        }
+        // Conditions may have changed.
+        rerun |= !self.solved.is_empty();
+        for edit in &edits {
+            rerun |= self.must_rerun(edit);
+        }
+        for edit in &edits {
+            self.write_literal(edit).map_err(|d| vec![d])?;
+        }
+        if rerun {
+            return Ok(self.run());
+        }
+        self.edit(&edits);
+        Ok(self.applied)
+    }
+
+    fn check_param(&self, name: &str, value: f64) -> Result<(), Diagnostic> {
+        let Some(param) = self.params().iter().find(|p| p.name == name) else { return Ok(()) };
+        let wrong = |expected: String| {
+            Diagnostic::error("out-of-range", format!("`{name}` = {value} is out of its range"))
+                .at(param.span)
+                .expected(expected)
+                .found(value.to_string())
+        };
+        if !value.is_finite() {
+            return Err(wrong("a finite number".into()));
+        }
+        match param.range {
+            Some((low, high)) if !(low..=high).contains(&value) => {
+                Err(wrong(format!("a number from {low} to {high}")))
+            }
+            _ if param.is_int && value.fract() != 0.0 => Err(wrong("a whole number".into())),
+            _ => Ok(()),
+        }
+    }
+
+    /// The literal that `name` (`P21.y`) means.
+    pub(crate) fn literal(&self, name: &str, value: f64) -> Result<LiteralEdit, Diagnostic> {
+        if !value.is_finite() {
+            return Err(Diagnostic::error("not-finite", format!("`{name}` cannot be {value}"))
+                .expected("a finite number")
+                .found(value.to_string()));
+        }
+        let graph = &self.plain.graph;
+        // The object's own name may contain dots: the longest that is one wins.
+        let split = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| k);
+        let found =
+            split.map(|k| name.split_at(k)).find_map(|(o, path)| Some((graph.find(o)?, path)));
+        let Some((key, path)) = found else {
+            let params = self.params().iter().map(|p| p.name.as_str());
+            let objects = graph.objects().map(|o| o.name.as_ref());
+            let stem = name.split('.').next().unwrap_or(name);
+            return Err(Diagnostic::error(
+                "unknown-name",
+                format!("there is nothing called `{name}` to set"),
+            )
+            .expected("a parameter, or a number of an object such as P21.y")
+            .suggest(stem, params.chain(objects)));
+        };
+        let object = graph.get(key).expect("found above");
+        let fields = || object.row.fields.iter().map(|f| f.name).collect::<Vec<_>>().join(", ");
+        let Some(path) = NumberPath::parse(&object.row, path) else {
+            return Err(Diagnostic::error(
+                "unknown-member",
+                format!("{} `{}` has no number `{}`", object.row.name, object.name, &path[1..]),
+            )
+            .expected(fields()));
+        };
+        let mut args = object.args.clone();
+        if path.change(&mut args, |_| value).is_none() {
+            return Err(Diagnostic::error("not-a-number", format!("`{name}` is not a number"))
+                .help(
+                    "only numbers can be set; edit the text to change what an object is built on",
+                ));
+        }
+        if let Some(sketch) = self.plain.env.sketches.iter().find(|s| {
+            object.name.strip_prefix(s.as_str()).is_some_and(|rest| rest.starts_with('.'))
+        }) {
+            let start = format!("{sketch}.");
+            let params = self.params().iter().filter(|p| p.name.starts_with(&start));
+            let params: Vec<&str> = params.map(|p| p.name.as_str()).collect();
+            return Err(Diagnostic::error(
+                "not-a-literal",
+                format!("`{name}` follows from the dimensions of the sketch"),
+            )
+            .help(format!("set a dimension: {}", params.join(", "))));
+        }
+        let place = match &self.source {
+            Source::Program | Source::Sketch(_) => {
+                program::literal(&self.modules, &self.plain.env, object, &path)
+                    .map(LiteralPlace::Program)
+            }
+            Source::ModelFile(source) => source.literal(object, &path).map(LiteralPlace::ModelFile),
+            Source::None => unreachable!("there are objects"),
+        };
+        let place = place.map_err(|why| self.not_literal(name, why))?;
+        Ok(LiteralEdit { key, path, place, value })
+    }
+
+    /// The edit, when a run of the edited text would take the number.
+    fn in_range(&self, name: &str, edit: LiteralEdit) -> Result<LiteralEdit, Diagnostic> {
+        let object = self.plain.graph.get(edit.key).expect("the object of an edit");
+        if let LiteralPlace::Program((module, _)) = edit.place
+            && module != 0
+        {
+            let file = &self.modules.get(module).path;
+            return Err(Diagnostic::error("not-here", format!("`{name}` cannot be set here"))
+                .found(format!("a number in the loaded file `{file}`"))
+                .help("edit that file, or make the number a parameter of this one"));
+        }
+        let (field, x) = (&object.row.fields[edit.path.field], edit.value);
+        let low = field.min.unwrap_or(f64::NEG_INFINITY);
+        let high = field.max.unwrap_or(f64::INFINITY);
+        let whole = field.class != Class::Integer || x.fract() == 0.0;
+        if whole && (low..=high).contains(&x) {
+            return Ok(edit);
+        }
+        let kind = if field.class == Class::Integer { "a whole number" } else { "a number" };
+        Err(Diagnostic::error("out-of-range", format!("`{name}` = {x} is out of range"))
+            .expected(format!("{kind} from {low} to {high}"))
+            .found(x.to_string()))
+    }
+
+    fn not_literal(&self, name: &str, why: program::NotLiteral) -> Diagnostic {
+        match why {
+            program::NotLiteral::Expression { span, names } => {
+                let params: Vec<&str> = self
+                    .params()
+                    .iter()
+                    .map(|p| p.name.as_str())
+                    .filter(|p| names.iter().any(|n| n == p))
+                    .collect();
+                let diagnostic = Diagnostic::error(
+                    "not-a-literal",
+                    format!("`{name}` is computed and cannot be set by itself"),
+                )
+                .at(span)
+                .expected("a number written as such");
+                if params.is_empty() {
+                    diagnostic.help("edit the expression")
+                } else {
+                    diagnostic.help(format!("set what it is computed from: {}", params.join(", ")))
+                }
+            }
+            program::NotLiteral::Shared { span } => Diagnostic::error(
+                "not-a-literal",
+                format!("`{name}` shares its number with other objects made by the same statement"),
+            )
+            .at(span)
+            .help("edit the text, or make the number a parameter"),
+            program::NotLiteral::Default => Diagnostic::error(
+                "not-a-literal",
+                format!("`{name}` is not written in the text: it is a default"),
+            )
+            .help("write it in the text first"),
+        }
+    }
+
+    fn must_rerun(&self, edit: &LiteralEdit) -> bool {
+        let graph = &self.plain.graph;
+        let read = |key| graph.get(key).is_some_and(|o| o.read_by_program);
+        read(edit.key) || (graph.any_read() && graph.dependents(edit.key).into_iter().any(read))
+    }
+
+    fn write_literal(&mut self, edit: &LiteralEdit) -> Result<(), Diagnostic> {
+        match (&edit.place, &mut self.source) {
+            (LiteralPlace::Program((module, literal)), _) => {
+                self.modules.get_mut(*module).program.set_literal(*literal, edit.value)
+            }
+            (LiteralPlace::ModelFile(number), Source::ModelFile(source)) => {
+                source.set(*number, edit.value)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The direct edit: the same change as a run with the new literals would make.
+    fn edit(&mut self, edits: &[LiteralEdit]) {
+        let failed = self.plain.graph.failed();
+        let remarked = self.plain.graph.remarked();
+        let ((), applied) = self.plain.graph.apply(Extent::Edit, |run| {
+            for edit in edits {
+                let Some(object) = run.graph().get(edit.key) else { continue };
+                let mut args = object.args.clone();
+                if edit.path.change(&mut args, |_| edit.value).is_some() {
+                    // The parents stay the same, so no cycle can arise.
+                    let _ = run.set_args(edit.key, args);
+                }
+            }
+        });
+        self.applied = applied;
+        if failed > 0 || applied.failed > 0 || remarked > 0 || self.plain.graph.remarked() > 0 {
+            let evaluation = std::mem::take(&mut self.plain);
+            self.run_diagnostics.retain(|d| d.object.is_none());
+            let failures = self.failures(&evaluation);
+            self.run_diagnostics.extend(failures);
+            let remarks = self.remarks(&evaluation);
+            self.run_diagnostics.extend(remarks);
+            self.plain = evaluation;
+        }
+    }
+}
+
+/// A change of one number in the text.
+pub(crate) struct LiteralEdit {
+    pub key: moldloft_num::trace::Key,
+    pub path: NumberPath,
+    pub place: LiteralPlace,
+    pub value: f64,
+}
+
+/// Where a number stands.
+pub(crate) enum LiteralPlace {
+    Program((usize, moldloft_syntax::sdl::LiteralId)),
+    ModelFile(moldloft_lang::model_file::ModelNumber),
+}

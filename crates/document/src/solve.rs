@@ -1,0 +1,437 @@
+//! Solve sets: parameters that are found so that conditions hold.
+//!
+//! `param float x = 2 in [0, 5]; ... SolveSet s({x}, {hull.volume - 100});`
+//!
+//! The unknowns are parameters, so whatever is built on them is built on their solution, and no
+//! cycle can arise: a condition is any number of the program that comes out of them. The document
+//! runs the program with the unknowns at their written values, reads the conditions, and takes
+//! damped Newton steps with the Jacobian of a run with dual numbers until they vanish. A run with
+//! derivatives seeds the unknowns with dx/dp = -(G_x)^-1 G_p (implicit function theorem), so that
+//! everything downstream differentiates exactly.
+//!
+//! The answer depends on the text and the parameters' given values only: each run starts from
+//! these. There are as many conditions as unknowns: a least-squares answer would have no exact
+//! derivatives from first ones. Several sets are solved one after the other; a condition may depend
+//! on the unknowns of its own set and of those before.
+
+use crate::document::Document;
+use indexmap::IndexMap;
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_lang::SolveStatus;
+use moldloft_num::Dual4;
+use std::collections::HashSet;
+
+/// The report on a solve set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solved {
+    /// The name of the set.
+    pub name: String,
+    /// The unknowns.
+    pub unknowns: Vec<String>,
+    /// Where the search began.
+    pub starts: Vec<f64>,
+    /// Where it ended.
+    pub values: Vec<f64>,
+    /// The conditions there.
+    pub residuals: Vec<f64>,
+    /// How many steps were taken.
+    pub iterations: usize,
+    /// How it ended.
+    pub status: SolveStatus,
+    /// The derivatives of the conditions by the unknowns there, by rows.
+    jacobian: Vec<Vec<f64>>,
+    /// The declaration.
+    span: Span,
+}
+
+/// A step smaller than this share of the unknowns' sizes ends the search: the error of the next is
+/// its square.
+const SMALL_STEP: f64 = 1e-10;
+
+/// Where rounding hides any progress, a step smaller than this will do.
+const ROUNDED_STEP: f64 = 1e-7;
+
+/// A step is halved at most so often.
+const HALVINGS: usize = 24;
+
+/// Pivots below this share of the largest are zero.
+const NO_PIVOT: f64 = 1e-11;
+
+impl Document {
+    /// The reports on the solve sets of the last run, in order.
+    pub fn solved(&self) -> &[Solved] {
+        &self.solved
+    }
+
+    /// Solves all sets of the run that was made, and runs the model with the solution.
+    pub(crate) fn solve(&mut self) {
+        let count = self.plain.env.solves.len();
+        let mut values: IndexMap<String, f64> = IndexMap::new();
+        let mut reports: Vec<Solved> = Vec::new();
+        for at in 0..count {
+            // What failed before leaves its unknowns where they were.
+            let report = self.solve_one(at, &mut values);
+            reports.push(report);
+        }
+        self.trial(&values, true);
+        let mut found: Vec<Diagnostic> = reports.iter().filter_map(Solved::diagnostic).collect();
+        found.extend(self.out_of_order(&reports, &values));
+        for report in &mut reports {
+            let param = |name: &String| self.plain.env.params.iter().find(|p| p.name == *name);
+            let now = report.unknowns.iter().filter_map(param).map(|p| p.value);
+            report.values = now.collect();
+            if let Some(solve) = self.plain.env.solves.iter().find(|s| *s.name == *report.name) {
+                report.residuals = solve.conditions.clone();
+            }
+        }
+        self.run_diagnostics.extend(found);
+        self.plain.env.solved =
+            reports.iter().map(|r| (r.name.clone(), (r.iterations, r.status))).collect();
+        self.solved = reports;
+    }
+
+    /// Runs the model with these values of unknowns.
+    fn trial(&mut self, values: &IndexMap<String, f64>, report: bool) {
+        let mut evaluation = std::mem::take(&mut self.plain);
+        let seed = |name: &str, x: f64| values.get(name).copied().unwrap_or(x);
+        self.applied = self.evaluate(&mut evaluation, &seed, &HashSet::new(), report);
+        self.plain = evaluation;
+    }
+
+    /// The conditions of set `at` of the last run; `None` when it came to none.
+    fn conditions(&self, at: usize, unknowns: usize) -> Option<Vec<f64>> {
+        let solve = self.plain.env.solves.get(at)?;
+        let finite = solve.conditions.iter().all(|c| c.is_finite());
+        (finite && solve.conditions.len() == unknowns).then(|| solve.conditions.clone())
+    }
+
+    /// The derivatives of the conditions of set `at` by parameters, as rows.
+    fn conditions_by(
+        &mut self,
+        at: usize,
+        names: &[String],
+        values: &IndexMap<String, f64>,
+    ) -> Option<Vec<Vec<f64>>> {
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        let mut evaluation = self.dual.take().unwrap_or_default();
+        let mut complete = true;
+        for pass in names.chunks(4) {
+            let seed = |name: &str, mut x: Dual4| {
+                if let Some(value) = values.get(name) {
+                    x = Dual4::from(*value);
+                }
+                match pass.iter().position(|p| p == name) {
+                    Some(k) => Dual4::seeded(x.re, k),
+                    None => x,
+                }
+            };
+            self.evaluate(&mut evaluation, &seed, &HashSet::new(), false);
+            let Some(solve) = evaluation.env.solves.get(at) else {
+                complete = false;
+                break;
+            };
+            rows.resize(solve.conditions.len(), Vec::new());
+            for (row, c) in rows.iter_mut().zip(&solve.conditions) {
+                row.extend(&c.eps[..pass.len()]);
+            }
+        }
+        self.dual = Some(evaluation);
+        let finite = rows.iter().flatten().all(|x| x.is_finite());
+        (complete && finite).then_some(rows)
+    }
+
+    fn solve_one(&mut self, at: usize, values: &mut IndexMap<String, f64>) -> Solved {
+        let solve = &self.plain.env.solves[at];
+        let params: Vec<_> =
+            solve.unknowns.iter().map(|&n| self.plain.env.params[n].clone()).collect();
+        let names: Vec<String> = params.iter().map(|p| p.name.clone()).collect();
+        let starts: Vec<f64> = params.iter().map(|p| p.value).collect();
+        let steps = solve.steps;
+        let mut report = Solved {
+            name: solve.name.to_string(),
+            unknowns: names.clone(),
+            starts: starts.clone(),
+            values: starts.clone(),
+            residuals: solve.conditions.clone(),
+            iterations: 0,
+            status: SolveStatus::TooManySteps,
+            jacobian: Vec::new(),
+            span: solve.span,
+        };
+        let n = names.len();
+        let mut x = starts.clone();
+        let mut weights: Option<Vec<f64>> = None;
+        let with = |x: &[f64], values: &IndexMap<String, f64>| {
+            let mut all = values.clone();
+            all.extend(names.iter().cloned().zip(x.iter().copied()));
+            all
+        };
+        self.trial(&with(&x, values), false);
+        let Some(mut r) = self.conditions(at, n) else {
+            report.status = SolveStatus::NoModel;
+            return report;
+        };
+        let size = |x: &[f64], j: usize| match x[j].abs().max(starts[j].abs()) {
+            0.0 => 1.0,
+            size => size,
+        };
+        let mut small = false;
+        loop {
+            let Some(jacobian) = self.conditions_by(at, &names, &with(&x, values)) else {
+                report.status = SolveStatus::NoModel;
+                break;
+            };
+            report.jacobian = jacobian;
+            if small || r.iter().all(|r| *r == 0.0) {
+                report.status = SolveStatus::Solved;
+                break;
+            }
+            if report.iterations == steps {
+                break;
+            }
+            let scaled: Vec<Vec<f64>> = report
+                .jacobian
+                .iter()
+                .map(|row| row.iter().enumerate().map(|(j, d)| d * size(&x, j)).collect())
+                .collect();
+            // Conditions may have different units: each counts by what the unknowns do to it.
+            let weights = weights.get_or_insert_with(|| {
+                let largest = |row: &Vec<f64>| row.iter().fold(0.0f64, |m, d| m.max(d.abs()));
+                scaled.iter().map(|row| 1.0 / largest(row).max(f64::MIN_POSITIVE.sqrt())).collect()
+            });
+            let Some(step) = solved(&scaled, &r) else {
+                report.status = SolveStatus::Singular;
+                break;
+            };
+            let step: Vec<f64> = (0..n).map(|j| -step[j] * size(&x, j)).collect();
+            let merit = |r: &[f64]| {
+                r.iter().zip(weights.iter()).map(|(r, w)| (r * w) * (r * w)).sum::<f64>()
+            };
+            let relative = |from: &[f64], to: &[f64]| {
+                (0..n).fold(0.0f64, |m, j| m.max((to[j] - from[j]).abs() / size(from, j)))
+            };
+            let now = merit(&r);
+            let mut share = 1.0;
+            let mut accepted = None;
+            let mut bounded = false;
+            for _ in 0..HALVINGS {
+                let next: Vec<f64> = (0..n)
+                    .map(|j| match params[j].range {
+                        Some((low, high)) => (x[j] + share * step[j]).clamp(low, high),
+                        None => x[j] + share * step[j],
+                    })
+                    .collect();
+                bounded = (0..n).any(|j| next[j] != x[j] + share * step[j]);
+                if next == x {
+                    break;
+                }
+                self.trial(&with(&next, values), false);
+                if let Some(found) = self.conditions(at, n)
+                    && merit(&found) < now * (1.0 - 1e-4 * share)
+                {
+                    accepted = Some((next, found));
+                    break;
+                }
+                share *= 0.5;
+            }
+            let whole: Vec<f64> = (0..n).map(|j| x[j] + step[j]).collect();
+            match accepted {
+                Some((next, found)) => {
+                    report.iterations += 1;
+                    small = share == 1.0 && !bounded && relative(&x, &next) <= SMALL_STEP;
+                    (x, r) = (next, found);
+                }
+                None if relative(&x, &whole) <= ROUNDED_STEP => small = true,
+                None => {
+                    report.status =
+                        if bounded { SolveStatus::OutOfRange } else { SolveStatus::Stuck };
+                    break;
+                }
+            }
+        }
+        report.values = x.clone();
+        report.residuals = r;
+        if report.status == SolveStatus::Solved {
+            *values = with(&x, values);
+        }
+        report
+    }
+
+    /// Conditions that depend on unknowns of later sets.
+    fn out_of_order(
+        &mut self,
+        reports: &[Solved],
+        values: &IndexMap<String, f64>,
+    ) -> Vec<Diagnostic> {
+        let mut found = Vec::new();
+        for (at, report) in reports.iter().enumerate() {
+            let later: Vec<String> =
+                reports[at + 1..].iter().flat_map(|r| r.unknowns.clone()).collect();
+            let rows = if later.is_empty() { None } else { self.conditions_by(at, &later, values) };
+            let touched = later.iter().enumerate().find(|(j, _)| {
+                rows.as_ref().is_some_and(|rows| rows.iter().any(|row| row[*j] != 0.0))
+            });
+            if let Some((_, name)) = touched {
+                found.push(
+                    Diagnostic::error(
+                        "unsolved",
+                        format!("`{}` depends on `{name}`, which is found later", report.name),
+                    )
+                    .at(report.span)
+                    .expected("conditions of its own unknowns and those of sets before")
+                    .help("put both into one solve set, or change their order")
+                    .object(&*report.name),
+                );
+            }
+        }
+        found
+    }
+
+    /// The derivatives of all unknowns in the directions of `seed`, which gives parameters and
+    /// literals theirs.
+    pub(crate) fn seeded_unknowns(
+        &mut self,
+        evaluation: &mut moldloft_lang::source::env::Evaluation<Dual4>,
+        seed: &(dyn Fn(&str, Dual4) -> Dual4 + Sync),
+        seeded_objects: &HashSet<String>,
+    ) -> IndexMap<String, Dual4> {
+        let reports = self.solved.clone();
+        let solution = || reports.iter().flat_map(|r| r.unknowns.iter().zip(&r.values));
+        let mut known: IndexMap<String, Dual4> =
+            solution().map(|(name, x)| (name.clone(), Dual4::from(*x))).collect();
+        for (at, report) in reports.iter().enumerate() {
+            if report.status != SolveStatus::Solved {
+                continue;
+            }
+            let with =
+                |name: &str, x: Dual4| known.get(name).copied().unwrap_or_else(|| seed(name, x));
+            self.evaluate(evaluation, &with, seeded_objects, false);
+            let Some(solve) = evaluation.env.solves.get(at) else { continue };
+            for k in 0..4 {
+                let by: Vec<f64> = solve.conditions.iter().map(|c| c.eps[k]).collect();
+                if by.iter().all(|d| *d == 0.0) {
+                    continue;
+                }
+                let Some(change) = solved(&report.jacobian, &by) else { continue };
+                for (name, change) in report.unknowns.iter().zip(change) {
+                    if let Some(x) = known.get_mut(name) {
+                        x.eps[k] = -change;
+                    }
+                }
+            }
+        }
+        known
+    }
+}
+
+impl Solved {
+    fn diagnostic(&self) -> Option<Diagnostic> {
+        let list = |xs: &[f64]| xs.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+        let names = self.unknowns.join(", ");
+        let (message, help) = match self.status {
+            SolveStatus::Solved => return None,
+            SolveStatus::Singular => (
+                "its conditions do not determine the unknowns".to_string(),
+                match self.without_effect() {
+                    Some(name) => format!("no condition depends on `{name}`"),
+                    None => "two conditions may say the same, or nothing changes at the start: \
+                             begin elsewhere"
+                        .to_string(),
+                },
+            ),
+            SolveStatus::OutOfRange => (
+                "there is no solution within the ranges".to_string(),
+                "widen a range, or begin elsewhere".to_string(),
+            ),
+            SolveStatus::Stuck => (
+                "the search comes no nearer to a solution".to_string(),
+                "there may be none; or begin nearer to it".to_string(),
+            ),
+            SolveStatus::TooManySteps => (
+                format!("{} steps do not lead to a solution", self.iterations),
+                "begin nearer to it, or allow more `steps`".to_string(),
+            ),
+            SolveStatus::NoModel => (
+                "its conditions have no values at the start".to_string(),
+                "begin with values for which the model can be built".to_string(),
+            ),
+        };
+        Some(
+            Diagnostic::error("unsolved", format!("`{}` is not solved: {message}", self.name))
+                .at(self.span)
+                .expected("conditions that become zero")
+                .found(format!(
+                    "the conditions {} at {names} = {} after {} steps from {}",
+                    list(&self.residuals),
+                    list(&self.values),
+                    self.iterations,
+                    list(&self.starts),
+                ))
+                .help(help)
+                .object(&*self.name),
+        )
+    }
+
+    /// An unknown that changes no condition.
+    fn without_effect(&self) -> Option<&str> {
+        let still = |j: &usize| self.jacobian.iter().all(|row| row[*j] == 0.0);
+        (0..self.unknowns.len()).find(still).map(|j| self.unknowns[j].as_str())
+    }
+}
+
+/// The solution of a small system, by elimination with full pivoting on rows of equal size; `None`
+/// when it is singular.
+fn solved(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
+    let n = right.len();
+    let mut a: Vec<Vec<f64>> = Vec::with_capacity(n);
+    for (row, b) in matrix.iter().zip(right) {
+        let size = row.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        if size == 0.0 || !size.is_finite() {
+            return None;
+        }
+        a.push(row.iter().chain([b]).map(|x| x / size).collect());
+    }
+    let mut columns: Vec<usize> = (0..n).collect();
+    for k in 0..n {
+        let places = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
+        let (i, j) = places.fold((k, k), |best, at| {
+            if a[at.0][at.1].abs() > a[best.0][best.1].abs() { at } else { best }
+        });
+        // Written so that NaN is refused.
+        let sound = a[i][j].abs() > NO_PIVOT;
+        if !sound {
+            return None;
+        }
+        a.swap(k, i);
+        columns.swap(k, j);
+        a.iter_mut().for_each(|row| row.swap(k, j));
+        let pivot = a[k].clone();
+        for row in &mut a[k + 1..] {
+            let factor = row[k] / pivot[k];
+            for (x, p) in row[k..].iter_mut().zip(&pivot[k..]) {
+                *x -= factor * p;
+            }
+        }
+    }
+    let mut x = vec![0.0; n];
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| a[k][j] * x[columns[j]]).sum();
+        x[columns[k]] = (a[k][n] - known) / a[k][k];
+    }
+    Some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::solved;
+
+    #[test]
+    fn small_systems() {
+        let a = vec![vec![0.0, 2e6, 1e6], vec![1.0, 1.0, 0.0], vec![0.0, 1e-5, 3e-5]];
+        let x = solved(&a, &[8e6, 3.0, 7e-5]).unwrap();
+        let expected = [-0.4, 3.4, 1.2];
+        assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
+        assert_eq!(solved(&[vec![1.0, 2.0], vec![2.0, 4.0]], &[1.0, 2.0]), None);
+        assert_eq!(solved(&[vec![0.0]], &[1.0]), None);
+    }
+}

@@ -1,0 +1,121 @@
+//! Refusals that need more than a program: files, floating, solids, models too large; and the bad
+//! input of which designers are most often guilty, each with what was expected and how to mend it.
+
+use crate::common::{ids, open, sound, told};
+use moldloft_document::{AfloatOptions, Document, FloatRequest, Immersion, registry};
+
+#[test]
+fn sketches_that_cannot_be_met_and_that_read_too_much() {
+    let sketch = "SKETCH A 2D XY\nPOINT 1 0 0\nPOINT 2 9 3\nLINE 1 1 2 TYPE F\nDIM X 1 2 5\nDIM L LENGTH 1 6\n";
+    let text = "Sketch a(\"a.skt\", L = 3);";
+    let files = crate::common::Files(vec![("a.skt", sketch)]);
+    let document = Document::from_text(registry(), Box::new(files), "m.sdl", text);
+    let found = document.diagnostics();
+    let unsolved = found.iter().find(|d| d.id == "sketch-unsolved");
+    let unsolved = unsolved.unwrap_or_else(|| panic!("{:?}", told(&document)));
+    assert!(unsolved.message.contains("`a`") && !unsolved.help.is_empty(), "{unsolved:?}");
+    assert_eq!(document.sources().slice(unsolved.span()), text);
+
+    let mut many = vec![("f0.skt".to_string(), "SKETCH A\n".to_string())];
+    for k in 1..=40 {
+        many[0].1 += &format!("RUN \"f{k}.skt\"\n");
+        many.push((format!("f{k}.skt"), format!("POINT {k} {k} 0\n")));
+    }
+    let files = many.into_iter().map(|(name, text)| (&*name.leak(), &*text.leak())).collect();
+    let files = Box::new(crate::common::Files(files));
+    let document = Document::from_text(registry(), files, "m.sdl", "load \"f0.skt\";");
+    assert!(ids(&document).contains(&"too-many-files".to_string()), "{:?}", told(&document));
+}
+
+#[test]
+fn what_has_no_centre_cannot_float_freely() {
+    let mut document = sound(
+        "AbsPoint A(0, 0, -1); AbsPoint B(4, 0, -1); AbsPoint C(0, 1, 1); AbsPoint D(4, 1, 1);
+         Line l(A, B); Line m(C, D); RuledSurf S(l, m);",
+    );
+    let immersion = Immersion::Mass { mass: 1.0, free_trim: true, free_heel: false };
+    let options = AfloatOptions {
+        density: 1.0,
+        gravity: 9.81,
+        centimetre: 0.01,
+        centre: None,
+        one_side: false,
+    };
+    let faults = document
+        .floating(&[FloatRequest { immersion, trim: 0.0, heel: 0.0 }], options, &[])
+        .unwrap_err();
+    assert_eq!(faults[0].id, "cannot-float");
+    assert!(faults[0].help[0].contains("centre of gravity"), "{faults:?}");
+}
+
+#[test]
+fn a_solid_of_too_many_cells_is_refused() {
+    let mut document = open(
+        "AbsPoint A(0, 0, 0); AbsPoint B(1, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(1, 1, 0); AbsPoint E(0, 0, 1);
+         Line l(A, B); Line m(C, D); RuledSurf S(l, m); Line up(A, E);
+         TranSolid T(S, up, divisions = {1000, 1000, 1000});",
+    );
+    let faults = document.eval("T.volume").unwrap_err();
+    assert_eq!(faults[0].id, "too-many-cells");
+    assert!(faults[0].expectation().unwrap().contains("at most"), "{faults:?}");
+}
+
+/// The one diagnostic of a program, which says what was expected, what was found and what to do.
+fn whole(text: &str, id: &str) {
+    let document = open(text);
+    let found = document.diagnostics();
+    let own: Vec<_> = found.iter().filter(|d| d.id == id).collect();
+    assert_eq!(own.len(), 1, "{id}: {:?}", told(&document));
+    let expectation = own[0].expectation().unwrap_or_default();
+    assert!(
+        expectation.contains("expected") && expectation.contains("found"),
+        "{id}: {expectation}"
+    );
+    assert!(!own[0].help.is_empty(), "{id} says no help");
+    assert!(!own[0].span().is_empty(), "{id} has no place");
+}
+
+/// The list of bad input of a designer's day, but for intersections, which have their own tests.
+#[test]
+fn bad_input_is_told_clearly() {
+    let plane = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); AbsPoint C(0, 4, 0); AbsPoint D(4, 4, 0); Line l(A, B);
+        Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.2, 0.2); AbsMagnet q(S, 0.8, 0.7);";
+    for (text, id) in [
+        // Magnets on different surfaces.
+        ("RuledSurf T(m, l); AbsMagnet r(T, 0.5, 0.5); LineSnake s(p, r);", "wrong-surface"),
+        // A gap in a chain of curves, and of surfaces.
+        ("AbsPoint E(5, 0, 0); AbsPoint F(6, 0, 0); Line n(E, F); PolyCurve c({l, n});", "gap"),
+        (
+            "AbsPoint E(0, 9, 0); AbsPoint F(4, 9, 0); Line n(E, F); AbsPoint G(0, 5, 0); AbsPoint H(4, 5, 0);
+             Line o(G, H); RuledSurf T(o, n); PolySurf U({S, T}, \"v\");",
+            "gap",
+        ),
+        // Rulings that do not exist.
+        ("AbsPoint E(0, 0, 2); AbsPoint F(0, 4, 2); Line n(E, F); DevSurf T(l, n);", "no-rulings"),
+        // Offset beyond the radius of curvature.
+        (
+            "AbsPoint E(1, 0, 0); AbsPoint F(-1, 0, 0); AbsPoint G(0, 1, 0); Arc a(E, F, G, 5); AbsPoint H(0, 0, 3);
+             AbsPoint I(0, 0, 0); Line up(I, H); TranSurf T(a, up); OffsetSurf U(T, 1.5); OffsetSurf V(T, -1.5);",
+            "cusp",
+        ),
+        (
+            "AbsPoint E(1, 0, 0); AbsPoint F(-1, 0, 0); AbsPoint G(0, 1, 0); Arc a(E, F, G, 5);
+             OffsetCurve c(a, -1.5, \"z=0\"); OffsetCurve d(a, 1.5, \"z=0\");",
+            "cusp",
+        ),
+        // An axis without length.
+        ("Line n(A, A); RevSurf T(l, n);", "zero-length-axis"),
+        // A fillet from a snake to itself.
+        ("LineSnake s(p, q); FilletSurf T(s, s);", "coincident-points"),
+        // A fillet of a ball larger than a hollow.
+        (
+            "AbsPoint E(0, 0, 3); AbsPoint F(1.5, 0, -3); AbsPoint G(3, 0, 3); AbsPoint H(0, 4, 3);
+             AbsPoint I(1.5, 4, -3); AbsPoint J(3, 4, 3); BCurve a({E, F, G}, 2); BCurve b({H, I, J}, 2);
+             RuledSurf T(a, b); AbsPoint K(-1, 3, -2); AbsPoint L(4, 3, -2); AbsPoint M(-1, 3, 5);
+             AbsPoint N(4, 3, 5); Line c(K, L); Line d(M, N); RuledSurf U(c, d); RollFillet V(T, U, 0.6);",
+            "fillet-turns-back",
+        ),
+    ] {
+        whole(&format!("{plane}\n{text}"), id);
+    }
+}

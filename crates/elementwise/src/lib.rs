@@ -1,0 +1,16 @@
+//! Element-wise statements in one pass.
+//!
+//! `expression -> tape -> orders -> chunks`
+//!
+//! A [`Tape`] is the element-wise part of an array expression, one instruction for each operation on one
+//! component. Its instructions become a program of the machine in `vm`, through which the elements go in
+//! chunks.
+//!
+//! Invariant: knows no interpreter, syntax or file; each operation is rounded by itself, so that the bits
+//! depend neither on the processor nor on the order of the passes.
+
+mod codegen;
+mod tape;
+mod vm;
+
+pub use tape::{Cell, Code, LONGEST, Origin, Src, Tape};

@@ -1,0 +1,347 @@
+//! Element-wise statements in one pass.
+//!
+//! `expression -> tape -> orders -> chunks`
+//!
+//! A tape is the element-wise part of an expression, one instruction for each operation on one
+//! component; what is alike is written once. When it is run, its instructions become a program of the
+//! [`machine`](crate::vm), through which the elements go in chunks, so that a statement reads its
+//! sources once and writes its result once, whatever the number of its operators.
+//!
+//! Values are those of the operators one after the other, bit for bit: products and sums keep their
+//! order and are rounded each by itself.
+
+use crate::codegen::Planner;
+use crate::vm::Program;
+use moldloft_num::Real;
+use moldloft_registry::{Array, ArrayShape, Vectors};
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// Where an instruction finds an operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Src {
+    /// A row or grid of numbers.
+    Plane(u16),
+    /// The same number for all elements.
+    Const(u16),
+    /// The result of an instruction.
+    Reg(u16),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Code {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Neg,
+    Abs,
+    Sqrt,
+    /// A function of one number, by its place in the tape's list.
+    Unary(u16),
+    /// A function of two numbers.
+    Binary(u16),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instr {
+    pub code: Code,
+    /// Its operands; of those with one, twice the same.
+    pub of: [Src; 2],
+}
+
+impl Instr {
+    /// What it reads.
+    pub fn operands(&self) -> &[Src] {
+        match self.code {
+            Code::Neg | Code::Abs | Code::Sqrt | Code::Unary(_) => &self.of[..1],
+            _ => &self.of,
+        }
+    }
+}
+
+/// A source of numbers.
+#[derive(Clone, Debug)]
+enum Plane<T: Real> {
+    Numbers(Arc<Array<T>>),
+    Component(Arc<Vectors<T>>, usize),
+}
+
+impl<T: Real> Plane<T> {
+    fn numbers(&self) -> &Vec<T> {
+        match self {
+            Plane::Numbers(a) => &a.items,
+            Plane::Component(a, c) => &a.planes[*c],
+        }
+    }
+}
+
+/// A value that a recorded expression finds before its tape is run: the result of one of its entries
+/// (see [`moldloft_lang::array::cache`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell(pub u16);
+
+impl Cell {
+    /// Of a value that a recording does not know to find again.
+    pub const NONE: Cell = Cell(u16::MAX);
+}
+
+/// Where a source or constant of a tape comes from: a component of a cell, or the number itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin {
+    pub cell: Cell,
+    pub part: u8,
+}
+
+impl Origin {
+    /// Of a constant that is the same whatever the values are.
+    pub const FIXED: Origin = Origin { cell: Cell(u16::MAX - 1), part: 0 };
+
+    /// A number, or component `part` of a vector or row of vectors.
+    pub fn of(cell: Cell, part: usize) -> Self {
+        Self { cell, part: part as u8 }
+    }
+}
+
+/// See the head of this file.
+#[derive(Debug)]
+pub struct Tape<T: Real> {
+    planes: Vec<Plane<T>>,
+    /// Where the sources and the constants come from.
+    pub plane_origins: Vec<Origin>,
+    pub const_origins: Vec<Origin>,
+    /// Cells that were the same array when the tape was made.
+    pub aliases: Vec<[Cell; 2]>,
+    code: Vec<Instr>,
+    /// Instructions whose results must be finite, in order, and their shapes.
+    checked: Vec<(u16, ArrayShape)>,
+    planner: Planner,
+    program: Program<T>,
+}
+
+/// The most instructions, sources and constants of a tape; a longer expression goes in parts.
+pub const LONGEST: usize = 4_000;
+
+impl<T: Real> Default for Tape<T> {
+    fn default() -> Self {
+        Self {
+            planes: Vec::new(),
+            plane_origins: Vec::new(),
+            const_origins: Vec::new(),
+            aliases: Vec::new(),
+            code: Vec::new(),
+            checked: Vec::new(),
+            planner: Planner::default(),
+            program: Program::default(),
+        }
+    }
+}
+
+/// How far back an instruction is sought that does the same.
+const ALIKE: usize = 64;
+
+impl<T: Real> Tape<T> {
+    /// Empties it and keeps its memory.
+    pub fn clear(&mut self) {
+        self.planes.clear();
+        self.program.consts.clear();
+        self.plane_origins.clear();
+        self.const_origins.clear();
+        self.aliases.clear();
+        self.code.clear();
+        self.program.unary.clear();
+        self.program.binary.clear();
+        self.checked.clear();
+    }
+
+    /// True when it should be run before more is added.
+    pub fn is_long(&self) -> bool {
+        self.code.len() + self.planes.len() + self.program.consts.len() > LONGEST
+    }
+
+    /// Equal numbers of one origin are one constant.
+    pub fn constant(&mut self, x: T, origin: Origin) -> Src {
+        let mut known = self.program.consts.iter().zip(&self.const_origins);
+        let at = known.rposition(|(c, o)| *o == origin && c.bits_eq(x)).unwrap_or_else(|| {
+            self.program.consts.push(x);
+            self.const_origins.push(origin);
+            self.program.consts.len() - 1
+        });
+        Src::Const(at as u16)
+    }
+
+    /// Notes that a cell is an array that another cell brought already.
+    fn alias(&mut self, at: usize, cell: Cell) {
+        let first = self.plane_origins[at].cell;
+        if first != cell && !self.aliases.contains(&[first, cell]) {
+            self.aliases.push([first, cell]);
+        }
+    }
+
+    pub fn numbers(&mut self, array: &Arc<Array<T>>, cell: Cell) -> Src {
+        let same = |p: &Plane<T>| matches!(p, Plane::Numbers(a) if Arc::ptr_eq(a, array));
+        if let Some(at) = self.planes.iter().position(same) {
+            self.alias(at, cell);
+            return Src::Plane(at as u16);
+        }
+        self.planes.push(Plane::Numbers(array.clone()));
+        self.plane_origins.push(Origin::of(cell, 0));
+        Src::Plane((self.planes.len() - 1) as u16)
+    }
+
+    pub fn vectors(&mut self, array: &Arc<Vectors<T>>, cell: Cell) -> [Src; 3] {
+        let same = |p: &Plane<T>| matches!(p, Plane::Component(a, 0) if Arc::ptr_eq(a, array));
+        let at = match self.planes.iter().position(same) {
+            Some(at) => {
+                self.alias(at, cell);
+                at
+            }
+            None => {
+                self.planes.extend((0..3).map(|c| Plane::Component(array.clone(), c)));
+                self.plane_origins.extend((0..3).map(|c| Origin::of(cell, c)));
+                self.planes.len() - 3
+            }
+        };
+        [0, 1, 2].map(|c| Src::Plane((at + c) as u16))
+    }
+
+    /// Lets go of the arrays, for a tape that is kept: others are found for each run.
+    pub fn release(&mut self) {
+        self.planes.clear();
+    }
+
+    /// The constants, to be set anew before a run of a kept tape.
+    pub fn constants_mut(&mut self) -> &mut [T] {
+        &mut self.program.consts
+    }
+
+    fn push(&mut self, instr: Instr) -> Src {
+        let from = self.code.len().saturating_sub(ALIKE);
+        if let Some(at) = self.code[from..].iter().position(|i| *i == instr) {
+            return Src::Reg((from + at) as u16);
+        }
+        self.code.push(instr);
+        Src::Reg((self.code.len() - 1) as u16)
+    }
+
+    pub fn op(&mut self, code: Code, a: Src, b: Src) -> Src {
+        self.push(Instr { code, of: [a, b] })
+    }
+
+    pub fn op1(&mut self, code: Code, a: Src) -> Src {
+        self.push(Instr { code, of: [a, a] })
+    }
+
+    /// The function of each element; its results must be finite.
+    pub fn unary(&mut self, f: fn(T) -> T, a: Src, shape: ArrayShape) -> Src {
+        self.program.unary.push(f);
+        let code = Code::Unary((self.program.unary.len() - 1) as u16);
+        let at = self.push(Instr { code, of: [a, a] });
+        self.checked.push(((self.code.len() - 1) as u16, shape));
+        at
+    }
+
+    /// The function of each pair of elements; its results must be finite when there is a shape.
+    pub fn binary(&mut self, f: fn(T, T) -> T, a: Src, b: Src, checked: Option<ArrayShape>) -> Src {
+        self.program.binary.push(f);
+        let code = Code::Binary((self.program.binary.len() - 1) as u16);
+        let at = self.push(Instr { code, of: [a, b] });
+        if let Some(shape) = checked {
+            self.checked.push(((self.code.len() - 1) as u16, shape));
+        }
+        at
+    }
+
+    /// How many checks there are so far.
+    pub fn checks(&self) -> usize {
+        self.checked.len()
+    }
+
+    /// The first check that fails, when nothing but the checks is asked for.
+    pub fn first_failure(&mut self) -> Option<usize> {
+        let mut shapes: Vec<ArrayShape> = Vec::new();
+        for (_, shape) in &self.checked {
+            if !shapes.contains(shape) {
+                shapes.push(*shape);
+            }
+        }
+        let mut failure = |shape| self.run(&[], shape, &mut []).err();
+        shapes.into_iter().filter_map(&mut failure).min()
+    }
+
+    /// A whole power, by the same multiplications as [`Real::powi`].
+    pub fn powi(&mut self, a: Src, exponent: i32) -> Src {
+        let one = self.constant(T::one(), Origin::FIXED);
+        let mut base = if exponent < 0 { self.op(Code::Div, one, a) } else { a };
+        let mut left = exponent.unsigned_abs();
+        let mut power = one;
+        while left > 0 {
+            if left & 1 == 1 {
+                // 1 * x is x for plain numbers; a derivative of minus zero would lose its sign.
+                let skip = power == one && T::PARTS == 1;
+                power = if skip { base } else { self.op(Code::Mul, power, base) };
+            }
+            left >>= 1;
+            if left > 0 {
+                base = self.op(Code::Mul, base, base);
+            }
+        }
+        power
+    }
+
+    /// Writes the values of the roots, elements of that shape each, into rows of so many.
+    ///
+    /// # Errors
+    /// The number of the first check that failed, in the order of the instructions.
+    pub fn run(
+        &mut self,
+        roots: &[Src],
+        shape: ArrayShape,
+        outs: &mut [Vec<T>],
+    ) -> Result<(), usize> {
+        let Self { code, checked, planner, program, .. } = self;
+        let check = |k: usize| {
+            let at = checked.binary_search_by_key(&(k as u16), |c| c.0).ok()?;
+            (checked[at].1 == shape).then_some(at as u16)
+        };
+        planner.plan(code, roots, check, program);
+        let rows: SmallVec<[&Vec<T>; 16]> = self.planes.iter().map(Plane::numbers).collect();
+        self.execute(&rows, roots, shape.count(), outs)
+    }
+
+    /// Runs a tape that was run before with the same roots and shape, on other rows; a row of `count`
+    /// elements for each root is written.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn execute(
+        &self,
+        planes: &[&Vec<T>],
+        roots: &[Src],
+        count: usize,
+        outs: &mut [Vec<T>],
+    ) -> Result<(), usize> {
+        if let Some(check) = self.program.run(planes, outs, count) {
+            return Err(check as usize);
+        }
+        // Roots that are no result of their own: sources, constants, the same result twice.
+        for (k, root) in roots.iter().enumerate() {
+            match *root {
+                Src::Plane(p) => outs[k].copy_from_slice(&planes[p as usize][..count]),
+                Src::Const(c) => outs[k].fill(self.program.consts[c as usize]),
+                Src::Reg(_) => {
+                    if let Some(first) = roots[..k].iter().position(|r| r == root) {
+                        let (done, rest) = outs.split_at_mut(k);
+                        rest[0].copy_from_slice(&done[first]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// True when a run may fail.
+    pub fn is_checked(&self) -> bool {
+        !self.checked.is_empty()
+    }
+}

@@ -1,0 +1,300 @@
+//! One export: the document, the name of the main file, what was asked for, and what rows of the
+//! table ask of it.
+
+use crate::formats::Encoder;
+use crate::{Format, Holds, length_unit};
+use moldloft_diag::Diagnostic;
+use moldloft_document::{Document, Panelled, PatchFields};
+use moldloft_io::vtk::{self, NamedFile};
+use moldloft_io::{LinesAndPoints, StructuredGrid, WriteError};
+use moldloft_mesh::{Blocks, Mesh};
+use moldloft_registry::Value;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// What a user may ask of the files.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WriteOptions {
+    /// Lids among the panels of panel codes, or in a file of their own where the code wants that.
+    pub lids: bool,
+    /// Only what is below z = 0, cut there, in the files of panel codes.
+    pub immersed: bool,
+    /// Only patches with one of these tags; all when there are none.
+    pub tags: Vec<String>,
+    /// How far fitted spline patches may be off; 1e-5 of the model's diagonal by default.
+    pub tolerance: Option<f64>,
+}
+
+/// Why a model could not be written.
+#[derive(Clone, Debug)]
+pub enum Failure {
+    /// The format cannot hold it.
+    Write(WriteError),
+    /// The model is at fault, or the request.
+    Model(Vec<Diagnostic>),
+}
+
+impl Failure {
+    /// The same as diagnostics, for the format of that name.
+    pub fn diagnostics(self, format: &str) -> Vec<Diagnostic> {
+        match self {
+            Self::Model(diagnostics) => diagnostics,
+            Self::Write(error) => {
+                let message = format!("cannot write {format}: {error}");
+                vec![Diagnostic::error("cannot-write", message)]
+            }
+        }
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Self::Write(error)
+    }
+}
+
+impl From<Diagnostic> for Failure {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self::Model(vec![diagnostic])
+    }
+}
+
+impl From<Vec<Diagnostic>> for Failure {
+    fn from(diagnostics: Vec<Diagnostic>) -> Self {
+        Self::Model(diagnostics)
+    }
+}
+
+/// The files of a model in one format; `main` is the name of the first one, without folder.
+///
+/// # Errors
+/// What the format does not take of the options, what it cannot hold, what is wrong with the model.
+pub fn write(
+    document: &mut Document,
+    format: &'static Format,
+    main: &str,
+    options: &WriteOptions,
+) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
+    refuse_options(format, options).map_err(|d| vec![d])?;
+    let main = FileName(main);
+    let mut export = Export { document, format, main, options: options.clone() };
+    (format.write)(&mut export).map_err(|failure| failure.diagnostics(format.name))
+}
+
+/// Refuses what the format has no use for, rather than leaving it out.
+fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnostic> {
+    let error = |message: String| Err(Diagnostic::error("unused-option", message));
+    let name = format.name;
+    let names = |takes: fn(&Format) -> bool| {
+        let all: Vec<&str> = crate::FORMATS.iter().filter(|f| takes(f)).map(|f| f.name).collect();
+        all.join(", ")
+    };
+    if options.tolerance.is_some() && format.holds != Holds::Surfaces {
+        let takers = names(|f| f.holds == Holds::Surfaces);
+        return error(format!("a tolerance is for fitted patches, {takers}"));
+    }
+    let whole = matches!(format.holds, Holds::Surfaces | Holds::Volumes);
+    if whole && (options.immersed || !options.tags.is_empty()) {
+        let option = if options.immersed { "immersed" } else { "tags" };
+        return error(format!("`{option}` is not for {name}, which takes whole surfaces"));
+    }
+    if options.lids && !format.asks_for_lids() || options.immersed && !format.immersed {
+        let option = if options.lids { "lids" } else { "immersed" };
+        let codes = names(|f| f.immersed);
+        return error(format!("`{option}` is for the files of panel codes, {codes}"));
+    }
+    Ok(())
+}
+
+/// The files of volume blocks in one format; `main` is the name of the first one, without folder.
+///
+/// # Errors
+/// A format of something else; what the format cannot hold.
+pub fn write_blocks(
+    blocks: &Blocks,
+    format: &Format,
+    main: &str,
+) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
+    encoded(format.volume, "cells of solids", blocks, format, main)
+}
+
+/// The files of grids of points in one format; `main` is the name of the first one, without folder.
+///
+/// # Errors
+/// A format of something else; what the format cannot hold.
+pub fn write_grids(
+    grids: &[StructuredGrid],
+    format: &Format,
+    main: &str,
+) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
+    encoded(format.grids, "grids of points", grids, format, main)
+}
+
+fn encoded<T: ?Sized>(
+    encoder: Option<Encoder<T>>,
+    what: &str,
+    value: &T,
+    format: &Format,
+    main: &str,
+) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
+    let Some(encode) = encoder else {
+        let message = format!("{} is no format of {what}", format.name);
+        return Err(vec![Diagnostic::error("unknown-format", message)]);
+    };
+    let files = encode(value, &FileName(main)).map_err(Failure::from);
+    files.map_err(|failure| failure.diagnostics(format.name))
+}
+
+/// The name of the main file, without folder.
+#[derive(Clone, Copy, Debug)]
+pub struct FileName<'a>(pub &'a str);
+
+impl<'a> FileName<'a> {
+    /// The name without what follows its last dot: titles, and names of other files, are made of it.
+    pub fn stem(&self) -> &'a str {
+        match self.0.rfind('.') {
+            Some(at) if at > 0 => &self.0[..at],
+            _ => self.0,
+        }
+    }
+
+    /// The main file alone.
+    pub fn main_file(&self, bytes: Vec<u8>) -> Vec<NamedFile> {
+        vec![NamedFile { name: self.0.into(), bytes }]
+    }
+
+    /// The files, that which is named after the stem and this ending being the main one.
+    pub fn renamed(&self, ending: &str, mut files: Vec<NamedFile>) -> Vec<NamedFile> {
+        let usual = format!("{}.{ending}", self.stem());
+        if let Some(main) = files.iter_mut().find(|file| file.name == usual) {
+            main.name = self.0.into();
+        }
+        files
+    }
+}
+
+/// What a row's writer is given, and asks.
+pub struct Export<'d> {
+    /// The model.
+    pub document: &'d mut Document,
+    /// The row.
+    pub format: &'static Format,
+    /// The name of the main file.
+    pub main: FileName<'d>,
+    /// What was asked for.
+    pub options: WriteOptions,
+}
+
+/// The panels that are to be written.
+pub struct Panels {
+    whole: Arc<Panelled>,
+    part: Option<Mesh>,
+}
+
+impl Deref for Panels {
+    type Target = Mesh;
+
+    fn deref(&self) -> &Mesh {
+        self.part.as_ref().unwrap_or(&self.whole.mesh)
+    }
+}
+
+impl Export<'_> {
+    /// See [`FileName::stem`].
+    pub fn stem(&self) -> &str {
+        self.main.stem()
+    }
+
+    /// The main file alone.
+    pub fn main_file(&self, bytes: Vec<u8>) -> Vec<NamedFile> {
+        self.main.main_file(bytes)
+    }
+
+    /// The cells of the solids in the row's format.
+    ///
+    /// # Errors
+    /// Cells that cannot be made; what the format cannot hold.
+    pub fn write_volume(&mut self) -> Result<Vec<NamedFile>, Failure> {
+        let blocked = self.document.blocked()?;
+        let Some(encode) = self.format.volume else { return Ok(Vec::new()) };
+        Ok(encode(&blocked.blocks, &self.main)?)
+    }
+
+    /// The size of the model's unit of length in metres.
+    pub fn metres(&self) -> f64 {
+        length_unit(self.document).1 / 1000.0
+    }
+
+    /// The panels of the patches that were asked for.
+    ///
+    /// # Errors
+    /// Panels that cannot be made; unknown tags; wires and points, when the format has no place for
+    /// them.
+    pub fn panels(&mut self) -> Result<Panels, Failure> {
+        let whole = self.document.panelled()?;
+        let part = tagged(&whole.mesh, &self.options.tags)?;
+        if self.format.holds != Holds::PanelsAndLines {
+            self.lines_and_points().refused(self.format.name)?;
+        }
+        Ok(Panels { whole, part })
+    }
+
+    /// The polylines and points of the shown bodies.
+    pub fn lines_and_points(&self) -> LinesAndPoints {
+        lines_and_points(self.document)
+    }
+
+    /// What viewers show of the surfaces.
+    ///
+    /// # Errors
+    /// Panels that cannot be made.
+    pub fn surface_fields(&mut self) -> Result<Vec<vtk::PatchFields>, Failure> {
+        let field = |f: moldloft_fair::surface::Field| vtk::Field {
+            name: f.name.into(),
+            components: f.components,
+            values: f.values,
+        };
+        let patch = |p: PatchFields| vtk::PatchFields {
+            patch: p.patch,
+            fields: p.fields.into_iter().map(field).collect(),
+        };
+        Ok(self.document.patch_fields()?.into_iter().map(patch).collect())
+    }
+}
+
+/// The polylines and points of the shown bodies.
+pub(crate) fn lines_and_points(document: &Document) -> LinesAndPoints {
+    let mut found = LinesAndPoints::default();
+    for object in document.graph().objects().filter(|o| o.head.shown()) {
+        if let Some(Value::Mesh(body)) = object.value() {
+            let name = object.name.to_string();
+            found.wires.extend(body.wires.iter().map(|w| (name.clone(), w.clone())));
+            found.dots.extend(body.dots.iter().map(|p| (name.clone(), *p)));
+        }
+    }
+    found
+}
+
+/// The patches with one of the tags; `None` for the whole mesh when no tags are given.
+///
+/// # Errors
+/// When no patch has any of them.
+pub fn tagged(mesh: &Mesh, tags: &[String]) -> Result<Option<Mesh>, Vec<Diagnostic>> {
+    if tags.is_empty() {
+        return Ok(None);
+    }
+    if let Some(tag) = tags.iter().find(|tag| !mesh.patches().iter().any(|p| p.info.is(tag))) {
+        let infos = mesh.patches().iter().map(|p| &p.info);
+        let mut known: Vec<&str> =
+            infos.flat_map(|i| i.tags.iter().map(String::as_str).chain([i.tag.word()])).collect();
+        known.sort_unstable();
+        known.dedup();
+        return Err(vec![
+            Diagnostic::error("unknown-tag", format!("no patch has the tag `{tag}`"))
+                .expected(known.join(", "))
+                .suggest(tag, known.iter().copied()),
+        ]);
+    }
+    let part = mesh.selected(|info| tags.iter().any(|tag| info.is(tag)));
+    part.map(Some).map_err(|e| vec![Diagnostic::error("too-large", e.to_string())])
+}

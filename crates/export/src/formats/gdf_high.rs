@@ -1,0 +1,33 @@
+//! WAMIT's high-order geometry: the surfaces themselves as B-spline patches.
+
+use super::{Format, Holds, Lids, Symmetry};
+use crate::spline_patches::spline_patches;
+use crate::{Export, Failure, GRAVITY};
+use moldloft_io::gdf::{self, Header};
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "gdf-high",
+    suffix: "high.gdf",
+    about: "WAMIT high-order B-spline patches (.high.gdf)",
+    holds: Holds::Surfaces,
+    symmetry: Symmetry::Both,
+    lids: Lids::Asked,
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let (tolerance, lids) = (export.options.tolerance, export.options.lids);
+    let patches = spline_patches(export.document, tolerance, lids)?;
+    let symmetry = export.document.symmetry();
+    let header = Header {
+        title: export.stem().into(),
+        length: 1.0,
+        gravity: GRAVITY / export.metres(),
+        mirror_x: symmetry.contains('x'),
+        mirror_y: symmetry.contains('y'),
+    };
+    Ok(export.main_file(gdf::write_patches(&patches, &header)))
+}

@@ -1,0 +1,22 @@
+//! Panels with names and colours as binary glTF.
+
+use super::Format;
+use crate::{Export, Failure};
+use moldloft_io::gltf;
+use moldloft_io::vtk::NamedFile;
+use moldloft_picture::patch_colour;
+
+pub const FORMAT: Format = Format {
+    name: "glb",
+    aliases: &["gltf"],
+    suffix: "glb",
+    about: "glTF with patch names and colours",
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let mesh = export.panels()?;
+    let bytes = gltf::write(&mesh, export.stem(), export.metres(), patch_colour)?;
+    Ok(export.main_file(bytes))
+}

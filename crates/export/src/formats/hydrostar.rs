@@ -1,0 +1,21 @@
+//! HydroStar's panels.
+
+use super::{Format, Symmetry};
+use crate::{Export, Failure};
+use moldloft_io::hydrostar;
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "hydrostar",
+    aliases: &["hst"],
+    suffix: "hst",
+    about: "HydroStar panels (.hst)",
+    symmetry: Symmetry::YThenX,
+    write,
+    ..Format::PANEL_CODE
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let (mesh, options) = export.panels_of_code()?;
+    Ok(export.main_file(hydrostar::write(&mesh, export.stem(), options)?))
+}

@@ -1,0 +1,222 @@
+//! THE table of formats: a row and a module for each.
+//!
+//! To add a format, write its module with its row, and name it below.
+
+mod aqwa;
+mod gdf;
+mod gdf_high;
+mod glb;
+mod hams;
+mod hydrostar;
+mod model_file;
+mod nemoh;
+mod obj;
+mod p3d;
+mod ply;
+mod png;
+mod program;
+mod stl;
+mod svg;
+mod threemf;
+mod volume_p3d;
+mod volume_vts;
+mod volume_vtu;
+mod vtp;
+mod vts;
+
+use crate::export::FileName;
+use crate::{Export, Failure};
+use moldloft_diag::Diagnostic;
+use moldloft_io::vtk::NamedFile;
+use moldloft_io::{StructuredGrid, WriteError};
+use moldloft_mesh::Blocks;
+
+/// All formats, in the order in which help lists them.
+pub static FORMATS: &[Format] = &[
+    gdf::FORMAT,
+    gdf_high::FORMAT,
+    nemoh::FORMAT,
+    hydrostar::FORMAT,
+    hams::FORMAT,
+    aqwa::FORMAT,
+    stl::FORMAT,
+    threemf::FORMAT,
+    obj::FORMAT,
+    ply::FORMAT,
+    glb::FORMAT,
+    vtp::FORMAT,
+    vts::FORMAT,
+    p3d::FORMAT,
+    volume_p3d::FORMAT,
+    volume_vts::FORMAT,
+    volume_vtu::FORMAT,
+    svg::FORMAT,
+    png::FORMAT,
+    program::FORMAT,
+    model_file::FORMAT,
+];
+
+/// What a format is, and how a model is written in it.
+pub struct Format {
+    /// Its name in commands and calls.
+    pub name: &'static str,
+    /// Other names that mean it.
+    pub aliases: &'static [&'static str],
+    /// The end of its files' names, without the dot.
+    pub suffix: &'static str,
+    /// Another end that its files are known by, which does not tell the format.
+    pub other_suffix: &'static str,
+    /// A line about it.
+    pub about: &'static str,
+    /// What of a model its files hold.
+    pub holds: Holds,
+    /// The planes x = 0 and y = 0 that its files can name as planes of symmetry.
+    pub symmetry: Symmetry,
+    /// What becomes of lids.
+    pub lids: Lids,
+    /// The immersed part alone can be written.
+    pub immersed: bool,
+    /// The main file is text.
+    pub text: bool,
+    /// Makes the files. The main one is named [`Export::main`].
+    pub write: fn(&mut Export<'_>) -> Result<Vec<NamedFile>, Failure>,
+    /// Makes the files of grids of points, where the format holds such.
+    pub grids: Option<Encoder<[StructuredGrid]>>,
+    /// Makes the files of the cells of solids, where the format holds such.
+    pub volume: Option<Encoder<Blocks>>,
+}
+
+/// Makes files of something, the main one of a given name.
+pub type Encoder<T> = fn(&T, &FileName<'_>) -> Result<Vec<NamedFile>, WriteError>;
+
+impl Format {
+    /// What most formats are: panels of all patches, one side as it is, binary.
+    pub const PANELS: Self = Self {
+        name: "",
+        aliases: &[],
+        suffix: "",
+        other_suffix: "",
+        about: "",
+        holds: Holds::Panels,
+        symmetry: Symmetry::None,
+        lids: Lids::Patches,
+        immersed: false,
+        text: false,
+        write: |_| Ok(Vec::new()),
+        grids: None,
+        volume: None,
+    };
+
+    /// What formats of the cells of solids are.
+    pub const VOLUME: Self =
+        Self { holds: Holds::Volumes, write: |e| e.write_volume(), ..Self::PANELS };
+
+    /// What files of panel codes are: text, the skin, lids when asked for, both planes of symmetry.
+    pub const PANEL_CODE: Self = Self {
+        holds: Holds::Panels,
+        symmetry: Symmetry::Both,
+        lids: Lids::Asked,
+        immersed: true,
+        text: true,
+        ..Self::PANELS
+    };
+
+    /// True when lids are written only when asked for.
+    pub fn asks_for_lids(&self) -> bool {
+        self.lids != Lids::Patches
+    }
+
+    /// The name of the main file of a model.
+    pub fn file_name(&self, stem: &str) -> String {
+        format!("{stem}.{}", self.suffix)
+    }
+}
+
+/// What of a model the files of a format hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// Panels.
+    Panels,
+    /// Panels, and the wires and points of bodies.
+    PanelsAndLines,
+    /// Structured patches.
+    Grids,
+    /// The surfaces themselves.
+    Surfaces,
+    /// The cells of solids.
+    Volumes,
+    /// What is seen of it.
+    Drawing,
+    /// The model itself.
+    Model,
+}
+
+impl Holds {
+    /// The word for tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Panels => "panels",
+            Self::PanelsAndLines => "panels, lines, points",
+            Self::Grids => "grids",
+            Self::Surfaces => "surfaces",
+            Self::Volumes => "volumes",
+            Self::Drawing => "drawing",
+            Self::Model => "model",
+        }
+    }
+}
+
+/// The planes of symmetry that a file can name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// None: one side is written as it is.
+    None,
+    /// y = 0; a model that is mirrored in x = 0 is written with its image.
+    Y,
+    /// y = 0, or both; a model that is mirrored in x = 0 alone is written with its image.
+    YThenX,
+    /// Either, or both.
+    Both,
+}
+
+impl Symmetry {
+    /// True when a file can name x = 0, for a model that is mirrored in y = 0 or is not.
+    pub fn names_x(self, mirror_y: bool) -> bool {
+        match self {
+            Self::None | Self::Y => false,
+            Self::YThenX => mirror_y,
+            Self::Both => true,
+        }
+    }
+}
+
+/// What becomes of lids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lids {
+    /// They are patches as others.
+    Patches,
+    /// They are written when asked for.
+    Asked,
+    /// They are written to a file of their own when asked for.
+    OwnFile,
+}
+
+/// The format of that name or alias, in small letters or large.
+///
+/// # Errors
+/// No such format, with the nearest name; `dat`, which files of two codes end in.
+pub fn format_named(name: &str) -> Result<&'static Format, Diagnostic> {
+    let wanted = name.to_lowercase();
+    let is = |f: &&Format| f.name == wanted || f.aliases.contains(&wanted.as_str());
+    if let Some(format) = FORMATS.iter().find(is) {
+        return Ok(format);
+    }
+    let ends = FORMATS.iter().filter(|f| [f.suffix, f.other_suffix].contains(&wanted.as_str()));
+    let ends: Vec<String> = ends.map(|f| format!("`{}`", f.name)).collect();
+    let names = FORMATS.iter().map(|f| f.name);
+    let error = Diagnostic::error("unknown-format", format!("there is no format `{name}`"));
+    Err(match &ends[..] {
+        [] => error.expected(names.clone().collect::<Vec<_>>().join(", ")).suggest(name, names),
+        codes => error.expected(codes.join(" or ")),
+    })
+}

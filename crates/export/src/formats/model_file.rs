@@ -1,0 +1,21 @@
+//! The model as a MultiSurf model file.
+
+use super::{Format, Holds};
+use crate::{Export, Failure};
+use moldloft_document::Format as Form;
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "ms2",
+    suffix: "ms2",
+    about: "the model as a MultiSurf model file",
+    holds: Holds::Model,
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let text = export.document.convert(Form::ModelFile)?;
+    Ok(export.main_file(text.into_bytes()))
+}

@@ -1,0 +1,22 @@
+//! Nemoh's panels.
+
+use super::{Format, Symmetry};
+use crate::{Export, Failure};
+use moldloft_io::nemoh;
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "nemoh",
+    aliases: &["mar"],
+    suffix: "mar",
+    other_suffix: "dat",
+    about: "Nemoh panels (.mar)",
+    symmetry: Symmetry::Y,
+    write,
+    ..Format::PANEL_CODE
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let (mesh, options) = export.panels_of_code()?;
+    Ok(export.main_file(nemoh::write(&mesh, options)?))
+}

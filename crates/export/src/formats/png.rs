@@ -1,0 +1,22 @@
+//! A picture of the panels.
+
+use super::{Format, Holds};
+use crate::picture::picture;
+use crate::{Export, Failure};
+use moldloft_io::vtk::NamedFile;
+use moldloft_picture::Options;
+
+pub const FORMAT: Format = Format {
+    name: "png",
+    suffix: "png",
+    about: "a picture",
+    holds: Holds::Drawing,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let Options { width, height, .. } = Options::default();
+    let bytes = picture(export.document, width, height)?;
+    Ok(export.main_file(bytes))
+}

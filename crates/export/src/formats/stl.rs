@@ -1,0 +1,28 @@
+//! Triangles as binary STL.
+
+use super::Format;
+use crate::export::FileName;
+use crate::{Export, Failure};
+use moldloft_io::vtk::NamedFile;
+use moldloft_io::{StructuredGrid, WriteError, stl};
+
+pub const FORMAT: Format = Format {
+    name: "stl",
+    suffix: "stl",
+    about: "triangles, binary STL",
+    write,
+    grids: Some(encode_grids),
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let mesh = export.panels()?;
+    Ok(export.main_file(stl::write(&mesh, export.stem())?))
+}
+
+fn encode_grids(
+    grids: &[StructuredGrid],
+    name: &FileName<'_>,
+) -> Result<Vec<NamedFile>, WriteError> {
+    Ok(name.main_file(stl::write_grids(grids, name.stem(), false)?))
+}

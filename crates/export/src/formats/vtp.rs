@@ -1,0 +1,21 @@
+//! Panels, wires and points as VTK polygons, with the fields of surfaces.
+
+use super::{Format, Holds};
+use crate::{Export, Failure};
+use moldloft_io::vtk::{self, NamedFile};
+
+pub const FORMAT: Format = Format {
+    name: "vtp",
+    aliases: &["vtk"],
+    suffix: "vtp",
+    about: "VTK polygons",
+    holds: Holds::PanelsAndLines,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let (mesh, lines) = (export.panels()?, export.lines_and_points());
+    let fields = export.surface_fields()?;
+    Ok(export.main_file(vtk::polydata_with(&mesh, &lines, &fields)?))
+}

@@ -1,0 +1,152 @@
+//! Pictures for the reference: the objects of one kind among those that they are made of.
+
+use moldloft_diag::Diagnostic;
+use moldloft_document::Document;
+use moldloft_mesh::{Mesh, MeshError, PatchInfo, TopologyBuilder};
+use moldloft_num::{Box3, Order, Plane, Solid, Vec3};
+use moldloft_picture::{Line, Look, Options, render};
+use moldloft_registry::Value;
+
+/// What the picture is about.
+const SUBJECT: [u8; 3] = [0xc2, 0x41, 0x2d];
+/// What it is made of.
+const OTHER: [u8; 3] = [0x5d, 0x6b, 0x7a];
+/// The way to a point.
+const WAY: [u8; 3] = [0xa9, 0xb4, 0xbf];
+/// Surfaces of the subject, and others.
+const SURFACES: [[u8; 3]; 2] = [[0x78, 0xa5, 0xe0], [0xd5, 0xdb, 0xe2]];
+/// Steps in which curves are drawn.
+const STEPS: usize = 96;
+/// Panels along the edges of solids.
+const PANELS: usize = 8;
+
+/// The picture of a model in which the objects of one kind stand out: shown curves as lines,
+/// points as dots, planes and frames as their outline, the solids of that kind as their faces. Where there are points
+/// only, the way to each along x, y and z is drawn, too.
+///
+/// # Errors
+/// An impossible size; a model without panels that can be made.
+pub fn kind_picture(
+    document: &mut Document,
+    kind: &str,
+    width: usize,
+    height: usize,
+) -> Result<Vec<u8>, Vec<Diagnostic>> {
+    let panelled = document.panelled().map_err(|d| vec![d])?;
+    let graph = document.graph();
+    let objects: Vec<_> = graph.objects().filter(|o| o.head.shown()).collect();
+    let subjects = objects.iter().filter(|o| o.row.name == kind);
+    let solids = subjects.filter_map(|o| match o.value() {
+        Some(Value::Solid(solid)) => Some((&*o.name, &**solid)),
+        _ => None,
+    });
+    let mesh = with_solids(&panelled.mesh, solids)
+        .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])?;
+    let mut bounds = Box3::around(mesh.positions().iter().copied());
+    let is_point = |v: &Value<f64>| matches!(v, Value::Point(_));
+    let points_only = objects.iter().filter_map(|o| o.value()).all(is_point);
+    if points_only {
+        bounds = bounds.including(Vec3::zero());
+    }
+    for object in &objects {
+        match object.value() {
+            Some(Value::Point(p)) => bounds = bounds.including(p.xyz),
+            Some(Value::Curve(c)) => {
+                for k in 0..=8 {
+                    bounds = bounds.including(c.jet(f64::from(k) / 8.0, Order::Zero)[0]);
+                }
+            }
+            _ => {}
+        }
+    }
+    let size = if bounds.diagonal() > 0.0 { bounds.diagonal() } else { 1.0 };
+    let mut lines = Vec::new();
+    // The subject last, so that it lies on top.
+    for own in [false, true] {
+        let colour = if own { SUBJECT } else { OTHER };
+        for object in objects.iter().filter(|o| (o.row.name == kind) == own) {
+            let width = if own { 2.4 } else { 1.2 };
+            let mut line = |points: Vec<Vec3>, width: f32| {
+                lines.push(Line { points, colour, width });
+            };
+            match object.value() {
+                Some(Value::Point(p)) => {
+                    line(vec![p.xyz; 2], if own { 6.0 } else { 4.0 });
+                    if points_only {
+                        let Vec3 { x, y, .. } = p.xyz;
+                        let turns = [Vec3::zero(), Vec3::of(x, 0.0, 0.0), Vec3::of(x, y, 0.0)];
+                        let way = turns.into_iter().chain([p.xyz]).collect();
+                        lines.push(Line { points: way, colour: WAY, width: 1.0 });
+                    }
+                }
+                Some(Value::Curve(c)) => {
+                    let at = |k: usize| c.jet(k as f64 / STEPS as f64, Order::Zero)[0];
+                    line((0..=STEPS).map(at).collect(), width);
+                }
+                Some(Value::Plane(plane)) => line(outline(plane, &bounds, size), width),
+                Some(Value::Frame(frame)) => {
+                    for axis in frame.axes {
+                        line(vec![frame.origin, frame.origin + axis * (0.25 * size)], width);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    for section in document.sections() {
+        for points in section.lines.iter().flat_map(|(_, lines)| lines) {
+            let again = points.points.first().filter(|_| points.closed);
+            let points = points.points.iter().chain(again).copied().collect();
+            lines.push(Line { points, colour: SUBJECT, width: 2.0 });
+        }
+    }
+    let graph = document.graph();
+    let of_kind = |name: &str| {
+        // The patches of a body are called after it and what they are pieces of.
+        let whole = || graph.find(name.split('.').next()?);
+        let object = graph.find(name).or_else(whole).and_then(|key| graph.get(key));
+        object.is_some_and(|o| o.row.name == kind)
+    };
+    let patches = mesh.patches();
+    let look = |own: bool| Look { colour: SURFACES[usize::from(!own)], raised: own };
+    let looks = patches.iter().map(|p| look(of_kind(&p.info.name))).collect();
+    let options = Options { width, height, looks: Some(looks), ..Options::default() };
+    render(&mesh, &lines, &options)
+        .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
+}
+
+/// The mesh and the faces of solids, as patches of their names.
+fn with_solids<'s>(
+    mesh: &Mesh<f64>,
+    solids: impl Iterator<Item = (&'s str, &'s dyn Solid<f64>)>,
+) -> Result<Mesh<f64>, MeshError> {
+    let mut builder = TopologyBuilder::extending(mesh.topology().as_ref().clone());
+    let mut positions = mesh.positions().to_vec();
+    let along: Vec<f64> = (0..=PANELS).map(|k| k as f64 / PANELS as f64).collect();
+    let n = along.len();
+    for (name, solid) in solids {
+        for (axis, end) in (0..3).flat_map(|axis| [(axis, 0.0), (axis, 1.0)]) {
+            let fixed = [end];
+            let ranges: [&[f64]; 3] =
+                std::array::from_fn(|k| if k == axis { &fixed[..] } else { &along[..] });
+            let mut points = vec![Vec3::zero(); n * n];
+            solid.grid(ranges[0], ranges[1], ranges[2], &mut points);
+            let vertices = builder.add_vertices(points.len())?.collect();
+            // The normal of the two others' product points along u and w, and against v.
+            let outward = (end > 0.5) != (axis == 1);
+            builder.add_block(PatchInfo::new(name), n, n, vertices, !outward)?;
+            positions.extend(points);
+        }
+    }
+    Mesh::new(builder.build().into(), positions)
+}
+
+/// A square of the plane about the foot of the model's middle.
+fn outline(plane: &Plane<f64>, bounds: &Box3, size: f64) -> Vec<Vec3> {
+    let middle = plane.foot(bounds.centre());
+    let n = plane.normal;
+    let aside = if n.z.abs() < 0.9 { Vec3::of(0.0, 0.0, 1.0) } else { Vec3::of(1.0, 0.0, 0.0) };
+    let a = n.cross(aside).normalized().unwrap_or_default() * (0.4 * size);
+    let b = n.cross(a);
+    vec![middle - a - b, middle + a - b, middle + a + b, middle - a + b, middle - a - b]
+}

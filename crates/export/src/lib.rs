@@ -1,0 +1,41 @@
+//! A document into files: the one table of formats, and what each makes of a model.
+//!
+//! `Document -> Export -> row of FORMATS -> encoder of moldloft-io -> named bytes`
+//!
+//! [`FORMATS`] is all that the command, Python, the language server and the docs know about
+//! formats. A format is one module under `formats/`, with its row, and one line of the table; the
+//! bytes are encoded by `moldloft-io`.
+//!
+//! ```
+//! use moldloft_document::{Document, NoFiles, registry};
+//! use moldloft_export::{WriteOptions, format_named, write};
+//!
+//! let text = "AbsPoint A(0, 0, 0); AbsPoint B(0, 0, -1); AbsPoint C(2, 0, 0); AbsPoint D(2, 0, -1);
+//!     Line a(A, B); Line b(C, D); RuledSurf side(a, b, divisions = {2, 2});";
+//! let mut model = Document::from_text(registry(), Box::new(NoFiles), "side.sdl", text);
+//! let gdf = format_named("wamit").unwrap();
+//! let files = write(&mut model, gdf, &gdf.file_name("side"), &WriteOptions::default()).unwrap();
+//! assert_eq!(files[0].name, "side.gdf");
+//! assert!(files[0].bytes.starts_with(b"side\n1 9.80665\n0 0\n4\n"));
+//! ```
+//!
+//! Invariant: no file is opened here; the caller writes the bytes, all of them or none.
+
+mod export;
+mod formats;
+mod kind_picture;
+mod lines_drawing;
+mod panel_codes;
+mod picture;
+mod spline_patches;
+mod units;
+
+pub use export::{
+    Export, Failure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
+};
+pub use formats::{Encoder, FORMATS, Format, Holds, Lids, Symmetry, format_named};
+pub use kind_picture::kind_picture;
+pub use moldloft_io::vtk::NamedFile;
+pub use picture::picture;
+pub use spline_patches::{SplinePatch, spline_patches};
+pub use units::{GRAVITY, length_unit};

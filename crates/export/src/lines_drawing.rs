@@ -1,0 +1,93 @@
+//! The lines drawing: contours that the model names, and cuts at round coordinates along the axes for
+//! which it names none, laid out as body plan, waterlines and buttocks.
+
+use crate::{Failure, length_unit};
+use moldloft_document::{Document, Section};
+use moldloft_io::drawing::{self, View};
+use moldloft_io::vtk::NamedFile;
+use moldloft_num::Vec3;
+use moldloft_panel::{Polyline, Sectioned};
+use moldloft_registry::{Family, Value};
+
+/// The lines drawing: body plan, waterlines and buttocks, a sheet each.
+///
+/// # Errors
+/// Panels that cannot be made.
+pub(crate) fn lines_drawing(
+    document: &mut Document,
+    stem: &str,
+) -> Result<Vec<NamedFile>, Failure> {
+    let mut contours: Vec<drawing::Contour> =
+        document.sections().into_iter().map(contour).collect();
+    let panelled = document.panelled()?;
+    let bounds = panelled.mesh.bounds();
+    for axis in 0..3 {
+        // What the model does not ask for is cut at round coordinates.
+        if contours.iter().all(|c| c.axis != axis) {
+            let values = round_values(bounds.low[axis], bounds.high[axis]);
+            contours.extend(cuts(document, axis, &values));
+        }
+    }
+    let views = [
+        (View::BodyPlan, "body-plan"),
+        (View::Waterlines, "waterlines"),
+        (View::Buttocks, "buttocks"),
+    ];
+    let sheet = |(view, word): (View, &str)| {
+        let (unit, unit_mm) = length_unit(document);
+        let title = stem.into();
+        let options = drawing::Options { title, unit, unit_mm, ..drawing::Options::default() };
+        let bytes = drawing::draw(view, &contours, &options);
+        NamedFile { name: format!("{stem}.{word}.svg"), bytes }
+    };
+    Ok(views.into_iter().map(sheet).collect())
+}
+
+fn contour(section: Section) -> drawing::Contour {
+    let lines = section.lines.iter().flat_map(|(_, lines)| lines);
+    contour_of(section.axis, section.value, lines.map(points).collect())
+}
+
+fn contour_of(axis: usize, value: f64, lines: Vec<Vec<Vec3>>) -> drawing::Contour {
+    let plain = |line: Vec<Vec3>| line.into_iter().map(Vec3::to_array).collect();
+    drawing::Contour {
+        name: moldloft_syntax::number::plain(value),
+        axis,
+        value,
+        polylines: lines.into_iter().map(plain).collect(),
+        width_mm: None,
+    }
+}
+
+/// The points of a line, the first again at the end of a closed one.
+pub(crate) fn points(line: &Polyline) -> Vec<Vec3> {
+    let again = line.points.first().filter(|_| line.closed);
+    line.points.iter().chain(again).copied().collect()
+}
+
+/// Cuts of all shown surfaces with planes that the model does not name.
+fn cuts(document: &Document, axis: usize, values: &[f64]) -> Vec<drawing::Contour> {
+    let mut lines = vec![Vec::new(); values.len()];
+    for object in document.graph().objects().filter(|o| o.head.shown()) {
+        let Some(Value::Surface(surface)) = object.value() else { continue };
+        let sectioned = Sectioned::new(surface, &object.head);
+        for (lines, &value) in lines.iter_mut().zip(values) {
+            lines.extend(sectioned.section(&Family::coordinate(axis), value).iter().map(points));
+        }
+    }
+    let cut = values.iter().zip(lines).filter(|(_, lines)| !lines.is_empty());
+    cut.map(|(&value, lines)| contour_of(axis, value, lines)).collect()
+}
+
+/// About ten multiples of a round step strictly between two numbers.
+fn round_values(low: f64, high: f64) -> Vec<f64> {
+    let rough = (high - low) / 10.0;
+    if !(rough.is_finite() && rough > 0.0) {
+        return Vec::new();
+    }
+    let ten = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|k| k * ten).into_iter().find(|&s| s >= rough);
+    let step = step.unwrap_or(10.0 * ten);
+    let first = (low / step).floor() as i64 + 1;
+    (first..).map(|k| k as f64 * step).take_while(|&x| x < high).collect()
+}

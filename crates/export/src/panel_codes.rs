@@ -1,0 +1,30 @@
+//! Panels as panel codes want them: cut at the water where that is asked for, and a symmetry that the
+//! code has no flag for written out, the image with its original.
+
+use crate::{Export, Failure};
+use moldloft_io::{PanelFileOptions, WriteError};
+use moldloft_mesh::{Mesh, MeshError};
+
+impl Export<'_> {
+    /// The panels, and what the file says about them.
+    ///
+    /// # Errors
+    /// As [`Export::panels`]; more vertices than can be counted.
+    pub fn panels_of_code(&mut self) -> Result<(Mesh, PanelFileOptions), Failure> {
+        let symmetry = self.document.symmetry();
+        let (mirror_x, mirror_y) = (symmetry.contains('x'), symmetry.contains('y'));
+        let mut mesh: Mesh = self.panels()?.clone();
+        let count = mesh.positions().len();
+        let large = |_: MeshError| WriteError::TooLarge { what: "vertices", count };
+        if self.options.immersed {
+            mesh = mesh.immersed(0.0).map_err(large)?;
+        }
+        let flag_x = self.format.symmetry.names_x(mirror_y);
+        if mirror_x && !flag_x {
+            mesh = mesh.with_mirror_image(0, ".mirror").map_err(large)?;
+        }
+        let options =
+            PanelFileOptions { mirror_x: mirror_x && flag_x, mirror_y, lids: self.options.lids };
+        Ok((mesh, options))
+    }
+}

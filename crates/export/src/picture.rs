@@ -1,0 +1,43 @@
+//! The picture of a model: its panels, contours and wires.
+
+use crate::export::lines_and_points;
+use crate::lines_drawing::points;
+use moldloft_diag::Diagnostic;
+use moldloft_document::{Document, Section};
+use moldloft_picture::{Line, Options, render};
+
+/// Contours on pictures: dark grey, so that they show on every patch.
+const CONTOUR_COLOUR: [u8; 3] = [0x30, 0x36, 0x40];
+
+/// In picture points.
+const CONTOUR_WIDTH: f32 = 1.5;
+
+/// Wires of bodies: dark and broad, so that they are seen against nothing.
+const WIRE_COLOUR: [u8; 3] = [0x1b, 0x25, 0x33];
+const WIRE_WIDTH: f32 = 3.0;
+
+/// A picture of the model's panels, its contours as lines, and its mirror image.
+///
+/// # Errors
+/// An impossible size.
+pub fn picture(
+    document: &mut Document,
+    width: usize,
+    height: usize,
+) -> Result<Vec<u8>, Vec<Diagnostic>> {
+    let mut lines: Vec<Line> = document.sections().iter().flat_map(drawn).collect();
+    let wires = lines_and_points(document).wires.into_iter();
+    lines.extend(wires.map(|(_, points)| Line { points, colour: WIRE_COLOUR, width: WIRE_WIDTH }));
+    let mirror = document.symmetry().contains('y');
+    let panelled = document.panelled().map_err(|d| vec![d])?;
+    let options = Options { width, height, mirror, ..Options::default() };
+    render(&panelled.mesh, &lines, &options)
+        .map_err(|error| vec![Diagnostic::error("no-picture", error.to_string())])
+}
+
+fn drawn(section: &Section) -> Vec<Line> {
+    let lines = section.lines.iter().flat_map(|(_, lines)| lines);
+    lines
+        .map(|line| Line { points: points(line), colour: CONTOUR_COLOUR, width: CONTOUR_WIDTH })
+        .collect()
+}

@@ -1,0 +1,160 @@
+//! The table of formats: every row writes, and says what it does.
+
+mod spline_patches;
+
+use moldloft_document::{Document, NoFiles, registry};
+use moldloft_export::{
+    FORMATS, Holds, Lids, Symmetry, WriteOptions, format_named, write, write_blocks, write_grids,
+};
+use moldloft_io::StructuredGrid;
+use moldloft_num::Vec3;
+
+/// Half a box in water with its lid, mirrored in y = 0.
+const BOX: &str = "
+    Model info(symmetry = \"y\", units = \"m\");
+    AbsPoint A(0, 1, 0); AbsPoint B(0, 1, -1); AbsPoint C(4, 1, 0); AbsPoint D(4, 1, -1);
+    AbsPoint E(0, 0, -1); AbsPoint F(4, 0, -1); AbsPoint G(0, 0, 0); AbsPoint H(4, 0, 0);
+    Line a(A, B); Line b(C, D); Line e(E, B); Line f(F, D); Line g(G, A); Line h(H, C);
+    RuledSurf side(a, b, divisions = {2, 3}, tags = \"hull\");
+    RuledSurf bottom(e, f, divisions = {2, 3}, orientation = 1);
+    RuledSurf top(g, h, divisions = {2, 3}, tags = \"lid\");
+";
+
+const BRICK: &str = "
+    AbsPoint A(0, 0, 0); AbsPoint B(2, 0, 0); AbsPoint C(0, 1, 0); AbsPoint D(2, 1, 0);
+    AbsPoint E(0, 0, 3); Line a(A, B); Line b(C, D); RuledSurf floor(a, b); Line up(A, E);
+    TranSolid brick(floor, up, divisions = {4, 2, 3});
+";
+
+fn model(text: &str) -> Document {
+    let model = Document::from_text(registry(), Box::new(NoFiles), "box.sdl", text);
+    assert!(!model.has_errors(), "{:?}", model.diagnostics());
+    model
+}
+
+#[test]
+fn every_row_writes_what_it_says() {
+    let options = WriteOptions::default();
+    for format in FORMATS {
+        let mut model = model(if format.holds == Holds::Volumes { BRICK } else { BOX });
+        let main = format.file_name("box");
+        let files = write(&mut model, format, &main, &options).unwrap_or_else(|e| panic!("{e:?}"));
+        let name = format.name;
+        assert!(!files.is_empty() && files.iter().all(|f| !f.bytes.is_empty()), "{name}");
+        // Drawings are a sheet each, grids of several patches an index and a file each.
+        let several = ["svg", "vts"].contains(&name);
+        assert_eq!(files[0].name == main, !several, "{name}: {}", files[0].name);
+        let text = files.iter().all(|f| std::str::from_utf8(&f.bytes).is_ok());
+        assert_eq!(text && !files[0].bytes.contains(&0), format.text, "{name}");
+        assert!(!format.about.is_empty() && !format.suffix.starts_with('.'), "{name}");
+        // The same again gives the same bits.
+        assert_eq!(write(&mut model, format, &main, &options).unwrap(), files, "{name}");
+    }
+}
+
+#[test]
+fn names_and_aliases_mean_one_format_each() {
+    let mut seen = std::collections::BTreeSet::new();
+    for format in FORMATS {
+        for name in format.aliases.iter().chain([&format.name]) {
+            assert!(seen.insert(*name), "{name} twice");
+            assert_eq!(format_named(&name.to_uppercase()).unwrap().name, format.name);
+        }
+    }
+    let error = format_named("dat").err().unwrap();
+    assert!(error.expected.unwrap().contains("`aqwa`"));
+    let error = format_named("gfd").err().unwrap();
+    assert!(error.message.contains("`gfd`") && error.expected.unwrap().contains("gdf"));
+}
+
+#[test]
+fn options_are_taken_or_refused() {
+    let all = [
+        WriteOptions { lids: true, ..WriteOptions::default() },
+        WriteOptions { immersed: true, ..WriteOptions::default() },
+        WriteOptions { tags: vec!["hull".into()], ..WriteOptions::default() },
+        WriteOptions { tolerance: Some(0.1), ..WriteOptions::default() },
+    ];
+    for format in FORMATS {
+        let whole = matches!(format.holds, Holds::Surfaces | Holds::Volumes);
+        let takes = [
+            format.lids != Lids::Patches,
+            format.immersed,
+            !whole,
+            format.holds == Holds::Surfaces,
+        ];
+        let mut model = model(if format.holds == Holds::Volumes { BRICK } else { BOX });
+        for (options, takes) in all.iter().zip(takes) {
+            let made = write(&mut model, format, &format.file_name("box"), options);
+            assert_eq!(made.is_ok(), takes, "{} {options:?}", format.name);
+        }
+    }
+}
+
+#[test]
+fn lids_go_where_the_row_says() {
+    for format in FORMATS.iter().filter(|f| f.lids != Lids::Patches) {
+        let mut model = model(BOX);
+        let mut files = |lids| {
+            let options = WriteOptions { lids, ..WriteOptions::default() };
+            write(&mut model, format, &format.file_name("box"), &options).unwrap()
+        };
+        let (without, with) = (files(false), files(true));
+        let own = format.lids == Lids::OwnFile;
+        assert_eq!((with.len(), with[0] == without[0]), (1 + usize::from(own), own));
+    }
+}
+
+#[test]
+fn a_symmetry_without_a_flag_is_written_out() {
+    let panels = |symmetry: &str, name: &str| {
+        let text = BOX.replace("symmetry = \"y\"", &format!("symmetry = \"{symmetry}\""));
+        let options = WriteOptions::default();
+        let format = format_named(name).unwrap();
+        let file = write(&mut model(&text), format, "box", &options).unwrap().remove(0);
+        String::from_utf8(file.bytes).unwrap()
+    };
+    let gdf = panels("xy", "gdf");
+    assert_eq!(gdf.lines().nth(2), Some("1 1"));
+    assert_eq!(gdf.lines().nth(3), Some("12"));
+    // Nemoh has no flag for x = 0: twice the panels.
+    assert!(panels("xy", "nemoh").lines().count() > panels("y", "nemoh").lines().count() * 3 / 2);
+    assert_eq!(Symmetry::YThenX.names_x(true), !Symmetry::YThenX.names_x(false));
+}
+
+#[test]
+fn grids_and_blocks_without_a_model() {
+    let points: Vec<Vec3> = (0..6).map(|k| Vec3::of((k / 3) as f64, (k % 3) as f64, 0.0)).collect();
+    let grid = StructuredGrid::surface(2, 3, &points);
+    let mut brick = model(BRICK);
+    let blocks = brick.blocked().unwrap();
+    for format in FORMATS {
+        let name = format.file_name("x");
+        let made = write_grids(std::slice::from_ref(&grid), format, &name);
+        assert_eq!(made.is_ok(), format.grids.is_some(), "{}", format.name);
+        let made = write_blocks(&blocks.blocks, format, &name);
+        assert_eq!(made.is_ok(), format.volume.is_some(), "{}", format.name);
+        if let Ok(files) = made {
+            assert_eq!(files, write(&mut brick, format, &name, &WriteOptions::default()).unwrap());
+        }
+    }
+}
+
+/// The language writes grids of points in the formats that hold such, by functions of their names.
+#[test]
+fn the_language_has_a_function_for_each_format_of_grids() {
+    for format in FORMATS.iter().filter(|f| f.grids.is_some()) {
+        let text = format!(
+            "surface s[2, 3] = {{0, 0, 1}}; s[1:2, 1:3] = {{0, 0, 1}}; \
+             s[1,1] = {{0, 0, 0}}; s[2,1] = {{1, 0, 0}}; s[1,2] = {{0, 1, 0}}; s[2,2] = {{1, 1, 0}}; \
+             s[1,3] = {{0, 2, 0}}; s[2,3] = {{1, 2, 0}}; write_{0}(\"a.{0}\", s);",
+            format.name
+        );
+        let model = model(&text);
+        let (name, bytes) = model.written().next().unwrap();
+        let points = [0, 1, 2, 3, 4, 5].map(|k| Vec3::of((k / 3) as f64, (k % 3) as f64, 0.0));
+        let grid = StructuredGrid::surface(2, 3, &points);
+        let files = write_grids(&[grid], format, name).unwrap();
+        assert_eq!((files[0].name.as_str(), files[0].bytes.as_slice()), (name, bytes));
+    }
+}

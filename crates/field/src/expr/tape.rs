@@ -1,0 +1,611 @@
+//! Compiled primitives and sets.
+//!
+//! `Primitive, Set -> flat list of instructions -> value, gradient, range, bulk values`
+//!
+//! Equal parts become one instruction (value numbering), so sharing costs nothing and equality of
+//! expressions is equality of tapes. [`Tape::pruned`] keeps of a set what decides over a box.
+
+use crate::expr::algebra::{Algebra, GradientRange, Unary};
+use crate::expr::interval::Interval;
+use crate::expr::oracle::{Affine, Oracle};
+use crate::expr::primitive::{Binary, Node, Op, Primitive};
+use moldloft_num::{Real, Vec3};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Which leaf of a set an instruction is the value of; `NO_LEAF` for inner ones.
+pub(crate) const NO_LEAF: u32 = u32::MAX;
+
+/// One instruction; operands are positions of earlier ones.
+#[derive(Clone, Copy)]
+pub(crate) enum Code<T> {
+    Real(T),
+    Plane(Vec3<T>, T),
+    User(u32),
+    Unary(Unary, u32),
+    PlusReal(u32, T),
+    TimesReal(u32, T),
+    OverReal(u32, T),
+    Power(u32, u32),
+    Add(u32, u32),
+    Sub(u32, u32),
+    Mul(u32, u32),
+    Min(u32, u32),
+    Max(u32, u32),
+    Atan2(u32, u32),
+    /// A minimum of which only the sign and, near zero, the value matter: a union of sets.
+    Union(u32, u32),
+    /// Likewise a maximum: an intersection of sets.
+    Common(u32, u32),
+}
+
+/// A compiled expression; its value is that of the last instruction.
+pub(crate) struct Tape<T: Real> {
+    pub(crate) code: Vec<Code<T>>,
+    /// The leaf of each instruction, or [`NO_LEAF`].
+    pub(crate) leaf: Vec<u32>,
+    /// Register of each instruction, for [`Tape::bulk`].
+    register: Vec<u32>,
+    registers: usize,
+    users: Arc<Vec<(Arc<dyn Oracle<T>>, Affine<T>)>>,
+}
+
+/// The nodes of an expression, operands before their users, each once.
+pub(crate) fn order<T: Real>(root: &Primitive<T>) -> Vec<Primitive<T>> {
+    let mut done: HashMap<*const Node<T>, ()> = HashMap::new();
+    let mut out = Vec::new();
+    let mut stack = vec![(root, false)];
+    while let Some((p, ready)) = stack.pop() {
+        let key = Arc::as_ptr(&p.0);
+        if ready {
+            if done.insert(key, ()).is_none() {
+                out.push(p.clone());
+            }
+        } else if !done.contains_key(&key) {
+            stack.push((p, true));
+            stack.extend(p.0.op.children().into_iter().rev().flatten().map(|c| (c, false)));
+        }
+    }
+    out
+}
+
+type NumberKey = (u8, u32, u32, [u64; 4]);
+
+/// Builds a tape; equal instructions are one.
+pub(crate) struct Builder<T: Real> {
+    code: Vec<Code<T>>,
+    leaf: Vec<u32>,
+    known: HashMap<NumberKey, u32>,
+    nodes: HashMap<*const Node<T>, u32>,
+    users: Vec<(Arc<dyn Oracle<T>>, Affine<T>)>,
+}
+
+impl<T: Real> Builder<T> {
+    pub(crate) fn new() -> Self {
+        Self {
+            code: Vec::new(),
+            leaf: Vec::new(),
+            known: HashMap::new(),
+            nodes: HashMap::new(),
+            users: Vec::new(),
+        }
+    }
+
+    pub(crate) fn push(&mut self, code: Code<T>) -> u32 {
+        if let Some(key) = key(&code) {
+            if let Some(&at) = self.known.get(&key) {
+                return at;
+            }
+            self.known.insert(key, self.code.len() as u32);
+        }
+        self.code.push(code);
+        self.leaf.push(NO_LEAF);
+        self.code.len() as u32 - 1
+    }
+
+    /// The position of the primitive's value.
+    pub(crate) fn primitive(&mut self, root: &Primitive<T>) -> u32 {
+        for node in order(root) {
+            let pointer = Arc::as_ptr(&node.0);
+            if self.nodes.contains_key(&pointer) {
+                continue;
+            }
+            let of =
+                |p: &Primitive<T>, nodes: &HashMap<*const Node<T>, u32>| nodes[&Arc::as_ptr(&p.0)];
+            let constant = |p: &Primitive<T>| match p.0.op {
+                Op::Real(c) => Some(c),
+                _ => None,
+            };
+            let nodes = &self.nodes;
+            let code = match &node.0.op {
+                Op::Real(c) => Code::Real(*c),
+                Op::Plane { normal, offset } => Code::Plane(*normal, *offset),
+                Op::User { oracle, map } => {
+                    self.users.push((oracle.clone(), *map));
+                    Code::User(self.users.len() as u32 - 1)
+                }
+                Op::Unary(f, a) => Code::Unary(*f, of(a, nodes)),
+                Op::Over(a, c) => Code::OverReal(of(a, nodes), *c),
+                Op::Power(a, n) => Code::Power(of(a, nodes), *n),
+                Op::Binary(f, a, b) => {
+                    let (i, j) = (of(a, nodes), of(b, nodes));
+                    match (f, constant(a), constant(b)) {
+                        (Binary::Add, _, Some(c)) => Code::PlusReal(i, c),
+                        (Binary::Add, Some(c), _) => Code::PlusReal(j, c),
+                        (Binary::Sub, _, Some(c)) => Code::PlusReal(i, -c),
+                        (Binary::Mul, _, Some(c)) => Code::TimesReal(i, c),
+                        (Binary::Mul, Some(c), _) => Code::TimesReal(j, c),
+                        (Binary::Add, ..) => Code::Add(i, j),
+                        (Binary::Sub, ..) => Code::Sub(i, j),
+                        (Binary::Mul, ..) => Code::Mul(i, j),
+                        (Binary::Min, ..) => Code::Min(i, j),
+                        (Binary::Max, ..) => Code::Max(i, j),
+                        (Binary::Atan2, ..) => Code::Atan2(i, j),
+                    }
+                }
+            };
+            let at = self.push(code);
+            self.nodes.insert(pointer, at);
+        }
+        self.nodes[&Arc::as_ptr(&root.0)]
+    }
+
+    /// Says that instruction `at` is the value of `leaf`, unless it is another leaf's already.
+    pub(crate) fn mark(&mut self, at: u32, leaf: u32) {
+        let slot = &mut self.leaf[at as usize];
+        *slot = (*slot).min(leaf);
+    }
+
+    pub(crate) fn leaf_of(&self, at: u32) -> u32 {
+        self.leaf[at as usize]
+    }
+
+    pub(crate) fn build(self, root: u32) -> Tape<T> {
+        let all = Tape::with(self.code, self.leaf, self.users.into());
+        all.reduced(root, |_, _, _| None)
+    }
+}
+
+/// The identity of an instruction; `None` when its numbers carry derivatives.
+fn key<T: Real>(code: &Code<T>) -> Option<NumberKey> {
+    let bits = |c: T| c.is_constant().then(|| c.re().to_bits());
+    Some(match *code {
+        Code::Real(c) => (0, 0, 0, [bits(c)?, 0, 0, 0]),
+        Code::Plane(n, d) => (1, 0, 0, [bits(n.x)?, bits(n.y)?, bits(n.z)?, bits(d)?]),
+        Code::User(_) => return None,
+        Code::Unary(f, a) => (2, a, f as u32, [0; 4]),
+        Code::PlusReal(a, c) => (3, a, 0, [bits(c)?, 0, 0, 0]),
+        Code::TimesReal(a, c) => (4, a, 0, [bits(c)?, 0, 0, 0]),
+        Code::OverReal(a, c) => (5, a, 0, [bits(c)?, 0, 0, 0]),
+        Code::Power(a, n) => (6, a, n, [0; 4]),
+        Code::Add(a, b) => (7, a, b, [0; 4]),
+        Code::Sub(a, b) => (8, a, b, [0; 4]),
+        Code::Mul(a, b) => (9, a, b, [0; 4]),
+        Code::Min(a, b) => (10, a, b, [0; 4]),
+        Code::Max(a, b) => (11, a, b, [0; 4]),
+        Code::Atan2(a, b) => (12, a, b, [0; 4]),
+        Code::Union(a, b) => (13, a, b, [0; 4]),
+        Code::Common(a, b) => (14, a, b, [0; 4]),
+    })
+}
+
+impl<T> Code<T> {
+    pub(crate) fn operands(&self) -> [Option<u32>; 2] {
+        match *self {
+            Code::Real(_) | Code::Plane(..) | Code::User(_) => [None, None],
+            Code::Unary(_, a)
+            | Code::PlusReal(a, _)
+            | Code::TimesReal(a, _)
+            | Code::OverReal(a, _)
+            | Code::Power(a, _) => [Some(a), None],
+            Code::Add(a, b)
+            | Code::Sub(a, b)
+            | Code::Mul(a, b)
+            | Code::Min(a, b)
+            | Code::Max(a, b)
+            | Code::Union(a, b)
+            | Code::Common(a, b)
+            | Code::Atan2(a, b) => [Some(a), Some(b)],
+        }
+    }
+
+    /// The operands of a minimum or maximum.
+    fn choice(&self) -> Option<(u32, u32)> {
+        match *self {
+            Code::Min(a, b) | Code::Max(a, b) | Code::Union(a, b) | Code::Common(a, b) => {
+                Some((a, b))
+            }
+            _ => None,
+        }
+    }
+
+    fn renumbered(mut self, of: impl Fn(u32) -> u32) -> Self {
+        match &mut self {
+            Code::Real(_) | Code::Plane(..) | Code::User(_) => {}
+            Code::Unary(_, a)
+            | Code::PlusReal(a, _)
+            | Code::TimesReal(a, _)
+            | Code::OverReal(a, _)
+            | Code::Power(a, _) => *a = of(*a),
+            Code::Add(a, b)
+            | Code::Sub(a, b)
+            | Code::Mul(a, b)
+            | Code::Min(a, b)
+            | Code::Max(a, b)
+            | Code::Union(a, b)
+            | Code::Common(a, b)
+            | Code::Atan2(a, b) => {
+                *a = of(*a);
+                *b = of(*b);
+            }
+        }
+        self
+    }
+}
+
+/// Points are taken in chunks of this many.
+pub(crate) const CHUNK: usize = 64;
+
+type Chunk = [f64; CHUNK];
+
+/// Reusable room of [`Tape::bulk`].
+#[derive(Default)]
+pub(crate) struct Room {
+    #[expect(clippy::vec_box, reason = "chunks are exchanged by pointer")]
+    registers: Vec<Box<Chunk>>,
+    spare: Option<Box<Chunk>>,
+}
+
+/// Reusable room of the interval evaluators.
+#[derive(Default)]
+pub(crate) struct RangeRoom {
+    pub(crate) ranges: Vec<Interval>,
+    gradients: Vec<GradientRange>,
+}
+
+impl<T: Real> Tape<T> {
+    pub(crate) fn of_primitive(p: &Primitive<T>) -> Self {
+        let mut builder = Builder::new();
+        let root = builder.primitive(p);
+        builder.build(root)
+    }
+
+    fn with(
+        code: Vec<Code<T>>,
+        leaf: Vec<u32>,
+        users: Arc<Vec<(Arc<dyn Oracle<T>>, Affine<T>)>>,
+    ) -> Self {
+        // Linear scan: a register is free again after the last use of its value.
+        let mut last = vec![0; code.len()];
+        for (k, c) in code.iter().enumerate() {
+            for a in c.operands().into_iter().flatten() {
+                last[a as usize] = k;
+            }
+        }
+        let (mut free, mut registers) = (Vec::new(), 0u32);
+        let mut register = vec![0; code.len()];
+        for (k, c) in code.iter().enumerate() {
+            register[k] = free.pop().unwrap_or_else(|| {
+                registers += 1;
+                registers - 1
+            });
+            let [a, b] = c.operands();
+            for x in [a, b.filter(|b| a != Some(*b))].into_iter().flatten() {
+                if last[x as usize] == k {
+                    free.push(register[x as usize]);
+                }
+            }
+        }
+        Self { code, leaf, register, registers: registers as usize, users }
+    }
+
+    /// The tape of what `root` needs, where `decide(position, a, b)` may name the operand that a
+    /// minimum or maximum equals.
+    fn reduced(&self, root: u32, decide: impl Fn(usize, u32, u32) -> Option<u32>) -> Self {
+        let n = self.code.len();
+        let mut alias: Vec<u32> = (0..n as u32).collect();
+        for (k, c) in self.code.iter().enumerate() {
+            if let Some((a, b)) = c.choice()
+                && let Some(winner) = decide(k, a, b)
+            {
+                alias[k] = alias[winner as usize];
+            }
+        }
+        let root = alias[root as usize];
+        let mut needed = vec![false; n];
+        needed[root as usize] = true;
+        for k in (0..=root as usize).rev() {
+            if needed[k] {
+                for a in self.code[k].operands().into_iter().flatten() {
+                    needed[alias[a as usize] as usize] = true;
+                }
+            }
+        }
+        let mut number = vec![0; n];
+        let (mut code, mut leaf) = (Vec::new(), Vec::new());
+        for k in 0..=root as usize {
+            if needed[k] {
+                number[k] = code.len() as u32;
+                code.push(self.code[k].renumbered(|a| number[alias[a as usize] as usize]));
+                leaf.push(self.leaf[k]);
+            }
+        }
+        Self::with(code, leaf, self.users.clone())
+    }
+
+    /// True when both are the same instructions on the same numbers.
+    pub(crate) fn same(&self, o: &Self) -> bool {
+        self.code.len() == o.code.len()
+            && self.code.iter().zip(&o.code).all(|(a, b)| match (a, b) {
+                (Code::User(i), Code::User(j)) => {
+                    let ((f, m), (g, n)) = (&self.users[*i as usize], &o.users[*j as usize]);
+                    Arc::ptr_eq(f, g) && m == n
+                }
+                _ => key(a).is_some() && key(a) == key(b),
+            })
+    }
+
+    #[inline(always)]
+    fn step<A: Algebra<T>>(&self, code: &Code<T>, at: &A::At, of: impl Fn(u32) -> A) -> A {
+        match *code {
+            Code::Real(c) => A::real(c),
+            Code::Plane(n, d) => A::plane(n, d, at),
+            Code::User(k) => {
+                let (oracle, map) = &self.users[k as usize];
+                A::user(&**oracle, map, at)
+            }
+            Code::Unary(f, a) => of(a).unary(f),
+            Code::PlusReal(a, c) => of(a).plus_real(c),
+            Code::TimesReal(a, c) => of(a).times_real(c),
+            Code::OverReal(a, c) => of(a).over_real(c),
+            Code::Power(a, n) => of(a).power(n),
+            Code::Add(a, b) => of(a).sum(of(b)),
+            Code::Sub(a, b) => of(a).difference(of(b)),
+            Code::Mul(a, b) => of(a).times(of(b)),
+            Code::Min(a, b) | Code::Union(a, b) => of(a).smaller(of(b)),
+            Code::Max(a, b) | Code::Common(a, b) => of(a).larger(of(b)),
+            Code::Atan2(a, b) => of(a).angle(of(b)),
+        }
+    }
+
+    /// The value of the whole; `values` holds that of every instruction afterwards.
+    #[inline]
+    pub(crate) fn eval<A: Algebra<T>>(&self, at: &A::At, values: &mut Vec<A>) -> A {
+        values.clear();
+        for code in &self.code {
+            let value = self.step::<A>(code, at, |a| values[a as usize]);
+            values.push(value);
+        }
+        values[self.code.len() - 1]
+    }
+
+    /// True when it asks primitives from outside, which are better asked many at once.
+    pub(crate) fn has_users(&self) -> bool {
+        self.code.iter().any(|c| matches!(c, Code::User(_)))
+    }
+
+    /// As [`Tape::eval`] at many places, instruction by instruction: a column of values for each.
+    pub(crate) fn eval_many<A: Algebra<T>>(&self, at: &[A::At]) -> Vec<Vec<A>> {
+        let mut columns: Vec<Vec<A>> = Vec::with_capacity(self.code.len());
+        for code in &self.code {
+            let mut column = Vec::with_capacity(at.len());
+            match code {
+                Code::User(k) => {
+                    let (oracle, map) = &self.users[*k as usize];
+                    A::users(&**oracle, map, at, &mut column);
+                }
+                _ => {
+                    let each = at.iter().enumerate();
+                    let step = |(i, at)| self.step::<A>(code, at, |a| columns[a as usize][i]);
+                    column.extend(each.map(step));
+                }
+            }
+            columns.push(column);
+        }
+        columns
+    }
+
+    /// The instruction of the leaf that decides, given the value of every instruction; the first
+    /// operand on a tie. The leaves' own minima and maxima are not entered.
+    pub(crate) fn winner<A: Copy>(&self, values: &[A], re: impl Fn(A) -> f64) -> usize {
+        self.winner_by(|a| re(values[a as usize]))
+    }
+
+    fn winner_by(&self, of: impl Fn(u32) -> f64) -> usize {
+        let mut k = self.code.len() - 1;
+        while self.leaf[k] == NO_LEAF {
+            k = match self.code[k] {
+                Code::Union(a, b) => (if of(b) < of(a) { b } else { a }) as usize,
+                Code::Common(a, b) => (if of(b) > of(a) { b } else { a }) as usize,
+                _ => break,
+            };
+        }
+        k
+    }
+}
+
+/// The work of [`Tape::bulk`]; a struct, for closures need not be inlined, and what is not inlined does
+/// not get the wide registers.
+struct Bulk<'a> {
+    tape: &'a Tape<f64>,
+    points: &'a [Vec3],
+    out: &'a mut [f64],
+    room: &'a mut Room,
+}
+
+impl pulp::NullaryFnOnce for Bulk<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn call(self) {
+        self.tape.bulk_loops(self.points, self.out, self.room);
+    }
+}
+
+impl Tape<f64> {
+    /// The leaves that decide at some points.
+    pub(crate) fn winners(&self, points: &[Vec3], values: &mut Vec<f64>) -> Vec<u32> {
+        if self.has_users() {
+            let columns = self.eval_many::<f64>(points);
+            let at = |i: usize| self.leaf[self.winner_by(|a| columns[a as usize][i])];
+            return (0..points.len()).map(at).collect();
+        }
+        let mut at = |p: &Vec3| {
+            self.eval::<f64>(p, values);
+            self.leaf[self.winner(values, |v| v)]
+        };
+        points.iter().map(&mut at).collect()
+    }
+
+    /// The range over a box by plain interval arithmetic; `ranges` holds that of every instruction.
+    pub(crate) fn range(&self, at: &[Interval; 3], ranges: &mut Vec<Interval>) -> Interval {
+        self.eval::<Interval>(at, ranges)
+    }
+
+    /// Ranges of value and gradient, the value tightened by f(c) + f'(box) (box - c).
+    pub(crate) fn mean_value(&self, at: &[Interval; 3], room: &mut RangeRoom) -> GradientRange {
+        let mut range = self.eval::<GradientRange>(at, &mut room.gradients);
+        let centre = at.map(|side| Interval::point(side.middle()));
+        let mut value = self.range(&centre, &mut room.ranges);
+        for k in 0..3 {
+            value = value + range.slope[k] * (at[k] - centre[k]);
+        }
+        range.value = range.value.meet(value);
+        range
+    }
+
+    /// The tape of the same surface over a box, given the range of every instruction there: operands
+    /// that never decide are left out, and of sets those that are all air in a union or all solid in
+    /// an intersection, so that the sign is the same everywhere and the value where it is zero. `None`
+    /// when nothing can be left out.
+    pub(crate) fn pruned(&self, ranges: &[Interval]) -> Option<Self> {
+        let decide = |k: usize, a: u32, b: u32| {
+            let (x, y) = (ranges[a as usize], ranges[b as usize]);
+            let (a_smaller, b_smaller) = (x.high < y.low, y.high < x.low);
+            match self.code[k] {
+                Code::Min(..) | Code::Union(..) if a_smaller => Some(a),
+                Code::Min(..) | Code::Union(..) if b_smaller => Some(b),
+                Code::Max(..) | Code::Common(..) if a_smaller => Some(b),
+                Code::Max(..) | Code::Common(..) if b_smaller => Some(a),
+                Code::Union(..) if y.low > 0.0 => Some(a),
+                Code::Union(..) if x.low > 0.0 => Some(b),
+                Code::Common(..) if y.high < 0.0 => Some(a),
+                Code::Common(..) if x.high < 0.0 => Some(b),
+                _ => None,
+            }
+        };
+        let mut choices = self.code.iter().enumerate().filter_map(|(k, c)| Some((k, c.choice()?)));
+        let decided = choices.any(|(k, (a, b))| decide(k, a, b).is_some());
+        decided.then(|| self.reduced(self.code.len() as u32 - 1, decide))
+    }
+
+    /// The values at many points: bit for bit those of [`Tape::eval`], in the widest registers at hand.
+    pub(crate) fn bulk(&self, points: &[Vec3], out: &mut [f64], room: &mut Room) {
+        assert_eq!(points.len(), out.len(), "one value per point");
+        pulp::Arch::new().dispatch(Bulk { tape: self, points, out, room });
+    }
+
+    #[inline(always)]
+    fn bulk_loops(&self, points: &[Vec3], out: &mut [f64], room: &mut Room) {
+        while room.registers.len() < self.registers {
+            room.registers.push(Box::new([0.0; CHUNK]));
+        }
+        let mut spare = room.spare.take().unwrap_or_else(|| Box::new([0.0; CHUNK]));
+        let (mut x, mut y, mut z) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
+        let root = self.register[self.code.len() - 1] as usize;
+        for (points, out) in points.chunks(CHUNK).zip(out.chunks_mut(CHUNK)) {
+            for (k, p) in points.iter().enumerate() {
+                (x[k], y[k], z[k]) = (p.x, p.y, p.z);
+            }
+            for (code, &register) in self.code.iter().zip(&self.register) {
+                self.bulk_step(code, [&x, &y, &z], points.len(), &room.registers, &mut spare);
+                std::mem::swap(&mut spare, &mut room.registers[register as usize]);
+            }
+            out.copy_from_slice(&room.registers[root][..out.len()]);
+        }
+        room.spare = Some(spare);
+    }
+
+    #[inline(always)]
+    fn bulk_step(
+        &self,
+        code: &Code<f64>,
+        xyz: [&Chunk; 3],
+        count: usize,
+        registers: &[Box<Chunk>],
+        out: &mut Chunk,
+    ) {
+        let of = |a: u32| -> &Chunk { &registers[self.register[a as usize] as usize] };
+        #[inline(always)]
+        fn one(out: &mut Chunk, a: &Chunk, f: impl Fn(f64) -> f64) {
+            for (o, a) in out.iter_mut().zip(a) {
+                *o = f(*a);
+            }
+        }
+        #[inline(always)]
+        fn two(out: &mut Chunk, a: &Chunk, b: &Chunk, f: impl Fn(f64, f64) -> f64) {
+            for ((o, a), b) in out.iter_mut().zip(a).zip(b) {
+                *o = f(*a, *b);
+            }
+        }
+        match *code {
+            Code::Real(c) => out.fill(c),
+            Code::Plane(n, d) => {
+                let [x, y, z] = xyz;
+                let weights = [n.x, n.y, n.z].map(|w| w != 0.0);
+                // Terms of weight zero add nothing, not even rounding.
+                match weights {
+                    [true, false, false] => one(out, x, |x| n.x * x + d),
+                    [false, true, false] => one(out, y, |y| n.y * y + d),
+                    [false, false, true] => one(out, z, |z| n.z * z + d),
+                    [true, true, false] => two(out, x, y, |x, y| n.x * x + n.y * y + d),
+                    [true, false, true] => two(out, x, z, |x, z| n.x * x + n.z * z + d),
+                    [false, true, true] => two(out, y, z, |y, z| n.y * y + n.z * z + d),
+                    _ => {
+                        for k in 0..CHUNK {
+                            out[k] = n.x * x[k] + n.y * y[k] + n.z * z[k] + d;
+                        }
+                    }
+                }
+            }
+            Code::User(k) => {
+                let (oracle, map) = &self.users[k as usize];
+                let mut points = [Vec3::zero(); CHUNK];
+                for (k, p) in points[..count].iter_mut().enumerate() {
+                    *p = map.apply(Vec3::new(xyz[0][k], xyz[1][k], xyz[2][k]));
+                }
+                oracle.values(&points[..count], &mut out[..count]);
+            }
+            Code::Unary(f, a) => match f {
+                Unary::Neg => one(out, of(a), |a| -a),
+                Unary::Abs => one(out, of(a), f64::abs),
+                Unary::Sign => one(out, of(a), |a| if a > 0.0 { 1.0 } else { -1.0 }),
+                Unary::Sqrt => one(out, of(a), |a| if a > 0.0 { a.sqrt() } else { 0.0 }),
+                // The lanes beyond the points hold old numbers: skip their cost.
+                _ => {
+                    for (o, a) in out[..count].iter_mut().zip(of(a)) {
+                        *o = f.of(*a);
+                    }
+                }
+            },
+            Code::PlusReal(a, c) => one(out, of(a), |a| a + c),
+            Code::TimesReal(a, c) => one(out, of(a), |a| a * c),
+            Code::OverReal(a, c) => one(out, of(a), |a| a / c),
+            Code::Power(a, 2) => one(out, of(a), |a| a * a),
+            Code::Power(a, n) => one(out, of(a), |a| crate::expr::algebra::power(a, n)),
+            Code::Add(a, b) => two(out, of(a), of(b), |a, b| a + b),
+            Code::Sub(a, b) => two(out, of(a), of(b), |a, b| a - b),
+            Code::Mul(a, b) => two(out, of(a), of(b), |a, b| a * b),
+            Code::Min(a, b) | Code::Union(a, b) => {
+                two(out, of(a), of(b), |a, b| if b < a { b } else { a })
+            }
+            Code::Max(a, b) | Code::Common(a, b) => {
+                two(out, of(a), of(b), |a, b| if b > a { b } else { a })
+            }
+            Code::Atan2(a, b) => {
+                for ((o, a), b) in out[..count].iter_mut().zip(of(a)).zip(of(b)) {
+                    *o = libm::atan2(*a, *b);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The division of a box wherever the range of a set contains zero, down to blocks of cells.
+
+use super::block::{Scratch, compute};
+use super::grid::Grid;
+use super::types::{Block, Options, Reuse, SIDE};
+use crate::FieldError;
+use crate::expr::interval::Interval;
+use crate::expr::tape::Tape;
+use crate::set::Leaf;
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The blocks that the surface may pass through, in a fixed order, with their pruned tapes.
+pub(super) struct Divided {
+    pub(super) blocks: Vec<(Arc<Tape<f64>>, Arc<Block>)>,
+    /// How many blocks were computed; the others were taken over.
+    pub(super) computed: usize,
+}
+
+struct Division<'a> {
+    grid: &'a Grid,
+    leaves: &'a [Leaf],
+    options: &'a Options,
+    reuse: Option<&'a Reuse<'a>>,
+    computed: AtomicUsize,
+    active: AtomicUsize,
+}
+
+/// Divides the grid wherever the range of the set contains zero, and computes the blocks there.
+pub(super) fn divide(
+    grid: &Grid,
+    tape: &Arc<Tape<f64>>,
+    leaves: &[Leaf],
+    options: &Options,
+    reuse: Option<&Reuse>,
+) -> Result<Divided, FieldError> {
+    let blocks = grid.cells.map(|n| n / SIDE);
+    let size = blocks.into_iter().max().unwrap_or(1).next_power_of_two();
+    let (computed, active) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let division = Division { grid, leaves, options, reuse, computed, active };
+    let mut out = Vec::new();
+    // Leaves of the division in the order of the tree; the first levels alone, then in parallel.
+    let mut front = vec![([0usize; 3], size, tape.clone())];
+    while let Some(&(_, size, _)) = front.first() {
+        let last = size == 1;
+        let next: Vec<Result<_, FieldError>> = front
+            .par_chunks(8)
+            .map_init(Scratch::default, |scratch, nodes| {
+                let mut room = Vec::new();
+                let (mut deeper, mut done) = (Vec::new(), Vec::new());
+                for (at, size, tape) in nodes {
+                    let Some(tape) = division.surface_in(*at, *size, tape, &mut room)? else {
+                        continue;
+                    };
+                    if last {
+                        done.extend(division.block(*at, tape, scratch)?);
+                    } else {
+                        deeper.extend(
+                            children(*at, size / 2, blocks).map(|c| (c, size / 2, tape.clone())),
+                        );
+                    }
+                }
+                Ok((deeper, done))
+            })
+            .collect();
+        front = Vec::new();
+        for part in next {
+            let (deeper, done) = part?;
+            front.extend(deeper);
+            out.extend(done);
+        }
+    }
+    Ok(Divided { blocks: out, computed: division.computed.into_inner() })
+}
+
+/// The eight halves of a node that lie in the grid, by their low corners.
+fn children(at: [usize; 3], half: usize, blocks: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    (0..8)
+        .map(move |c| {
+            [at[0] + (c >> 2) * half, at[1] + (c >> 1 & 1) * half, at[2] + (c & 1) * half]
+        })
+        .filter(move |c| (0..3).all(|k| c[k] < blocks[k]))
+}
+
+impl Division<'_> {
+    /// The tape for a node of `size` blocks, or `None` when it is all solid or all air.
+    fn surface_in(
+        &self,
+        at: [usize; 3],
+        size: usize,
+        tape: &Arc<Tape<f64>>,
+        room: &mut Vec<Interval>,
+    ) -> Result<Option<Arc<Tape<f64>>>, FieldError> {
+        if self.options.cancelled() {
+            return Err(FieldError::Cancelled);
+        }
+        let low = at.map(|x| x * SIDE);
+        let high = [0, 1, 2].map(|k| (low[k] + size * SIDE).min(self.grid.cells[k]));
+        let range = tape.range(&self.grid.sides(low, high), room);
+        if range.low > 0.0 || range.high < 0.0 {
+            return Ok(None);
+        }
+        Ok(Some(tape.pruned(room).map_or_else(|| tape.clone(), Arc::new)))
+    }
+
+    fn block(
+        &self,
+        at: [usize; 3],
+        tape: Arc<Tape<f64>>,
+        scratch: &mut Scratch,
+    ) -> Result<Option<(Arc<Tape<f64>>, Arc<Block>)>, FieldError> {
+        let at = at.map(|x| x as u32);
+        if let Some(old) = self.reuse.and_then(|reuse| reuse.get(at, &tape)) {
+            return Ok(Some((tape, old)));
+        }
+        self.computed.fetch_add(1, Ordering::Relaxed);
+        let block = compute(self.grid, at, &tape, self.leaves, scratch)
+            .map_err(|at| FieldError::NoValue { at })?;
+        let active = self.active.fetch_add(block.active, Ordering::Relaxed) + block.active;
+        if active as f64 > self.options.limit {
+            return Err(FieldError::TooFine { boxes: active as f64, limit: self.options.limit });
+        }
+        Ok(Some((tape, Arc::new(block))))
+    }
+}

@@ -1,0 +1,72 @@
+//! Facets that were made lately: what is asked again is there, and what is like it gives its blocks.
+//!
+//! This changes no result: [`crate::refacet`] gives the same bits whatever it takes over.
+
+use super::{Facets, Options, Resolution, refacet};
+use crate::{FieldError, Set};
+use moldloft_num::Box3;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+struct Entry {
+    set: Set,
+    over: Box3,
+    resolution: Resolution,
+    sharp: bool,
+    facets: Arc<Facets>,
+}
+
+/// How many facets are kept, and how many cells these have together.
+const MOST: usize = 12;
+const MOST_CELLS: usize = 1_500_000;
+
+/// The facets that a model made last.
+#[derive(Default)]
+pub struct FacetMemo(Mutex<VecDeque<Entry>>);
+
+fn same_box(a: &Box3, b: &Box3) -> bool {
+    a.low.bits_eq(b.low) && a.high.bits_eq(b.high)
+}
+
+impl FacetMemo {
+    /// As [`crate::facet`].
+    ///
+    /// # Errors
+    /// As [`crate::facet`].
+    pub fn facet(
+        &self,
+        set: &Set,
+        over: &Box3,
+        options: &Options,
+    ) -> Result<Arc<Facets>, FieldError> {
+        let mut before = None;
+        {
+            let entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            let alike = |k: &&Entry| {
+                let same = k.resolution == options.resolution && k.sharp == options.sharp;
+                same && same_box(&k.over, over)
+            };
+            // The latest first: it is the most alike.
+            for entry in entries.iter().rev().filter(alike) {
+                if entry.set.same(set) {
+                    return Ok(entry.facets.clone());
+                }
+                before = before.or_else(|| Some(entry.facets.clone()));
+            }
+        }
+        let facets = Arc::new(refacet(set, over, options, before.as_deref())?);
+        let mut entries = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        entries.push_back(Entry {
+            set: set.clone(),
+            over: *over,
+            resolution: options.resolution,
+            sharp: options.sharp,
+            facets: facets.clone(),
+        });
+        let cells = |all: &VecDeque<Entry>| all.iter().map(|k| k.facets.cells).sum::<usize>();
+        while entries.len() > MOST || entries.len() > 1 && cells(&entries) > MOST_CELLS {
+            entries.pop_front();
+        }
+        Ok(facets)
+    }
+}

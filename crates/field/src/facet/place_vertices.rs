@@ -1,0 +1,258 @@
+//! Where the vertices of a piece of surface in a cell go: one on all primitives that the piece shows or,
+//! when these have no common point in the cell, several.
+
+use super::cell::faces_of;
+use super::split::split;
+use super::types::{Crossing, Ring, Split};
+use super::vertex::{Placed, Solver, Surfaces};
+use crate::expr::tape::{NO_LEAF, Tape};
+use crate::set::Leaf;
+use moldloft_num::{Box3, Vec3};
+use smallvec::SmallVec;
+
+/// Of an edge or corner that passes by its vertex within this part of a cell nothing to speak of is cut off: such are
+/// those of surfaces that touch along it.
+const MIN_FEATURE: f64 = 0.01;
+
+/// What the vertices of a cell are placed with.
+pub(super) struct Placement<'a> {
+    pub(super) tape: &'a Tape<f64>,
+    pub(super) leaves: &'a [Leaf],
+    pub(super) cell: &'a Box3,
+    pub(super) goal: f64,
+    pub(super) solver: &'a mut Solver,
+    pub(super) registers: &'a mut Vec<f64>,
+}
+
+/// What a piece of surface comes to.
+pub(super) enum PieceVertices {
+    /// One vertex, on these surfaces; `blunt` if it should be on more.
+    One { placed: Placed, surfaces: Surfaces, blunt: bool },
+    /// Several.
+    Several(Split),
+}
+
+impl Placement<'_> {
+    /// The vertices of the piece of surface with these crossings; `next` is the edge after each edge.
+    pub(super) fn vertices(&mut self, edges: &Ring, next: &[u8; 12]) -> PieceVertices {
+        let mut surfaces = Surfaces::new();
+        let mut sum = Vec3::zero();
+        let mut count = 0.0;
+        for (_, crossing) in edges {
+            sum += crossing.point;
+            count += 1.0;
+            if let Err(place) = surfaces.binary_search(&crossing.leaf) {
+                surfaces.insert(place, crossing.leaf);
+            }
+        }
+        let middle = sum / count;
+        let mut placed = self.place(&surfaces, middle);
+        if placed.residual > self.goal {
+            placed = self.by_sides(&surfaces, edges, placed);
+        }
+        if placed.residual > self.goal {
+            // The edge or corner that the crossings announce lies in a neighbour, or there are several.
+            let Self { leaves, cell, goal, .. } = *self;
+            let stray =
+                |solver: &mut Solver| solver.outside_cell(leaves, &surfaces, middle, cell, goal);
+            let strayed = (surfaces.len() <= 3).then(|| stray(&mut *self.solver));
+            match strayed.filter(|s| s.residual <= goal) {
+                Some(strayed) => placed = strayed,
+                None => {
+                    if let Some(several) = split(self, edges, next) {
+                        return PieceVertices::Several(several);
+                    }
+                    let strayed = stray(&mut *self.solver);
+                    if strayed.residual > goal {
+                        let wanted = std::mem::take(&mut surfaces);
+                        let (placed, surfaces) = self.blunt(edges);
+                        let blunt = self.away(placed.point, &wanted);
+                        return PieceVertices::One { placed, surfaces, blunt };
+                    }
+                    placed = strayed;
+                }
+            }
+        }
+        // A primitive without a crossing of its own may still cut the vertex off: an edge or corner
+        // that only pokes into the cell.
+        while surfaces.len() < 3 && placed.residual <= self.goal {
+            let Some(leaf) = self.blocking_leaf(placed.point, &surfaces) else { break };
+            let Err(place) = surfaces.binary_search(&leaf) else { break };
+            let mut more = surfaces.clone();
+            more.insert(place, leaf);
+            let other = self.place(&more, placed.point);
+            if other.residual > self.goal {
+                break;
+            }
+            (placed, surfaces) = (Placed { strayed: placed.strayed, ..other }, more);
+        }
+        PieceVertices::One { placed, surfaces, blunt: false }
+    }
+
+    /// True when a point is further from one of the surfaces than may go unsaid.
+    fn away(&mut self, p: Vec3, surfaces: &[u32]) -> bool {
+        let slack = MIN_FEATURE * (self.cell.high.x - self.cell.low.x);
+        surfaces.iter().any(|&s| {
+            let g = self.solver.gradient(self.leaves[s as usize].primitive.tape(), p);
+            let near = g.value.abs() <= slack * g.slope.norm();
+            !near
+        })
+    }
+
+    /// A point of the cell on as many of a piece's surfaces as two or, failing that, one: that with the most
+    /// crossings, which is at one of these at worst.
+    pub(super) fn blunt(&mut self, edges: &Ring) -> (Placed, Surfaces) {
+        let leaves = by_number(edges);
+        for (k, &a) in leaves.iter().enumerate() {
+            for &b in &leaves[k + 1..] {
+                let pair = Surfaces::from_slice(&[a.min(b), a.max(b)]);
+                let placed = self.place(&pair, mean(edges, &pair));
+                if placed.residual <= self.goal && self.blocking_leaf(placed.point, &pair).is_none()
+                {
+                    return (placed, pair);
+                }
+            }
+        }
+        self.flat(edges, *self.cell)
+    }
+
+    /// A point of the cell on one of a piece's surfaces, near a point beside the cell.
+    pub(super) fn near(&mut self, edges: &Ring, at: Vec3) -> (Placed, Surfaces) {
+        let clamped = [0, 1, 2].map(|k| at[k].clamp(self.cell.low[k], self.cell.high[k]));
+        let mut best: Option<(f64, Placed, u32)> = None;
+        for leaf in by_number(edges) {
+            let placed = self.place(&[leaf], clamped.into());
+            let far = placed.point.distance(at);
+            let real =
+                placed.residual <= self.goal && self.blocking_leaf(placed.point, &[leaf]).is_none();
+            if real && best.as_ref().is_none_or(|b| far < b.0) {
+                best = Some((far, placed, leaf));
+            }
+        }
+        match best {
+            Some((_, placed, leaf)) => (placed, Surfaces::from_slice(&[leaf])),
+            None => self.flat(edges, *self.cell),
+        }
+    }
+
+    /// A point of a box on one of a piece's surfaces, that with the most crossings.
+    pub(super) fn flat(&mut self, edges: &Ring, within: Box3) -> (Placed, Surfaces) {
+        for leaf in by_number(edges) {
+            let start = mean(edges, &[leaf]);
+            let placed = self.solver.place(self.leaves, &[leaf], start, &within, self.goal);
+            if placed.residual <= self.goal {
+                return (placed, Surfaces::from_slice(&[leaf]));
+            }
+        }
+        nearest(edges)
+    }
+
+    /// The primitive that decides at a point which is not on the set's surface, unless it is one of `known`.
+    pub(super) fn blocking_leaf(&mut self, at: Vec3, known: &[u32]) -> Option<u32> {
+        let value = self.tape.eval::<f64>(&at, self.registers);
+        let leaf = self.tape.leaf[self.tape.winner(self.registers, |v: f64| v)];
+        if leaf == NO_LEAF || known.contains(&leaf) {
+            return None;
+        }
+        let gradient = self.solver.gradient(self.leaves[leaf as usize].primitive.tape(), at);
+        (value.abs() > self.goal * gradient.slope.norm()).then_some(leaf)
+    }
+
+    /// The side of the cell, flat, on which both edges lie.
+    pub(super) fn shared_side(&self, e: usize, f: usize) -> Option<Box3> {
+        let shared = faces_of(e) & faces_of(f);
+        if shared == 0 {
+            return None;
+        }
+        let face = shared.trailing_zeros() as usize;
+        let (mut low, mut high) = (self.cell.low.to_array(), self.cell.high.to_array());
+        let at = if face.is_multiple_of(2) { low[face / 2] } else { high[face / 2] };
+        (low[face / 2], high[face / 2]) = (at, at);
+        Some(Box3 { low: low.into(), high: high.into() })
+    }
+
+    /// Where two surfaces meet on a side of the cell, between two crossings.
+    pub(super) fn change(&mut self, p: &Crossing, q: &Crossing, side: &Box3) -> Option<Placed> {
+        let both = [p.leaf.min(q.leaf), p.leaf.max(q.leaf)];
+        let start = (p.point + q.point) * 0.5;
+        let change = self.solver.place(self.leaves, &both, start, side, self.goal);
+        (change.residual <= self.goal).then_some(change)
+    }
+
+    /// A better place than `placed`, found by way of the cell's faces. Where two neighbouring
+    /// crossings show different primitives, the surface changes from one to the other on the face
+    /// between them: so there is a point on both, and more are nearby inside.
+    fn by_sides(&mut self, surfaces: &[u32], edges: &Ring, mut placed: Placed) -> Placed {
+        let goal = self.goal;
+        let mut sum = Vec3::zero();
+        let mut count = 0.0;
+        let mut changes: SmallVec<[Placed; 4]> = SmallVec::new();
+        for (e, p) in edges {
+            for (f, q) in edges.iter().filter(|(f, q)| f > e && q.leaf != p.leaf) {
+                let Some(side) = self.shared_side(*e, *f) else { continue };
+                if let Some(change) = self.change(p, q, &side) {
+                    sum += change.point;
+                    count += 1.0;
+                    changes.push(change);
+                }
+            }
+        }
+        if count > 0.0 {
+            let inner = self.place(surfaces, sum / count);
+            if inner.residual < placed.residual {
+                placed = inner;
+            }
+        }
+        for change in changes {
+            if placed.residual > goal && surfaces.len() == 2 {
+                placed = change;
+            }
+        }
+        for (_, crossing) in edges {
+            if placed.residual <= goal {
+                break;
+            }
+            let other = self.place(surfaces, crossing.point);
+            if other.residual < placed.residual {
+                placed = other;
+            }
+        }
+        placed
+    }
+
+    pub(super) fn place(&mut self, surfaces: &[u32], start: Vec3) -> Placed {
+        self.solver.place(self.leaves, surfaces, start, self.cell, self.goal)
+    }
+}
+
+/// The primitives that crossings show, those with the most crossings first.
+fn by_number(edges: &Ring) -> Surfaces {
+    let mut leaves: Surfaces = edges.iter().map(|e| e.1.leaf).collect();
+    leaves.sort_unstable();
+    leaves.dedup();
+    let number = |leaf: u32| edges.iter().filter(|e| e.1.leaf == leaf).count();
+    leaves.sort_by_key(|&leaf| std::cmp::Reverse(number(leaf)));
+    leaves
+}
+
+/// The mean of the crossings that show some primitives.
+fn mean(edges: &Ring, of: &[u32]) -> Vec3 {
+    let (mut sum, mut count) = (Vec3::zero(), 0.0);
+    for (_, crossing) in edges.iter().filter(|e| of.contains(&e.1.leaf)) {
+        sum += crossing.point;
+        count += 1.0;
+    }
+    sum / count
+}
+
+/// The crossing that is nearest to the middle of all.
+pub(super) fn nearest(edges: &Ring) -> (Placed, Surfaces) {
+    let leaves: Surfaces = edges.iter().map(|e| e.1.leaf).collect();
+    let middle = mean(edges, &leaves);
+    let far = |e: &&(usize, &Crossing)| e.1.point.distance(middle);
+    let (point, leaf) = edges
+        .iter()
+        .min_by(|a, b| far(a).total_cmp(&far(b)))
+        .map_or((middle, 0), |e| (e.1.point, e.1.leaf));
+    (Placed { point, residual: 0.0, strayed: false }, Surfaces::from_slice(&[leaf]))
+}

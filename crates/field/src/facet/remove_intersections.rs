@@ -1,0 +1,189 @@
+//! Triangles without crossings: vertices that make triangles cut others go where they do no harm.
+//!
+//! First the polygons about them become fans about the crossings of the grid, which are on the surface. Then
+//! vertices outside their cells, on an edge that passes beside, go back into them, onto one surface; pieces of
+//! surface with several vertices get one; in cells with several pieces of surface, vertices go near their
+//! crossings. What remains is told as undecided.
+
+use super::assemble::{Assembled, Assembly};
+use super::cell::start_corner;
+use super::crossing::crossings;
+use super::grid::Grid;
+use super::place_vertices::{Placement, nearest};
+use super::types::{Block, Ring};
+use super::vertex::{Placed, Solver, Surfaces};
+use crate::expr::tape::Tape;
+use crate::set::Leaf;
+use moldloft_num::{Box3, Vec3};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How often vertices are moved.
+const ROUNDS: usize = 16;
+/// In how many ways a vertex gives way: polygons about it become fans, then it moves nearer to its crossings.
+const WAYS: u8 = 5;
+
+/// Pairs of triangles that cut each other, of which one has a doubtful vertex.
+pub(super) fn crossing(
+    positions: &[Vec3],
+    count: usize,
+    corners: impl Fn(usize) -> [u32; 3] + Sync,
+    doubtful: &[(u32, [usize; 3])],
+) -> Vec<[usize; 2]> {
+    if doubtful.is_empty() {
+        return Vec::new();
+    }
+    let mut of_vertex = vec![false; positions.len()];
+    doubtful.iter().for_each(|d| of_vertex[d.0 as usize] = true);
+    let flagged: Vec<bool> =
+        (0..count).map(|f| corners(f).into_iter().any(|v| of_vertex[v as usize])).collect();
+    crossings(positions, count, corners, Some(&flagged))
+}
+
+/// The triangles of all blocks, with as few that cut others as can be unless they are to be sharp.
+pub(super) fn assembled(
+    grid: &Grid,
+    leaves: &[Leaf],
+    blocks: &[(Arc<Tape<f64>>, Arc<Block>)],
+    sharp: bool,
+) -> Assembled {
+    let mut assembly = Assembly::new(grid, leaves, blocks);
+    let mut ways: BTreeMap<u32, u8> = BTreeMap::new();
+    let mut made = assembly.triangles();
+    for _ in 0..if sharp { 0 } else { ROUNDS } {
+        let corners = |f: usize| made.triangles[f].1;
+        let pairs = crossing(&made.positions, made.triangles.len(), corners, &made.doubtful);
+        if pairs.is_empty() {
+            break;
+        }
+        let doubtful =
+            |v: &u32| *v < assembly.count && made.doubtful.binary_search_by_key(v, |d| d.0).is_ok();
+        // Of each pair the vertex that is farthest from its crossings: the others may be innocent.
+        let mut chosen: Vec<u32> = Vec::new();
+        for pair in pairs {
+            let all = pair.into_iter().flat_map(corners).filter(doubtful);
+            let all = all.filter(|v| ways.get(v).is_none_or(|w| *w < WAYS));
+            let farthest = all
+                .map(|v| (assembly.away(v, made.positions[v as usize]), v))
+                .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+            chosen.extend(farthest.map(|f| f.1));
+        }
+        if chosen.is_empty() {
+            break;
+        }
+        chosen.sort_unstable();
+        chosen.dedup();
+        let mut solver = Solver::default();
+        for vertex in chosen {
+            let way = ways.entry(vertex).or_insert(0);
+            *way += 1;
+            if *way == 1 {
+                assembly.changes.fanned.insert(vertex);
+            } else if let Some(way) = assembly.way(vertex, *way, &mut solver) {
+                if way.several {
+                    assembly.changes.merged.insert(way.vertex);
+                }
+                assembly.changes.moved.insert(way.vertex, way.place);
+            }
+        }
+        made = assembly.triangles();
+    }
+    if !assembly.changes.merged.is_empty() {
+        made.compact();
+    }
+    made
+}
+
+/// Where a vertex goes.
+struct Way {
+    vertex: u32,
+    /// True when it was one of several of its piece of surface.
+    several: bool,
+    place: (Placed, Surfaces),
+}
+
+impl Assembly<'_> {
+    /// The crossings of a vertex's piece of surface.
+    fn ring(&self, vertex: u32) -> Option<Ring<'_>> {
+        let (owner, k) = self.owner(vertex);
+        let block = &self.blocks[owner].1;
+        let cell = self.cell(owner, block.vertices[k].cell);
+        let case = block.case(block.vertices[k].cell.map(|x| x as usize));
+        let number = block.piece(k);
+        let mut ring = Ring::new();
+        for edge in (0..12).filter(|&e| case.loop_of[e] == number) {
+            let start = start_corner(edge);
+            let at = [0, 1, 2].map(|i| cell[i] + (start >> i & 1));
+            ring.push((edge, self.crossing(owner, at, edge / 4)?));
+        }
+        Some(ring)
+    }
+
+    /// How far a vertex is from the box around its crossings.
+    fn away(&self, vertex: u32, at: Vec3) -> f64 {
+        let Some(ring) = self.ring(vertex) else { return 0.0 };
+        let around = Box3::around(ring.iter().map(|e| e.1.point));
+        (0..3)
+            .map(|k| (around.low[k] - at[k]).max(at[k] - around.high[k]).max(0.0).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// Where a vertex goes that gives way: onto a surface in its cell as near as can be, elsewhere there, onto one between its crossings, to a
+    /// crossing. A piece of surface with several vertices keeps the first.
+    fn way(&self, vertex: u32, way: u8, solver: &mut Solver) -> Option<Way> {
+        let (owner, k) = self.owner(vertex);
+        let (tape, block) = &self.blocks[owner];
+        let local = block.vertices[k].cell.map(|x| x as usize);
+        let cell = self.cell(owner, block.vertices[k].cell);
+        let (number, ring) = (block.piece(k), self.ring(vertex)?);
+        let edge = ring.first()?.0;
+        let sides = self.grid.cell(cell);
+        let mut placement = Placement {
+            tape,
+            leaves: self.leaves,
+            cell: &sides,
+            goal: self.grid.goal,
+            solver,
+            registers: &mut Vec::new(),
+        };
+        let place = match way {
+            2 => placement.near(&ring, self.corner(owner, k).1.point),
+            3 => placement.flat(&ring, sides),
+            4 => {
+                let between = Box3::around(ring.iter().map(|e| e.1.point));
+                placement.flat(&ring, between)
+            }
+            _ => nearest(&ring),
+        };
+        let vertex = self.number(owner, block.plain(local, edge));
+        Some(Way { vertex, several: block.has_several(local, number), place })
+    }
+}
+
+impl Assembled {
+    /// Leaves out the vertices that no triangle has.
+    fn compact(&mut self) {
+        let mut number = vec![u32::MAX; self.positions.len()];
+        self.triangles.iter().flat_map(|t| t.1).for_each(|v| number[v as usize] = 0);
+        for (place, count) in number.iter_mut().filter(|n| **n == 0).zip(0..) {
+            *place = count;
+        }
+        let kept = |v: usize| number[v] != u32::MAX;
+        let mut k = 0;
+        self.positions.retain(|_| {
+            k += 1;
+            kept(k - 1)
+        });
+        let mut k = 0;
+        self.surfaces.retain(|_| {
+            k += 1;
+            kept(k - 1)
+        });
+        for (_, t) in &mut self.triangles {
+            *t = t.map(|v| number[v as usize]);
+        }
+        self.doubtful.retain(|d| kept(d.0 as usize));
+        self.doubtful.iter_mut().for_each(|d| d.0 = number[d.0 as usize]);
+    }
+}

@@ -1,0 +1,321 @@
+//! Sets of mixed dimension as meshes: solids, sheets, wires and points.
+//!
+//! A sheet is |f| in a set. A point of f = 0 belongs to the set if the set contains it when this sheet is
+//! taken for everything and the other sheets for nothing; it shows as a sheet unless the solid part (all
+//! sheets taken for nothing) contains it already. So the sheet of f is the faces that f has on the solid
+//! {f <= 0} & (that set - the solid part): its boundary, edges and vertices are found as those of any
+//! solid. Likewise a wire is the edge between two sheets, and a point the corner of three.
+
+use crate::facet::padded_bounds::padded_bounds;
+use crate::facet::types::{Flat, On};
+use crate::facet::{Facets, Options, facet, facet_within};
+use crate::{FieldError, Leaf, Primitive, Set};
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder};
+use moldloft_num::{Box3, Vec3};
+use std::collections::HashMap;
+
+/// A piece of surface without an inside.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// Its triangles, with normals along the gradient of the primitive; open at its boundary.
+    pub mesh: Mesh,
+    /// The number of its leaf among [`Set::leaves`].
+    pub leaf: usize,
+    /// What its vertices lie on.
+    pub on: On,
+    /// The number of its primitive among the leaves of `on`.
+    pub own: usize,
+}
+
+/// A curve in which two sheets meet.
+#[derive(Clone, Debug)]
+pub struct Wire {
+    /// Its vertices in order; the first is not repeated when it is closed.
+    pub points: Vec<Vec3>,
+    /// True when it ends where it began.
+    pub closed: bool,
+    /// The numbers of its two leaves.
+    pub leaves: [usize; 2],
+    /// What its vertices lie on.
+    pub on: On,
+}
+
+/// A point where three sheets meet.
+#[derive(Clone, Debug)]
+pub struct Dot {
+    /// Where it is.
+    pub point: Vec3,
+    /// The numbers of its three leaves.
+    pub leaves: [usize; 3],
+    /// What it lies on.
+    pub on: On,
+}
+
+impl Sheet {
+    /// Its triangles with what they and their corners are on.
+    pub(crate) fn flat(&self) -> Flat<'_> {
+        Flat {
+            positions: self.mesh.positions(),
+            faces: self.mesh.faces(),
+            patches: vec![(self.own as u32, 0..self.mesh.faces().len())],
+            leaves: &self.on.leaves,
+            surfaces: &self.on.surfaces,
+        }
+    }
+}
+
+impl Wire {
+    /// The length of its chords.
+    pub fn length(&self) -> f64 {
+        let steps = self.points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+        match (self.closed, self.points.first(), self.points.last()) {
+            (true, Some(a), Some(b)) => steps + b.distance(*a),
+            _ => steps,
+        }
+    }
+}
+
+/// A set of mixed dimension.
+#[derive(Clone, Debug)]
+pub struct Mixed {
+    /// The solid part.
+    pub solid: Facets,
+    /// The sheets, in the order of their leaves.
+    pub sheets: Vec<Sheet>,
+    /// The wires, in the order of their leaves.
+    pub wires: Vec<Wire>,
+    /// The points where three sheets meet.
+    pub points: Vec<Dot>,
+    /// The leaves of the set, by which the others are numbered.
+    pub leaves: Vec<Leaf>,
+}
+
+/// The set without its sheets, wires and points; the set itself when it has none.
+pub fn solid_part(set: &Set) -> Set {
+    match set.leaves().iter().any(|leaf| leaf.primitive.is_sheet()) {
+        true => with_sheets(set, &[]),
+        false => set.clone(),
+    }
+}
+
+/// The set with its sheets replaced: those of `kept` by everything, others by nothing.
+fn with_sheets(set: &Set, kept: &[&Primitive]) -> Set {
+    set.replaced(&|p| {
+        if !p.is_sheet() {
+            return None;
+        }
+        // The complement of a sheet is everything but a surface: solid for all that has an inside.
+        let negated = p.of_sheet().abs().same(&-p);
+        if negated {
+            return Some(Set::everything());
+        }
+        let chosen = kept.iter().any(|k| k.same(p));
+        Some(if chosen { Set::everything() } else { Set::nothing() })
+    })
+}
+
+/// The facets of a set that may hold sheets, wires and points besides solids, within a box.
+///
+/// # Errors
+/// As [`facet`].
+///
+/// # Example
+/// ```
+/// use moldloft_field::{Options, Primitive, Resolution, Set, facet_mixed};
+/// use moldloft_num::{Box3, Vec3};
+///
+/// let ball = Primitive::sphere(Vec3::zero(), 1.0)?;
+/// let over = Box3 { low: Vec3::of(-2.0, -2.0, -2.0), high: Vec3::of(2.0, 2.0, 2.0) };
+/// let options = Options::new(Resolution::Depth(5));
+/// let shell = facet_mixed(&Set::new(&ball.abs()), &over, &options)?;
+/// assert!(shell.solid.mesh.faces().is_empty());
+/// assert_eq!(shell.sheets.len(), 1);
+/// # Ok::<(), moldloft_field::FieldError>(())
+/// ```
+pub fn facet_mixed(set: &Set, over: &Box3, options: &Options) -> Result<Mixed, FieldError> {
+    let solid_set = with_sheets(set, &[]);
+    let solid = facet(&solid_set, over, options)?;
+    let leaves = set.leaves();
+    let plain = |p: &Primitive| p.is_sheet() && !p.of_sheet().abs().same(&-p);
+    let thin: Vec<usize> = (0..leaves.len()).filter(|&k| plain(&leaves[k].primitive)).collect();
+    let leaf = |k: usize| &leaves[k].primitive;
+    let half = |k: usize| Set::new(leaf(k).of_sheet());
+
+    let mut sheets = Vec::new();
+    let mut covered: HashMap<usize, Set> = HashMap::new();
+    for &k in &thin {
+        let here = &with_sheets(set, &[leaf(k)]) - &solid_set;
+        if here.is_nothing() {
+            continue;
+        }
+        covered.insert(k, here.clone());
+        let wide = padded_bounds(over, &here, &[leaf(k).of_sheet()]);
+        let facets = facet_within(&(half(k) & here), &wide, over, options, None)?;
+        let sheet = Leaf {
+            primitive: leaf(k).of_sheet().clone(),
+            attributes: leaves[k].attributes.clone(),
+        };
+        let info = crate::facet::info(&sheet);
+        if let Some((mesh, on, own)) = patch_of(&facets, leaf(k).of_sheet(), info)? {
+            sheets.push(Sheet { mesh, leaf: k, on, own });
+        }
+    }
+    let mut wires = Vec::new();
+    let mut points = Vec::new();
+    for (i, &a) in thin.iter().enumerate() {
+        for (j, &b) in thin.iter().enumerate().skip(i + 1) {
+            let mut here = &with_sheets(set, &[leaf(a), leaf(b)]) - &solid_set;
+            for k in [a, b] {
+                if let Some(sheet) = covered.get(&k) {
+                    here = &here - sheet;
+                }
+            }
+            if !here.is_nothing() {
+                let pair = [leaf(a).of_sheet(), leaf(b).of_sheet()];
+                let wide = padded_bounds(over, &here, &pair);
+                let facets = facet_within(&(half(a) & half(b) & here), &wide, over, options, None)?;
+                for (chain, closed) in chains(&facets, pair) {
+                    let at = |v: &u32| facets.mesh.positions()[*v as usize];
+                    let points = chain.iter().map(at).collect();
+                    let on = lying_on(&facets, &chain);
+                    wires.push(Wire { points, closed, leaves: [a, b], on });
+                }
+            }
+            for &c in thin.iter().skip(j + 1) {
+                let mut here = &with_sheets(set, &[leaf(a), leaf(b), leaf(c)]) - &solid_set;
+                for pair in [[a, b], [b, c], [a, c]] {
+                    here = &here - &with_sheets(set, &pair.map(leaf));
+                }
+                if !here.is_nothing() {
+                    let three = [a, b, c].map(|k| leaf(k).of_sheet());
+                    let wide = padded_bounds(over, &here, &three);
+                    let here = &(half(a) & half(b) & half(c) & here);
+                    let facets = facet_within(here, &wide, over, options, None)?;
+                    for v in corners(&facets, three) {
+                        let (point, on) =
+                            (facets.mesh.positions()[v as usize], lying_on(&facets, &[v]));
+                        points.push(Dot { point, leaves: [a, b, c], on });
+                    }
+                }
+            }
+        }
+    }
+    Ok(Mixed { solid, sheets, wires, points, leaves })
+}
+
+/// What some vertices of facets lie on.
+fn lying_on(facets: &Facets, vertices: &[u32]) -> On {
+    let surfaces = vertices.iter().map(|&v| facets.surfaces[v as usize].clone()).collect();
+    On { leaves: facets.leaves.clone(), surfaces }
+}
+
+/// The number of a primitive among the leaves of facets.
+fn number(facets: &Facets, f: &Primitive) -> Option<u32> {
+    facets.leaves.iter().position(|l| l.primitive.same(f)).map(|k| k as u32)
+}
+
+/// The faces of one primitive as a mesh of their own.
+fn patch_of(
+    facets: &Facets,
+    f: &Primitive,
+    info: PatchInfo,
+) -> Result<Option<(Mesh, On, usize)>, FieldError> {
+    let Some(leaf) = number(facets, f) else { return Ok(None) };
+    let patch = facets.patch_leaves.iter().position(|&l| l == leaf as usize);
+    let Some(patch) = patch.map(|k| &facets.mesh.patches()[k]) else { return Ok(None) };
+    let mut numbers: HashMap<u32, u32> = HashMap::new();
+    let mut positions = Vec::new();
+    let mut used = Vec::new();
+    let mut faces = Vec::with_capacity(patch.faces.len());
+    for face in &facets.mesh.faces()[patch.faces.clone()] {
+        faces.push(face.map(|v| {
+            *numbers.entry(v).or_insert_with(|| {
+                positions.push(facets.mesh.positions()[v as usize]);
+                used.push(v);
+                positions.len() as u32 - 1
+            })
+        }));
+    }
+    let count = faces.len() as f64;
+    let broken = |_| FieldError::TooFine { boxes: count, limit: count };
+    let mut builder = TopologyBuilder::new();
+    builder.add_vertices(positions.len()).map_err(broken)?;
+    builder.add_faces(info, faces).map_err(broken)?;
+    let mesh = Mesh::new(builder.build().into(), positions).map_err(broken)?;
+    Ok(Some((mesh, lying_on(facets, &used), leaf as usize)))
+}
+
+/// The edges between the faces of two primitives, chained, in the order of their lowest vertex.
+fn chains(facets: &Facets, pair: [&Primitive; 2]) -> Vec<(Vec<u32>, bool)> {
+    let [Some(a), Some(b)] = pair.map(|f| number(facets, f)) else { return Vec::new() };
+    let mut sides: HashMap<(u32, u32), u32> = HashMap::new();
+    let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
+    for (patch, &leaf) in facets.mesh.patches().iter().zip(&facets.patch_leaves) {
+        let leaf = leaf as u32;
+        if leaf != a && leaf != b {
+            continue;
+        }
+        for face in &facets.mesh.faces()[patch.faces.clone()] {
+            for k in 0..3 {
+                let (p, q) = (face[k], face[(k + 1) % 3]);
+                match sides.get(&(q, p)) {
+                    Some(&other) if other != leaf => {
+                        next.entry(p).or_default().push(q);
+                        next.entry(q).or_default().push(p);
+                    }
+                    _ => {
+                        sides.insert((p, q), leaf);
+                    }
+                }
+            }
+        }
+    }
+    let mut vertices: Vec<u32> = next.keys().copied().collect();
+    // Open chains first, from their ends.
+    vertices.sort_unstable_by_key(|v| (next[v].len() != 1, *v));
+    let mut used: HashMap<(u32, u32), ()> = HashMap::new();
+    let mut out = Vec::new();
+    for start in vertices {
+        loop {
+            let mut chain = vec![start];
+            let mut at = start;
+            while let Some(&to) = next[&at].iter().find(|&&to| !used.contains_key(&(at, to))) {
+                used.insert((at, to), ());
+                used.insert((to, at), ());
+                if to == start {
+                    break;
+                }
+                chain.push(to);
+                at = to;
+            }
+            if chain.len() < 2 {
+                break;
+            }
+            let last = chain[chain.len() - 1];
+            let closed = chain.len() > 2 && next[&last].contains(&start);
+            out.push((chain, closed));
+        }
+    }
+    out
+}
+
+/// The vertices that lie on three primitives.
+fn corners(facets: &Facets, three: [&Primitive; 3]) -> Vec<u32> {
+    let found = three.map(|f| number(facets, f));
+    let [Some(a), Some(b), Some(c)] = found else { return Vec::new() };
+    let on_all = |s: &[u32]| [a, b, c].iter().all(|k| s.contains(k));
+    let vertices = facets.surfaces.iter().enumerate();
+    let mut out: Vec<u32> = vertices.filter(|(_, s)| on_all(s)).map(|(v, _)| v as u32).collect();
+    // Cells beside a corner may each have found it.
+    let near = 1e-9 * facets.step;
+    let at = |v: u32| facets.mesh.positions()[v as usize];
+    let mut kept: Vec<u32> = Vec::new();
+    out.retain(|&v| {
+        let new = kept.iter().all(|&q| at(v).distance(at(q)) > near);
+        if new {
+            kept.push(v);
+        }
+        new
+    });
+    out
+}

@@ -1,0 +1,103 @@
+//! The connected parts of facets: how many bodies there are, and where they touch.
+
+use super::Facets;
+use moldloft_num::Vec3;
+use std::collections::HashMap;
+
+/// A connected part of facets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shell {
+    /// The volume that it encloses; negative for a cavity.
+    pub volume: f64,
+    /// Its triangles, ascending.
+    pub faces: Vec<u32>,
+}
+
+impl Facets {
+    /// The connected parts of the surface, in the order of their first triangles. A body has one of positive
+    /// volume and one of negative volume for each of its cavities.
+    pub fn shells(&self) -> Vec<Shell> {
+        let faces = self.mesh.faces();
+        let mut root: Vec<u32> = (0..self.mesh.positions().len() as u32).collect();
+        fn find(root: &mut [u32], mut v: u32) -> u32 {
+            while root[v as usize] != v {
+                root[v as usize] = root[root[v as usize] as usize];
+                v = root[v as usize];
+            }
+            v
+        }
+        for f in faces {
+            for k in 1..3 {
+                let (a, b) = (find(&mut root, f[0]), find(&mut root, f[k]));
+                root[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut number: HashMap<u32, usize> = HashMap::new();
+        let mut shells: Vec<Shell> = Vec::new();
+        for (t, f) in faces.iter().enumerate() {
+            let at = find(&mut root, f[0]);
+            let k = *number.entry(at).or_insert_with(|| {
+                shells.push(Shell { volume: 0.0, faces: Vec::new() });
+                shells.len() - 1
+            });
+            let [a, b, c] = [0, 1, 2].map(|i| self.mesh.positions()[f[i] as usize]);
+            shells[k].volume += a.dot(b.cross(c)) / 6.0;
+            shells[k].faces.push(t as u32);
+        }
+        shells
+    }
+
+    /// How many bodies there are: connected solids, those that only touch counted apart.
+    pub fn bodies(&self) -> usize {
+        self.shells().iter().filter(|s| s.volume > 0.0).count()
+    }
+
+    /// Where bodies only touch: positions at which two of their shells have a vertex each, ascending by x, y,
+    /// z. Each shell keeps its own vertex there, so that both stay manifold.
+    pub fn touching(&self) -> Vec<Vec3> {
+        let shells = self.shells();
+        if shells.len() < 2 {
+            return Vec::new();
+        }
+        let positions = self.mesh.positions();
+        let mut shell = vec![0usize; positions.len()];
+        for (k, one) in shells.iter().enumerate() {
+            for &t in &one.faces {
+                self.mesh.faces()[t as usize].iter().for_each(|&v| shell[v as usize] = k);
+            }
+        }
+        // Bins much wider than what counts as the same place, so that most points are far from their sides.
+        let near = 1e-7 * self.step;
+        let bin = |p: Vec3, reach: f64| {
+            let side = 1e-2 * self.step;
+            let end = |x: f64| (x / side).floor() as i64;
+            [0, 1, 2].map(|k| [end(p[k] - reach), end(p[k] + reach)])
+        };
+        let mut bins: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        for (v, p) in positions.iter().enumerate() {
+            bins.entry(bin(*p, 0.0).map(|ends| ends[0])).or_default().push(v as u32);
+        }
+        let others = |v: usize| {
+            let [x, y, z] = bin(positions[v], near).map(|[low, high]| low..=high);
+            let bins = &bins;
+            x.flat_map(move |i| {
+                let z = z.clone();
+                y.clone().flat_map(move |j| z.clone().map(move |k| [i, j, k]))
+            })
+            .filter_map(|key| bins.get(&key))
+            .flatten()
+            .map(|&w| w as usize)
+        };
+        // The first of the vertices at a place stands for it.
+        let meets = |v: usize| {
+            let here = || others(v).filter(|&w| positions[v].distance(positions[w]) <= near);
+            here().all(|w| v <= w) && here().any(|w| shell[v] != shell[w])
+        };
+        let mut found: Vec<Vec3> =
+            (0..positions.len()).filter(|&v| meets(v)).map(|v| positions[v]).collect();
+        found.sort_by(|a, b| {
+            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
+        });
+        found
+    }
+}

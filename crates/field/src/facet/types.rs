@@ -1,0 +1,270 @@
+//! What the division hands on: options, crossings, vertices of cells and the blocks that hold them. Data and
+//! look-ups only, so that the steps that make and read them know these types and not each other.
+
+use super::cell::{Case, NONE, case};
+use super::vertex::{Placed, Surfaces};
+use crate::expr::tape::Tape;
+use crate::set::Leaf;
+use moldloft_num::Vec3;
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How fine facets are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// Cells of side (longest side of the box) / 2^depth.
+    Depth(u32),
+    /// As that depth, but no coarser than the thinnest side of the box at level 5, a half of it at 6 and so on.
+    Level(u32),
+    /// Triangle centres at most about this far from the surface: estimated by |f| / |f'| and kept by
+    /// refining, not proved.
+    Accuracy(f64),
+}
+
+/// How facets are made.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How fine they are.
+    pub resolution: Resolution,
+    /// The most cells that the surface may pass through.
+    pub limit: f64,
+    /// Vertices stay on edges and corners even where triangles then cut others: integrals over the body do not
+    /// mind, and lose most by edges that are cut off.
+    pub sharp: bool,
+    /// Set it to true from elsewhere to stop.
+    pub cancel: Option<Arc<AtomicBool>>,
+}
+
+impl Options {
+    /// Facets of that resolution, at most 20 million cells.
+    pub fn new(resolution: Resolution) -> Self {
+        Self { resolution, limit: 2e7, sharp: false, cancel: None }
+    }
+
+    pub(crate) fn cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(|c| c.load(Ordering::Relaxed))
+    }
+}
+
+/// Cells along a side.
+pub(super) const SIDE: usize = 8;
+/// Where the surface crosses an edge of the grid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossing {
+    /// Lattice position of the edge's start, within the block.
+    pub(super) at: [u8; 3],
+    /// Axis of the edge.
+    pub(super) axis: u8,
+    /// True when the edge runs from solid to air.
+    pub(super) outward: bool,
+    /// The leaf that decides there.
+    pub(super) leaf: u32,
+    /// Where.
+    pub(super) point: Vec3,
+}
+
+/// The vertex of a piece of surface in a cell.
+#[derive(Clone, Debug)]
+pub(super) struct Vertex {
+    pub(super) placed: Placed,
+    /// The cell, in the block.
+    pub(super) cell: [u8; 3],
+    /// True when the cell has several vertices, or its vertex is not in it: nothing is known of its triangles
+    /// then.
+    pub(super) doubtful: bool,
+    /// True when it is not on all the surfaces that the crossings show.
+    pub(super) blunt: bool,
+    pub(super) surfaces: Surfaces,
+}
+
+/// What a block contributes.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    /// Position in blocks.
+    pub(super) at: [u32; 3],
+    /// Signs of every cell's corners.
+    pub(super) signs: Box<[u8; SIDE * SIDE * SIDE]>,
+    /// Its ambiguous faces whose middle is solid.
+    pub(super) joins: Box<[u8; SIDE * SIDE * SIDE]>,
+    /// First vertex of every cell.
+    pub(super) first: Box<[u32; SIDE * SIDE * SIDE]>,
+    pub(super) vertices: Vec<Vertex>,
+    /// The pieces of surface that have several vertices, in the order of cells.
+    pub(super) splits: Vec<Several>,
+    /// Crossings of the edges that start in the block, its far faces excepted.
+    pub(super) crossings: Vec<Crossing>,
+    /// How many cells the surface passes through.
+    pub(super) active: usize,
+}
+
+/// A piece of surface with several vertices.
+#[derive(Clone, Debug)]
+pub(super) struct Several {
+    /// The cell, in the block, …
+    pub(super) cell: [u8; 3],
+    /// … and which of its pieces.
+    pub(super) number: u8,
+    /// Where its vertices but the first are.
+    pub(super) more: u32,
+    pub(super) split: Split,
+}
+
+/// The crossings of a piece of surface, with their edges.
+pub(super) type Ring<'c> = SmallVec<[(usize, &'c Crossing); 12]>;
+
+/// The vertices of a piece of surface and how they hang together.
+#[derive(Clone, Debug)]
+pub(super) struct Split {
+    pub(super) vertices: SmallVec<[(Placed, Surfaces); 2]>,
+    /// The vertex of each crossed edge.
+    pub(super) group: [u8; 12],
+    /// The tree of vertices: the one towards the first, which is its own.
+    pub(super) parent: SmallVec<[u8; 2]>,
+}
+
+impl Split {
+    /// The vertices from that of one edge to that of another.
+    pub(super) fn path(&self, from: usize, to: usize) -> SmallVec<[u8; 4]> {
+        let up = |k: usize| {
+            let mut way: SmallVec<[u8; 4]> = SmallVec::from_slice(&[self.group[k]]);
+            while let Some(&last) = way.last() {
+                let parent = self.parent[last as usize];
+                if parent == last {
+                    break;
+                }
+                way.push(parent);
+            }
+            way
+        };
+        let (mut here, mut there) = (up(from), up(to));
+        // Both ways end at the first vertex; the last that they share is where they part.
+        let mut meeting = 0;
+        while let (Some(&a), Some(&b)) = (here.last(), there.last()) {
+            if a != b {
+                break;
+            }
+            meeting = a;
+            here.pop();
+            there.pop();
+        }
+        here.push(meeting);
+        here.extend(there.into_iter().rev());
+        here
+    }
+}
+
+pub(super) fn cell_index(c: [usize; 3]) -> usize {
+    (c[0] * SIDE + c[1]) * SIDE + c[2]
+}
+
+impl Several {
+    /// The number of the vertex of a group; `plain` is that of the first.
+    fn vertex(&self, plain: usize, group: u8) -> usize {
+        if group == 0 { plain } else { self.more as usize + group as usize - 1 }
+    }
+}
+
+impl Block {
+    /// True when the surface cuts off the first corner of the ambiguous face on a cell's low side.
+    pub(super) fn first_apart(&self, cell: [usize; 3], axis: usize) -> bool {
+        let k = cell_index(cell);
+        (self.signs[k] & 1 == 1) != (self.joins[k] >> (2 * axis) & 1 == 1)
+    }
+
+    /// The case of a cell.
+    pub(super) fn case(&self, cell: [usize; 3]) -> &'static Case {
+        case(self.signs[cell_index(cell)], self.joins[cell_index(cell)])
+    }
+
+    /// The vertex in `cell` of the piece that crosses `edge`.
+    pub(super) fn vertex(&self, cell: [usize; 3], edge: usize) -> Option<usize> {
+        let number = self.case(cell).loop_of[edge];
+        if number == NONE {
+            return None;
+        }
+        let plain = self.plain(cell, edge);
+        Some(match self.several(cell, number) {
+            None => plain,
+            Some(several) => several.vertex(plain, several.split.group[edge]),
+        })
+    }
+
+    /// The first vertex in `cell` of the piece that crosses `edge`.
+    pub(super) fn plain(&self, cell: [usize; 3], edge: usize) -> usize {
+        self.first[cell_index(cell)] as usize + self.case(cell).loop_of[edge] as usize
+    }
+
+    /// The piece of surface that a vertex stands for, by its number in the cell.
+    pub(super) fn piece(&self, vertex: usize) -> u8 {
+        let cell = self.vertices[vertex].cell;
+        let number = vertex - self.first[cell_index(cell.map(|x| x as usize))] as usize;
+        let later = || {
+            let mut own = self.splits.iter().rev().filter(|s| s.cell == cell);
+            own.find(|s| s.more as usize <= vertex).map_or(0, |s| s.number)
+        };
+        let loops = self.case(cell.map(|x| x as usize)).loops as usize;
+        if number < loops { number as u8 } else { later() }
+    }
+
+    /// True when a piece of surface in `cell` has several vertices.
+    pub(super) fn has_several(&self, cell: [usize; 3], number: u8) -> bool {
+        self.several(cell, number).is_some()
+    }
+
+    /// A piece of surface in `cell`, if it has several vertices.
+    fn several(&self, cell: [usize; 3], number: u8) -> Option<&Several> {
+        if self.splits.is_empty() {
+            return None;
+        }
+        let key = (cell.map(|x| x as u8), number);
+        let k = self.splits.binary_search_by_key(&key, |s| (s.cell, s.number)).ok()?;
+        Some(&self.splits[k])
+    }
+
+    /// The vertices from that of one crossed edge of `cell` to that of another of the same piece.
+    pub(super) fn path(&self, cell: [usize; 3], from: usize, to: usize) -> SmallVec<[usize; 4]> {
+        let (number, plain) = (self.case(cell).loop_of[from], self.plain(cell, from));
+        match self.several(cell, number) {
+            None => SmallVec::from_slice(&[plain]),
+            Some(several) => {
+                let path = several.split.path(from, to);
+                path.into_iter().map(|k| several.vertex(plain, k)).collect()
+            }
+        }
+    }
+}
+
+/// Blocks of an earlier division by position.
+pub(super) struct Reuse<'a> {
+    pub(super) blocks: FxHashMap<[u32; 3], &'a (Arc<Tape<f64>>, Arc<Block>)>,
+}
+
+impl Reuse<'_> {
+    /// The old block, if the set was the same there.
+    pub(super) fn get(&self, at: [u32; 3], tape: &Tape<f64>) -> Option<Arc<Block>> {
+        let (old, block) = self.blocks.get(&at)?;
+        (old.leaf == tape.leaf && old.same(tape)).then(|| block.clone())
+    }
+}
+
+/// Triangles as they are given.
+pub(crate) struct Flat<'a> {
+    pub positions: &'a [Vec3],
+    pub faces: &'a [[u32; 4]],
+    /// Numbers of leaves, ascending ranges of faces.
+    pub patches: Vec<(u32, std::ops::Range<usize>)>,
+    pub leaves: &'a [Leaf],
+    /// What each vertex lies on.
+    pub surfaces: &'a [SmallVec<[u32; 3]>],
+}
+
+/// On which leaves each of some points lies.
+#[derive(Clone, Debug, Default)]
+pub struct On {
+    /// The leaves.
+    pub leaves: Vec<Leaf>,
+    /// For each point, numbers of leaves.
+    pub surfaces: Vec<SmallVec<[u32; 3]>>,
+}

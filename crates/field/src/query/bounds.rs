@@ -1,0 +1,161 @@
+//! The box around a set.
+
+use crate::expr::interval::Interval;
+use crate::expr::tape::Tape;
+use crate::{FieldError, Set};
+use moldloft_num::{Box3, Vec3};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+/// Half the side of the world: a set that reaches its end counts as unbounded.
+const WORLD: f64 = 1048576.0;
+/// The most boxes to look at for one side.
+const MOST: usize = 100_000;
+
+struct Part {
+    /// How far it reaches in the direction asked for.
+    reach: f64,
+    depth: u32,
+    sides: [Interval; 3],
+    tape: Arc<Tape<f64>>,
+}
+
+impl PartialEq for Part {
+    fn eq(&self, o: &Self) -> bool {
+        self.cmp(o) == Ordering::Equal
+    }
+}
+impl Eq for Part {}
+impl PartialOrd for Part {
+    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+impl Ord for Part {
+    /// The farthest first; of equally far ones the smallest, so that flat ends are not searched over.
+    fn cmp(&self, o: &Self) -> Ordering {
+        let places = o.sides.into_iter().zip(self.sides).map(|(a, b)| a.low.total_cmp(&b.low));
+        self.reach
+            .total_cmp(&o.reach)
+            .then(self.depth.cmp(&o.depth))
+            .then(places.fold(Ordering::Equal, Ordering::then))
+    }
+}
+
+/// A box that is proved to contain a set, each side within `accuracy` of what ranges can tell; `None`
+/// for a set that is proved empty.
+///
+/// # Errors
+/// [`FieldError::Unbounded`] when the set reaches 2^20 from the origin, or that cannot be excluded;
+/// an accuracy that is not above zero.
+///
+/// # Example
+/// ```
+/// use moldloft_field::{Primitive, Set, bounds};
+/// use moldloft_num::Vec3;
+///
+/// let ball = Set::new(&Primitive::sphere(Vec3::of(1.0, 2.0, 3.0), 0.5)?);
+/// let around = bounds(&ball, 1e-3)?.unwrap();
+/// assert!((around.low.x - 0.5).abs() < 2e-3 && (around.high.z - 3.5).abs() < 2e-3);
+/// # Ok::<(), moldloft_field::FieldError>(())
+/// ```
+pub fn bounds(set: &Set, accuracy: f64) -> Result<Option<Box3>, FieldError> {
+    crate::error::positive("accuracy", accuracy)?;
+    let tape = set.compiled().tape;
+    let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+    for axis in 0..3 {
+        for (sign, end) in [(1.0, &mut high), (-1.0, &mut low)] {
+            match farthest(&tape, axis, sign, accuracy)? {
+                Some(reach) => end[axis] = sign * reach,
+                None => return Ok(None),
+            }
+        }
+    }
+    Ok(Some(Box3 { low: Vec3::from(low), high: Vec3::from(high) }))
+}
+
+/// How far the set reaches along an axis, from above; `None` when it is empty.
+fn farthest(
+    tape: &Arc<Tape<f64>>,
+    axis: usize,
+    sign: f64,
+    accuracy: f64,
+) -> Result<Option<f64>, FieldError> {
+    let world = Interval::new(-WORLD, WORLD);
+    let mut heap = BinaryHeap::new();
+    heap.push(Part { reach: WORLD, depth: 0, sides: [world; 3], tape: tape.clone() });
+    let mut room = Vec::new();
+    let mut seen = 0;
+    while let Some(Part { reach, depth, sides, tape }) = heap.pop() {
+        let range = tape.range(&sides, &mut room);
+        if range.low > 0.0 {
+            continue;
+        }
+        seen += 1;
+        let solid = range.high < 0.0;
+        if seen > MOST || sides[axis].width() <= accuracy || solid {
+            if reach >= WORLD {
+                return Err(FieldError::Unbounded { axis, sign });
+            }
+            return Ok(Some(reach));
+        }
+        let tape = tape.pruned(&room).map_or(tape, Arc::new);
+        for k in 0..8 {
+            let half = [0, 1, 2].map(|a| {
+                let middle = sides[a].middle();
+                if k >> a & 1 == 0 {
+                    Interval::new(sides[a].low, middle)
+                } else {
+                    Interval::new(middle, sides[a].high)
+                }
+            });
+            let reach = if sign > 0.0 { half[axis].high } else { -half[axis].low };
+            heap.push(Part { reach, depth: depth + 1, sides: half, tape: tape.clone() });
+        }
+    }
+    Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Affine, Primitive};
+    use moldloft_num::Axis;
+
+    fn v(x: f64, y: f64, z: f64) -> Vec3 {
+        Vec3::of(x, y, z)
+    }
+
+    #[test]
+    fn boxes_fit_and_contain() {
+        let a = Axis { point: v(0.1, 0.2, 0.3), direction: v(0.6, 0.0, 0.8) };
+        let turn = Affine::rotation(&a, 0.7);
+        let corners = [v(-1.0, -0.7, -0.5), v(0.9, 0.8, 0.6)];
+        let block = Set::cuboid(corners[0], corners[1]).unwrap().mapped(&turn).unwrap();
+        let exact = Box3::around((0..8).map(|k| {
+            let pick = |axis: usize| corners[k >> axis & 1][axis];
+            turn.apply(v(pick(0), pick(1), pick(2)))
+        }));
+        let found = bounds(&block, 1e-3).unwrap().unwrap();
+        for k in 0..3 {
+            assert!(found.low[k] <= exact.low[k] && found.low[k] > exact.low[k] - 2e-3);
+            assert!(found.high[k] >= exact.high[k] && found.high[k] < exact.high[k] + 2e-3);
+        }
+        let small = Set::new(&Primitive::sphere(v(1e4, 0.0, 0.0), 1e-3).unwrap());
+        let found = bounds(&small, 1e-5).unwrap().unwrap();
+        assert!((found.high.x - 1e4 - 1e-3).abs() < 2e-5);
+    }
+
+    #[test]
+    fn endless_sets_are_refused_and_empty_ones_have_no_box() {
+        let z = Axis { point: v(0.0, 0.0, 0.0), direction: v(0.0, 0.0, 1.0) };
+        let pipe = Set::new(&Primitive::cylinder(z, 1.0).unwrap());
+        assert_eq!(bounds(&pipe, 1e-2), Err(FieldError::Unbounded { axis: 2, sign: 1.0 }));
+        assert!(matches!(bounds(&Set::everything(), 1.0), Err(FieldError::Unbounded { .. })));
+        assert_eq!(bounds(&Set::nothing(), 1.0), Ok(None));
+        let ball = |x: f64| Set::new(&Primitive::sphere(v(x, 0.0, 0.0), 1.0).unwrap());
+        assert_eq!(bounds(&(ball(0.0) & ball(9.0)), 1e-2), Ok(None));
+        assert!(matches!(bounds(&pipe, 0.0), Err(FieldError::NotPositive { .. })));
+    }
+}

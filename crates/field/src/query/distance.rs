@@ -1,0 +1,307 @@
+//! How far two sets are apart.
+
+use super::foot;
+use crate::expr::interval::{Interval, sides};
+use crate::expr::tape::{NO_LEAF, RangeRoom, Tape};
+use crate::{FieldError, Set};
+use moldloft_num::{Box3, Vec3};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+/// The distance of two sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance {
+    /// The distance of the two points; 0 where the sets overlap or touch.
+    pub distance: f64,
+    /// Proved: no two points of the sets in the box are nearer.
+    pub at_least: f64,
+    /// A point of the first set.
+    pub first: Vec3,
+    /// A point of the second set.
+    pub second: Vec3,
+}
+
+type Sides = [Interval; 3];
+
+struct Part {
+    sides: Sides,
+    tape: Arc<Tape<f64>>,
+    /// True when all of it is in the set.
+    solid: bool,
+    /// True when it is away from the faces of the whole box.
+    within: bool,
+    /// The range of the gradient, where one primitive decides away from these faces.
+    slope: Option<Sides>,
+}
+
+/// The part of a box in which a primitive with these slopes can be zero; `None` when there is none.
+fn contracted(
+    tape: &Tape<f64>,
+    mut sides: Sides,
+    slope: &Sides,
+    room: &mut RangeRoom,
+) -> Option<Sides> {
+    let centre = sides.map(|s| Interval::point(s.middle()));
+    let value = tape.range(&centre, &mut room.ranges);
+    for k in 0..3 {
+        if slope[k].contains(0.0) {
+            continue;
+        }
+        // 0 = f(c) + sum of g (x - c), solved for x along one axis.
+        let mut rest = value;
+        for j in (0..3).filter(|j| *j != k) {
+            rest = rest + slope[j] * (sides[j] - centre[j]);
+        }
+        let place = centre[k] - rest * slope[k].reciprocal();
+        let (low, high) = (sides[k].low.max(place.low), sides[k].high.min(place.high));
+        if low > high {
+            return None;
+        }
+        sides[k] = Interval { low, high };
+    }
+    Some(sides)
+}
+
+/// True when no nearest pair of points can be in two boxes apart: inside a solid, or where the way
+/// between them is nowhere along the gradient, outward.
+fn can_prune(pair: &[Arc<Part>; 2]) -> bool {
+    (0..2).any(|k| {
+        let (own, other) = (&pair[k], &pair[1 - k]);
+        if own.within && own.solid {
+            return true;
+        }
+        let Some(g) = own.slope else { return false };
+        let way = [0, 1, 2].map(|axis| other.sides[axis] - own.sides[axis]);
+        let along = way[0] * g[0] + way[1] * g[1] + way[2] * g[2];
+        along.high < 0.0
+            || (0..3).any(|k| {
+                let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                !(way[a] * g[b] - way[b] * g[a]).contains(0.0)
+            })
+    })
+}
+
+struct Pair {
+    distance: f64,
+    depth: u32,
+    parts: [Arc<Part>; 2],
+}
+
+impl PartialEq for Pair {
+    fn eq(&self, o: &Self) -> bool {
+        self.cmp(o) == Ordering::Equal
+    }
+}
+impl Eq for Pair {}
+impl PartialOrd for Pair {
+    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+impl Ord for Pair {
+    /// The nearest first; of equally near ones the smallest, then by place.
+    fn cmp(&self, o: &Self) -> Ordering {
+        let place = |p: &Self| {
+            let low = |k: usize| p.parts[k].sides.map(|s| s.low);
+            let ([a, b, c], [d, e, f]) = (low(0), low(1));
+            [a, b, c, d, e, f]
+        };
+        let by_place = place(o).into_iter().zip(place(self)).map(|(a, b)| a.total_cmp(&b));
+        o.distance
+            .total_cmp(&self.distance)
+            .then(self.depth.cmp(&o.depth))
+            .then(by_place.fold(Ordering::Equal, Ordering::then))
+    }
+}
+
+/// The most pairs of boxes to look at.
+const MOST: usize = 300_000;
+/// Boxes are halved this often at most.
+const DEPTH: u32 = 60;
+
+/// The distance of two boxes, rounded down, and the points of them that are that near.
+fn apart(a: &Sides, b: &Sides) -> (f64, [Vec3; 2]) {
+    let mut points = [[0.0; 3]; 2];
+    for k in 0..3 {
+        let (x, y) = if a[k].high < b[k].low {
+            (a[k].high, b[k].low)
+        } else if b[k].high < a[k].low {
+            (a[k].low, b[k].high)
+        } else {
+            let m = 0.5 * (a[k].low.max(b[k].low) + a[k].high.min(b[k].high));
+            (m, m)
+        };
+        (points[0][k], points[1][k]) = (x, y);
+    }
+    let [p, q] = points.map(Vec3::from);
+    (p.distance(q) * (1.0 - 4.0 * f64::EPSILON), [p, q])
+}
+
+/// The distance of two sets within a box, to `accuracy`; `None` when one of them has no point in it.
+///
+/// Pairs of boxes are visited by their distance, those proved to be air left out, until none is nearer than
+/// the best pair of points by more than `accuracy`.
+///
+/// # Errors
+/// A box without volume; an accuracy that is not above zero or needs too many boxes, as parallel
+/// faces do.
+///
+/// # Example
+/// ```
+/// use moldloft_field::{Primitive, Set, distance};
+/// use moldloft_num::{Box3, Vec3};
+///
+/// let ball = |x: f64| Primitive::sphere(Vec3::of(x, 0.0, 0.0), 1.0).map(|f| Set::new(&f));
+/// let over = Box3 { low: Vec3::of(-2.0, -2.0, -2.0), high: Vec3::of(7.0, 2.0, 2.0) };
+/// let found = distance(&ball(0.0)?, &ball(5.0)?, &over, 1e-6)?.unwrap();
+/// assert!((found.distance - 3.0).abs() < 1e-6 && found.at_least <= 3.0);
+/// # Ok::<(), moldloft_field::FieldError>(())
+/// ```
+pub fn distance(
+    a: &Set,
+    b: &Set,
+    over: &Box3,
+    accuracy: f64,
+) -> Result<Option<Distance>, FieldError> {
+    crate::error::positive("accuracy", accuracy)?;
+    let over = crate::error::solid_box(*over)?;
+    let near = 1e-9 * over.diagonal();
+    let sets = [a, b];
+    let mut room = RangeRoom::default();
+    let mut part = |sides: Sides, tape: &Arc<Tape<f64>>| {
+        let range = tape.range(&sides, &mut room.ranges);
+        if range.low > 0.0 {
+            return None;
+        }
+        let tape = tape.pruned(&room.ranges).map_or_else(|| tape.clone(), Arc::new);
+        let solid = range.high < 0.0;
+        let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);
+        let alone = !solid && tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
+        // Points that are nearest are on the surface, or in a face of the whole box.
+        let mut part = Part { sides, tape, solid, within, slope: None };
+        if alone && within {
+            let range = part.tape.mean_value(&part.sides, &mut room);
+            part.sides = contracted(&part.tape, part.sides, &range.slope, &mut room)?;
+            part.slope = Some(range.slope);
+        }
+        Some(Arc::new(part))
+    };
+    let whole = sides(&over);
+    let starts = [a, b].map(|s| part(whole, &s.compiled().tape));
+    let [Some(first), Some(second)] = starts else { return Ok(None) };
+    let mut heap = BinaryHeap::from([Pair { distance: 0.0, depth: 0, parts: [first, second] }]);
+    let mut best: Option<(f64, [Vec3; 2])> = None;
+    let mut seen = 0;
+    while let Some(Pair { distance, depth, parts }) = heap.pop() {
+        if let Some((found, [p, q])) = best
+            && distance >= found - accuracy
+        {
+            let at_least = distance.min(found);
+            return Ok(Some(Distance { distance: found, at_least, first: p, second: q }));
+        }
+        seen += 1;
+        if seen > MOST {
+            return Err(FieldError::TooFine { boxes: seen as f64, limit: MOST as f64 });
+        }
+        let (_, [p, q]) = apart(&parts[0].sides, &parts[1].sides);
+        if let Some(pair) = tried(sets, &parts, [p, q], near) {
+            let found = pair[0].distance(pair[1]);
+            if best.is_none_or(|b| found < b.0) {
+                best = Some((found, pair));
+            }
+        }
+        if depth == DEPTH || parts.iter().all(|p| p.solid) {
+            continue;
+        }
+        // The larger box that is not all solid.
+        let size = |k: usize| {
+            let widest = parts[k].sides.iter().map(|s| s.width()).fold(0.0, f64::max);
+            if parts[k].solid { -1.0 } else { widest }
+        };
+        let k = usize::from(size(1) > size(0));
+        let old = &parts[k];
+        for corner in 0..8 {
+            let half = [0, 1, 2].map(|axis| {
+                let side = old.sides[axis];
+                let middle = side.middle();
+                if corner >> axis & 1 == 0 {
+                    Interval::new(side.low, middle)
+                } else {
+                    Interval::new(middle, side.high)
+                }
+            });
+            let Some(new) = part(half, &old.tape) else { continue };
+            let mut pair = parts.clone();
+            pair[k] = new;
+            let distance = apart(&pair[0].sides, &pair[1].sides).0;
+            if distance > 0.0 && can_prune(&pair) {
+                continue;
+            }
+            if best.is_none_or(|b| distance < b.0) {
+                heap.push(Pair { distance, depth: depth + 1, parts: pair });
+            }
+        }
+    }
+    Ok(best.map(|(distance, [p, q])| Distance {
+        distance,
+        at_least: (distance - accuracy).max(0.0),
+        first: p,
+        second: q,
+    }))
+}
+
+/// Points of both sets near the given ones: the points themselves where they are in the sets, else
+/// nearest ones of the surfaces there, by turns.
+fn tried(sets: [&Set; 2], parts: &[Arc<Part>; 2], at: [Vec3; 2], near: f64) -> Option<[Vec3; 2]> {
+    let inside = |set: &Set, p: Vec3| set.member(p, near) != crate::Membership::Air;
+    let mut pair = at;
+    for turn in 0..6 {
+        for k in 0..2 {
+            let (goal, from) = (pair[1 - k], pair[k]);
+            if turn == 0 {
+                // Down to the surface from the box.
+                pair[k] = match inside(sets[k], from) {
+                    true => from,
+                    false => onto(sets[k], from, near)?,
+                };
+            }
+            if inside(sets[k], goal) {
+                pair[k] = goal;
+            } else {
+                let foot = foot::polished(sets[k], goal, pair[k], near);
+                if foot.distance(goal) < pair[k].distance(goal) {
+                    pair[k] = foot;
+                }
+            }
+        }
+    }
+    let reach = |k: usize| {
+        let widest = parts[k].sides.iter().map(|s| s.width()).fold(0.0, f64::max);
+        pair[k].distance(at[k]) <= 1e3 * (widest + near)
+    };
+    let both = (0..2).all(|k| inside(sets[k], pair[k]) && reach(k));
+    both.then_some(pair)
+}
+
+/// A point of the set's surface down the primitive that decides at `p`.
+fn onto(set: &Set, p: Vec3, near: f64) -> Option<Vec3> {
+    let leaves = set.leaves();
+    let mut q = p;
+    for _ in 0..30 {
+        let (value, leaf) = set.winner(q);
+        if value <= 0.0 {
+            return Some(q);
+        }
+        let g = leaves[leaf?].primitive.gradient(q);
+        let size = g.slope.norm_sq();
+        if size == 0.0 {
+            return None;
+        }
+        q -= g.slope * (g.value / size);
+        if g.value.abs() <= 1e-3 * near * size.sqrt() {
+            return (set.member(q, near) != crate::Membership::Air).then_some(q);
+        }
+    }
+    None
+}

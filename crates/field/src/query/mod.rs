@@ -1,0 +1,8 @@
+//! Questions to sets: bounds, nearest points, distances, rays and pictures.
+
+pub(crate) mod bounds;
+pub(crate) mod distance;
+pub(crate) mod foot;
+pub(crate) mod nearest;
+pub(crate) mod ray;
+pub(crate) mod ray_trace;

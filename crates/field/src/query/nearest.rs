@@ -1,0 +1,300 @@
+//! The nearest point of a set's surface, and plane sections.
+
+use crate::expr::interval::{Interval, sides};
+use crate::expr::tape::{NO_LEAF, RangeRoom, Tape};
+use crate::facet::Facets;
+use crate::facet::vertex::Solver;
+use crate::{FieldError, Gradient, Primitive, Set};
+use moldloft_num::{Box3, Plane, Vec3};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+/// A box that may hold the surface, by its distance from the point that asks.
+struct Candidate {
+    distance: f64,
+    sides: [Interval; 3],
+    depth: u32,
+    tape: Arc<Tape<f64>>,
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, o: &Self) -> bool {
+        self.cmp(o) == Ordering::Equal
+    }
+}
+impl Eq for Candidate {}
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+impl Ord for Candidate {
+    /// The nearest first; of equally near ones the smallest, then by place.
+    fn cmp(&self, o: &Self) -> Ordering {
+        let place = |c: &Self| c.sides.map(|s| s.low);
+        let by_place = place(o).into_iter().zip(place(self)).map(|(a, b)| a.total_cmp(&b));
+        o.distance
+            .total_cmp(&self.distance)
+            .then(self.depth.cmp(&o.depth))
+            .then(by_place.fold(Ordering::Equal, Ordering::then))
+    }
+}
+
+/// The nearest point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// The point.
+    pub point: Vec3,
+    /// Its distance.
+    pub distance: f64,
+    /// A proved bound: no point of the surface in the box is nearer.
+    pub at_least: f64,
+}
+
+/// Boxes are halved this often along each axis, at most.
+const DEPTH: u32 = 24;
+/// The most boxes to look at.
+const MOST: usize = 400_000;
+
+/// The point of a set's surface in a box that is nearest to `p`, or `None` when there is none.
+///
+/// Boxes are visited by their distance, those proved all solid or all air left out, until none is
+/// nearer than the best point found by more than `accuracy`.
+///
+/// # Errors
+/// A box without volume, an accuracy that is not above zero or needs too many boxes (seen from a centre
+/// of symmetry every point of the surface is nearest).
+///
+/// # Example
+/// ```
+/// use moldloft_field::{Primitive, Set, nearest};
+/// use moldloft_num::{Box3, Vec3};
+///
+/// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
+/// let over = Box3 { low: Vec3::of(-2.0, -2.0, -2.0), high: Vec3::of(2.0, 2.0, 2.0) };
+/// let found = nearest(&ball, Vec3::of(3.0, 4.0, 0.0), &over, 1e-6)?.unwrap();
+/// assert!((found.distance - 4.0).abs() < 1e-6 && found.at_least <= 4.0);
+/// # Ok::<(), moldloft_field::FieldError>(())
+/// ```
+pub fn nearest(
+    set: &Set,
+    p: Vec3,
+    over: &Box3,
+    accuracy: f64,
+) -> Result<Option<Nearest>, FieldError> {
+    crate::error::positive("accuracy", accuracy)?;
+    let over = crate::error::solid_box(*over)?;
+    let compiled = set.compiled();
+    let mut best: Option<(Vec3, f64)> = None;
+    let mut heap = BinaryHeap::new();
+    let mut room = Vec::new();
+    let mut solver = Solver::default();
+    let start = sides(&over);
+    let distance = reach(&start, p);
+    heap.push(Candidate { distance, sides: start, depth: 0, tape: compiled.tape.clone() });
+    let mut seen = 0;
+    while let Some(Candidate { distance, sides, depth, tape }) = heap.pop() {
+        if let Some((point, found)) = best
+            && distance >= found - accuracy
+        {
+            // Near a minimum of the distance the place is known by its root only: Newton's method settles it.
+            let point = crate::query::foot::polished(set, p, point, 1e-9 * over.diagonal());
+            let found = point.distance(p).min(found);
+            return Ok(Some(Nearest { point, distance: found, at_least: distance.min(found) }));
+        }
+        seen += 1;
+        if seen > MOST {
+            return Err(FieldError::TooFine { boxes: seen as f64, limit: MOST as f64 });
+        }
+        let range = tape.range(&sides, &mut room);
+        if range.low > 0.0 || range.high < 0.0 {
+            continue;
+        }
+        let tape = tape.pruned(&room).map_or(tape, Arc::new);
+        let smooth = surface_point(set, &compiled.leaves, &tape, &sides, p);
+        let sharp = edge_point(set, &compiled.leaves, &tape, &sides, p, &mut solver);
+        for point in [smooth, sharp].into_iter().flatten() {
+            let found = point.distance(p);
+            if best.is_none_or(|b| found < b.1) && inside(point, &over) {
+                best = Some((point, found));
+            }
+        }
+        if depth == DEPTH || no_foot(&tape, &sides, p, &over) {
+            continue;
+        }
+        for k in 0..8 {
+            let half = [0, 1, 2].map(|axis| {
+                let middle = sides[axis].middle();
+                if k >> axis & 1 == 0 {
+                    Interval::new(sides[axis].low, middle)
+                } else {
+                    Interval::new(middle, sides[axis].high)
+                }
+            });
+            let distance = reach(&half, p);
+            if best.is_none_or(|b| distance < b.1) {
+                heap.push(Candidate {
+                    distance,
+                    sides: half,
+                    depth: depth + 1,
+                    tape: tape.clone(),
+                });
+            }
+        }
+    }
+    Ok(best.map(|(point, distance)| Nearest { point, distance, at_least: distance - accuracy }))
+}
+
+/// True when one primitive alone decides in the box, away from the faces of all of it, and its gradient
+/// is nowhere parallel to the way from `p`: then the nearest point is elsewhere.
+fn no_foot(tape: &Tape<f64>, sides: &[Interval; 3], p: Vec3, over: &Box3) -> bool {
+    let alone = tape.leaf.last().is_some_and(|l| *l != NO_LEAF);
+    let within = (0..3).all(|k| sides[k].low > over.low[k] && sides[k].high < over.high[k]);
+    if !alone || !within {
+        return false;
+    }
+    let g = tape.mean_value(sides, &mut RangeRoom::default()).slope;
+    let way = [0, 1, 2].map(|k| sides[k] - Interval::point(p[k]));
+    (0..3).any(|k| {
+        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+        !(way[a] * g[b] - way[b] * g[a]).contains(0.0)
+    })
+}
+
+fn inside(p: Vec3, b: &Box3) -> bool {
+    (0..3).all(|k| p[k] >= b.low[k] && p[k] <= b.high[k])
+}
+
+/// The distance of a box from a point, rounded down.
+fn reach(sides: &[Interval; 3], p: Vec3) -> f64 {
+    let clamped = Vec3::new(
+        p.x.clamp(sides[0].low, sides[0].high),
+        p.y.clamp(sides[1].low, sides[1].high),
+        p.z.clamp(sides[2].low, sides[2].high),
+    );
+    clamped.distance(p) * (1.0 - 4.0 * f64::EPSILON)
+}
+
+/// A point of the set's surface near the point of a box that is nearest to `p`: on the primitive that
+/// decides there, the foot of the normal from `p`, if the set shows it.
+fn surface_point(
+    set: &Set,
+    leaves: &[crate::Leaf],
+    tape: &Tape<f64>,
+    sides: &[Interval; 3],
+    p: Vec3,
+) -> Option<Vec3> {
+    let start = Vec3::new(
+        p.x.clamp(sides[0].low, sides[0].high),
+        p.y.clamp(sides[1].low, sides[1].high),
+        p.z.clamp(sides[2].low, sides[2].high),
+    );
+    let mut values = Vec::new();
+    tape.eval::<f64>(&start, &mut values);
+    let leaf = tape.leaf[tape.winner(&values, |v: f64| v)];
+    if leaf == NO_LEAF {
+        return None;
+    }
+    let f = leaves[leaf as usize].primitive.of_sheet();
+    let mut q = start;
+    // First onto the surface, then alternately along it towards p and back.
+    for _ in 0..40 {
+        let Gradient { value, slope } = f.gradient(q);
+        let size = slope.norm_sq();
+        if size == 0.0 {
+            return None;
+        }
+        let towards = p - q;
+        let along = towards - slope * (towards.dot(slope) / size);
+        let next = q - slope * (value / size) + along * 0.5;
+        let step = next.distance(q);
+        q = next;
+        if step <= 1e-15 * (1.0 + q.norm()) {
+            break;
+        }
+    }
+    for _ in 0..4 {
+        let Gradient { value, slope } = f.gradient(q);
+        q -= slope * (value / slope.norm_sq());
+    }
+    let size = 1.0 + q.norm();
+    let shown = set.member_knowing(q, 1e-12 * size, &[f.clone(), f.abs()]);
+    (q.is_finite() && shown == crate::Membership::Surface).then_some(q)
+}
+
+/// A point of an edge or a corner in a box where two or three primitives meet.
+fn edge_point(
+    set: &Set,
+    leaves: &[crate::Leaf],
+    tape: &Tape<f64>,
+    sides: &[Interval; 3],
+    p: Vec3,
+    solver: &mut Solver,
+) -> Option<Vec3> {
+    let surfaces: Vec<u32> = tape.leaf.iter().copied().filter(|l| *l != NO_LEAF).collect();
+    if !(2..=3).contains(&surfaces.len()) {
+        return None;
+    }
+    let low = Vec3::new(sides[0].low, sides[1].low, sides[2].low);
+    let high = Vec3::new(sides[0].high, sides[1].high, sides[2].high);
+    let start =
+        Vec3::new(p.x.clamp(low.x, high.x), p.y.clamp(low.y, high.y), p.z.clamp(low.z, high.z));
+    let goal = 1e-13 * (1.0 + low.norm().max(high.norm()));
+    let placed = solver.place(leaves, &surfaces, start, &Box3 { low, high }, goal);
+    let known: Vec<Primitive> =
+        surfaces.iter().map(|&k| leaves[k as usize].primitive.clone()).collect();
+    let shown = placed.residual <= goal
+        && set.member_knowing(placed.point, goal, &known) == crate::Membership::Surface;
+    shown.then_some(placed.point)
+}
+
+/// A contour of a set in a plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contour {
+    /// Its points, in the plane and on the surface; the first is not repeated when it is closed.
+    pub points: Vec<Vec3>,
+    /// True when it ends where it began.
+    pub closed: bool,
+}
+
+impl Facets {
+    /// The contours in which a plane cuts the body: those of the triangles, each point then moved in
+    /// the plane onto the primitive that is nearest to zero there.
+    ///
+    /// # Errors
+    /// A plane whose normal has no direction.
+    pub fn section(&self, plane: &Plane<f64>) -> Result<Vec<Contour>, FieldError> {
+        let plane = Plane::new(plane.point, plane.normal)
+            .ok_or(FieldError::Degenerate { what: "normal of the plane" })?;
+        let lines = moldloft_mesh::section(&self.mesh, &plane);
+        let used: Vec<&Primitive> =
+            self.patch_leaves.iter().map(|&l| &self.leaves[l].primitive).collect();
+        let place = |p: Vec3| {
+            let distance = |f: &Primitive| {
+                let g = f.gradient(p);
+                (g.value / g.slope.norm()).abs()
+            };
+            let nearest = used.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let Some(f) = nearest else { return p };
+            let mut q = p;
+            for _ in 0..8 {
+                let g = f.gradient(q);
+                let slope = g.slope - plane.normal * plane.normal.dot(g.slope);
+                if slope.norm_sq() <= 1e-12 * g.slope.norm_sq() {
+                    return p;
+                }
+                q -= slope * (g.value / slope.norm_sq());
+            }
+            // A step beyond the cell would leave this piece of the surface.
+            if q.distance(p) <= self.step { q } else { p }
+        };
+        Ok(lines
+            .into_iter()
+            .map(|line| Contour {
+                points: line.points.into_iter().map(place).collect(),
+                closed: line.closed,
+            })
+            .collect())
+    }
+}

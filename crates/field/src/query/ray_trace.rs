@@ -1,0 +1,178 @@
+//! Pictures of sets by ray casting: exact surfaces, lights, shadows, highlights.
+
+use crate::facet::Options;
+use crate::query::ray::{Caster, Hit, Ray};
+use crate::{FieldError, Set};
+use moldloft_num::{Box3, Real, Vec3};
+use rayon::prelude::*;
+
+/// A light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Where it shines to, for light from afar; `None` for a lamp.
+    pub direction: Option<Vec3>,
+    /// Where a lamp stands.
+    pub place: Vec3,
+    /// Linear red, green and blue; 1 lights a white face that looks into it fully.
+    pub colour: [f64; 3],
+}
+
+/// How a picture is taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RayTrace {
+    /// Picture points across and down.
+    pub size: [usize; 2],
+    /// Where the eye is.
+    pub eye: Vec3,
+    /// What it looks at.
+    pub centre: Vec3,
+    /// What is up.
+    pub up: Vec3,
+    /// Angle between the top and bottom of the picture.
+    pub angle: f64,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// Light from everywhere, linear.
+    pub ambient: [f64; 3],
+    /// sRGB at the top and bottom.
+    pub background: [[u8; 3]; 2],
+    /// Whether things throw shadows.
+    pub shadows: bool,
+    /// Strength of highlights, 0 to 1, and how small they are.
+    pub shine: [f64; 2],
+    /// sRGB of each of the set's leaves.
+    pub colours: Vec<[u8; 3]>,
+    /// Rays along each side of a picture point.
+    pub samples: usize,
+}
+
+fn linear(c: u8) -> f64 {
+    Real::powf(f64::from(c) / 255.0, 2.2)
+}
+
+fn stored(x: f64) -> u8 {
+    (Real::powf(x.clamp(0.0, 1.0), 1.0 / 2.2) * 255.0 + 0.5) as u8
+}
+
+/// Where a ray is within a box, as parameters.
+fn clipped(start: Vec3, direction: Vec3, over: &Box3) -> Option<[f64; 2]> {
+    let (mut near, mut far) = (0.0f64, f64::INFINITY);
+    for k in 0..3 {
+        if direction[k] == 0.0 {
+            if start[k] < over.low[k] || start[k] > over.high[k] {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) =
+            ((over.low[k] - start[k]) / direction[k], (over.high[k] - start[k]) / direction[k]);
+        (near, far) = (near.max(a.min(b)), far.min(a.max(b)));
+    }
+    (near < far).then_some([near, far])
+}
+
+/// The picture of a set within a box, whose faces cut it: three bytes a point, row by row from the top.
+///
+/// # Errors
+/// A box without volume, a view without direction, a cancelled call.
+pub fn ray_trace(
+    set: &Set,
+    over: &Box3,
+    view: &RayTrace,
+    options: &Options,
+) -> Result<Vec<u8>, FieldError> {
+    let over = crate::error::solid_box(*over)?;
+    let ahead = crate::error::unit("direction of the view", view.centre - view.eye)?;
+    let right = crate::error::unit("direction that is up", ahead.cross(view.up))?;
+    let upward = right.cross(ahead);
+    let cut = set.clone() & Set::cuboid(over.low, over.high)?;
+    let caster = Caster::new(&cut);
+    let [width, height] = view.size;
+    let reach = Real::tan(0.5 * view.angle);
+    let n = view.samples.max(1);
+    let scene = Scene { caster: &caster, over: &over, view };
+    let rows: Vec<Vec<u8>> = (0..height)
+        .into_par_iter()
+        .map(|row| {
+            let mut out = Vec::with_capacity(3 * width);
+            if options.cancelled() {
+                return out;
+            }
+            for column in 0..width {
+                let mut sum = [0.0; 3];
+                for k in 0..n * n {
+                    let at = |pixel: usize, k: usize| pixel as f64 + (k as f64 + 0.5) / n as f64;
+                    let x = (2.0 * at(column, k % n) - width as f64) / height as f64;
+                    let y = 1.0 - 2.0 * at(row, k / n) / height as f64;
+                    let d = (ahead + right * (x * reach) + upward * (y * reach)).normalized();
+                    let colour = d.and_then(|d| scene.seen(view.eye, d)).unwrap_or_else(|| {
+                        let [top, bottom] = view.background;
+                        let down = row as f64 / height as f64;
+                        [0, 1, 2].map(|c| linear(top[c]) * (1.0 - down) + linear(bottom[c]) * down)
+                    });
+                    for c in 0..3 {
+                        sum[c] += colour[c];
+                    }
+                }
+                out.extend(sum.map(|x| stored(x / (n * n) as f64)));
+            }
+            out
+        })
+        .collect();
+    if options.cancelled() {
+        return Err(FieldError::Cancelled);
+    }
+    Ok(rows.concat())
+}
+
+struct Scene<'a> {
+    caster: &'a Caster<'a>,
+    over: &'a Box3,
+    view: &'a RayTrace,
+}
+
+impl Scene<'_> {
+    fn first(&self, start: Vec3, direction: Vec3) -> Option<Hit> {
+        let [near, far] = clipped(start, direction, self.over)?;
+        // A little before the box, so that its faces are crossed and not begun on.
+        let margin = 1e-6 * self.over.diagonal();
+        let begin = start + direction * (near - margin).max(0.0);
+        let ray = Ray { start: begin, direction, length: far - near + 2.0 * margin };
+        self.caster.first(&ray)
+    }
+
+    /// The light that comes from where the ray ends.
+    fn seen(&self, eye: Vec3, direction: Vec3) -> Option<[f64; 3]> {
+        let hit = self.first(eye, direction)?;
+        // Sheets have two sides.
+        let normal = if hit.normal.dot(direction) > 0.0 { -hit.normal } else { hit.normal };
+        let own = self.view.colours.get(hit.leaf).copied().unwrap_or([0xb6, 0xbc, 0xc4]);
+        let own = own.map(linear);
+        let mut out = [0, 1, 2].map(|c| own[c] * self.view.ambient[c]);
+        let away = 1e-6 * self.over.diagonal();
+        for light in &self.view.lights {
+            let (to, far) = match light.direction {
+                Some(d) => (-d, f64::INFINITY),
+                None => (light.place - hit.point, (light.place - hit.point).norm()),
+            };
+            let Some(to) = to.normalized() else { continue };
+            let facing = normal.dot(to);
+            if facing <= 0.0 {
+                continue;
+            }
+            let from = hit.point + normal * away;
+            let shaded = self.view.shadows
+                && self.first(from, to).is_some_and(|h| (h.point - from).norm() < far);
+            if shaded {
+                continue;
+            }
+            let half = (to - direction).normalized().unwrap_or(normal);
+            let [strength, power] = self.view.shine;
+            let glint = strength * Real::powf(normal.dot(half).max(0.0), power);
+            for c in 0..3 {
+                out[c] += light.colour[c] * (own[c] * facing + glint);
+            }
+        }
+        Some(out)
+    }
+}

@@ -1,0 +1,672 @@
+//! Sets: what primitives leave solid, combined.
+
+use crate::expr::algebra::Unary;
+use crate::expr::interval::Interval;
+use crate::expr::primitive::{Binary, Op};
+use crate::expr::tape::{Builder, Code, NO_LEAF, Tape};
+use crate::{Affine, FieldError, Primitive};
+use moldloft_num::{Box3, Real, Vec3};
+use std::ops::{BitAnd, BitOr, BitXor, Neg, Sub};
+use std::sync::Arc;
+
+/// What a handle to a set says of it; its leaves inherit what they do not say themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attributes {
+    /// Name.
+    pub name: Option<String>,
+    /// True for a name that was asked for: it stays when the set is declared under another.
+    pub given: bool,
+    /// Index of a palette colour, 0 to 15.
+    pub colour: Option<u8>,
+    /// Material.
+    pub material: Option<String>,
+    /// Distance below which two points count as one.
+    pub tolerance: Option<f64>,
+}
+
+impl Attributes {
+    /// These, and where they are silent those of `outer`.
+    pub fn or(&self, outer: &Self) -> Self {
+        Self {
+            name: self.name.clone().or_else(|| outer.name.clone()),
+            given: if self.name.is_some() { self.given } else { outer.given },
+            colour: self.colour.or(outer.colour),
+            material: self.material.clone().or_else(|| outer.material.clone()),
+            tolerance: self.tolerance.or(outer.tolerance),
+        }
+    }
+}
+
+/// Where a point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Membership {
+    /// Inside.
+    Solid,
+    /// On the surface.
+    Surface,
+    /// Outside.
+    Air,
+}
+
+enum Kind<T: Real> {
+    Everything,
+    Nothing,
+    Leaf(Primitive<T>),
+    Union,
+    Intersection,
+}
+
+struct Node<T: Real> {
+    kind: Kind<T>,
+    /// Two operands of unions and intersections.
+    operands: Vec<Set<T>>,
+}
+
+impl<T: Real> Drop for Node<T> {
+    /// Long chains are taken apart in a loop: recursion would overflow the stack.
+    fn drop(&mut self) {
+        let mut pending = std::mem::take(&mut self.operands);
+        while let Some(set) = pending.pop() {
+            if let Some(mut node) = Arc::into_inner(set.node) {
+                pending.append(&mut node.operands);
+            }
+        }
+    }
+}
+
+/// A set of points: primitives under union, intersection and complement.
+///
+/// Sets are immutable and share their parts; holding on to an operand is all that undo needs.
+/// Attributes belong to the handle, so one geometry may carry several.
+///
+/// # Example
+/// ```
+/// use moldloft_field::{Membership, Primitive, Set};
+/// use moldloft_num::Vec3;
+///
+/// let ball = Set::new(&Primitive::sphere(Vec3::zero(), 2.0)?);
+/// let hole = Set::new(&Primitive::sphere(Vec3::zero(), 1.0)?);
+/// let shell = ball - hole;
+/// assert_eq!(shell.member(Vec3::of(1.5, 0.0, 0.0), 1e-9), Membership::Solid);
+/// assert_eq!(shell.member(Vec3::of(1.0, 0.0, 0.0), 1e-9), Membership::Surface);
+/// assert_eq!(shell.member(Vec3::of(0.5, 0.0, 0.0), 1e-9), Membership::Air);
+/// # Ok::<(), moldloft_field::FieldError>(())
+/// ```
+pub struct Set<T: Real = f64> {
+    node: Arc<Node<T>>,
+    attributes: Option<Arc<Attributes>>,
+}
+
+impl<T: Real> Clone for Set<T> {
+    fn clone(&self) -> Self {
+        Self { node: self.node.clone(), attributes: self.attributes.clone() }
+    }
+}
+
+/// A primitive of a set with the attributes that reach it.
+#[derive(Clone, Debug)]
+pub struct Leaf<T: Real = f64> {
+    /// The primitive, as it stands in the set: negated where a complement reached it.
+    pub primitive: Primitive<T>,
+    /// Its own attributes, completed by those of the sets around it.
+    pub attributes: Attributes,
+}
+
+/// A compiled set.
+#[derive(Clone)]
+pub(crate) struct Compiled<T: Real> {
+    pub(crate) tape: Arc<Tape<T>>,
+    pub(crate) leaves: Vec<Leaf<T>>,
+    /// The number of the leaf at every place of the tree, in order.
+    pub(crate) places: Vec<u32>,
+}
+
+impl<T: Real> Set<T> {
+    fn of(kind: Kind<T>, operands: Vec<Set<T>>) -> Self {
+        Self { node: Arc::new(Node { kind, operands }), attributes: None }
+    }
+
+    /// All of space.
+    pub fn everything() -> Self {
+        Self::of(Kind::Everything, Vec::new())
+    }
+
+    /// No point.
+    pub fn nothing() -> Self {
+        Self::of(Kind::Nothing, Vec::new())
+    }
+
+    /// The points where `primitive` is not positive. Constants give everything or nothing, a minimum
+    /// a union and a maximum an intersection, so that each part keeps its own faces.
+    pub fn new(primitive: &Primitive<T>) -> Self {
+        let mut negated = false;
+        let mut p = primitive;
+        while let Op::Unary(Unary::Neg, inner) = &p.0.op {
+            negated = !negated;
+            p = inner;
+        }
+        let set = match &p.0.op {
+            Op::Real(c) if (c.re() > 0.0) != negated => Self::nothing(),
+            Op::Real(_) => Self::everything(),
+            Op::Binary(Binary::Min, a, b) => Self::new(a) | Self::new(b),
+            Op::Binary(Binary::Max, a, b) => Self::new(a) & Self::new(b),
+            _ if negated => return Self::of(Kind::Leaf(-p), Vec::new()),
+            _ => return Self::of(Kind::Leaf(p.clone()), Vec::new()),
+        };
+        if negated { -set } else { set }
+    }
+
+    /// The box between two corners, as an intersection of six half-spaces.
+    ///
+    /// # Errors
+    /// A box without volume.
+    pub fn cuboid(low: Vec3<T>, high: Vec3<T>) -> Result<Self, FieldError> {
+        crate::error::solid_box(Box3 { low: low.re(), high: high.re() })?;
+        let mut set = Self::everything();
+        for k in 0..3 {
+            let n = Affine::identity().rows[k];
+            let up = Primitive::linear(n, -high[k]);
+            let down = Primitive::linear(-n, low[k]);
+            set = set & Self::new(&down) & Self::new(&up);
+        }
+        Ok(set)
+    }
+
+    /// The tetrahedron of four points, in any order.
+    ///
+    /// # Errors
+    /// Points in one plane.
+    pub fn tetrahedron(points: [Vec3<T>; 4]) -> Result<Self, FieldError> {
+        let mut set = Self::everything();
+        for k in 0..4 {
+            let [a, b, c] = [1, 2, 3].map(|j| points[(k + j) % 4]);
+            let normal = (b - a).cross(c - a);
+            let face = Primitive::plane(normal, a)?;
+            let height = face.value(points[k]);
+            // Of no volume to rounding: the height is lost among the edges' lengths.
+            if height.re().abs() <= 1e-12 * (points[k] - a).norm().re() {
+                return Err(FieldError::Degenerate { what: "tetrahedron" });
+            }
+            let inward = if height.re() > 0.0 { -face } else { face };
+            set = set & Self::new(&inward);
+        }
+        Ok(set)
+    }
+
+    /// A wire: the straight line between two points, where two sheets along it meet.
+    ///
+    /// # Errors
+    /// Points that coincide.
+    pub fn segment(from: Vec3<T>, to: Vec3<T>) -> Result<Self, FieldError> {
+        let along = to - from;
+        if along.norm_sq().re() == 0.0 {
+            return Err(FieldError::Degenerate { what: "line: its ends coincide; it" });
+        }
+        // Slanting sheets, so that they lie along no planes of the grid.
+        let (p, q) = (along.perpendicular(), along.cross(along.perpendicular()));
+        let (p, q) = (p / p.norm(), q / q.norm());
+        let sheets = [p * T::from(0.8) + q * T::from(0.6), q * T::from(0.8) - p * T::from(0.6)];
+        let mut set = Self::new(&Primitive::plane(along, to)?);
+        set = Self::new(&Primitive::plane(-along, from)?) & set;
+        for normal in sheets {
+            set = Self::new(&Primitive::plane(normal, from)?.abs()) & set;
+        }
+        Ok(set)
+    }
+
+    /// A point: where three sheets meet.
+    ///
+    /// # Errors
+    /// A coordinate that is not finite.
+    pub fn point(at: Vec3<T>) -> Result<Self, FieldError> {
+        // The columns of a turned frame, so that the sheets lie along no planes of the grid.
+        let frame = [[2.0, 1.0, 2.0], [-2.0, 2.0, 1.0], [1.0, 2.0, -2.0]];
+        let mut set = Self::everything();
+        for [x, y, z] in frame {
+            set = set & Self::new(&Primitive::plane(Vec3::of(x, y, z), at)?.abs());
+        }
+        Ok(set)
+    }
+
+    /// The sheets on the faces of the cuboid between two corners, without its inside.
+    ///
+    /// # Errors
+    /// A box without volume.
+    pub fn thin_cuboid(low: Vec3<T>, high: Vec3<T>) -> Result<Self, FieldError> {
+        Ok(Self::cuboid(low, high)?.skin())
+    }
+
+    /// The sheets on the surfaces of its primitives, each trimmed by the set: the surface of a set
+    /// whose primitives meet, such as a cuboid or a tetrahedron, without its inside.
+    pub fn skin(&self) -> Self {
+        let mut set = Self::nothing();
+        for leaf in self.leaves() {
+            set = set | (Self::new(&leaf.primitive.abs()) & self.clone());
+        }
+        set
+    }
+
+    /// The primitive, when the set is one.
+    pub fn primitive(&self) -> Option<&Primitive<T>> {
+        match &self.node.kind {
+            Kind::Leaf(p) => Some(p),
+            _ => None,
+        }
+    }
+
+    /// True for the whole of space, known as such.
+    pub fn is_everything(&self) -> bool {
+        matches!(self.node.kind, Kind::Everything)
+    }
+
+    /// True for the empty set, known as such.
+    pub fn is_nothing(&self) -> bool {
+        matches!(self.node.kind, Kind::Nothing)
+    }
+
+    /// The two operands of a union or intersection.
+    pub fn operands(&self) -> &[Set<T>] {
+        &self.node.operands
+    }
+
+    /// The same set with these attributes, completed by those it has.
+    pub fn with(&self, attributes: Attributes) -> Self {
+        let attributes = match &self.attributes {
+            Some(old) => attributes.or(old),
+            None => attributes,
+        };
+        Self { attributes: Some(Arc::new(attributes)), ..self.clone() }
+    }
+
+    /// The same set under a name.
+    pub fn named(&self, name: &str) -> Self {
+        self.with(Attributes { name: Some(name.to_owned()), ..Attributes::default() })
+    }
+
+    /// The set with names for those of its primitives that have none.
+    pub(crate) fn with_names(&self, name: &dyn Fn(&Primitive<T>) -> Option<String>) -> Self {
+        let leaf = |p: &Primitive<T>| {
+            let set = Self::of(Kind::Leaf(p.clone()), Vec::new());
+            match name(p) {
+                Some(name) => set.named(&name),
+                None => set,
+            }
+        };
+        self.rebuilt(&leaf, false, &Self::combined)
+    }
+
+    /// True when both are the same combination of the same primitives, with the same attributes.
+    pub fn same(&self, o: &Self) -> bool {
+        if self.is(o) && self.attributes == o.attributes {
+            return true;
+        }
+        let (a, b) = (self.compiled(), o.compiled());
+        let said =
+            |c: &Compiled<T>| c.leaves.iter().map(|l| l.attributes.clone()).collect::<Vec<_>>();
+        a.places == b.places
+            && a.tape.leaf == b.tape.leaf
+            && a.tape.same(&b.tape)
+            && said(&a) == said(&b)
+    }
+
+    /// What this handle says of the set.
+    pub fn attributes(&self) -> Option<&Attributes> {
+        self.attributes.as_deref()
+    }
+
+    /// True when both handles hold the very same node.
+    pub fn is(&self, o: &Self) -> bool {
+        Arc::ptr_eq(&self.node, &o.node)
+    }
+
+    /// The geometry without this handle's attributes, to compare by.
+    fn alike(&self, o: &Self) -> bool {
+        self.is(o)
+            || match (&self.node.kind, &o.node.kind) {
+                (Kind::Leaf(a), Kind::Leaf(b)) => a.same(b),
+                _ => false,
+            }
+    }
+
+    fn opposite(&self, o: &Self) -> bool {
+        match (&self.node.kind, &o.node.kind) {
+            (Kind::Leaf(a), Kind::Leaf(b)) => (-a).same(b) || a.same(&-b),
+            _ => false,
+        }
+    }
+
+    fn join(self, o: Self) -> Self {
+        match (&self.node.kind, &o.node.kind) {
+            (Kind::Everything, _) | (_, Kind::Nothing) => self,
+            (Kind::Nothing, _) | (_, Kind::Everything) => o,
+            _ => Self::of(Kind::Union, vec![self, o]),
+        }
+    }
+
+    fn cut(self, o: Self) -> Self {
+        match (&self.node.kind, &o.node.kind) {
+            (Kind::Nothing, _) | (_, Kind::Everything) => self,
+            (Kind::Everything, _) | (_, Kind::Nothing) => o,
+            _ => Self::of(Kind::Intersection, vec![self, o]),
+        }
+    }
+
+    /// The set rebuilt from its leaves, each handle's attributes kept.
+    fn rebuilt<S: Real>(
+        &self,
+        leaf: &dyn Fn(&Primitive<T>) -> Set<S>,
+        turned: bool,
+        combine: &dyn Fn(bool, Set<S>, Set<S>) -> Set<S>,
+    ) -> Set<S> {
+        let mut out: Vec<Set<S>> = Vec::new();
+        let mut stack = vec![(self, false)];
+        while let Some((set, ready)) = stack.pop() {
+            let made = match (&set.node.kind, ready) {
+                (Kind::Everything, _) if turned => Set::nothing(),
+                (Kind::Nothing, _) if turned => Set::everything(),
+                (Kind::Everything, _) => Set::everything(),
+                (Kind::Nothing, _) => Set::nothing(),
+                (Kind::Leaf(p), _) => leaf(p),
+                (_, false) => {
+                    stack.push((set, true));
+                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
+                    continue;
+                }
+                (kind, true) => {
+                    let right = out.pop().unwrap_or_else(Set::nothing);
+                    let left = out.pop().unwrap_or_else(Set::nothing);
+                    combine(matches!(kind, Kind::Union) != turned, left, right)
+                }
+            };
+            out.push(match &set.attributes {
+                Some(a) => made.with((**a).clone()),
+                None => made,
+            });
+        }
+        out.pop().unwrap_or_else(Set::nothing)
+    }
+
+    fn combined(union: bool, a: Self, b: Self) -> Self {
+        if union { a.join(b) } else { a.cut(b) }
+    }
+
+    /// The set with leaves replaced where `new` has something else for them.
+    pub(crate) fn replaced(&self, new: &dyn Fn(&Primitive<T>) -> Option<Self>) -> Self {
+        let leaf = |p: &Primitive<T>| {
+            new(p).unwrap_or_else(|| Self::of(Kind::Leaf(p.clone()), Vec::new()))
+        };
+        self.rebuilt(&leaf, false, &Self::combined)
+    }
+
+    /// Everything that is not in the set.
+    pub fn complement(&self) -> Self {
+        self.rebuilt(&|p| Self::of(Kind::Leaf(-p), Vec::new()), true, &Self::combined)
+    }
+
+    /// The set with real parts only.
+    pub fn re(&self) -> Set<f64> {
+        let any: &dyn std::any::Any = self;
+        if let Some(plain) = any.downcast_ref::<Set<f64>>() {
+            return plain.clone();
+        }
+        self.rebuilt(&|p| Set::of(Kind::Leaf(p.re()), Vec::new()), false, &Set::combined)
+    }
+
+    /// The set moved by an affine map.
+    ///
+    /// # Errors
+    /// A map without inverse.
+    pub fn mapped(&self, world_from: &Affine<T>) -> Result<Self, FieldError> {
+        // One trial decides: a map has an inverse or not, whatever the primitive.
+        Primitive::real(T::zero()).mapped(world_from)?;
+        let move_leaf = |p: &Primitive<T>| match p.mapped(world_from) {
+            Ok(p) => Self::of(Kind::Leaf(p), Vec::new()),
+            Err(_) => Self::nothing(),
+        };
+        Ok(self.rebuilt(&move_leaf, false, &Self::combined))
+    }
+
+    /// An equal set without parts that combine to nothing new: A|A = A, A|-A = everything, A&-A =
+    /// nothing (its surface alone would dangle), A|(A&B) = A, A&(A|B) = A.
+    pub fn regularized(&self) -> Self {
+        let combine = |union: bool, a: Self, b: Self| {
+            if a.alike(&b) {
+                return a;
+            }
+            if a.opposite(&b) {
+                return if union { Self::everything() } else { Self::nothing() };
+            }
+            let absorbs = |whole: &Self, part: &Self| {
+                let other = matches!(part.node.kind, Kind::Union) != union
+                    && matches!(part.node.kind, Kind::Union | Kind::Intersection);
+                other && part.operands().iter().any(|o| o.alike(whole))
+            };
+            if absorbs(&a, &b) {
+                a
+            } else if absorbs(&b, &a) {
+                b
+            } else {
+                Self::combined(union, a, b)
+            }
+        };
+        self.rebuilt(&|p| Self::of(Kind::Leaf(p.clone()), Vec::new()), false, &combine)
+    }
+
+    /// The primitives in order of their first appearance, with the attributes that reach them.
+    pub fn leaves(&self) -> Vec<Leaf<T>> {
+        self.compiled().leaves
+    }
+
+    /// How many leaves the tree has.
+    pub fn contents(&self) -> usize {
+        let (mut count, mut stack) = (0, vec![self]);
+        while let Some(set) = stack.pop() {
+            count += usize::from(matches!(set.node.kind, Kind::Leaf(_)));
+            stack.extend(&set.node.operands);
+        }
+        count
+    }
+
+    /// The highest degree of its primitives.
+    pub fn degree(&self) -> u32 {
+        self.leaves().iter().map(|leaf| leaf.primitive.degree()).max().unwrap_or(0)
+    }
+
+    /// The primitive at every place of the tree, in order.
+    pub(crate) fn traversal(&self) -> Vec<Primitive<T>> {
+        let (mut out, mut stack) = (Vec::new(), vec![self]);
+        while let Some(set) = stack.pop() {
+            out.extend(set.primitive().cloned());
+            stack.extend(set.node.operands.iter().rev());
+        }
+        out
+    }
+
+    pub(crate) fn compiled(&self) -> Compiled<T> {
+        let mut builder = Builder::new();
+        let mut leaves: Vec<Leaf<T>> = Vec::new();
+        let mut values: Vec<u32> = Vec::new();
+        let mut places = Vec::new();
+        let none = Arc::new(Attributes::default());
+        let mut stack = vec![(self, false, none)];
+        while let Some((set, ready, outer)) = stack.pop() {
+            let here = match &set.attributes {
+                Some(own) => Arc::new(own.or(&outer)),
+                None => outer,
+            };
+            let at = match (&set.node.kind, ready) {
+                // The ranges that svLis gives to the two constant sets.
+                (Kind::Everything, _) => builder.push(Code::Real(T::from(-1.0))),
+                (Kind::Nothing, _) => builder.push(Code::Real(T::one())),
+                (Kind::Leaf(p), _) => {
+                    let at = builder.primitive(p);
+                    builder.mark(at, leaves.len() as u32);
+                    places.push(builder.leaf_of(at));
+                    if builder.leaf_of(at) == leaves.len() as u32 {
+                        leaves.push(Leaf { primitive: p.clone(), attributes: (*here).clone() });
+                    }
+                    at
+                }
+                (_, false) => {
+                    stack.push((set, true, here.clone()));
+                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false, here.clone())));
+                    continue;
+                }
+                (kind, true) => {
+                    let b = values.pop().unwrap_or(0);
+                    let a = values.pop().unwrap_or(0);
+                    builder.push(match kind {
+                        Kind::Union => Code::Union(a, b),
+                        _ => Code::Common(a, b),
+                    })
+                }
+            };
+            values.push(at);
+        }
+        let root = values.pop().unwrap_or(0);
+        Compiled { tape: Arc::new(builder.build(root)), leaves, places }
+    }
+
+    /// The value that decides at a point, and the number of its leaf among [`Set::leaves`]; `None` for
+    /// everything and nothing.
+    pub fn winner(&self, p: Vec3<T>) -> (T, Option<usize>) {
+        let compiled = self.compiled();
+        let mut values = Vec::new();
+        let value = compiled.tape.eval::<T>(&p, &mut values);
+        let leaf = compiled.tape.leaf[compiled.tape.winner(&values, T::re)];
+        (value, (leaf != NO_LEAF).then_some(leaf as usize))
+    }
+
+    /// The value at a point: minima over unions, maxima over intersections.
+    pub fn value(&self, p: Vec3<T>) -> T {
+        self.winner(p).0
+    }
+
+    /// Where a point lies. A primitive counts as zero where it is at most `tolerance` from its
+    /// surface, measured by |f| / |f'|.
+    pub fn member(&self, p: Vec3<T>, tolerance: f64) -> Membership {
+        self.member_knowing(p, tolerance, &[])
+    }
+
+    /// As [`Set::member`] for a point that is known to lie on the surfaces of some primitives,
+    /// whatever rounding says.
+    pub fn member_knowing(&self, p: Vec3<T>, tolerance: f64, known: &[Primitive<T>]) -> Membership {
+        let mut out: Vec<Membership> = Vec::new();
+        let mut stack = vec![(self, false)];
+        while let Some((set, ready)) = stack.pop() {
+            let class = match (&set.node.kind, ready) {
+                (Kind::Everything, _) => Membership::Solid,
+                (Kind::Nothing, _) => Membership::Air,
+                (Kind::Leaf(f), _) => {
+                    let g = f.gradient(p);
+                    let near = g.value.re().abs() <= tolerance * g.slope.re().norm();
+                    let told = || known.iter().any(|k| k.same(f) || (-k).same(f));
+                    if g.value.re() == 0.0 || near || told() {
+                        Membership::Surface
+                    } else if g.value.re() < 0.0 {
+                        Membership::Solid
+                    } else {
+                        Membership::Air
+                    }
+                }
+                (_, false) => {
+                    stack.push((set, true));
+                    stack.extend(set.node.operands.iter().rev().map(|o| (o, false)));
+                    continue;
+                }
+                (kind, true) => {
+                    let b = out.pop().unwrap_or(Membership::Air);
+                    let a = out.pop().unwrap_or(Membership::Air);
+                    if matches!(kind, Kind::Union) { a.min(b) } else { a.max(b) }
+                }
+            };
+            out.push(class);
+        }
+        out.pop().unwrap_or(Membership::Air)
+    }
+}
+
+impl Set<f64> {
+    /// The same set among numbers with derivatives, on no parameter of which it depends.
+    pub fn constant<S: Real>(&self) -> Set<S> {
+        let leaf = |p: &Primitive| Set::of(Kind::Leaf(p.constant()), Vec::new());
+        self.rebuilt(&leaf, false, &Set::combined)
+    }
+
+    /// A range of the value over a box.
+    pub fn range(&self, over: &Box3) -> Interval {
+        self.compiled().tape.range(&crate::expr::interval::sides(over), &mut Vec::new())
+    }
+
+    /// The values at many points.
+    pub fn values(&self, points: &[Vec3], out: &mut [f64]) {
+        self.compiled().tape.bulk(points, out, &mut Default::default());
+    }
+
+    /// The set as it is inside a box: primitives that are all solid or all air there are left out.
+    pub fn pruned(&self, over: &Box3) -> Self {
+        let leaf = |p: &Primitive| {
+            let range = p.range(over);
+            if range.low > 0.0 {
+                Self::nothing()
+            } else if range.high < 0.0 {
+                Self::everything()
+            } else {
+                Self::of(Kind::Leaf(p.clone()), Vec::new())
+            }
+        };
+        self.rebuilt(&leaf, false, &Self::combined)
+    }
+}
+
+impl<T: Real> std::fmt::Debug for Set<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match &self.node.kind {
+            Kind::Everything => write!(f, "everything"),
+            Kind::Nothing => write!(f, "nothing"),
+            _ => write!(f, "set of {} primitives", self.contents()),
+        }
+    }
+}
+
+macro_rules! set_operator {
+    ($trait:ident, $method:ident, $doc:literal, |$a:ident, $b:ident| $body:expr) => {
+        impl<T: Real> $trait for Set<T> {
+            type Output = Set<T>;
+            #[doc = $doc]
+            fn $method(self, o: Set<T>) -> Set<T> {
+                let ($a, $b) = (self, o);
+                $body
+            }
+        }
+        impl<T: Real> $trait for &Set<T> {
+            type Output = Set<T>;
+            #[doc = $doc]
+            fn $method(self, o: &Set<T>) -> Set<T> {
+                let ($a, $b) = (self.clone(), o.clone());
+                $body
+            }
+        }
+    };
+}
+set_operator!(BitOr, bitor, "The points in either.", |a, b| a.join(b));
+set_operator!(BitAnd, bitand, "The points in both.", |a, b| a.cut(b));
+set_operator!(Sub, sub, "The points of the first that are not in the second.", |a, b| a.cut(-b));
+set_operator!(BitXor, bitxor, "The points in just one.", |a, b| {
+    let (outside, apart) = (a.complement(), b.complement());
+    a.cut(apart).join(b.cut(outside))
+});
+
+impl<T: Real> Neg for Set<T> {
+    type Output = Set<T>;
+    fn neg(self) -> Set<T> {
+        self.complement()
+    }
+}
+
+impl<T: Real> Neg for &Set<T> {
+    type Output = Set<T>;
+    fn neg(self) -> Set<T> {
+        self.complement()
+    }
+}

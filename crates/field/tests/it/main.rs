@@ -1,0 +1,16 @@
+//! What the crate promises, as one program: a module for each subject.
+
+mod blends;
+mod common;
+mod distances;
+mod faces;
+mod facets;
+mod mass;
+mod primitives;
+mod queries;
+mod rays;
+mod rows;
+mod sets;
+mod sheets;
+mod thin;
+mod trees;

@@ -1,0 +1,4 @@
+//! Structured grids against closed forms.
+
+mod grids;
+mod marching;

@@ -1,0 +1,119 @@
+//! Structured grids as files hold them: sizes and component planes, the first index fastest.
+
+use crate::WriteError;
+use moldloft_num::Vec3;
+
+/// A structured block of `size` points, a surface when the third is 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructuredGrid {
+    /// Points along i, j and k.
+    pub size: [usize; 3],
+    /// All x, all y, all z, i running fastest. A plane grid has z = 0.
+    pub planes: [Vec<f64>; 3],
+    /// A number for each point that says whether it counts (0: it does not), if there is one.
+    pub iblank: Option<Vec<i32>>,
+}
+
+impl StructuredGrid {
+    /// The surface of points (i, j) at `i * n + j`, as arrays of the language and of NumPy have them.
+    ///
+    /// # Panics
+    /// When there are not `m * n` points.
+    pub fn surface(m: usize, n: usize, points: &[Vec3]) -> Self {
+        assert_eq!(points.len(), m * n);
+        let plane = |c: usize| (0..m * n).map(|k| points[k % m * n + k / m][c]).collect();
+        Self { size: [m, n, 1], planes: [plane(0), plane(1), plane(2)], iblank: None }
+    }
+
+    /// The number of points.
+    pub fn count(&self) -> usize {
+        self.size.iter().product()
+    }
+
+    /// Point (i, j, k).
+    pub fn at(&self, [i, j, k]: [usize; 3]) -> Vec3 {
+        let at = (k * self.size[1] + j) * self.size[0] + i;
+        Vec3::of(self.planes[0][at], self.planes[1][at], self.planes[2][at])
+    }
+
+    /// All points, i fastest, then j.
+    pub fn points(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let [x, y, z] = &self.planes;
+        x.iter().zip(y).zip(z).map(|((x, y), z)| Vec3::of(*x, *y, *z))
+    }
+
+    /// Layer k as points (i, j) at `i * n + j`.
+    pub fn layer(&self, k: usize) -> Vec<Vec3> {
+        let [m, n, _] = self.size;
+        (0..m * n).map(|at| self.at([at / n, at % n, k])).collect()
+    }
+
+    /// Refuses coordinates beyond `limit`, NaN included.
+    pub(crate) fn check(blocks: &[Self], limit: f64) -> Result<(), WriteError> {
+        if blocks.is_empty() {
+            return Err(WriteError::NoGrid { patches: vec![] });
+        }
+        for (number, block) in blocks.iter().enumerate() {
+            let bad = |plane: &Vec<f64>| plane.iter().position(|x| !(x.abs() <= limit));
+            if let Some(vertex) = block.planes.iter().find_map(bad) {
+                let vertex = u32::try_from(vertex).unwrap_or(u32::MAX);
+                return Err(WriteError::NotFinite {
+                    patch: format!("block {}", number + 1),
+                    vertex,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{stl, vtk};
+    use moldloft_mesh::Mesh;
+
+    /// A half body of revolution with a nose, 60 by 20.
+    fn body() -> StructuredGrid {
+        let at = |k: usize| {
+            let (x, a) = ((k / 20) as f64 / 59.0, (k % 20) as f64 * std::f64::consts::PI / 19.0);
+            let r = 0.3 * libm::sqrt(x);
+            // The axis is exact: the nose is one point.
+            Vec3::of(3.0 * x, r * libm::cos(a), r * libm::sin(a))
+        };
+        let points: Vec<Vec3> = (0..1200).map(at).collect();
+        StructuredGrid::surface(60, 20, &points)
+    }
+
+    #[test]
+    fn a_body_as_stl_without_the_triangles_of_its_nose() {
+        let bytes = stl::write_grids(&[body()], "body", false).unwrap();
+        assert_eq!(bytes.len(), 84 + 50 * 2223);
+        let back = stl::read(&bytes).unwrap();
+        assert_eq!(back.faces().len(), 2223);
+        let flipped = stl::read(&stl::write_grids(&[body()], "body", true).unwrap()).unwrap();
+        let sum = |mesh: &Mesh| -> Vec3 {
+            mesh.faces().iter().fold(Vec3::zero(), |sum, face| {
+                let [a, b, c, _] = face.map(|v| mesh.positions()[v as usize]);
+                sum + (b - a).cross(c - a)
+            })
+        };
+        assert!((sum(&back) + sum(&flipped)).norm() < 1e-9 * sum(&back).norm());
+        let mut deep = body();
+        deep.size = [30, 20, 2];
+        assert!(matches!(stl::write_grids(&[deep], "", false), Err(WriteError::CannotHold { .. })));
+    }
+
+    #[test]
+    fn surfaces_keep_their_order() {
+        let b = body();
+        assert_eq!(b.at([59, 19, 0]), b.layer(0)[1199]);
+        assert_eq!(b.planes[0][59], 3.0);
+        let files = vtk::grid_files(std::slice::from_ref(&b), "body").unwrap();
+        assert_eq!((files.len(), files[0].name.as_str()), (1, "body.vts"));
+        let text = String::from_utf8_lossy(&files[0].bytes).into_owned();
+        assert!(text.contains("WholeExtent=\"0 59 0 19 0 0\""));
+        assert_eq!(vtk::grid_files(&[b.clone(), b], "two").unwrap()[0].name, "two.vtm");
+        assert!(matches!(vtk::grid_files(&[], "none"), Err(WriteError::NoGrid { .. })));
+    }
+}

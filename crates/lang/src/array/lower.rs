@@ -1,0 +1,975 @@
+//! Runs a program: operators on arrays, element by element.
+//!
+//! The element-wise part of an expression becomes a [`Tape`] that is run once, when its value is
+//! needed. Kinds and shapes are compared when an operator is met, so faults come in the order of the
+//! text and before any element is touched; what has no array in it is computed at once.
+
+use crate::array::cache::{Course, Key, Kind, Recorder};
+use crate::functions::elementary;
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::Binding;
+use crate::source::module::Module;
+use crate::value::ops;
+use crate::value::variables::Called as _;
+use crate::value::variables::{self, shape_text};
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_elementwise::{Cell, Code, Origin, Src, Tape};
+use moldloft_num::Real;
+use moldloft_registry::{Array, ArrayShape, Body, Scalar, Value, Vectors};
+use moldloft_syntax::sdl::{
+    Arg, BinaryOp, ChainItem, ExprId, ExprKind, Grouping, List, Step, Symbol, UnaryOp,
+};
+use smallvec::SmallVec;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// An operand: a value and where a recording finds it again, or rows of a tape.
+#[derive(Clone, Debug)]
+pub(crate) enum Operand<T: Real> {
+    Value(Value<T>, Cell),
+    Lanes(Lanes),
+}
+
+/// A row or grid that a tape computes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lanes {
+    pub shape: ArrayShape,
+    what: What,
+}
+
+impl Lanes {
+    /// The results of a tape that make up its elements.
+    pub fn roots(&self) -> SmallVec<[Src; 3]> {
+        match self.what {
+            What::Number(a) => SmallVec::from_slice(&[a]),
+            What::Vector(v) => SmallVec::from_slice(&v),
+        }
+    }
+
+    /// The rows of a value of this kind and shape that nothing else holds.
+    pub fn rows_of<'v, T: Real>(
+        &self,
+        value: &'v mut Value<T>,
+    ) -> Option<SmallVec<[&'v mut Vec<T>; 3]>> {
+        let mut rows = SmallVec::new();
+        match (value, self.what) {
+            (Value::Numbers(a), What::Number(_)) if a.shape == self.shape => {
+                rows.push(&mut Arc::get_mut(a)?.items);
+            }
+            (Value::Vectors(a), What::Vector(_)) if a.shape == self.shape => {
+                rows.extend(&mut Arc::get_mut(a)?.planes);
+            }
+            _ => return None,
+        }
+        Some(rows)
+    }
+
+    /// The array of the rows of its roots.
+    pub fn value<T: Real>(&self, rows: SmallVec<[Vec<T>; 3]>) -> Value<T> {
+        let shape = self.shape;
+        let mut rows = rows.into_iter();
+        let mut next = || rows.next().expect("a row for each root");
+        match self.what {
+            What::Number(_) => Value::Numbers(Arc::new(Array { shape, items: next() })),
+            What::Vector(_) => {
+                Value::Vectors(Arc::new(Vectors { shape, planes: [next(), next(), next()] }))
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum What {
+    Number(Src),
+    Vector([Src; 3]),
+}
+
+/// The functions whose results a tape checks, by the number of the check.
+pub(crate) type Calls = Vec<(Span, &'static str)>;
+
+type Operated<T> = Result<Operand<T>, Diagnostic>;
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// The value of an expression whose outermost operator is element-wise.
+    pub fn arithmetic(&mut self, m: &Module, id: ExprId) -> Result<Value<T>, Diagnostic> {
+        self.worked(m, id, |this, work| this.operated(m, id, work))
+    }
+
+    /// The value of `target op value`, for `+=` and its like.
+    pub fn updated(
+        &mut self,
+        m: &Module,
+        target: ExprId,
+        op: BinaryOp,
+        value: ExprId,
+    ) -> Result<Value<T>, Diagnostic> {
+        let spans = [target, value].map(|e| m.program[e].span);
+        let value = self.worked(m, value, |this, work| {
+            let right = this.operated(m, value, work)?;
+            let old = this.leaf(m, target, true, work)?;
+            this.combined(m, op, old, right, spans, work).map_err(|d| d.or_at(spans[1]))
+        })?;
+        self.charge(&value, spans[1])?;
+        Ok(value)
+    }
+
+    /// What comes of an expression, by its recipe when it has one that fits, else through the tree.
+    fn worked(
+        &mut self,
+        m: &Module,
+        id: ExprId,
+        tree: impl Fn(&mut Self, &mut Work<T>) -> Operated<T>,
+    ) -> Result<Value<T>, Diagnostic> {
+        let key = Key::of(m, id);
+        let (read, record) = match self.by_recipe(m, key) {
+            Course::Done(value) => return value,
+            Course::Tree { read, record } => (read, record),
+        };
+        let mut work = Work {
+            tape: self.tapes.pop().unwrap_or_default(),
+            calls: Vec::new(),
+            ready: read.into(),
+            recorder: record.map(|_| self.recorder()),
+        };
+        let operand = tree(self, &mut work);
+        let lanes = match &operand {
+            Ok(Operand::Lanes(lanes)) => Some(*lanes),
+            // Scalars have no recipe.
+            Ok(Operand::Value(..)) => {
+                work.give_up();
+                None
+            }
+            Err(_) => None,
+        };
+        let value = match operand {
+            Ok(Operand::Value(value, _)) => Ok(value),
+            Ok(Operand::Lanes(lanes)) => {
+                let tape = &mut work.tape;
+                let filled = match tape.is_checked() {
+                    // What can fail must leave the variable as it was.
+                    true => None,
+                    false => self.filled_in_place(m, key, &lanes, |outs| {
+                        tape.run(&lanes.roots(), lanes.shape, outs).is_ok()
+                    }),
+                };
+                filled.map_or_else(|| self.computed(&lanes, &mut work), Ok)
+            }
+            Err(diagnostic) => Err(work.earlier(diagnostic)),
+        };
+        if let Some(misfits) = record {
+            self.keep_recipe(key, misfits, lanes.filter(|_| value.is_ok()), &mut work);
+        }
+        work.tape.clear();
+        self.tapes.push(work.tape);
+        value
+    }
+
+    /// The elements of rows of a tape.
+    fn computed(&mut self, lanes: &Lanes, work: &mut Work<T>) -> Result<Value<T>, Diagnostic> {
+        let (roots, count) = (lanes.roots(), lanes.shape.count());
+        let mut rows: SmallVec<[Vec<T>; 3]> =
+            roots.iter().map(|_| self.spare.take(count)).collect();
+        match work.tape.run(&roots, lanes.shape, &mut rows) {
+            Ok(()) => Ok(lanes.value(rows)),
+            Err(check) => {
+                let (span, name) = work.calls[check];
+                Err(not_finite(name).at(span))
+            }
+        }
+    }
+
+    /// A part of an expression that is no operator, executed as it stands; an object is read when
+    /// `read`.
+    fn leaf(&mut self, m: &Module, id: ExprId, read: bool, work: &mut Work<T>) -> Operated<T> {
+        if let ExprKind::Number(literal) = m.program[id].kind {
+            let x = T::from(m.program[literal].value);
+            return Ok(Operand::Value(Value::Number(x), work.noted(|r| r.literal(x))));
+        }
+        // Another expression than this one was read when a name has come to mean something else: then it
+        // was a name alone, or the component of one, and reading it has changed nothing.
+        let (value, object) = match work.ready.pop_front() {
+            Some((read, value)) if read == id => (value?, false),
+            _ => {
+                let value = self.expr(m, id)?;
+                let object = matches!(value, Value::Object(_) | Value::List(_));
+                (if read { self.read(value, m.program[id].span)? } else { value }, object)
+            }
+        };
+        let kind = Kind::of(&value).filter(|_| !object);
+        let depth = self.depth;
+        let cell = work.noted(|r| r.leaf(m, (id, read), depth, kind));
+        Ok(Operand::Value(value, cell))
+    }
+
+    fn value_of(
+        &mut self,
+        operand: Operand<T>,
+        work: &mut Work<T>,
+    ) -> Result<Value<T>, Diagnostic> {
+        match operand {
+            Operand::Value(value, _) => Ok(value),
+            Operand::Lanes(lanes) => {
+                work.give_up();
+                self.computed(&lanes, work)
+            }
+        }
+    }
+
+    /// True when an expression names a variable that holds vectors.
+    fn names_vectors(&self, m: &Module, id: ExprId) -> bool {
+        let bound = m.program.as_name(id).and_then(|s| self.lookup(m.names[s.0 as usize]));
+        let what = bound.map(|bound| &bound.what);
+        matches!(what, Some(Binding::Variable { value: Value::Vectors(_), .. }))
+    }
+
+    /// The operand that an expression is, objects read.
+    fn operated(&mut self, m: &Module, id: ExprId, work: &mut Work<T>) -> Operated<T> {
+        let expr = m.program[id];
+        let inner = match expr.kind {
+            ExprKind::Paren(_)
+            | ExprKind::Magnitude(_)
+            | ExprKind::Unary { op: UnaryOp::Minus | UnaryOp::Plus, .. }
+            | ExprKind::Chain(_)
+            | ExprKind::List(_) => true,
+            ExprKind::Binary { op, .. } => is_elementwise(op),
+            ExprKind::Member { base, name, .. } => {
+                // A component of an expression or of rows; of other names it is read as it stands.
+                axis(m.program.name(name)).is_some()
+                    && (self.names_vectors(m, base)
+                        || !matches!(
+                            m.program[base].kind,
+                            ExprKind::Name(_) | ExprKind::Index { .. }
+                        ))
+            }
+            ExprKind::Call { callee, args } => self.elementary(m, callee, args).is_some(),
+            _ => false,
+        };
+        if !inner {
+            return self.leaf(m, id, true, work);
+        }
+        if !self.deeper(expr.span) {
+            return Err(silent());
+        }
+        let depth = self.depth;
+        work.noting(|r| r.at_depth(depth));
+        let operand = self.operator(m, expr.kind, expr.span, work);
+        self.depth -= 1;
+        operand.map_err(|d| d.or_at(expr.span))
+    }
+
+    fn operator(
+        &mut self,
+        m: &Module,
+        kind: ExprKind,
+        span: Span,
+        work: &mut Work<T>,
+    ) -> Operated<T> {
+        match kind {
+            ExprKind::Paren(inner) => self.operated(m, inner, work),
+            ExprKind::Magnitude(inner) => {
+                let operand = self.operated(m, inner, work)?;
+                let plain = self.plain_operators;
+                Ok(match operand {
+                    Operand::Value(ref value, cell) => match work.lanes(value, cell, !plain) {
+                        Some(lanes) => Operand::Lanes(work.magnitude(lanes)),
+                        None => {
+                            let cell = work.noted(|r| r.magnitude(cell));
+                            Operand::Value(ops::magnitude(value)?, cell)
+                        }
+                    },
+                    Operand::Lanes(lanes) => Operand::Lanes(work.magnitude(lanes)),
+                })
+            }
+            ExprKind::Unary { op, operand } => {
+                let operand = self.operated(m, operand, work)?;
+                self.signed(op, operand, work)
+            }
+            ExprKind::Binary { op, left, right } => {
+                let a = self.operated(m, left, work)?;
+                let b = self.operated(m, right, work)?;
+                let spans = [left, right].map(|e| m.program[e].span);
+                self.combined(m, op, a, b, spans, work)
+            }
+            ExprKind::Chain(items) => self.chained(m, items, work),
+            ExprKind::List(items) => self.braces(m, items, work),
+            ExprKind::Member { base, name, .. } => {
+                let operand = self.operated(m, base, work)?;
+                let c = axis(m.program.name(name)).expect("checked by the caller");
+                match operand {
+                    Operand::Lanes(Lanes { shape, what: What::Vector(v) }) => {
+                        Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
+                    }
+                    Operand::Value(value @ Value::Vectors(_), cell) if !self.plain_operators => {
+                        match work.lanes(&value, cell, true) {
+                            Some(Lanes { shape, what: What::Vector(v) }) => {
+                                Ok(Operand::Lanes(Lanes { shape, what: What::Number(v[c]) }))
+                            }
+                            _ => {
+                                work.give_up();
+                                let component = variables::component(&value, c);
+                                let value = component.ok_or_else(silent)?;
+                                Ok(Operand::Value(value, Cell::NONE))
+                            }
+                        }
+                    }
+                    other => {
+                        let cell = match &other {
+                            Operand::Value(_, cell) => *cell,
+                            Operand::Lanes(_) => Cell::NONE,
+                        };
+                        let value = self.value_of(other, work)?;
+                        match variables::component(&value, c) {
+                            Some(component) => {
+                                let cell = work.noted(|r| r.component(cell, c));
+                                Ok(Operand::Value(component, cell))
+                            }
+                            None => {
+                                let found = value.called();
+                                Err(Diagnostic::error(
+                                    "unknown-member",
+                                    format!("{found} has no `{}`", m.program.name(name)),
+                                )
+                                .expected(crate::value::member::names(&value).join(", ")))
+                            }
+                        }
+                    }
+                }
+            }
+            ExprKind::Call { callee, args } => {
+                let (name, function) = self.elementary(m, callee, args).expect("checked above");
+                if let Some(symbol) = m.program.as_name(callee) {
+                    work.noting(|r| r.called(symbol));
+                }
+                let args: Vec<ExprId> = m.program[args].iter().map(|a| a.value).collect();
+                self.elementwise(m, name, function, &args, span, work)
+            }
+            _ => Err(silent()),
+        }
+    }
+
+    fn signed(&mut self, op: UnaryOp, operand: Operand<T>, work: &mut Work<T>) -> Operated<T> {
+        if op == UnaryOp::Plus {
+            return Ok(operand);
+        }
+        let lanes = match &operand {
+            Operand::Lanes(lanes) => Some(*lanes),
+            Operand::Value(value, cell) => work.lanes(value, *cell, !self.plain_operators),
+        };
+        Ok(match (lanes, operand) {
+            (Some(lanes), _) => Operand::Lanes(work.mapped(lanes, Code::Neg)),
+            (None, Operand::Value(value, cell)) => {
+                let cell = work.noted(|r| r.negated(cell));
+                Operand::Value(ops::negated(&value)?, cell)
+            }
+            (None, lanes) => lanes,
+        })
+    }
+
+    fn chained(&mut self, m: &Module, items: List<ChainItem>, work: &mut Work<T>) -> Operated<T> {
+        let mut operands = Vec::new();
+        let mut sets = false;
+        for item in &m.program[items] {
+            if let ChainItem::Operand(expr) = item {
+                let operand = self.operated(m, *expr, work)?;
+                sets |= matches!(&operand, Operand::Value(value, _) if ops::is_set(value));
+                operands.push(Some((*expr, operand)));
+            }
+        }
+        let grouping = if sets { Grouping::Sets } else { Grouping::Numbers };
+        let mut stack: Vec<(Operand<T>, Span)> = Vec::new();
+        let mut next = operands.iter_mut();
+        for step in m.program.grouped(items, grouping) {
+            let operand = match step {
+                // Operands are pushed in the order of the text.
+                Step::Push(expr) => {
+                    let (at, operand) = next.next().and_then(Option::take).ok_or_else(silent)?;
+                    debug_assert_eq!(at, expr);
+                    (operand, m.program[expr].span)
+                }
+                Step::Unary(op, span) => {
+                    let (operand, inner) = stack.pop().ok_or_else(silent)?;
+                    let signed = match (op, operand) {
+                        (UnaryOp::Not, operand) => {
+                            let value = self.value_of(operand, work)?;
+                            let value =
+                                crate::run::expr::unary(op, &value).map_err(|d| d.or_at(span))?;
+                            Operand::Value(value, Cell::NONE)
+                        }
+                        (op, operand) => {
+                            self.signed(op, operand, work).map_err(|d| d.or_at(span))?
+                        }
+                    };
+                    (signed, span.to(inner))
+                }
+                Step::Binary(op, span) => {
+                    let (right, of_right) = stack.pop().ok_or_else(silent)?;
+                    let (left, of_left) = stack.pop().ok_or_else(silent)?;
+                    let value = self
+                        .combined(m, op, left, right, [of_left, of_right], work)
+                        .map_err(|d| d.or_at(span))?;
+                    (value, of_left.to(of_right))
+                }
+            };
+            stack.push(operand);
+        }
+        stack.pop().map(|(operand, _)| operand).ok_or_else(silent)
+    }
+
+    /// `{a, b, c}`: three rows of numbers make a row of vectors; else a vector or list.
+    fn braces(&mut self, m: &Module, items: List<ExprId>, work: &mut Work<T>) -> Operated<T> {
+        let mut values = Vec::with_capacity(items.len());
+        for &item in &m.program[items] {
+            // Objects stay unread in lists.
+            let array = items.len() == 3 && is_operator(m, item);
+            values.push(match array {
+                true => self.operated(m, item, work)?,
+                false => self.leaf(m, item, false, work)?,
+            });
+        }
+        if values.len() == 3 && !self.plain_operators && !work.tape.is_long() {
+            let lanes: Vec<Lanes> = values
+                .iter()
+                .filter_map(|value| match value {
+                    Operand::Lanes(lanes) => Some(*lanes),
+                    Operand::Value(value, cell) => work.lanes(value, *cell, true),
+                })
+                .collect();
+            if let [
+                Lanes { shape, what: What::Number(x) },
+                Lanes { shape: s, what: What::Number(y) },
+                Lanes { shape: t, what: What::Number(z) },
+            ] = lanes[..]
+                && shape == s
+                && shape == t
+            {
+                return Ok(Operand::Lanes(Lanes { shape, what: What::Vector([x, y, z]) }));
+            }
+        }
+        let cells: Vec<Cell> = values.iter().map(Operand::cell).collect();
+        let mut all = Vec::with_capacity(values.len());
+        for value in values {
+            all.push(self.value_of(value, work)?);
+        }
+        let cell = match cells[..] {
+            [a, b, c] => work.noted(|r| r.braces([a, b, c])),
+            _ => Cell::NONE,
+        };
+        let spans: Vec<Span> = m.program[items].iter().map(|&e| m.program[e].span).collect();
+        ops::braces(all.clone()).map(|value| Operand::Value(value, cell)).map_err(|d| {
+            let shapes: Vec<String> = all.iter().map(shape_text).collect();
+            let first = shapes.iter().position(|s| *s != shapes[0]).unwrap_or(0);
+            self.differing(m, d, [spans[0], spans[first]], [&shapes[0], &shapes[first]])
+        })
+    }
+
+    /// `a op b`.
+    fn combined(
+        &mut self,
+        m: &Module,
+        op: BinaryOp,
+        a: Operand<T>,
+        b: Operand<T>,
+        spans: [Span; 2],
+        work: &mut Work<T>,
+    ) -> Operated<T> {
+        let arrays = [&a, &b].map(|o| match o {
+            Operand::Lanes(_) => true,
+            Operand::Value(value, _) => matches!(value, Value::Numbers(_) | Value::Vectors(_)),
+        });
+        if !self.plain_operators && arrays.contains(&true) && !work.tape.is_long() {
+            let operands = [&a, &b].map(|o| work.operand(o));
+            if let [Some(x), Some(y)] = operands {
+                if let (Some(s), Some(t)) = (x.0, y.0)
+                    && s != t
+                    && is_defined(op, x, y)
+                {
+                    let d = ops::shapes_differ(s, t);
+                    let shapes = [described(x), described(y)];
+                    return Err(self.differing(m, d, spans, [&shapes[0], &shapes[1]]));
+                }
+                let alike = x.0.is_none() || y.0.is_none() || x.0 == y.0;
+                if alike && let Some(lanes) = work.binary(op, x, y) {
+                    return Ok(Operand::Lanes(lanes));
+                }
+            }
+        }
+        let cells = [a.cell(), b.cell()];
+        let (a, b) = (self.value_of(a, work)?, self.value_of(b, work)?);
+        let cell = work.noted(|r| r.binary(op, cells[0], cells[1]));
+        ops::binary(op, &a, &b)
+            .map(|value| Operand::Value(value, cell))
+            .map_err(|d| self.differing(m, d, spans, [&shape_text(&a), &shape_text(&b)]))
+    }
+
+    /// A fault of shapes with both expressions, their shapes, and where these were declared.
+    pub fn differing(
+        &self,
+        m: &Module,
+        diagnostic: Diagnostic,
+        spans: [Span; 2],
+        shapes: [&str; 2],
+    ) -> Diagnostic {
+        if diagnostic.id != "shapes-differ" {
+            return diagnostic;
+        }
+        let mut texts = spans.map(|span| m.program.slice(span).trim().to_string());
+        for (text, side) in texts.iter_mut().zip(["the left side", "the right side"]) {
+            let long = text.chars().count() > 40 || text.contains('\n') || text.is_empty();
+            *text = if long { side.into() } else { format!("`{text}`") };
+        }
+        let mut told = diagnostic;
+        told.message =
+            format!("shapes differ: {} is {}, {} is {}", texts[0], shapes[0], texts[1], shapes[1]);
+        told = told.labelled(spans[0], shapes[0]).note_at(spans[1], shapes[1]);
+        let mut seen = Vec::new();
+        for span in spans {
+            if let Some((name, at, shape)) = self.origin_of_shape(m, span)
+                && !seen.contains(&at)
+                && !shape.is_empty()
+            {
+                seen.push(at);
+                told = told.note_at(at, format!("`{name}` is declared here: {shape}"));
+            }
+        }
+        let grid = |s: &str| s.contains(',');
+        if grid(shapes[0]) != grid(shapes[1]) {
+            told = told.help(
+                "spread_i(a, n) and spread_j(a, m) repeat a row over a grid; nothing is repeated \
+                 silently",
+            );
+        }
+        told
+    }
+
+    /// The first array named in a part of the text: its name, declaration and shape.
+    fn origin_of_shape(&self, m: &Module, span: Span) -> Option<(String, Span, String)> {
+        let text = m.program.slice(span);
+        let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+        for word in words.filter(|w| !w.is_empty()) {
+            let Some(symbol) = m.program.symbol(word) else { continue };
+            let Some(bound) = self.lookup(m.names[symbol.0 as usize]) else { continue };
+            let value = self.peek(bound)?;
+            if matches!(value, Value::Numbers(_) | Value::Vectors(_)) {
+                return Some((word.to_string(), bound.span, shape_text(&value)));
+            }
+        }
+        None
+    }
+
+    /// The function that a call names, when it is one of numbers, called with plain arguments.
+    pub fn elementary(
+        &self,
+        m: &Module,
+        callee: ExprId,
+        args: List<Arg>,
+    ) -> Option<(&'static str, elementary::Elementary<T>)> {
+        if args.len() > 2 {
+            return None;
+        }
+        let symbol = m.program.as_name(callee)?;
+        let row = m.rows[symbol.0 as usize].as_ref()?;
+        if !matches!(row.body, Body::Native { .. }) {
+            return None;
+        }
+        let (name, function) = elementary::elementary::<T>(&row.name)?;
+        let wanted = match function {
+            elementary::Elementary::Unary(_) => 1,
+            elementary::Elementary::Binary(_) => 2,
+        };
+        let plain = args.len() == wanted && m.program[args].iter().all(|a| a.name.is_none());
+        (plain && !self.hides_function(m, symbol)).then_some((name, function))
+    }
+
+    /// True when a name means something of the program's own.
+    pub fn hides_function(&self, m: &Module, symbol: Symbol) -> bool {
+        let name = m.names[symbol.0 as usize];
+        self.lookup(name).is_some() || self.env.routines.contains_key(&name)
+    }
+
+    fn elementwise(
+        &mut self,
+        m: &Module,
+        name: &'static str,
+        function: elementary::Elementary<T>,
+        args: &[ExprId],
+        span: Span,
+        work: &mut Work<T>,
+    ) -> Operated<T> {
+        let mut operands = Vec::with_capacity(2);
+        for &arg in args {
+            operands.push(self.operated(m, arg, work)?);
+        }
+        let mut all: Vec<_> = operands.iter().map(|o| work.operand(o)).collect();
+        if self.plain_operators {
+            all.clear();
+            all.push(None);
+        }
+        let number = |o: &Option<Loose<T>>| match o {
+            Some((shape, Loosely::Number(src))) => Some((*shape, *src)),
+            _ => None,
+        };
+        let numbers: Option<Vec<_>> = all.iter().map(number).collect();
+        let long = work.tape.is_long();
+        if let Some(numbers) = numbers.filter(|n| !long && n.iter().any(|(s, _)| s.is_some())) {
+            let shapes: Vec<ArrayShape> = numbers.iter().filter_map(|(s, _)| *s).collect();
+            if shapes.iter().all(|s| *s == shapes[0]) {
+                let srcs: Vec<Src> = numbers.iter().map(|(_, s)| work.src(s)).collect();
+                let src = match function {
+                    elementary::Elementary::Unary(f) => work.tape.unary(f, srcs[0], shapes[0]),
+                    elementary::Elementary::Binary(f) => {
+                        work.tape.binary(f, srcs[0], srcs[1], Some(shapes[0]))
+                    }
+                };
+                debug_assert_eq!(work.tape.checks(), work.calls.len() + 1);
+                work.calls.push((span, name));
+                return Ok(Operand::Lanes(Lanes { shape: shapes[0], what: What::Number(src) }));
+            }
+        }
+        let cells: Vec<Cell> = operands.iter().map(Operand::cell).collect();
+        let cell = work.noted(|r| r.function(name, function, &cells));
+        let mut values = Vec::with_capacity(2);
+        for operand in operands {
+            values.push(self.value_of(operand, work)?);
+        }
+        let spans: Vec<Span> = args.iter().map(|&a| m.program[a].span).collect();
+        // Scalars, and whatever is not taken, by the row itself.
+        let value = elementary::apply(name, function, &values).map_err(|fault| {
+            let at = fault.field().map_or(span, |field| spans[field]);
+            let d = crate::source::fault_location::unplaced(&fault);
+            match &values[..] {
+                [a, b] => {
+                    self.differing(m, d, [spans[0], spans[1]], [&shape_text(a), &shape_text(b)])
+                }
+                _ => d,
+            }
+            .or_at(at)
+        })?;
+        if !value.is_finite() {
+            return Err(not_finite(name).at(span));
+        }
+        Ok(Operand::Value(value, cell))
+    }
+}
+
+pub(crate) fn not_finite(name: &str) -> Diagnostic {
+    Diagnostic::error("not-finite", format!("the result of {name} is not a finite number"))
+        .expected("arguments inside the function's domain")
+}
+
+fn axis(word: &str) -> Option<usize> {
+    ["x", "y", "z"].iter().position(|c| *c == word)
+}
+
+pub(crate) fn is_elementwise(op: BinaryOp) -> bool {
+    matches!(
+        op,
+        BinaryOp::Add
+            | BinaryOp::Sub
+            | BinaryOp::Mul
+            | BinaryOp::Div
+            | BinaryOp::Caret
+            | BinaryOp::Dot
+            | BinaryOp::Cross
+    )
+}
+
+/// True when the outermost part of an expression is an operator, so that it is no object.
+fn is_operator(m: &Module, id: ExprId) -> bool {
+    match m.program[m.program.bare(id)].kind {
+        ExprKind::Chain(_) | ExprKind::Magnitude(_) | ExprKind::Unary { .. } => true,
+        ExprKind::Binary { op, .. } => is_elementwise(op),
+        ExprKind::Call { .. } => true,
+        _ => false,
+    }
+}
+
+/// An operand that a tape can take: its shape, if it is an array, and its numbers.
+type Loose<T> = (Option<ArrayShape>, Loosely<T>);
+
+#[derive(Clone, Copy)]
+enum Loosely<T> {
+    Number(Number<T>),
+    Vector([Number<T>; 3]),
+}
+
+/// A number of an operand; constants enter the tape when they are used.
+#[derive(Clone, Copy)]
+enum Number<T> {
+    Src(Src),
+    Const(T, Origin),
+}
+
+/// The components of a vector as constants.
+fn constants<T: Real>(v: moldloft_num::Vec3<T>, cell: Cell) -> Loosely<T> {
+    let [x, y, z] = v.to_array();
+    let of = |x, part| Number::Const(x, Origin::of(cell, part));
+    Loosely::Vector([of(x, 0), of(y, 1), of(z, 2)])
+}
+
+/// True when the operator takes such kinds, whatever their shapes.
+fn is_defined<T>(op: BinaryOp, a: Loose<T>, b: Loose<T>) -> bool {
+    let vector = |o: &Loosely<T>| matches!(o, Loosely::Vector(_));
+    match (op, vector(&a.1), vector(&b.1)) {
+        (BinaryOp::Mul, ..) => true,
+        (BinaryOp::Add | BinaryOp::Sub, v, w) => v == w,
+        (BinaryOp::Div, v, w) => v || !w,
+        (BinaryOp::Caret, v, w) => !v && !w,
+        (BinaryOp::Dot | BinaryOp::Cross, v, w) => v && w,
+        _ => false,
+    }
+}
+
+fn described<T>(operand: Loose<T>) -> String {
+    match operand {
+        (Some(shape), Loosely::Number(_)) => format!("farray{shape}"),
+        (Some(shape @ ArrayShape::Row(_)), Loosely::Vector(_)) => format!("curve{shape}"),
+        (Some(shape), Loosely::Vector(_)) => format!("surface{shape}"),
+        (None, Loosely::Number(_)) => "number".into(),
+        (None, Loosely::Vector(_)) => "vector".into(),
+    }
+}
+
+/// A tape under way.
+pub(crate) struct Work<T: Real> {
+    pub tape: Tape<T>,
+    pub calls: Calls,
+    /// Leaves that were read already, the next first.
+    ready: VecDeque<(ExprId, Result<Value<T>, Diagnostic>)>,
+    /// Notes what is done, for a recipe.
+    pub recorder: Option<Recorder<T>>,
+}
+
+impl<T: Real> Operand<T> {
+    fn cell(&self) -> Cell {
+        match self {
+            Operand::Value(_, cell) => *cell,
+            Operand::Lanes(_) => Cell::NONE,
+        }
+    }
+}
+
+impl<T: Real> Work<T> {
+    /// Notes something that has a value, while that is wanted.
+    fn noted(&mut self, note: impl FnOnce(&mut Recorder<T>) -> Cell) -> Cell {
+        self.recorder.as_mut().map_or(Cell::NONE, note)
+    }
+
+    fn noting(&mut self, note: impl FnOnce(&mut Recorder<T>)) {
+        if let Some(recorder) = &mut self.recorder {
+            note(recorder);
+        }
+    }
+
+    /// There will be no recipe.
+    fn give_up(&mut self) {
+        self.noting(|r| r.given_up = true);
+    }
+
+    /// The fault of a check that comes before another fault in the order of the text.
+    fn earlier(&mut self, diagnostic: Diagnostic) -> Diagnostic {
+        if self.calls.is_empty() {
+            return diagnostic;
+        }
+        match self.tape.first_failure() {
+            Some(check) => {
+                let (span, name) = self.calls[check];
+                not_finite(name).at(span)
+            }
+            None => diagnostic,
+        }
+    }
+
+    /// An array as rows of the tape.
+    fn lanes(&mut self, value: &Value<T>, cell: Cell, wanted: bool) -> Option<Lanes> {
+        if !wanted || self.tape.is_long() {
+            return None;
+        }
+        Some(match value {
+            Value::Numbers(a) => {
+                Lanes { shape: a.shape, what: What::Number(self.tape.numbers(a, cell)) }
+            }
+            Value::Vectors(a) => {
+                Lanes { shape: a.shape, what: What::Vector(self.tape.vectors(a, cell)) }
+            }
+            _ => return None,
+        })
+    }
+
+    fn operand(&mut self, operand: &Operand<T>) -> Option<Loose<T>> {
+        let lanes = match operand {
+            Operand::Lanes(lanes) => *lanes,
+            Operand::Value(Value::Number(x), cell) => {
+                return Some((None, Loosely::Number(Number::Const(*x, Origin::of(*cell, 0)))));
+            }
+            Operand::Value(Value::Vector(v), cell) => return Some((None, constants(*v, *cell))),
+            Operand::Value(Value::Point(p), cell) => return Some((None, constants(p.xyz, *cell))),
+            Operand::Value(value, cell) => self.lanes(value, *cell, true)?,
+        };
+        Some((
+            Some(lanes.shape),
+            match lanes.what {
+                What::Number(a) => Loosely::Number(Number::Src(a)),
+                What::Vector(v) => Loosely::Vector(v.map(Number::Src)),
+            },
+        ))
+    }
+
+    fn src(&mut self, number: &Number<T>) -> Src {
+        match number {
+            Number::Src(src) => *src,
+            Number::Const(x, origin) => self.tape.constant(*x, *origin),
+        }
+    }
+
+    fn mapped(&mut self, lanes: Lanes, code: Code) -> Lanes {
+        let what = match lanes.what {
+            What::Number(a) => What::Number(self.tape.op1(code, a)),
+            What::Vector(v) => What::Vector(v.map(|a| self.tape.op1(code, a))),
+        };
+        Lanes { what, ..lanes }
+    }
+
+    fn magnitude(&mut self, lanes: Lanes) -> Lanes {
+        let what = match lanes.what {
+            What::Number(a) => What::Number(self.tape.op1(Code::Abs, a)),
+            What::Vector(v) => {
+                let square = self.dot(v, v);
+                What::Number(self.tape.op1(Code::Sqrt, square))
+            }
+        };
+        Lanes { what, ..lanes }
+    }
+
+    fn dot(&mut self, a: [Src; 3], b: [Src; 3]) -> Src {
+        let mut product = |c: usize| self.tape.op(Code::Mul, a[c], b[c]);
+        let (x, y, z) = (product(0), product(1), product(2));
+        let xy = self.tape.op(Code::Add, x, y);
+        self.tape.op(Code::Add, xy, z)
+    }
+
+    /// `a op b` where at least one is an array and the shapes agree; `None` where the operator is
+    /// not defined.
+    fn binary(&mut self, op: BinaryOp, a: Loose<T>, b: Loose<T>) -> Option<Lanes> {
+        use Loosely::{Number, Vector};
+        let shape = a.0.or(b.0)?;
+        let code = match op {
+            BinaryOp::Add => Code::Add,
+            BinaryOp::Sub => Code::Sub,
+            BinaryOp::Mul => Code::Mul,
+            BinaryOp::Div => Code::Div,
+            _ => Code::Abs,
+        };
+        let what = match (op, a.1, b.1) {
+            (
+                BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div,
+                Number(x),
+                Number(y),
+            ) => {
+                let (x, y) = (self.src(&x), self.src(&y));
+                What::Number(self.tape.op(code, x, y))
+            }
+            (
+                BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div,
+                Vector(v),
+                Vector(w),
+            ) => {
+                let (v, w) = (v.map(|x| self.src(&x)), w.map(|x| self.src(&x)));
+                What::Vector([0, 1, 2].map(|c| self.tape.op(code, v[c], w[c])))
+            }
+            (BinaryOp::Mul, Number(x), Vector(v)) | (BinaryOp::Mul, Vector(v), Number(x)) => {
+                let (x, v) = (self.src(&x), v.map(|x| self.src(&x)));
+                What::Vector(v.map(|y| self.tape.op(code, y, x)))
+            }
+            (BinaryOp::Div, Vector(v), Number(x)) => {
+                let (x, v) = (self.src(&x), v.map(|x| self.src(&x)));
+                What::Vector(v.map(|y| self.tape.op(code, y, x)))
+            }
+            (BinaryOp::Dot, Vector(v), Vector(w)) => {
+                let (v, w) = (v.map(|x| self.src(&x)), w.map(|x| self.src(&x)));
+                What::Number(self.dot(v, w))
+            }
+            (BinaryOp::Cross, Vector(v), Vector(w)) => {
+                let (v, w) = (v.map(|x| self.src(&x)), w.map(|x| self.src(&x)));
+                What::Vector([0, 1, 2].map(|c| {
+                    let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+                    let plus = self.tape.op(Code::Mul, v[i], w[j]);
+                    let minus = self.tape.op(Code::Mul, v[j], w[i]);
+                    self.tape.op(Code::Sub, plus, minus)
+                }))
+            }
+            (BinaryOp::Caret, Number(x), Number(y)) => {
+                let whole = match y {
+                    self::Number::Const(k, origin) => {
+                        self.noting(|r| r.exponent(origin, k));
+                        ops::whole_power(k)
+                    }
+                    self::Number::Src(_) => None,
+                };
+                let x = self.src(&x);
+                What::Number(match whole {
+                    Some(k) => self.tape.powi(x, k),
+                    None => {
+                        let y = self.src(&y);
+                        self.tape.binary(ops::power, x, y, None)
+                    }
+                })
+            }
+            _ => return None,
+        };
+        Some(Lanes { shape, what })
+    }
+}
+
+/// Rows of memory that are not in use: a statement that makes an array of the size of one that was
+/// replaced takes its memory.
+#[derive(Debug)]
+pub(crate) struct Spare<T> {
+    rows: Vec<Vec<T>>,
+}
+
+impl<T> Default for Spare<T> {
+    fn default() -> Self {
+        Self { rows: Vec::new() }
+    }
+}
+
+/// The most rows that are kept, and the most elements of all.
+const MOST_SPARE: usize = 12;
+const MOST_SPARE_ELEMENTS: usize = 16_000_000;
+
+impl<T: Real> Spare<T> {
+    /// A row of `n` elements of any content.
+    pub fn take(&mut self, n: usize) -> Vec<T> {
+        match self.rows.iter().rposition(|row| row.len() == n) {
+            Some(at) => self.rows.swap_remove(at),
+            None => vec![T::zero(); n],
+        }
+    }
+
+    /// Keeps the memory of a value that nobody else holds.
+    pub fn give(&mut self, value: Value<T>) {
+        match value {
+            Value::Numbers(a) => {
+                if let Ok(array) = Arc::try_unwrap(a) {
+                    self.keep(array.items);
+                }
+            }
+            Value::Vectors(a) => {
+                if let Ok(array) = Arc::try_unwrap(a) {
+                    array.planes.into_iter().for_each(|plane| self.keep(plane));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn keep(&mut self, row: Vec<T>) {
+        if self.rows.len() >= MOST_SPARE {
+            self.rows.remove(0);
+        }
+        let held: usize = self.rows.iter().map(Vec::len).sum();
+        if held + row.len() <= MOST_SPARE_ELEMENTS {
+            self.rows.push(row);
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! Files of a program: read from the host's world, written into a set that the host commits.
+//!
+//! A file is a unit number, as in FORTRAN. Texts only: a point on each line, numbers with all their
+//! digits, the first index of a grid fastest. Whatever is written can be read again in the same run.
+
+use crate::source::world::World;
+use indexmap::IndexMap;
+use moldloft_diag::Diagnostic;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The units of the terminal.
+const STANDARD_ERROR: u32 = 0;
+const STANDARD_INPUT: u32 = 5;
+pub const STANDARD_OUTPUT: u32 = 6;
+
+/// Units that `open` gives out begin here.
+const FIRST_FREE: u32 = 10;
+
+/// The most bytes of all files that a run writes, and the most files open at a time.
+const MOST_BYTES: usize = 256 << 20;
+const MOST_OPEN: usize = 1_000;
+
+/// The unit that a name stands for without being declared.
+pub fn predeclared(name: &str) -> Option<f64> {
+    match name {
+        "stdin" => Some(f64::from(STANDARD_INPUT)),
+        "stdout" => Some(f64::from(STANDARD_OUTPUT)),
+        "stderr" => Some(f64::from(STANDARD_ERROR)),
+        _ => None,
+    }
+}
+
+/// What a run has opened and written.
+#[derive(Debug, Default)]
+pub struct Files {
+    open: BTreeMap<u32, Open>,
+    written: IndexMap<String, Vec<u8>>,
+    /// Files that the host makes CGNS of, and the names of their blocks.
+    cgns: IndexMap<String, Vec<String>>,
+    bytes: usize,
+}
+
+#[derive(Debug)]
+enum Open {
+    Read { name: String, text: Arc<str>, at: usize },
+    Write { name: String },
+}
+
+/// How a file is opened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    Read,
+    Write,
+    Append,
+}
+
+impl Mode {
+    pub fn parse(word: &str) -> Result<Self, Diagnostic> {
+        match word {
+            "r" => Ok(Mode::Read),
+            "w" => Ok(Mode::Write),
+            "a" => Ok(Mode::Append),
+            _ => Err(Diagnostic::error("unknown-mode", format!("there is no mode \"{word}\""))
+                .expected("\"r\" to read, \"w\" to write or \"a\" to append")
+                .found(format!("\"{word}\""))),
+        }
+    }
+}
+
+/// A name of a file inside the program's folder, `/` between its parts.
+fn inside(path: &str) -> Result<String, Diagnostic> {
+    let outside = |why: &str| {
+        Diagnostic::error("outside-folder", format!("cannot write `{path}`: {why}"))
+            .expected("the name of a file in the program's own folder")
+            .found(path.to_string())
+            .help("the folder for results is chosen by `moldloft run -o FOLDER`")
+    };
+    let spelled = path.replace('\\', "/");
+    let drive = spelled.as_bytes().get(1) == Some(&b':');
+    if spelled.starts_with('/') || drive {
+        return Err(outside("it is an absolute path"));
+    }
+    let mut parts = Vec::new();
+    for part in spelled.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => return Err(outside("it leaves the folder")),
+            part if part.contains(|c: char| c.is_control()) => {
+                return Err(outside("it has characters that no name has"));
+            }
+            part => parts.push(part),
+        }
+    }
+    if parts.is_empty() || spelled.ends_with('/') {
+        return Err(outside("it names no file"));
+    }
+    Ok(parts.join("/"))
+}
+
+impl Files {
+    /// Opens a file; `unit` when the program chose one.
+    pub fn open(
+        &mut self,
+        world: &dyn World,
+        from: &str,
+        path: &str,
+        mode: Mode,
+        unit: Option<u32>,
+    ) -> Result<u32, Diagnostic> {
+        let unit = unit.unwrap_or_else(|| {
+            (FIRST_FREE..).find(|u| !self.open.contains_key(u)).expect("there are enough numbers")
+        });
+        if self.open.len() >= MOST_OPEN {
+            return Err(Diagnostic::error("too-many-files", "too many files are open")
+                .expected(format!("at most {MOST_OPEN} at a time"))
+                .help("close() them"));
+        }
+        if predeclared_unit(unit) || self.open.contains_key(&unit) {
+            return Err(Diagnostic::error("unit-in-use", format!("unit {unit} is open already"))
+                .help("close it first, or let open(\"name\", \"w\") choose a unit"));
+        }
+        let open = match mode {
+            Mode::Read => {
+                // What this run wrote is seen before what is on the disk.
+                let own = inside(path).ok().and_then(|name| self.written.get(&name));
+                let text = match own {
+                    Some(bytes) => moldloft_syntax::decode(bytes, path)?.to_string(),
+                    None => {
+                        let read = world.read(path, Some(from)).map_err(|e| {
+                            Diagnostic::error("cannot-read", e.message).maybe_help(e.help)
+                        })?;
+                        moldloft_syntax::decode(&read.bytes, &read.name)?.to_string()
+                    }
+                };
+                Open::Read { name: path.into(), text: text.into(), at: 0 }
+            }
+            Mode::Write | Mode::Append => {
+                let name = inside(path)?;
+                let busy = |o: &Open| matches!(o, Open::Write { name: n } if *n == name);
+                if self.open.values().any(busy) {
+                    return Err(Diagnostic::error(
+                        "unit-in-use",
+                        format!("`{name}` is open for writing already"),
+                    )
+                    .help("close it first"));
+                }
+                self.cgns.shift_remove(&name);
+                let file = self.written.entry(name.clone()).or_default();
+                if mode == Mode::Write {
+                    self.bytes -= file.len();
+                    file.clear();
+                }
+                Open::Write { name }
+            }
+        };
+        self.open.insert(unit, open);
+        Ok(unit)
+    }
+
+    /// The content of a file: what this run wrote, or what is on the disk.
+    pub fn bytes(&self, world: &dyn World, from: &str, path: &str) -> Result<Vec<u8>, Diagnostic> {
+        if let Some(bytes) = inside(path).ok().and_then(|name| self.written.get(&name)) {
+            return Ok(bytes.clone());
+        }
+        let read = world.read(path, Some(from));
+        let read =
+            read.map_err(|e| Diagnostic::error("cannot-read", e.message).maybe_help(e.help))?;
+        Ok(read.bytes.to_vec())
+    }
+
+    /// A whole file.
+    pub fn put(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Diagnostic> {
+        let name = inside(path)?;
+        if self.open.values().any(|o| matches!(o, Open::Write { name: n } if *n == name)) {
+            let message = format!("`{name}` is open for writing already");
+            return Err(Diagnostic::error("unit-in-use", message).help("close it first"));
+        }
+        self.cgns.shift_remove(&name);
+        let replaced = self.written.get(&name).map_or(0, Vec::len);
+        self.bytes = self.bytes - replaced + bytes.len();
+        if self.bytes > MOST_BYTES {
+            return Err(too_much());
+        }
+        self.written.insert(name, bytes);
+        Ok(())
+    }
+
+    /// The host is to make CGNS of a file that was put, of blocks with these names.
+    pub fn for_cgns(&mut self, path: &str, names: Vec<String>) -> Result<(), Diagnostic> {
+        self.cgns.insert(inside(path)?, names);
+        Ok(())
+    }
+
+    /// The files that the host makes CGNS of: what was written is Plot3D.
+    pub fn cgns(&self) -> impl Iterator<Item = (&str, &[String])> {
+        self.cgns.iter().map(|(name, blocks)| (name.as_str(), blocks.as_slice()))
+    }
+
+    pub fn close(&mut self, unit: u32) -> Result<(), Diagnostic> {
+        self.open.remove(&unit).map(drop).ok_or_else(|| not_open(unit))
+    }
+
+    /// Adds to a file.
+    pub fn write(&mut self, unit: u32, text: &str) -> Result<(), Diagnostic> {
+        let Some(open) = self.open.get(&unit) else { return Err(not_open(unit)) };
+        let Open::Write { name } = open else {
+            return Err(Diagnostic::error(
+                "wrong-mode",
+                format!("unit {unit} is open for reading"),
+            )
+            .help("open it with \"w\" to write"));
+        };
+        self.bytes += text.len();
+        if self.bytes > MOST_BYTES {
+            return Err(too_much());
+        }
+        let file = self.written.get_mut(name).expect("entered by open");
+        file.extend_from_slice(text.as_bytes());
+        Ok(())
+    }
+
+    fn reading(&mut self, unit: u32) -> Result<(&str, &str, &mut usize), Diagnostic> {
+        if unit == STANDARD_INPUT {
+            return Err(Diagnostic::error("cannot-read", "a program has no standard input")
+                .help("read from a file: open(\"name\", \"r\")"));
+        }
+        match self.open.get_mut(&unit) {
+            Some(Open::Read { name, text, at }) => Ok((name, text, at)),
+            Some(Open::Write { .. }) => {
+                Err(Diagnostic::error("wrong-mode", format!("unit {unit} is open for writing"))
+                    .help("close it and open it with \"r\" to read"))
+            }
+            None => Err(not_open(unit)),
+        }
+    }
+
+    /// The next number.
+    pub fn number(&mut self, unit: u32) -> Result<f64, Diagnostic> {
+        let (name, text, at) = self.reading(unit)?;
+        let blank = |c: char| c.is_whitespace() || c == ',';
+        let rest = &text[*at..];
+        let start = *at + rest.find(|c| !blank(c)).unwrap_or(rest.len());
+        let end = start + text[start..].find(blank).unwrap_or(text.len() - start);
+        *at = end;
+        let word = &text[start..end];
+        if word.is_empty() {
+            return Err(Diagnostic::error("end-of-file", format!("`{name}` has no more numbers"))
+                .help("more(f) tells whether there is more to read"));
+        }
+        // FORTRAN writes exponents with d as well.
+        let spelled = word.replace(['d', 'D'], "e");
+        spelled.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| {
+            let line = text[..start].matches('\n').count() + 1;
+            Diagnostic::error("not-a-number", format!("`{name}`, line {line}: no number"))
+                .expected("a finite number")
+                .found(word.chars().take(40).collect::<String>())
+        })
+    }
+
+    /// The rest of the line.
+    pub fn line(&mut self, unit: u32) -> Result<String, Diagnostic> {
+        let (name, text, at) = self.reading(unit)?;
+        if *at >= text.len() {
+            return Err(Diagnostic::error("end-of-file", format!("`{name}` has no more lines"))
+                .help("more(f) tells whether there is more to read"));
+        }
+        let rest = &text[*at..];
+        let end = rest.find('\n').unwrap_or(rest.len());
+        *at += (end + 1).min(rest.len());
+        Ok(rest[..end].trim_end_matches('\r').to_string())
+    }
+
+    /// True when something other than blanks is left to read.
+    pub fn more(&mut self, unit: u32) -> Result<bool, Diagnostic> {
+        let (_, text, at) = self.reading(unit)?;
+        Ok(!text[*at..].trim().is_empty())
+    }
+
+    /// Goes back to the beginning.
+    pub fn rewind(&mut self, unit: u32) -> Result<(), Diagnostic> {
+        let (_, _, at) = self.reading(unit)?;
+        *at = 0;
+        Ok(())
+    }
+
+    /// What was written, by name.
+    pub fn written(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.written.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
+    }
+}
+
+fn too_much() -> Diagnostic {
+    Diagnostic::error("too-much-output", "the program writes too much")
+        .expected(format!("at most {MOST_BYTES} bytes in all files"))
+}
+
+fn predeclared_unit(unit: u32) -> bool {
+    [STANDARD_ERROR, STANDARD_INPUT, STANDARD_OUTPUT].contains(&unit)
+}
+
+fn not_open(unit: u32) -> Diagnostic {
+    Diagnostic::error("not-open", format!("unit {unit} is not open"))
+        .expected("a file that open() gave")
+        .found(format!("unit {unit}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stay_inside() {
+        assert_eq!(inside("a/./b.x").unwrap(), "a/b.x");
+        assert_eq!(inside("a\\b.x").unwrap(), "a/b.x");
+        for bad in ["/a", "../a", "a/../../b", "", ".", "a/", "C:/a", "a\nb"] {
+            assert_eq!(inside(bad).unwrap_err().id, "outside-folder", "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Built-in functions that write arrays of points as grid files and read such files.
+//!
+//! Files are whole: each call writes one, into the set that the host commits. CGNS is HDF5, which the
+//! host writes: the run keeps the blocks and their names for it.
+
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::module::Module;
+use crate::value::variables;
+use moldloft_diag::Diagnostic;
+use moldloft_io::plot3d::{self, Laid, Variant};
+use moldloft_io::{StructuredGrid, points, section, stl, vtk};
+use moldloft_model::Extent;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{ArrayShape, Scalar, Value, Vectors};
+use moldloft_syntax::sdl::ExprId;
+use std::sync::Arc;
+
+type Evaluated<T> = Result<Value<T>, Diagnostic>;
+
+/// The words that choose a variant of Plot3D, the usual ones first.
+const VARIANTS: &str = "stream, records, text; double, single; multi, single-block; 3d, 2d; whole, planes; little, \
+                        big; iblank; mark8";
+
+/// The variant that words choose.
+fn variant(words: &str) -> Result<Variant, Diagnostic> {
+    let mut v = Variant::default();
+    for word in words.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty()) {
+        match word.to_ascii_lowercase().as_str() {
+            "stream" | "binary" => v.laid = Laid::Stream,
+            "records" | "fortran" | "unformatted" => v.laid = Laid::Unformatted,
+            "text" | "ascii" | "formatted" => v.laid = Laid::Formatted,
+            "double" => v.double = true,
+            "single" => v.double = false,
+            "multi" | "multi-block" => v.multi = true,
+            "single-block" => v.multi = false,
+            "3d" => v.three = true,
+            "2d" => v.three = false,
+            "whole" => v.planes = false,
+            "planes" => v.planes = true,
+            "little" => v.big_endian = false,
+            "big" => v.big_endian = true,
+            "iblank" => v.iblank = true,
+            "mark4" => v.mark = 4,
+            "mark8" => v.mark = 8,
+            _ => {
+                return Err(Diagnostic::error(
+                    "unknown-word",
+                    format!("Plot3D has no variant \"{word}\""),
+                )
+                .expected(VARIANTS)
+                .found(format!("\"{word}\"")));
+            }
+        }
+    }
+    Ok(v)
+}
+
+fn grid<T: Real>(a: &Vectors<T>) -> StructuredGrid {
+    let [m, n] = match a.shape {
+        ArrayShape::Row(n) => [n, 1],
+        ArrayShape::Grid(m, n) => [m, n],
+    };
+    let plane = |c: usize| (0..m * n).map(|k| a.planes[c][k % m * n + k / m].re() + 0.0).collect();
+    StructuredGrid { size: [m, n, 1], planes: [plane(0), plane(1), plane(2)], iblank: None }
+}
+
+/// The block, if all of its points are finite: files with others are of no use to their readers.
+fn finite(
+    block: StructuredGrid,
+    shape: ArrayShape,
+    written: &str,
+) -> Result<StructuredGrid, Diagnostic> {
+    let bad = |k: &usize| block.planes.iter().any(|plane| !plane[*k].is_finite());
+    let Some(k) = (0..block.count()).find(bad) else { return Ok(block) };
+    let [ni, ..] = block.size;
+    let place = match shape {
+        ArrayShape::Row(_) => format!("[{}]", k + 1),
+        ArrayShape::Grid(..) => format!("[{},{}]", k % ni + 1, k / ni + 1),
+    };
+    let [x, y, z] = [0, 1, 2].map(|c| block.planes[c][k]);
+    Err(Diagnostic::error("not-finite", format!("point {place} of `{written}` is not finite"))
+        .expected("finite coordinates")
+        .found(format!("{{{x}, {y}, {z}}}"))
+        .help("look for a division by zero in what it was computed from"))
+}
+
+fn cannot(error: impl std::fmt::Display) -> Diagnostic {
+    let text = error.to_string();
+    Diagnostic::error("cannot-write", text.trim_start_matches("error: ").to_string())
+}
+
+/// The stem of a file's name: "body" of "out/body.vts".
+fn stem(name: &str) -> &str {
+    let last = name.rsplit('/').next().unwrap_or(name);
+    last.rsplit_once('.').map_or(last, |(stem, _)| stem)
+}
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// A built-in function of this file.
+    pub fn grid_file(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Evaluated<T> {
+        match name {
+            "read_p3d" => self.read_p3d(m, given),
+            "read_points" | "read_aerofoil" => self.read_rows(m, name, given),
+            _ => self.write_grids(m, name, given).map(|()| Value::Unset),
+        }
+    }
+
+    fn write_grids(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Result<(), Diagnostic> {
+        if self.run.extent() == Extent::Edit {
+            let message = "an expression from outside writes no files";
+            return Err(Diagnostic::error("misplaced-assignment", message)
+                .expected("an expression that reads the program's variables"));
+        }
+        let path = self.text(m, given[0])?;
+        let at_name = m.program[given[0]].span;
+        let mut words: Arc<str> = "".into();
+        let mut words_at = at_name;
+        let mut blocks: Vec<StructuredGrid> = Vec::new();
+        let mut names: Vec<String> = Vec::new();
+        for (k, &arg) in given[1..].iter().enumerate() {
+            let span = m.program[arg].span;
+            let value = self.operand(m, arg)?;
+            self.charge(&value, span)?;
+            match &value {
+                Value::Text(text) if k == 0 => (words, words_at) = (text.clone(), span),
+                Value::Vectors(a) => {
+                    let written = m.program.slice(span).trim().to_string();
+                    blocks.push(finite(grid(a), a.shape, &written).map_err(|d| d.at(span))?);
+                    names.push(written);
+                }
+                Value::Numbers(a) if name == "write_p3d" && !blocks.is_empty() => {
+                    let block = blocks.last_mut().expect("there is one");
+                    let [ni, nj, _] = block.size;
+                    if a.items.len() != ni * nj || a.items.iter().any(|x| x.re().fract() != 0.0) {
+                        return Err(Diagnostic::error(
+                            "shapes-differ",
+                            format!("blanking {} does not go with the surface before it", a.shape),
+                        )
+                        .at(span)
+                        .expected(format!("a whole number for each of {ni} x {nj} points"))
+                        .found(format!("farray{}", a.shape)));
+                    }
+                    let at = |k: usize| a.items[k % ni * nj + k / ni].re() as i32;
+                    block.iblank = Some((0..ni * nj).map(at).collect());
+                }
+                other => {
+                    let found = variables::a(other);
+                    return Err(Diagnostic::error(
+                        "wrong-type",
+                        format!("{name} writes arrays of points"),
+                    )
+                    .at(span)
+                    .expected("a curve or a surface")
+                    .found(found));
+                }
+            }
+        }
+        if blocks.is_empty() {
+            return Err(Diagnostic::error(
+                "missing-argument",
+                format!("{name} has nothing to write"),
+            )
+            .at(at_name)
+            .expected("a curve or a surface"));
+        }
+        let nothing_of = |words: &str, known: &str| match words.trim() {
+            "" => Ok(false),
+            word if word == known => Ok(true),
+            word => {
+                let expected = if known.is_empty() { "no words" } else { known };
+                Err(Diagnostic::error("unknown-word", format!("{name} knows no \"{word}\""))
+                    .at(words_at)
+                    .expected(expected.to_string()))
+            }
+        };
+        let at = |d: Diagnostic| d.or_at(at_name);
+        match name {
+            "write_p3d" => {
+                let mut v = variant(&words).map_err(|d| d.or_at(words_at))?;
+                v.iblank |= blocks.iter().any(|b| b.iblank.is_some());
+                if v.iblank {
+                    for block in &mut blocks {
+                        let all = || vec![1; block.planes[0].len()];
+                        block.iblank = Some(block.iblank.take().unwrap_or_else(all));
+                    }
+                }
+                let bytes = plot3d::write(&blocks, v).map_err(|e| at(cannot(e)))?;
+                self.env.files.put(&path, bytes).map_err(at)
+            }
+            "write_vts" => {
+                nothing_of(&words, "")?;
+                let folder = path.rfind('/').map_or("", |k| &path[..=k]);
+                let files = vtk::grid_files(&blocks, stem(&path)).map_err(|e| at(cannot(e)))?;
+                for file in files {
+                    let name = format!("{folder}{}", file.name);
+                    self.env.files.put(&name, file.bytes).map_err(at)?;
+                }
+                Ok(())
+            }
+            "write_stl" => {
+                let flip = nothing_of(&words, "flip")?;
+                let bytes =
+                    stl::write_grids(&blocks, stem(&path), flip).map_err(|e| at(cannot(e)))?;
+                self.env.files.put(&path, bytes).map_err(at)
+            }
+            "write_cgns" => {
+                nothing_of(&words, "")?;
+                if let Some(k) = blocks.iter().position(|b| b.size[0] < 2 || b.size[1] < 2) {
+                    let message = format!("CGNS cannot hold `{}`: it has no cells", names[k]);
+                    return Err(at(Diagnostic::error("cannot-write", message)
+                        .expected("surfaces of two lines and more each way")));
+                }
+                let bytes = plot3d::write(&blocks, Variant::default());
+                let bytes = bytes.map_err(|e| at(cannot(e)))?;
+                self.env.files.put(&path, bytes).map_err(at)?;
+                self.env.files.for_cgns(&path, names).map_err(at)
+            }
+            _ => {
+                nothing_of(&words, "")?;
+                let rows: Vec<Vec3> = blocks.iter().flat_map(StructuredGrid::points).collect();
+                if !rows.iter().all(|p| p.is_finite()) {
+                    return Err(at(cannot("a point is not finite")));
+                }
+                self.env.files.put(&path, points::write_csv(&rows, 3).into_bytes()).map_err(at)
+            }
+        }
+    }
+
+    fn bytes_of(&mut self, m: &Module, arg: ExprId) -> Result<(Arc<str>, Vec<u8>), Diagnostic> {
+        let path = self.text(m, arg)?;
+        let from = self.modules.get(0).path.clone();
+        let bytes = self.env.files.bytes(self.loader.world, &from, &path);
+        Ok((path, bytes.map_err(|d| d.or_at(m.program[arg].span))?))
+    }
+
+    /// `read_p3d("body.x")`, `read_p3d("body.x", 2)`.
+    fn read_p3d(&mut self, m: &Module, given: &[ExprId]) -> Evaluated<T> {
+        let (path, bytes) = self.bytes_of(m, given[0])?;
+        let unreadable = |e: &dyn std::fmt::Display| {
+            Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
+        };
+        let (blocks, _) = plot3d::read(&bytes).map_err(|e| unreadable(&e))?;
+        let number = match given.get(1) {
+            Some(&arg) => self.whole(m, arg)? as usize,
+            None => 1,
+        };
+        let Some(block) = blocks.get(number - 1) else {
+            let message = format!("`{path}` has no block {number}");
+            return Err(Diagnostic::error("outside", message)
+                .expected(format!("a block from 1 to {}", blocks.len()))
+                .found(number.to_string()));
+        };
+        let [ni, nj, nk] = block.size;
+        if nk != 1 {
+            let message = format!("block {number} of `{path}` is a volume");
+            return Err(Diagnostic::error("cannot-read", message)
+                .expected("a surface: a block with one point along k")
+                .found(format!("{ni} x {nj} x {nk} points")));
+        }
+        let points = block.layer(0).into_iter().map(Vec3::lifted).collect();
+        Ok(self.points(ArrayShape::Grid(ni, nj), points))
+    }
+
+    fn read_rows(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Evaluated<T> {
+        let (path, bytes) = self.bytes_of(m, given[0])?;
+        let unreadable = |e: &dyn std::fmt::Display| {
+            Diagnostic::error("cannot-read", format!("cannot read `{path}`: {e}"))
+        };
+        let points = match name {
+            "read_points" => points::read(&bytes).map_err(|e| unreadable(&e))?.rows,
+            _ => section::read_aerofoil(&bytes).map_err(|e| unreadable(&e))?.points,
+        };
+        let points: Vec<Vec3<T>> = points.into_iter().map(Vec3::lifted).collect();
+        if points.is_empty() {
+            return Err(silent());
+        }
+        Ok(self.points(ArrayShape::Row(points.len()), points))
+    }
+
+    fn points(&self, shape: ArrayShape, points: Vec<Vec3<T>>) -> Value<T> {
+        Value::Vectors(Arc::new(Vectors::new(shape, points)))
+    }
+}

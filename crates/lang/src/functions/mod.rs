@@ -1,0 +1,9 @@
+//! Functions of the language that are no kinds: those that need the interpreter, element-wise ones, and
+//! those of sets; the files that a run opens.
+
+pub mod context;
+pub(crate) mod elementary;
+pub mod files;
+pub(crate) mod format;
+mod grid_files;
+pub(crate) mod sets;

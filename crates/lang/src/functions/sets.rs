@@ -1,0 +1,323 @@
+//! Operators and functions on fields and sets, and what their declarations make.
+
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::{Binding, Origin};
+use crate::source::module::Module;
+use crate::value::variables::Called as _;
+use moldloft_diag::Diagnostic;
+use moldloft_field::{Primitive, field_value, primitive_of, set_of, set_value};
+use moldloft_model::{Declaration, Extent, Failure};
+use moldloft_num::trace::Key;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::export::field_id;
+use moldloft_registry::{Array, Class, Fault, Head, Scalar, Value};
+use moldloft_syntax::sdl::{BinaryOp, Declarator, StmtId, StmtKind, Symbol, Type};
+use std::sync::Arc;
+
+fn is_implicit<T: Real>(value: &Value<T>) -> bool {
+    matches!(value, Value::Field(_) | Value::Set(_))
+}
+
+fn undefined<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Diagnostic {
+    let (word, found) = (op.spelling(), format!("{} and {}", a.called(), b.called()));
+    let d = Diagnostic::error("wrong-operand", format!("`{word}` is not defined for {found}"))
+        .found(found);
+    match op {
+        BinaryOp::Caret if matches!(a, Value::Set(_)) || matches!(b, Value::Set(_)) => d.help(
+            "between sets ^ is the symmetric difference; the power of a field in a chain with sets \
+             needs parentheses: (k^2)",
+        ),
+        BinaryOp::Add | BinaryOp::Mul | BinaryOp::Div => {
+            d.help("arithmetic is for fields; sets are combined by |, &, - and ^")
+        }
+        BinaryOp::Union | BinaryOp::Intersection => {
+            d.expected("sets, fields or planes").help("a field's solid side is set(f)")
+        }
+        _ => d.expected("fields and numbers, or sets"),
+    }
+}
+
+/// The value of `a op b` where a field or set takes part; `None` where none does.
+pub(crate) fn binary<T: Real>(
+    op: BinaryOp,
+    a: &Value<T>,
+    b: &Value<T>,
+) -> Option<Result<Value<T>, Diagnostic>> {
+    let combined = matches!(op, BinaryOp::Union | BinaryOp::Intersection);
+    let plane = |v: &Value<T>| matches!(v, Value::Plane(_));
+    // Of planes alone, too, the solid sides can be combined.
+    let concerned = is_implicit(a) || is_implicit(b) || combined && plane(a) && plane(b);
+    if !concerned {
+        return None;
+    }
+    let sets = matches!(a, Value::Set(_)) || matches!(b, Value::Set(_)) || combined;
+    Some(if sets { of_sets(op, a, b) } else { of_fields(op, a, b) })
+}
+
+fn of_sets<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    let (Some(x), Some(y)) = (set_of(a), set_of(b)) else { return Err(undefined(op, a, b)) };
+    Ok(set_value(match op {
+        BinaryOp::Union => x | y,
+        BinaryOp::Intersection => x & y,
+        BinaryOp::Sub => x - y,
+        BinaryOp::Caret => x ^ y,
+        _ => return Err(undefined(op, a, b)),
+    }))
+}
+
+fn of_fields<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    let (Some(x), Some(y)) = (primitive_of(a), primitive_of(b)) else {
+        return Err(undefined(op, a, b));
+    };
+    Ok(field_value(match op {
+        BinaryOp::Add => x + y,
+        BinaryOp::Sub => x - y,
+        BinaryOp::Mul => x * y,
+        BinaryOp::Div => x.over(&y).map_err(|_| {
+            let help = if matches!(b, Value::Number(_)) {
+                "the divisor is 0"
+            } else {
+                "multiply out, or divide by a number: f / g = 0 is f = 0"
+            };
+            Diagnostic::error("field-division", "a field is divided by numbers other than 0 only")
+                .expected("a number other than 0")
+                .found(b.called())
+                .help(help)
+        })?,
+        BinaryOp::Caret => {
+            let Value::Number(n) = b else { return Err(undefined(op, a, b)) };
+            x.to_power(n.re()).map_err(|e| {
+                Diagnostic::error("field-power", e.to_string())
+                    .expected("a whole number from 0 to 1000")
+                    .found(n.re().to_string())
+                    .help("roots are sqrt(f) and s_sqrt(f)")
+            })?
+        }
+        _ => return Err(undefined(op, a, b)),
+    }))
+}
+
+/// `-a` of a field, or the complement of a set; `None` for other values.
+pub(crate) fn negated<T: Real>(a: &Value<T>) -> Option<Value<T>> {
+    match a {
+        Value::Field(_) => primitive_of(a).map(|f| field_value(-f)),
+        Value::Set(_) => set_of(a).map(|s| set_value(-s)),
+        _ => None,
+    }
+}
+
+/// `|a|` of a field: its sheet; `None` for other values.
+pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Option<Value<T>> {
+    match a {
+        Value::Field(_) => primitive_of(a).map(|f| field_value(f.abs())),
+        _ => None,
+    }
+}
+
+/// A function of one number applied to a field; `None` for other values.
+pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value<T>, Fault>> {
+    if let Value::Set(_) = a {
+        return Some(Err(Fault::new("wrong-class", format!("{name} takes no set"))
+            .expected("a number, a row of numbers or a field")
+            .found("a set")
+            .help("apply it to the field, then make the set")
+            .in_field(field_id(0))));
+    }
+    let Value::Field(_) = a else { return None };
+    let f = primitive_of(a)?;
+    Some(Ok(field_value(match name {
+        "abs" => f.abs(),
+        "sign" => f.sign(),
+        "sqrt" => f.sqrt(),
+        "s_sqrt" => f.s_sqrt(),
+        "sin" => f.sin(),
+        "cos" => f.cos(),
+        "exp" => f.exp(),
+        _ => {
+            return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
+                .expected("of fields abs, sign, sqrt, s_sqrt, sin, cos, exp, min, max, atan2")
+                .found("a field")
+                .in_field(field_id(0))));
+        }
+    })))
+}
+
+/// A function of several numbers applied to fields; `None` when there is no field among them.
+pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result<Value<T>, Fault>> {
+    let at = args.iter().position(is_implicit)?;
+    let mut fields = Vec::new();
+    for (k, arg) in args.iter().enumerate().filter(|(_, a)| !matches!(a, Value::Unset)) {
+        match primitive_of(arg) {
+            Some(f) => fields.push(f),
+            None => {
+                return Some(Err(
+                    Fault::wrong_class(Class::Field, arg.class()).in_field(field_id(k))
+                ));
+            }
+        }
+    }
+    let combined = |f: fn(&Primitive<T>, &Primitive<T>) -> Primitive<T>| {
+        fields.iter().skip(1).fold(fields[0].clone(), |a, b| f(&a, b))
+    };
+    Some(Ok(field_value(match name {
+        "min" => combined(Primitive::min),
+        "max" => combined(Primitive::max),
+        "sum" => combined(|a, b| a + b),
+        "atan2" => fields[0].atan2(&fields[1]),
+        "hypot" => combined(|a, b| (a * a + b * b).sqrt()),
+        _ => {
+            return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
+                .expected("numbers or rows of numbers")
+                .found("a field")
+                .in_field(field_id(at))));
+        }
+    })))
+}
+
+/// The class of objects that a declaration of this type makes.
+fn row_of(ty: Type) -> Option<&'static str> {
+    match ty {
+        Type::Field => Some("Field"),
+        Type::Set => Some("Set"),
+        _ => None,
+    }
+}
+
+/// A set or field with the name that it is declared under, for its faces; one that was given by
+/// `attributes` stays.
+pub(crate) fn called<T: Real>(ty: Type, value: Value<T>, name: &str) -> Value<T> {
+    match (ty, value) {
+        (Type::Field, Value::Field(f)) => Value::Field(f.called(name)),
+        (Type::Set, value @ Value::Set(_)) => match set_of(&value) {
+            Some(set) if set.attributes().is_none_or(|a| !a.given) => set_value(set.named(name)),
+            _ => value,
+        },
+        (_, value) => value,
+    }
+}
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// The names that statements of the module under way give another value: they are variables.
+    fn is_assigned(&mut self, m: &Module, symbol: Symbol) -> bool {
+        let names = self.assigned.entry(self.current).or_insert_with(|| {
+            let target = |k: u32| match m.program[StmtId(k)].kind {
+                StmtKind::Assign { target, .. } => m.program.as_name(target),
+                _ => None,
+            };
+            (0..m.program.stmt_count() as u32).filter_map(target).collect()
+        });
+        names.contains(&symbol)
+    }
+
+    /// Runs `work`, noting what it reads if that is asked.
+    pub fn noting<R>(&mut self, asked: bool, work: impl FnOnce(&mut Self) -> R) -> R {
+        if asked {
+            self.reads.clear();
+        }
+        self.noting_reads = asked;
+        let result = work(self);
+        self.noting_reads = false;
+        result
+    }
+
+    /// True when a declaration names an object: of a field or set at file level, once and for all.
+    pub fn makes_object(&mut self, m: &Module, ty: Type, item: &Declarator) -> bool {
+        if row_of(ty).is_none() || item.value.is_none() || self.is_assigned(m, item.name.symbol) {
+            return false;
+        }
+        let frame = self.frames.last().expect("there is always a frame");
+        frame.global
+            && frame.loops.is_empty()
+            && frame.prefix.is_empty()
+            && self.components.is_empty()
+            && self.run.extent() == Extent::Whole
+    }
+
+    /// Declares the object of `field f = ...;` or `set s = ...;`. What the expression read becomes its
+    /// parents.
+    pub fn implicit_object(
+        &mut self,
+        m: &Module,
+        id: StmtId,
+        ty: Type,
+        item: &Declarator,
+        value: Value<T>,
+    ) -> Result<(), Diagnostic> {
+        let row = row_of(ty).and_then(|name| self.loader.registry.get(name)).ok_or_else(silent)?;
+        let name = m.names[item.name.symbol.0 as usize];
+        self.check_free(name, item.name.span, false)?;
+        let mut parents = std::mem::take(&mut self.reads);
+        parents.sort_unstable();
+        parents.dedup();
+        let parents = match parents.is_empty() {
+            true => Value::Unset,
+            false => Value::list(parents.into_iter().map(Value::Object)),
+        };
+        let text = m.program.name(item.name.symbol);
+        let origin = self.env.origins.len() as u32;
+        let (args, head) = (vec![value, parents], Head::of(row.class));
+        let declaration = Declaration { name: text, row, args, head, origin };
+        let key = self
+            .run
+            .declare(declaration)
+            .map_err(|fault| crate::source::fault_location::unplaced(&fault).at(item.name.span))?;
+        let module = self.current as u32;
+        self.env.origins.push(Origin { module, stmt: id, repeated: false });
+        self.bind(name, item.name.span, Binding::Object(key));
+        Ok(())
+    }
+
+    /// The value of an object, noted as read.
+    pub fn forced(&mut self, key: Key) -> Result<Value<T>, Failure> {
+        if self.noting_reads {
+            self.reads.push(key);
+        }
+        self.run.force(key)
+    }
+}
+
+/// The values of a field or set at a point, or at each of a row or grid.
+pub(crate) fn at<T: Real>(shape: &Value<T>, place: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    let values = |points: &[Vec3<T>]| -> Vec<T> {
+        match shape {
+            Value::Field(f) => points.iter().map(|p| f.value(*p)).collect(),
+            _ => match set_of(shape) {
+                Some(set) => points.iter().map(|p| set.value(*p)).collect(),
+                None => Vec::new(),
+            },
+        }
+    };
+    let one = |p: Vec3<T>| Ok(Value::Number(values(&[p])[0]));
+    match place {
+        Value::Vector(p) => one(*p),
+        Value::Point(p) => one(p.xyz),
+        Value::Vectors(a) => {
+            Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: values(&a.points()) })))
+        }
+        other => Err(Diagnostic::error("wrong-type", "a field is asked at a point")
+            .expected("a point, a vector, or a row or grid of vectors")
+            .found(other.called())),
+    }
+}
+
+/// What a field or set is, in a line.
+pub(crate) fn described<T: Real>(value: &Value<T>) -> Option<String> {
+    match value {
+        Value::Field(_) => {
+            let f = primitive_of(value)?;
+            let form = f.form().name();
+            let word = if form == "field" { "field".to_string() } else { format!("{form} field") };
+            Some(format!("{word} of degree {}", f.degree()))
+        }
+        Value::Set(_) => {
+            let set = set_of(value)?;
+            Some(match set.contents() {
+                0 if set.is_everything() => "set of everything".into(),
+                0 => "empty set".into(),
+                1 => format!("set of 1 primitive of degree {}", set.degree()),
+                n => format!("set of {n} primitives, of degree {}", set.degree()),
+            })
+        }
+        _ => None,
+    }
+}

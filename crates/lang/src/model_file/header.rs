@@ -1,0 +1,79 @@
+//! What a model says of itself as a whole: its mirror planes, its unit, the header of its model file.
+
+use moldloft_model::Graph;
+use moldloft_num::Real;
+use moldloft_registry::export::StaticRow;
+use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Row, Scalar, Value};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+/// The name of the kind below.
+pub const KIND: &str = "Model";
+
+/// What the model says of itself: the planes it is mirrored in, its unit, and the header of the
+/// model file that it came from.
+///
+/// A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
+/// and hydrostatics count both.
+#[derive(Kind)]
+#[kind(class = List, example = "Model info(symmetry = \"y\", units = \"m kg\");")]
+pub struct Model<T: Real> {
+    /// The mirror planes, as letters: "y" for y = 0, "xy" for x = 0 and y = 0.
+    #[field(default = "")]
+    symmetry: Text<T>,
+    /// The units of length and mass, such as "m kg".
+    #[field(default = "")]
+    units: Text<T>,
+    /// The version of the model file, such as "0.35" or "1.44".
+    #[field(default = "")]
+    version: Text<T>,
+    /// The other lines of the model file's header.
+    lines: Option<Vec<Text<T>>>,
+}
+
+/// A text, in a kind that is generic over the number all the same.
+#[derive(Clone, Debug)]
+pub struct Text<T>(Arc<str>, PhantomData<T>);
+
+impl<T: Real> FromValue<T> for Text<T> {
+    const CLASS: Class = Class::Text;
+    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+        <Arc<str> as FromValue<T>>::from_value(value).map(|text| Text(text, PhantomData))
+    }
+}
+
+impl<T: Real> Build<T> for Model<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let letters = &self.symmetry.0;
+        let known = letters.chars().all(|c| matches!(c, 'x' | 'y' | 'z'));
+        let once = letters.chars().enumerate().all(|(k, c)| letters.find(c) == Some(k));
+        if !known || !once {
+            return Err(Fault::new("unknown-plane", format!("there is no symmetry \"{letters}\""))
+                .expected("the letters of the mirror planes, such as \"y\" or \"xy\"")
+                .found(format!("\"{letters}\""))
+                .in_field(Self::SYMMETRY));
+        }
+        let lines = self.lines.unwrap_or_default();
+        let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);
+        Ok(Value::list(texts.map(|text| Value::Text(text.0))))
+    }
+}
+
+/// The rows of this crate that are kinds.
+pub fn rows() -> Vec<Row> {
+    vec![<Model<f64> as StaticRow>::row(), crate::run::solve_set::row()]
+}
+
+/// The header's text of that field in the first object of kind `Model`; empty without one.
+pub fn text<T: Scalar>(graph: &Graph<T>, field: &str) -> String {
+    let Some(object) = graph.objects().find(|o| o.row.name == KIND) else { return String::new() };
+    match object.row.field(field).and_then(|at| object.args.get(at)) {
+        Some(Value::Text(text)) => text.to_string(),
+        _ => String::new(),
+    }
+}
+
+/// The planes in which the model is mirrored, as "y" or "xy"; empty for none.
+pub fn symmetry(graph: &Graph<f64>) -> String {
+    text(graph, "symmetry")
+}

@@ -1,0 +1,824 @@
+//! Runs a program: expressions.
+
+use crate::array::lower::is_elementwise;
+use crate::run::interpreter::{Interpreter, silent};
+use crate::source::env::{Binding, Bound, Passed};
+use crate::source::fault_location;
+use crate::source::module::Module;
+use crate::value::ops;
+use crate::value::subarray::{Place, Section, Selection};
+use crate::value::variables;
+use crate::value::variables::Called as _;
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_model::Failure;
+use moldloft_num::{Order, Real, Vec3};
+use moldloft_registry::{
+    Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, arrange, many,
+};
+use moldloft_syntax::number;
+use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, List, Subscript, Symbol, UnaryOp};
+use std::sync::Arc;
+
+type Evaluated<T> = Result<Value<T>, Diagnostic>;
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// The value of an expression; an object comes as [`Value::Object`], unread.
+    pub fn expr(&mut self, m: &Module, id: ExprId) -> Evaluated<T> {
+        let expr = m.program[id];
+        match expr.kind {
+            ExprKind::Number(literal) => Ok(Value::Number(T::from(m.program[literal].value))),
+            ExprKind::Name(symbol) => self.name(m, symbol, expr.span),
+            _ => {
+                if !self.deeper(expr.span) {
+                    return Err(silent());
+                }
+                let value = self.compound(m, id, expr.kind, expr.span);
+                self.depth -= 1;
+                let value = value.map_err(|d| d.or_at(expr.span))?;
+                self.charge(&value, expr.span)?;
+                Ok(value)
+            }
+        }
+    }
+
+    fn compound(&mut self, m: &Module, id: ExprId, kind: ExprKind, span: Span) -> Evaluated<T> {
+        match kind {
+            ExprKind::Number(_) | ExprKind::Name(_) => self.expr(m, id),
+            ExprKind::Text(text) => Ok(Value::text(&m.program[text])),
+            ExprKind::Paren(inner) => self.expr(m, inner),
+            ExprKind::List(_)
+            | ExprKind::Magnitude(_)
+            | ExprKind::Chain(_)
+            | ExprKind::Unary { op: UnaryOp::Minus | UnaryOp::Plus, .. } => self.arithmetic(m, id),
+            ExprKind::Unary { op, operand } => {
+                let value = self.operand(m, operand)?;
+                unary(op, &value)
+            }
+            ExprKind::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
+                let first = self.truth(m, left)?;
+                let decided = if op == BinaryOp::And { !first } else { first };
+                let holds = if decided { first } else { self.truth(m, right)? };
+                Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
+            }
+            ExprKind::Binary { op, .. } if is_elementwise(op) => self.arithmetic(m, id),
+            ExprKind::Binary { op, left, right } => {
+                let (a, b) = (self.operand(m, left)?, self.operand(m, right)?);
+                ops::binary(op, &a, &b)
+            }
+            ExprKind::Index { base, subs } => self.index(m, id, base, subs),
+            ExprKind::Member { base, name, or_dot } => self.member(m, id, base, name, or_dot),
+            ExprKind::Call { callee, args } if self.elementary(m, callee, args).is_some() => {
+                self.arithmetic(m, id)
+            }
+            ExprKind::Call { callee, args } => self.call(m, callee, args, span),
+            ExprKind::Error => Err(silent()),
+        }
+    }
+
+    /// The value of an expression, objects read.
+    pub fn operand(&mut self, m: &Module, id: ExprId) -> Evaluated<T> {
+        let value = self.expr(m, id)?;
+        self.read(value, m.program[id].span)
+    }
+
+    pub fn number(&mut self, m: &Module, id: ExprId) -> Result<T, Diagnostic> {
+        match self.operand(m, id)? {
+            Value::Number(x) => Ok(x),
+            other => Err(Diagnostic::error("wrong-type", "expected a number")
+                .at(m.program[id].span)
+                .expected("a number")
+                .found(other.called())),
+        }
+    }
+
+    fn truth(&mut self, m: &Module, id: ExprId) -> Result<bool, Diagnostic> {
+        Ok(self.number(m, id)?.re() != 0.0)
+    }
+
+    /// The value with every object in it replaced by its own value, evaluated now.
+    pub fn read(&mut self, value: Value<T>, span: Span) -> Evaluated<T> {
+        match value {
+            Value::Object(key) => self.forced(key).map_err(|failure| {
+                let root = match failure {
+                    Failure::Blocked { by } => by,
+                    Failure::Fault(_) => key,
+                };
+                // The first reader of a failed object is told; the others would say the same.
+                if !self.blocked.insert(root) {
+                    return silent();
+                }
+                let object = self.run.graph().get(key);
+                let name = object.map_or("", |o| &*o.name);
+                let cause = self.run.graph().get(root).map_or("", |o| &*o.name);
+                Diagnostic::error("blocked", format!("`{name}` has no value"))
+                    .at(span)
+                    .found(format!("blocked by `{cause}`, which failed"))
+            }),
+            Value::List(items)
+                if items.iter().any(|v| matches!(v, Value::Object(_) | Value::List(_))) =>
+            {
+                self.charge(&Value::List(items.clone()), span)?;
+                let mut read = Vec::with_capacity(items.len());
+                for item in items.iter() {
+                    read.push(self.read(item.clone(), span)?);
+                }
+                Ok(Value::list(read))
+            }
+            other => Ok(other),
+        }
+    }
+
+    fn name(&mut self, m: &Module, symbol: Symbol, span: Span) -> Evaluated<T> {
+        let name = m.names[symbol.0 as usize];
+        let Some(bound) = self.lookup(name) else {
+            if let Some(unit) = crate::functions::files::predeclared(m.program.name(symbol)) {
+                return Ok(Value::Number(T::from(unit)));
+            }
+            return Err(self.unknown_name(m, symbol, span));
+        };
+        match &bound.what {
+            Binding::Object(key) => Ok(Value::Object(*key)),
+            Binding::Variable { value: Value::Unset, .. } => {
+                let text = m.program.name(symbol);
+                Err(Diagnostic::error("no-value", format!("`{text}` has no value yet"))
+                    .at(span)
+                    .note_at(bound.span, "declared here"))
+            }
+            Binding::Variable { value, .. } => Ok(value.clone()),
+            Binding::Reference(place) => {
+                let text = m.program.name(symbol);
+                let root = self.root(place);
+                let Some(Binding::Variable { value, .. }) = root.map(|b| &b.what) else {
+                    return Err(silent());
+                };
+                if matches!(value, Value::Unset) {
+                    return Err(Diagnostic::error(
+                        "no-value",
+                        format!("`{text}` has no value yet"),
+                    )
+                    .at(span)
+                    .note_at(bound.span, "passed by reference here"));
+                }
+                variables::at_place(value, place).map_err(|d| d.or_at(span))
+            }
+            Binding::Multiple(multiple) => {
+                let mut values = Vec::with_capacity(multiple.items.len());
+                for item in &multiple.items {
+                    values.push(self.passed(item)?);
+                }
+                Ok(Value::list(values))
+            }
+            Binding::Param(number) => Ok(Value::Number(self.env.param_values[*number])),
+            Binding::Turn { now, turn, family } => {
+                let frame = self.frames.last().expect("there is always a frame");
+                if frame.loops.iter().any(|t| t.id == *turn) {
+                    return Ok(Value::Object(*now));
+                }
+                Ok(self.family(family))
+            }
+            Binding::Instance(family) => {
+                let family = family.clone();
+                Err(Diagnostic::error("not-a-value", format!("`{family}` is a group of objects"))
+                    .at(span)
+                    .help(format!("name one of its objects, as in {family}.name")))
+            }
+            Binding::Poisoned => Err(silent()),
+        }
+    }
+
+    /// The value of one of the arguments of a multiple argument.
+    pub fn passed(&self, item: &Passed<T>) -> Evaluated<T> {
+        match item {
+            Passed::Value(value) => Ok(value.clone()),
+            Passed::Place(place) => match self.root(place).map(|b| &b.what) {
+                Some(Binding::Variable { value, .. }) => variables::at_place(value, place),
+                _ => Err(silent()),
+            },
+        }
+    }
+
+    fn family(&self, family: &str) -> Value<T> {
+        let keys = self.env.families.get(family);
+        Value::list(keys.into_iter().flatten().map(|&key| Value::Object(key)))
+    }
+
+    fn unknown_name(&self, m: &Module, symbol: Symbol, span: Span) -> Diagnostic {
+        let text = m.program.name(symbol);
+        let diagnostic =
+            Diagnostic::error("unknown-name", format!("there is no `{text}` here")).at(span);
+        if !self.components.is_empty() {
+            return diagnostic.help(format!(
+                "a component sees what it is given: Component name(\"file\", {text} = ...)"
+            ));
+        }
+        if !self.hints() {
+            return diagnostic;
+        }
+        match crate::run::forward_reference::declared_later(m, symbol, span) {
+            Some(later) => later.explain(m, diagnostic),
+            None => match crate::source::library::defining(text) {
+                Some(hint) => diagnostic.help(hint),
+                None => match self.nearest_name(text) {
+                    Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+                    None => diagnostic,
+                },
+            },
+        }
+    }
+
+    /// The full name of an object that an expression such as `fore[2].leg[3]` spells, when it
+    /// begins with something that stands for several objects.
+    fn spelled(&mut self, m: &Module, id: ExprId) -> Result<Option<String>, Diagnostic> {
+        Ok(match m.program[id].kind {
+            ExprKind::Paren(inner) => self.spelled(m, inner)?,
+            ExprKind::Name(symbol) => match self.lookup(m.names[symbol.0 as usize]) {
+                Some(bound) => match &bound.what {
+                    Binding::Turn { family, .. } | Binding::Instance(family) => {
+                        Some(family.to_string())
+                    }
+                    _ => None,
+                },
+                None => None,
+            },
+            ExprKind::Member { base, name, .. } => {
+                self.spelled(m, base)?.map(|base| format!("{base}.{}", m.program.name(name)))
+            }
+            ExprKind::Index { base, subs } => {
+                let Some(base) = self.spelled(m, base)? else { return Ok(None) };
+                let mut labels = Vec::new();
+                for sub in &m.program[subs] {
+                    let Subscript::At(expr) = *sub else { return Ok(None) };
+                    labels.push(match self.operand(m, expr)? {
+                        Value::Number(x) => number::plain(x.re()),
+                        Value::Text(text) => text.to_string(),
+                        _ => return Ok(None),
+                    });
+                }
+                Some(format!("{base}[{}]", labels.join(",")))
+            }
+            _ => None,
+        })
+    }
+
+    /// What a spelled name means: an object or all objects of a family.
+    fn spelled_value(&self, text: &str) -> Option<Value<T>> {
+        if let Some(key) = self.run.find(text) {
+            return Some(Value::Object(key));
+        }
+        let members = &self.env.sketch_members;
+        if let Some(value) = members.get(text).or_else(|| members.get(&text.to_ascii_lowercase())) {
+            return Some(value.clone());
+        }
+        if let Some(number) = self.env.params.iter().position(|p| p.name == text) {
+            return Some(Value::Number(self.env.param_values[number]));
+        }
+        self.env.families.contains_key(text).then(|| self.family(text))
+    }
+
+    fn index(
+        &mut self,
+        m: &Module,
+        id: ExprId,
+        base: ExprId,
+        subs: List<Subscript>,
+    ) -> Evaluated<T> {
+        if let Some(text) = self.spelled(m, id)? {
+            if let Some(value) = self.spelled_value(&text) {
+                return Ok(value);
+            }
+            return Err(self.no_such_object(&text));
+        }
+        // A part of what was passed by reference is read where it stands.
+        if let Some(symbol) = m.program.as_name(base)
+            && let Some(place) = self.place_of(m.names[symbol.0 as usize])
+            && place.section.is_some()
+        {
+            let place = self.indexed(m, place, base, subs)?;
+            let Some(Binding::Variable { value, .. }) = self.root(&place).map(|b| &b.what) else {
+                return Err(silent());
+            };
+            return variables::at_place(value, &place);
+        }
+        let value = self.expr(m, base)?;
+        let value = match self.opened(value) {
+            list @ Value::List(_) => list,
+            other => self.read(other, m.program[base].span)?,
+        };
+        let Some(extents) = variables::extents(&value) else {
+            let class = value.called();
+            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
+                .expected("a row, grid or list before [")
+                .found(class));
+        };
+        let section = self.section(m, base, &extents, &variables::shape_text(&value), subs)?;
+        variables::part(&value, section)
+    }
+
+    /// A section of a place.
+    fn indexed(
+        &mut self,
+        m: &Module,
+        place: Place,
+        base: ExprId,
+        subs: List<Subscript>,
+    ) -> Result<Place, Diagnostic> {
+        let Some(Binding::Variable { value, .. }) = self.root(&place).map(|b| &b.what) else {
+            return Err(silent());
+        };
+        let (extents, shape) = match place.section {
+            Some(section) => {
+                let ([m, n], count) = section.extents();
+                ([m, n][..count].to_vec(), variables::shape_at(value, &place))
+            }
+            None => match variables::extents(value) {
+                Some(extents) => (extents, variables::shape_text(value)),
+                None if matches!(value, Value::Unset) => {
+                    let text = m.program.slice(m.program[base].span).to_string();
+                    let declared = self.root(&place).map_or(Span::UNKNOWN, |b| b.span);
+                    let message = format!("`{text}` has no value yet");
+                    return Err(
+                        Diagnostic::error("no-value", message).note_at(declared, "declared here")
+                    );
+                }
+                None => (Vec::new(), String::new()),
+            },
+        };
+        if extents.is_empty() {
+            let class = match place.section {
+                Some(_) => "a single element",
+                None => value.called(),
+            };
+            return Err(Diagnostic::error("not-indexable", format!("{class} has no elements"))
+                .expected("a row, grid or list before [")
+                .found(class));
+        }
+        let section = self.section(m, base, &extents, &shape, subs)?;
+        place.indexed(section)
+    }
+
+    /// The objects of an entity list, unread; any other value as it is.
+    pub fn opened(&self, value: Value<T>) -> Value<T> {
+        let Value::Object(key) = value else { return value };
+        let list = self.run.graph().get(key).filter(|o| o.row.name == "EntityList");
+        match list.and_then(|o| o.args.first()) {
+            Some(Value::List(items)) => {
+                let mut all = Vec::with_capacity(items.len());
+                for item in items.iter() {
+                    match self.opened(item.clone()) {
+                        Value::List(inner) => all.extend(inner.iter().cloned()),
+                        other => all.push(other),
+                    }
+                }
+                Value::list(all)
+            }
+            _ => value,
+        }
+    }
+
+    fn no_such_object(&self, text: &str) -> Diagnostic {
+        let diagnostic = Diagnostic::error("unknown-name", format!("there is no object `{text}`"));
+        if !self.hints() {
+            return diagnostic;
+        }
+        diagnostic
+            .maybe_help(self.run.graph().nearest_name(text).map(|n| format!("did you mean `{n}`?")))
+    }
+
+    /// The subscripts as positions, checked against the extents of what stands before them.
+    fn section(
+        &mut self,
+        m: &Module,
+        base: ExprId,
+        extents: &[usize],
+        shape: &str,
+        subs: List<Subscript>,
+    ) -> Result<Section, Diagnostic> {
+        if extents.len() != subs.len() {
+            return Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
+                .expected(format!("{} subscripts", extents.len()))
+                .found(format!("{} subscripts", subs.len()))
+                .note(format!("`{}` is {shape}", m.program.slice(m.program[base].span))));
+        }
+        let mut parts = [Selection::at(0); 2];
+        for (k, (&sub, &extent)) in m.program[subs].iter().zip(extents).enumerate() {
+            parts[k] = self.selection(m, sub, extent).map_err(|d| {
+                if d.id != "outside" {
+                    return d;
+                }
+                let name = m.program.as_name(base).and_then(|symbol| {
+                    let bound = self.lookup(m.names[symbol.0 as usize])?;
+                    Some((m.program.name(symbol), bound.span))
+                });
+                match name {
+                    Some((name, declared)) => {
+                        d.note_at(declared, format!("`{name}` is declared here: {shape}"))
+                    }
+                    None => d.note(format!("the array is {shape}")),
+                }
+            })?;
+        }
+        Ok(match subs.len() {
+            1 => Section::Row(parts[0]),
+            _ => Section::Grid(parts[0], parts[1]),
+        })
+    }
+
+    fn selection(
+        &mut self,
+        m: &Module,
+        sub: Subscript,
+        extent: usize,
+    ) -> Result<Selection, Diagnostic> {
+        let bound = |this: &mut Self, expr: Option<ExprId>, default: f64| match expr {
+            Some(expr) => this.number(m, expr).map(|x| (x.re(), m.program[expr].span)),
+            None => Ok((default, Span::UNKNOWN)),
+        };
+        let inside = |(x, span): (f64, Span)| {
+            if x.fract() == 0.0 && x >= 1.0 && x <= extent as f64 {
+                return Ok(x as i64 - 1);
+            }
+            Err(Diagnostic::error("outside", format!("index {x} is outside the array"))
+                .at(span)
+                .expected(format!("a whole number from 1 to {extent}"))
+                .found(x.to_string()))
+        };
+        let (from, to, step) = match sub {
+            Subscript::Whole => return Ok(Selection::whole(extent)),
+            Subscript::At(expr) => {
+                return Ok(Selection::at(inside(bound(self, Some(expr), 1.0)?)? as usize));
+            }
+            Subscript::Range { from, to, step } => {
+                let step = bound(self, step, 1.0)?.0;
+                // A range that goes down begins at the last element.
+                let ends = [1.0, extent as f64];
+                let ends = if step < 0.0 { [ends[1], ends[0]] } else { ends };
+                let from = bound(self, from, ends[0])?;
+                let to = bound(self, to, ends[1])?;
+                (inside(from)?, inside(to)?, step)
+            }
+        };
+        if step.fract() != 0.0 || step == 0.0 || (to - from) as f64 * step < 0.0 {
+            return Err(Diagnostic::error("empty-range", "this range selects nothing")
+                .expected("lo:hi with lo <= hi, or a negative step")
+                .found(format!("{}:{}:{step}", from + 1, to + 1)));
+        }
+        let count = ((to - from) as f64 / step).floor() as usize + 1;
+        let step = if count == 1 { 1 } else { step as isize };
+        Ok(Selection { start: from as usize, step, count, keeps: true })
+    }
+
+    /// The variable, section and component that an assignment's target names.
+    pub fn place(&mut self, m: &Module, id: ExprId) -> Result<Place, Diagnostic> {
+        let span = m.program[id].span;
+        match m.program[id].kind {
+            ExprKind::Paren(inner) => self.place(m, inner),
+            ExprKind::Name(symbol) => {
+                let name = m.names[symbol.0 as usize];
+                self.place_of(name).ok_or_else(|| self.unknown_name(m, symbol, span))
+            }
+            ExprKind::Member { base, name, .. } => {
+                let place = self.place(m, base)?;
+                let component = ["x", "y", "z"].iter().position(|c| *c == m.program.name(name));
+                match component {
+                    Some(c) if place.component.is_none() => {
+                        Ok(Place { component: Some(c), ..place })
+                    }
+                    _ => Err(Diagnostic::error("not-assignable", "this cannot be assigned to")
+                        .at(span)
+                        .expected("a variable, with subscripts or .x .y .z")),
+                }
+            }
+            ExprKind::Index { base, subs } => {
+                let place = self.place(m, base)?;
+                match self.root(&place).map(|bound| (&bound.what, bound.span)) {
+                    Some((Binding::Variable { .. }, _)) => {
+                        self.indexed(m, place, base, subs).map_err(|d| d.or_at(span))
+                    }
+                    Some((Binding::Poisoned, _)) | None => Err(silent()),
+                    Some((_, declared)) => Err(not_a_variable(m, base, declared).at(span)),
+                }
+            }
+            _ => Err(Diagnostic::error("not-assignable", "this cannot be assigned to")
+                .at(span)
+                .expected("a variable, with subscripts or .x .y .z")),
+        }
+    }
+
+    fn member(
+        &mut self,
+        m: &Module,
+        id: ExprId,
+        base: ExprId,
+        name: Symbol,
+        or_dot: bool,
+    ) -> Evaluated<T> {
+        if let Some(text) = self.spelled(m, id)? {
+            if let Some(value) = self.spelled_value(&text) {
+                return Ok(value);
+            }
+            // `fore.leg.x`: the object is spelled by the base, the member is its own.
+            let base_text = self.spelled(m, base)?.unwrap_or_default();
+            if self.spelled_value(&base_text).is_none() {
+                return Err(self.no_such_object(&text));
+            }
+        }
+        let word = m.program.name(name).to_string();
+        // The extents of what was passed by reference are known without reading it.
+        if let Some(symbol) = m.program.as_name(base)
+            && let Some(place) = self.place_of(m.names[symbol.0 as usize])
+            && let Some(section) = place.section
+            && let Some(d) = ["d1", "d2"].iter().position(|d| *d == word)
+        {
+            let (extents, count) = section.extents();
+            if d < count {
+                return Ok(Value::Number(T::from(extents[d] as f64)));
+            }
+        }
+        let value = self.expr(m, base)?;
+        let object = match value {
+            Value::Object(key) => Some(key),
+            _ => None,
+        };
+        let value = self.read(value, m.program[base].span)?;
+        if let Some(member) = crate::value::member::of_value(&value, &word) {
+            let vector = |b: &Bound<T>| {
+                matches!(
+                    &b.what,
+                    Binding::Variable { value: Value::Vector(_) | Value::Vectors(_), .. }
+                )
+            };
+            if or_dot && self.lookup(m.names[name.0 as usize]).is_some_and(vector) {
+                self.report(
+                    Diagnostic::remark("two-readings", format!("`.{word}` is the member here"))
+                        .at(m.program.member_span(id))
+                        .help(format!(
+                            "for the dot product with `{word}` put blanks round the dot"
+                        )),
+                );
+            }
+            return member;
+        }
+        if let Some(key) = object
+            && let Some(member) = self.member_of_object(key, &word)
+        {
+            return member;
+        }
+        if or_dot && self.lookup(m.names[name.0 as usize]).is_some() {
+            let span = m.program.member_span(id);
+            let right = self.name(m, name, span)?;
+            let right = self.read(right, span)?;
+            return ops::binary(BinaryOp::Dot, &value, &right);
+        }
+        let known = crate::value::member::names(&value);
+        Err(Diagnostic::error("unknown-member", format!("{} has no `{word}`", value.called()))
+            .at(m.program.member_span(id))
+            .expected(known.join(", "))
+            .suggest(&word, known.iter().copied()))
+    }
+
+    fn member_of_object(
+        &mut self,
+        key: moldloft_num::trace::Key,
+        word: &str,
+    ) -> Option<Evaluated<T>> {
+        let object = self.run.graph().get(key)?;
+        if let Some(number) = crate::value::member::of_patch(self.run.graph(), object, word) {
+            return Some(number.map(Value::Number));
+        }
+        if object.row.name == crate::run::solve_set::KIND
+            && let Some(value) = self.member_of_solve(&object.name, word)
+        {
+            return Some(value);
+        }
+        let at = object.row.field(word)?;
+        Some(Ok(object.args[at].clone()))
+    }
+
+    /// An unknown of a solve set, or a number of its report.
+    fn member_of_solve(&self, set: &str, word: &str) -> Option<Evaluated<T>> {
+        let solve = self.env.solves.iter().find(|s| &*s.name == set)?;
+        let ends = |n: &&usize| {
+            let name = &self.env.params[**n].name;
+            name == word || name.rsplit('.').next() == Some(word)
+        };
+        if let Some(&number) = solve.unknowns.iter().find(ends) {
+            return Some(Ok(Value::Number(self.env.param_values[number])));
+        }
+        let known = self.env.solved.get(set).copied();
+        let later = || {
+            Err(Diagnostic::error("no-value", format!("`{word}` is known after the run only"))
+                .help("ask for it from outside, as in `moldloft eval`"))
+        };
+        Some(match word {
+            "residual" => {
+                let largest = solve.conditions.iter().map(|c| c.abs());
+                Ok(Value::Number(largest.fold(T::zero(), T::max)))
+            }
+            "iterations" => match known {
+                Some((steps, _)) => Ok(Value::Number(T::from(steps as f64))),
+                None => later(),
+            },
+            "status" => match known {
+                Some((_, status)) => Ok(Value::text(status.word())),
+                None => later(),
+            },
+            _ => return None,
+        })
+    }
+
+    fn call(&mut self, m: &Module, callee: ExprId, args: List<Arg>, span: Span) -> Evaluated<T> {
+        let Some(symbol) = m.program.as_name(callee) else {
+            let value = self.operand(m, callee)?;
+            return self.call_value(m, value, args, m.program[callee].span);
+        };
+        let name = m.names[symbol.0 as usize];
+        if self.lookup(name).is_some() {
+            let value = self.name(m, symbol, m.program[callee].span)?;
+            let value = self.read(value, m.program[callee].span)?;
+            return self.call_value(m, value, args, m.program[callee].span);
+        }
+        if let Some(&routine) = self.env.routines.get(&name) {
+            let errors = self.error_count();
+            let value = self.call_routine(m, routine, args, None, span)?;
+            if value.is_none() && self.error_count() > errors {
+                // Why there is none was told.
+                return Err(silent());
+            }
+            return value.ok_or_else(|| {
+                let text = m.program.name(symbol);
+                Diagnostic::error("no-value", format!("`{text}` returns no value"))
+                    .help("only a function does: declare it as `function float f(...)`")
+            });
+        }
+        if let Some(value) = self.builtin(m, symbol, args, span) {
+            return value;
+        }
+        let Some(row) = self.row(m, symbol, args.len(), span) else {
+            return Err(self.unknown_function(m, symbol).at(m.program[callee].span));
+        };
+        let mut given = Given { positional: Vec::with_capacity(args.len()), named: Vec::new() };
+        for arg in &m.program[args] {
+            let value = self.operand(m, arg.value)?;
+            match arg.name {
+                None => given.positional.push(value),
+                Some(ident) => given.named.push((m.program.name(ident.symbol), value)),
+            }
+        }
+        let positional = given.positional.len();
+        let (filled, _) = arrange(&row, given, |_| Class::Any)
+            .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
+        // What is as quick to compute as to look up is not remembered.
+        let value = if crate::functions::elementary::is_quick(&row) {
+            T::call(&row, &filled, &self.run.graph().context())
+        } else {
+            self.charge_call();
+            self.run.call(&row, filled)
+        };
+        let value = value
+            .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
+        if !value.is_finite() {
+            return Err(Diagnostic::error(
+                "not-finite",
+                format!("the result of {} is not a finite number", row.name),
+            )
+            .at(span)
+            .expected("arguments inside the function's domain"));
+        }
+        Ok(value)
+    }
+
+    fn unknown_function(&self, m: &Module, symbol: Symbol) -> Diagnostic {
+        let text = m.program.name(symbol);
+        let diagnostic =
+            Diagnostic::error("unknown-name", format!("there is no function `{text}`"));
+        if let Some(hint) = crate::source::library::defining(text) {
+            return diagnostic.help(hint);
+        }
+        match self.nearest_name(text) {
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None => diagnostic,
+        }
+    }
+
+    /// A shape called with parameters: its point or points there.
+    fn call_value(
+        &mut self,
+        m: &Module,
+        value: Value<T>,
+        args: List<Arg>,
+        span: Span,
+    ) -> Evaluated<T> {
+        let mut given = Vec::new();
+        for arg in &m.program[args] {
+            given.push(self.operand(m, arg.value)?);
+        }
+        shape_at(&value, &given).map_err(|d| d.or_at(span))
+    }
+}
+
+/// What is said of an assignment to an object or parameter.
+fn not_a_variable(m: &Module, base: ExprId, declared: Span) -> Diagnostic {
+    let text = m.program.slice(m.program[base].span);
+    Diagnostic::error("not-assignable", format!("`{text}` cannot be assigned to"))
+        .found("an object or parameter")
+        .note_at(declared, "declared here")
+        .help("objects are named once; change their data, or use a variable")
+}
+
+pub(crate) fn unary<T: Real>(op: UnaryOp, value: &Value<T>) -> Evaluated<T> {
+    match op {
+        UnaryOp::Plus => Ok(value.clone()),
+        UnaryOp::Minus => ops::negated(value),
+        UnaryOp::Not => match value {
+            Value::Number(x) => Ok(Value::Number(T::from(f64::from(u8::from(x.re() == 0.0))))),
+            other => Err(Diagnostic::error("wrong-operand", "`not` takes a condition")
+                .expected("a comparison or a number")
+                .found(other.called())),
+        },
+    }
+}
+
+/// A curve at t, a surface at (u, v), a field at a point; rows of parameters give rows.
+pub(crate) fn shape_at<T: Scalar>(value: &Value<T>, args: &[Value<T>]) -> Evaluated<T> {
+    let parameters = |arg: &Value<T>| -> Result<Option<Vec<T>>, Diagnostic> {
+        match arg {
+            Value::Number(_) => Ok(None),
+            Value::Vector(v) => Ok(Some(v.to_array().to_vec())),
+            other => many(other).map(Some).map_err(|f| fault_location::unplaced(&f)),
+        }
+    };
+    let one = |arg: &Value<T>| match arg {
+        Value::Number(x) => *x,
+        _ => T::zero(),
+    };
+    let count = |expected: &str| {
+        Diagnostic::error("wrong-count", format!("expected {expected}"))
+            .expected(expected.to_string())
+            .found(format!("{} arguments", args.len()))
+    };
+    let row = |points: Vec<Vec3<T>>| Value::Vectors(Arc::new(Vectors::row(points)));
+    match (value, args) {
+        (Value::Curve(curve), [t]) => {
+            let at = |curve: &CurveRef<T>, t: T| curve.jet(t, Order::Zero)[0];
+            Ok(match parameters(t)? {
+                None => Value::Vector(at(curve, one(t))),
+                Some(ts) => row(ts.into_iter().map(|t| at(curve, t)).collect()),
+            })
+        }
+        (Value::Curve(_), _) => Err(count("one parameter t, as in c(0.5)")),
+        (Value::Surface(surface), [u, v]) => {
+            let at = |s: &SurfaceRef<T>, u: T, v: T| s.jet(u, v, Order::Zero).p;
+            let (us, vs) = (parameters(u)?, parameters(v)?);
+            let n = match (&us, &vs) {
+                (None, None) => return Ok(Value::Vector(at(surface, one(u), one(v)))),
+                (Some(us), Some(vs)) if us.len() != vs.len() => {
+                    return Err(Diagnostic::error("shapes-differ", "u and v differ in length")
+                        .found(format!("{} and {}", us.len(), vs.len())));
+                }
+                (Some(us), _) => us.len(),
+                (None, Some(vs)) => vs.len(),
+            };
+            let pick = |all: &Option<Vec<T>>, single: &Value<T>, k: usize| {
+                all.as_ref().map_or_else(|| one(single), |all| all[k])
+            };
+            Ok(row((0..n).map(|k| at(surface, pick(&us, u, k), pick(&vs, v, k))).collect()))
+        }
+        (Value::Surface(_), _) => Err(count("two parameters u and v, as in s(0.5, 0.25)")),
+        (Value::Relabel(law), [t]) => {
+            let at = |t: T| law.jet(t, Order::Zero)[0];
+            Ok(match parameters(t)? {
+                None => Value::Number(at(one(t))),
+                Some(ts) => Value::Numbers(Arc::new(Array::row(ts.into_iter().map(at).collect()))),
+            })
+        }
+        (Value::Relabel(_), _) => Err(count("one parameter t, as in r(0.5)")),
+        (Value::Solid(solid), [u, v, w]) => {
+            let (us, vs, ws) = (parameters(u)?, parameters(v)?, parameters(w)?);
+            let rows = [&us, &vs, &ws];
+            let lengths: Vec<usize> = rows.iter().filter_map(|r| Some(r.as_ref()?.len())).collect();
+            let Some(&n) = lengths.first() else {
+                return Ok(Value::Vector(solid.eval(one(u), one(v), one(w))));
+            };
+            if lengths.iter().any(|&m| m != n) {
+                let found = lengths.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+                return Err(
+                    Diagnostic::error("shapes-differ", "u, v and w differ in length").found(found)
+                );
+            }
+            let pick = |all: &Option<Vec<T>>, single: &Value<T>, k: usize| {
+                all.as_ref().map_or_else(|| one(single), |all| all[k])
+            };
+            let at = |k: usize| solid.eval(pick(&us, u, k), pick(&vs, v, k), pick(&ws, w, k));
+            Ok(row((0..n).map(at).collect()))
+        }
+        (Value::Solid(_), _) => Err(count("three parameters u, v and w, as in s(0.5, 0.25, 0.75)")),
+        (Value::Field(_) | Value::Set(_), [p]) => crate::functions::sets::at(value, p),
+        (Value::Field(_) | Value::Set(_), _) => Err(count("one point, as in f({1, 2, 3})")),
+        (other, _) => {
+            let class = other.called();
+            Err(Diagnostic::error("not-callable", format!("{class} cannot be called"))
+                .expected("a curve, surface, relabel, field, set or function")
+                .found(class))
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Names that are used before they are declared, and cycles among them.
+
+use crate::source::module::Module;
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_syntax::sdl::{ExprId, ExprKind, Ident, StmtId, StmtKind, Subscript, Symbol};
+use std::collections::{HashMap, HashSet};
+
+/// A declaration that stands after its use.
+pub(crate) struct Later {
+    name: Ident,
+    /// The objects from the later one back to itself, when it depends on what uses it.
+    cycle: Option<Vec<Symbol>>,
+}
+
+impl Later {
+    pub fn explain(&self, m: &Module, diagnostic: Diagnostic) -> Diagnostic {
+        if let Some(cycle) = &self.cycle {
+            let names: Vec<&str> = cycle.iter().map(|&s| m.program.name(s)).collect();
+            let text = names[0];
+            return Diagnostic::error("cycle", format!("`{text}` depends on itself"))
+                .at(diagnostic.span())
+                .found(names.join(" -> "))
+                .note_at(self.name.span, "declared here")
+                .help("an object may only be built on objects that are not built on it");
+        }
+        let text = m.program.name(self.name.symbol);
+        diagnostic
+            .note_at(self.name.span, "declared here, after its use")
+            .help(format!("move the declaration of `{text}` before this line"))
+    }
+}
+
+/// The object declaration of `symbol` that ends after `used`, if there is one in the file.
+pub(crate) fn declared_later(m: &Module, symbol: Symbol, used: Span) -> Option<Later> {
+    let mut objects = HashMap::new();
+    let mut user = None;
+    let mut stack: Vec<StmtId> = m.program[m.program.body()].to_vec();
+    while let Some(id) = stack.pop() {
+        match m.program[id].kind {
+            StmtKind::Object { name, args, .. } => {
+                let values: Vec<ExprId> = m.program[args].iter().map(|a| a.value).collect();
+                let span = m.program[id].span;
+                if span.start <= used.start && used.end <= span.end {
+                    user = Some(name.symbol);
+                }
+                objects.entry(name.symbol).or_insert((name, values));
+            }
+            StmtKind::Block(list) => stack.extend(&m.program[list]),
+            StmtKind::If { then, otherwise, .. } => {
+                stack.push(then);
+                stack.extend(otherwise);
+            }
+            StmtKind::ForRange { body, .. } | StmtKind::Foreach { body, .. } => stack.push(body),
+            _ => {}
+        }
+    }
+    let &(name, _) = objects
+        .get(&symbol)
+        .filter(|(name, _)| name.span.end > used.start || user == Some(symbol))?;
+    let cycle = user.and_then(|user| path(m, &objects, symbol, user)).map(|mut path| {
+        path.push(symbol);
+        path
+    });
+    Some(Later { name, cycle })
+}
+
+/// The names from `from` to `to` along "is built on", found without recursion.
+fn path(
+    m: &Module,
+    objects: &HashMap<Symbol, (Ident, Vec<ExprId>)>,
+    from: Symbol,
+    to: Symbol,
+) -> Option<Vec<Symbol>> {
+    let mut came_from: HashMap<Symbol, Symbol> = HashMap::new();
+    let mut seen = HashSet::from([from]);
+    let mut stack = vec![from];
+    while let Some(at) = stack.pop() {
+        if at == to {
+            let mut path = vec![to];
+            let mut at = to;
+            while at != from {
+                at = came_from[&at];
+                path.push(at);
+            }
+            path.reverse();
+            return Some(path);
+        }
+        let Some((_, values)) = objects.get(&at) else { continue };
+        for &value in values {
+            names_in(m, value, &mut |name| {
+                if seen.insert(name) {
+                    came_from.insert(name, at);
+                    stack.push(name);
+                }
+            });
+        }
+    }
+    None
+}
+
+/// Calls `f` with the names in an expression, without recursion.
+pub(crate) fn names_in(m: &Module, expr: ExprId, f: &mut impl FnMut(Symbol)) {
+    let mut stack = vec![expr];
+    while let Some(expr) = stack.pop() {
+        match m.program[expr].kind {
+            ExprKind::Name(symbol) => f(symbol),
+            ExprKind::Paren(e) | ExprKind::Magnitude(e) => stack.push(e),
+            ExprKind::List(items) => stack.extend(&m.program[items]),
+            ExprKind::Unary { operand, .. } => stack.push(operand),
+            ExprKind::Binary { left, right, .. } => stack.extend([left, right]),
+            ExprKind::Member { base, .. } => stack.push(base),
+            ExprKind::Index { base, subs } => {
+                stack.push(base);
+                stack.extend(m.program[subs].iter().filter_map(|s| match s {
+                    Subscript::At(e) => Some(*e),
+                    _ => None,
+                }));
+            }
+            ExprKind::Call { callee, args } => {
+                stack.push(callee);
+                stack.extend(m.program[args].iter().map(|a| a.value));
+            }
+            _ => {}
+        }
+    }
+}

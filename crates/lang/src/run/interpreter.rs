@@ -1,0 +1,921 @@
+//! Runs a program: statements.
+
+use crate::array::cache::{Key as ExprKey, Slots};
+use crate::array::lower::Spare;
+use crate::source::env::{Binding, Bound, Environment, Frame, Param, Seed};
+use crate::source::module::{Loader, Module, Modules, Name, RoutineAt};
+use crate::value::initialised::Known;
+use crate::value::subarray::Place;
+use crate::value::variables::Called as _;
+use crate::value::variables::{self, Taken};
+use indexmap::IndexMap;
+use moldloft_diag::{Diagnostic, Span, nearest};
+use moldloft_elementwise::Tape;
+use moldloft_model::{Extent, Run};
+use moldloft_num::trace::Key;
+use moldloft_registry::{Scalar, Value};
+use moldloft_syntax::number;
+use moldloft_syntax::sdl::{
+    AssignOp, Declarator, ExprId, ExprKind, Ident, List, StmtId, StmtKind, Symbol, Type,
+};
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The most statements and calls of a run.
+pub const MOST_STEPS: u64 = 20_000_000;
+
+/// The most errors of a run; hints that take a search go with the first of them only.
+const MOST_ERRORS: usize = 1_000;
+const MOST_HINTS: usize = 100;
+
+/// The most elements of all arrays that are declared at a time.
+const MOST_HELD: usize = 50_000_000;
+
+/// The most bytes of all printed lines.
+const MOST_PRINTED: usize = 64 << 20;
+
+/// Statements, expressions and calls nest at most this deep while running.
+pub(crate) const DEEPEST: u32 = 2_500;
+
+/// The stack that a run needs: the deepest nesting times the largest frame, with room to spare.
+pub(crate) const STACK_BYTES: usize = 192 << 20;
+
+/// The id of a diagnostic that is not shown, because its cause was reported already.
+pub(crate) const SILENT: &str = "silent";
+
+/// What a run is given besides the program.
+pub struct Inputs<'a, T: Scalar> {
+    /// Values of parameters that differ from the text's.
+    pub overrides: &'a IndexMap<String, f64>,
+    /// Gives a parameter or a literal of an object its derivative; for plain runs the identity.
+    pub seed: Seed<'a, T>,
+    /// Objects with seeded literals, by name.
+    pub seeded_objects: &'a HashSet<String>,
+    /// Set from outside to stop the run.
+    pub cancelled: &'a AtomicBool,
+    /// How the host wants the program run.
+    pub settings: Settings,
+}
+
+/// How a program is run, besides its parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// How often the intervals of `refined` numbers are halved.
+    pub refine: u32,
+    /// True to apply operators one after the other, whole arrays at a time: the reference that
+    /// fused passes are tested against.
+    pub plain_operators: bool,
+}
+
+impl<'a, T: Scalar> Inputs<'a, T> {
+    /// The same once more.
+    pub fn again(&self) -> Inputs<'a, T> {
+        let &Inputs { overrides, seed, seeded_objects, cancelled, settings } = self;
+        Inputs { overrides, seed, seeded_objects, cancelled, settings }
+    }
+}
+
+/// How a statement ended.
+pub(crate) enum Flow<T: Scalar> {
+    Next,
+    Break,
+    Continue,
+    Return(Option<Value<T>>),
+    /// The run is over: too many steps, too deep, or cancelled.
+    Stop,
+}
+
+pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
+    pub modules: &'a mut Modules,
+    pub loader: Loader<'a>,
+    pub run: &'a mut Run<'g, T>,
+    pub env: &'a mut Environment<T>,
+    pub inputs: Inputs<'a, T>,
+    pub frames: Vec<Frame<T>>,
+    pub depth: u32,
+    steps: u64,
+    pub turns: u64,
+    errors: usize,
+    /// Elements of the declared arrays.
+    pub held: usize,
+    /// The components under way, by module, and the names that the innermost was given.
+    pub components: Vec<usize>,
+    pub given: HashSet<Name>,
+    /// What was told already: a statement that is executed often tells each fault once.
+    told: HashSet<(Cow<'static, str>, Span)>,
+    /// Failed objects that the program was told of when it read them.
+    pub blocked: HashSet<Key>,
+    pub executed: HashSet<usize>,
+    /// Sketch files that were brought in.
+    pub sketches_done: HashSet<String>,
+    /// Objects that the expression under way has read, while that is to be noted.
+    pub reads: Vec<Key>,
+    pub noting_reads: bool,
+    /// The names that statements of a module assign to, by module.
+    pub assigned: HashMap<usize, HashSet<Symbol>>,
+    /// Names that are declared somewhere in the main file: for hints at what comes later.
+    pub(crate) current: usize,
+    /// Tapes and memory that are not in use.
+    pub tapes: Vec<Tape<T>>,
+    pub spare: Spare<T>,
+    /// What is known of expressions that are executed again.
+    pub recipes: Slots<T>,
+    /// The expression that is assigned to a whole variable, and its target.
+    pub assigning: Option<(ExprKey, ExprId)>,
+    pub plain_operators: bool,
+    /// True once the note on the misprint of 1992 was given.
+    pub misprint_told: bool,
+    /// True while a library routine is left because of an error in it.
+    pub abandoned: bool,
+    /// Bytes that were printed.
+    printed: usize,
+}
+
+pub(crate) fn silent() -> Diagnostic {
+    Diagnostic::error(SILENT, "")
+}
+
+impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
+    pub fn new(
+        modules: &'a mut Modules,
+        loader: Loader<'a>,
+        run: &'a mut Run<'g, T>,
+        env: &'a mut Environment<T>,
+        inputs: Inputs<'a, T>,
+    ) -> Self {
+        env.globals.resize_with(modules.name_count(), || None);
+        let plain_operators = inputs.settings.plain_operators;
+        Self {
+            modules,
+            loader,
+            run,
+            env,
+            inputs,
+            frames: vec![Frame::new(true, "".into())],
+            depth: 0,
+            steps: 0,
+            turns: 0,
+            errors: 0,
+            held: 0,
+            components: Vec::new(),
+            given: HashSet::new(),
+            told: HashSet::new(),
+            blocked: HashSet::new(),
+            executed: HashSet::new(),
+            sketches_done: HashSet::new(),
+            reads: Vec::new(),
+            noting_reads: false,
+            assigned: HashMap::new(),
+            current: 0,
+            tapes: Vec::new(),
+            spare: Spare::default(),
+            recipes: Slots::default(),
+            assigning: None,
+            plain_operators,
+            misprint_told: false,
+            abandoned: false,
+            printed: 0,
+        }
+    }
+
+    /// Runs a module from its first statement to its last, once.
+    pub fn module(&mut self, at: usize) -> Flow<T> {
+        if !self.executed.insert(at) {
+            return Flow::Next;
+        }
+        let module = self.modules.get(at).clone();
+        module.faults.iter().for_each(|fault| self.report(fault.clone()));
+        self.env.globals.resize_with(self.modules.name_count(), || None);
+        self.declare_routines(&module, at);
+        let outer = std::mem::replace(&mut self.current, at);
+        let flow = self.statements(&module, module.program.body());
+        self.current = outer;
+        self.abandoned = false;
+        match flow {
+            Flow::Stop => Flow::Stop,
+            _ => Flow::Next,
+        }
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        if diagnostic.id == SILENT {
+            return;
+        }
+        let diagnostic = self.at_call(diagnostic);
+        self.errors += usize::from(diagnostic.is_error());
+        let span = diagnostic.span();
+        if self.told.insert((diagnostic.id.clone(), span)) {
+            self.loader.diagnostics.push(diagnostic);
+        }
+        if self.errors >= MOST_ERRORS && !self.env.stopped {
+            self.stop(
+                Diagnostic::error("too-many-errors", "the run was given up: too many errors")
+                    .at(span)
+                    .expected(format!("fewer than {MOST_ERRORS} errors"))
+                    .help("mend the first ones, then run again"),
+            );
+        }
+    }
+
+    /// A fault inside a built-in library is told at the call that led there.
+    fn at_call(&self, mut diagnostic: Diagnostic) -> Diagnostic {
+        let inside = diagnostic.span();
+        let library = |module: u32| self.modules.get(module as usize).library;
+        let of_library = |m: &Module| m.library && m.program.file() == inside.file;
+        if !inside.is_known() || !of_library(self.modules.get(self.current)) {
+            return diagnostic;
+        }
+        let calls = self.frames.iter().rev().filter_map(|frame| frame.called);
+        let Some((call, _)) = calls.into_iter().find(|(_, module)| !library(*module)) else {
+            return diagnostic;
+        };
+        let text = diagnostic.primary.take().map(|label| label.text).unwrap_or_default();
+        let text = if text.is_empty() { "found in the library here".into() } else { text };
+        diagnostic.at(call).note_at(inside, text)
+    }
+
+    /// Counts the elements of a new value as steps, so that no program eats the machine.
+    ///
+    /// # Errors
+    /// When the run must stop; that was reported.
+    pub fn charge(&mut self, value: &Value<T>, span: Span) -> Result<(), Diagnostic> {
+        // Large arrays count for the memory they take, small ones for the time, that of a few
+        // statements on numbers; lists are read item by item.
+        let of_array = |n: usize| 3 + n / if n > 100_000 { 4 } else { 16 };
+        self.steps += match value {
+            Value::Numbers(a) => of_array(a.items.len()),
+            Value::Vectors(a) => of_array(a.len()),
+            Value::List(items) => 4 * items.len(),
+            _ => return Ok(()),
+        } as u64;
+        if self.steps > MOST_STEPS && self.step(span) {
+            return Err(silent());
+        }
+        Ok(())
+    }
+
+    /// True when the elements of another value will not stop the run.
+    pub fn has_room(&self, count: usize) -> bool {
+        self.steps + count as u64 <= MOST_STEPS
+    }
+
+    /// Counts a call of a function that takes longer than a statement: about as long as so many.
+    pub fn charge_call(&mut self) {
+        self.steps += 40;
+    }
+
+    fn declare_routines(&mut self, module: &Module, at: usize) {
+        for (k, routine) in module.program.routines().iter().enumerate() {
+            let name = module.names[routine.name.symbol.0 as usize];
+            let here = RoutineAt { module: at, routine: moldloft_syntax::sdl::RoutineId(k as u32) };
+            let text = self.modules.text(name).clone();
+            match self.env.routines.get(&name) {
+                Some(known) if known.module == at => {
+                    let first = module.program[known.routine].name.span;
+                    self.report(
+                        Diagnostic::error("duplicate-name", format!("`{text}` is defined twice"))
+                            .at(routine.name.span)
+                            .note_at(first, "first defined here")
+                            .help("give one of them another name"),
+                    );
+                }
+                Some(known) if known.module == 0 => {
+                    let first = self.modules.get(0).program[known.routine].name.span;
+                    self.report(
+                        Diagnostic::remark(
+                            "redefined",
+                            format!("`{text}` of the program stands in for the library's"),
+                        )
+                        .at(first),
+                    );
+                }
+                _ => drop(self.env.routines.insert(name, here)),
+            }
+        }
+    }
+
+    /// Counts a step; true when the run must stop.
+    pub fn step(&mut self, span: Span) -> bool {
+        self.steps += 1;
+        if self.env.stopped {
+            return true;
+        }
+        if self.steps > MOST_STEPS {
+            return self.stop(
+                Diagnostic::error("too-many-steps", "the program does not come to an end")
+                    .at(span)
+                    .expected(format!("at most {MOST_STEPS} statements"))
+                    .help("look for a loop whose condition always holds, or for arrays too large"),
+            );
+        }
+        if self.inputs.cancelled.load(Ordering::Relaxed) {
+            return self.stop(Diagnostic::error("cancelled", "the run was cancelled").at(span));
+        }
+        false
+    }
+
+    pub fn stop(&mut self, diagnostic: Diagnostic) -> bool {
+        if !self.env.stopped {
+            self.env.stopped = true;
+            self.report(diagnostic);
+        }
+        true
+    }
+
+    /// Goes one level deeper; false when that is too deep.
+    pub fn deeper(&mut self, span: Span) -> bool {
+        if self.depth >= DEEPEST {
+            self.stop(
+                Diagnostic::error("nested-too-deep", "calls nest too deep")
+                    .at(span)
+                    .expected(format!("at most {DEEPEST} levels of statements and calls"))
+                    .help("look for a subroutine that calls itself without end"),
+            );
+            return false;
+        }
+        self.depth += 1;
+        true
+    }
+
+    pub fn frame(&mut self) -> &mut Frame<T> {
+        self.frames.last_mut().expect("there is always a frame")
+    }
+
+    pub fn bind(&mut self, name: Name, span: Span, what: Binding<T>) {
+        let bound = Bound { span, what };
+        let frame = self.frames.last_mut().expect("there is always a frame");
+        if frame.global {
+            let at = name.0 as usize;
+            if at >= self.env.globals.len() {
+                self.env.globals.resize_with(at + 1, || None);
+            }
+            self.env.globals[at] = Some(bound);
+            return;
+        }
+        match frame.locals.iter_mut().find(|(n, _)| *n == name) {
+            Some((_, old)) => *old = bound,
+            None => frame.locals.push((name, bound)),
+        }
+    }
+
+    pub fn lookup(&self, name: Name) -> Option<&Bound<T>> {
+        let frame = self.frames.last().expect("there is always a frame");
+        let local = frame.locals.iter().find(|(n, _)| *n == name).map(|(_, bound)| bound);
+        local.or_else(|| self.env.globals.get(name.0 as usize)?.as_ref())
+    }
+
+    /// The variable that a place is in.
+    pub fn root(&self, place: &Place) -> Option<&Bound<T>> {
+        match place.frame {
+            None => self.env.globals.get(place.name.0 as usize)?.as_ref(),
+            Some(frame) => {
+                let locals = &self.frames.get(frame as usize)?.locals;
+                locals.iter().find(|(n, _)| *n == place.name).map(|(_, bound)| bound)
+            }
+        }
+    }
+
+    pub fn root_mut(&mut self, place: &Place) -> Option<&mut Bound<T>> {
+        match place.frame {
+            None => self.env.globals.get_mut(place.name.0 as usize)?.as_mut(),
+            Some(frame) => {
+                let locals = &mut self.frames.get_mut(frame as usize)?.locals;
+                locals.iter_mut().find(|(n, _)| *n == place.name).map(|(_, bound)| bound)
+            }
+        }
+    }
+
+    /// The whole of what a name means, as a place; that of the caller for one passed by reference.
+    pub fn place_of(&self, name: Name) -> Option<Place> {
+        let at = self.frames.len() - 1;
+        let frame = &self.frames[at];
+        let local = frame.locals.iter().find(|(n, _)| *n == name).map(|(_, bound)| bound);
+        let (bound, frame) = match local {
+            Some(bound) => (bound, Some(at as u32)),
+            None => (self.env.globals.get(name.0 as usize)?.as_ref()?, None),
+        };
+        Some(match &bound.what {
+            Binding::Reference(place) => *place,
+            _ => Place::whole(frame, name),
+        })
+    }
+
+    /// The value that a variable has now, read through references.
+    pub fn peek(&self, bound: &Bound<T>) -> Option<Value<T>> {
+        match &bound.what {
+            Binding::Variable { value, .. } => Some(value.clone()),
+            Binding::Reference(place) => match &self.root(place)?.what {
+                Binding::Variable { value, .. } => variables::at_place(value, place).ok(),
+                _ => None,
+            },
+            Binding::Param(number) => Some(Value::Number(self.env.param_values[*number])),
+            _ => None,
+        }
+    }
+
+    pub fn statements(&mut self, m: &Module, list: List<StmtId>) -> Flow<T> {
+        for &stmt in &m.program[list] {
+            match self.statement(m, stmt) {
+                Flow::Next => {}
+                other => return other,
+            }
+        }
+        Flow::Next
+    }
+
+    pub fn statement(&mut self, m: &Module, id: StmtId) -> Flow<T> {
+        let stmt = m.program[id];
+        if self.step(stmt.span) || !self.deeper(stmt.span) {
+            return Flow::Stop;
+        }
+        let flow = self.statement_of(m, id, stmt.kind, stmt.span).unwrap_or_else(|diagnostic| {
+            self.report(diagnostic.or_at(stmt.span));
+            // A library routine does not go on after an error: what follows would only be its echo.
+            self.abandoned |= m.library;
+            Flow::Next
+        });
+        self.depth -= 1;
+        match flow {
+            _ if self.env.stopped => Flow::Stop,
+            _ if self.abandoned && m.library => Flow::Return(None),
+            flow => flow,
+        }
+    }
+
+    fn statement_of(
+        &mut self,
+        m: &Module,
+        id: StmtId,
+        kind: StmtKind,
+        span: Span,
+    ) -> Result<Flow<T>, Diagnostic> {
+        match kind {
+            StmtKind::Object { kind, name, args } => self.object(m, id, kind, name, args, span)?,
+            StmtKind::Block(list) => return Ok(self.statements(m, list)),
+            StmtKind::Declare { global, ty, items } => {
+                for item in &m.program[items] {
+                    if self.is_given(m.names[item.name.symbol.0 as usize]) {
+                        continue;
+                    }
+                    if let Err(diagnostic) = self.declare(m, id, global, ty, item) {
+                        self.report(diagnostic.or_at(item.name.span));
+                        self.poison(m, item.name);
+                    }
+                }
+            }
+            StmtKind::Param { name, .. } if self.is_given(m.names[name.symbol.0 as usize]) => {}
+            StmtKind::Param { ty, name, value, range } => {
+                if let Err(diagnostic) = self.param(m, ty, name, value, range) {
+                    self.poison(m, name);
+                    return Err(diagnostic);
+                }
+            }
+            StmtKind::Assign { target, op, value } => self.assign(m, target, op, value)?,
+            StmtKind::Call(expr) => return self.call_statement(m, expr),
+            StmtKind::If { condition, then, otherwise } => {
+                if self.condition(m, condition)? {
+                    return Ok(self.statement(m, then));
+                }
+                if let Some(otherwise) = otherwise {
+                    return Ok(self.statement(m, otherwise));
+                }
+            }
+            StmtKind::While { condition, body } => {
+                while self.condition(m, condition)? {
+                    match self.turn(m, None, body, span) {
+                        Flow::Break => break,
+                        Flow::Next | Flow::Continue => {}
+                        other => return Ok(other),
+                    }
+                }
+            }
+            StmtKind::ForRange { variable, from, to, step, body } => {
+                return self.for_range(m, variable, [Some(from), Some(to), step], body, span);
+            }
+            StmtKind::For { start, condition, step, body } => {
+                return self.for_classic(m, [start, step], condition, body, span);
+            }
+            StmtKind::Foreach { variable, list, body } => {
+                return self.foreach(m, variable, list, body, span);
+            }
+            StmtKind::Print(list) => {
+                let mut words = Vec::new();
+                for &expr in &m.program[list] {
+                    let value = self.expr(m, expr)?;
+                    let value = self.read(value, m.program[expr].span)?;
+                    words.push(crate::value::display::plain(&value));
+                }
+                self.print(words.join(" "), span)?;
+            }
+            StmtKind::Assert { condition, message } => self.assert(m, condition, message)?,
+            StmtKind::Load(path) => {
+                let path = m.program[path].to_string();
+                if crate::source::sketch_file::is_sketch(&path) {
+                    self.load_sketch(&path, id, span)?;
+                    return Ok(Flow::Next);
+                }
+                let module = self.modules.load(self.current, &path, span, &mut self.loader)?;
+                return Ok(self.module(module));
+            }
+            StmtKind::Break => return Ok(Flow::Break),
+            StmtKind::Continue => return Ok(Flow::Continue),
+            StmtKind::Return(value) => {
+                let value = match value {
+                    Some(expr) => {
+                        let value = self.expr(m, expr)?;
+                        Some(self.read(value, m.program[expr].span)?)
+                    }
+                    None => None,
+                };
+                return Ok(Flow::Return(value));
+            }
+            StmtKind::Routine(_) | StmtKind::Error => {}
+        }
+        Ok(Flow::Next)
+    }
+
+    /// Keeps a printed line.
+    ///
+    /// # Errors
+    /// When the program has printed too much; that was reported, and the run is over.
+    pub fn print(&mut self, line: String, span: Span) -> Result<(), Diagnostic> {
+        self.printed += line.len() + 24;
+        if self.printed > MOST_PRINTED {
+            self.stop(
+                Diagnostic::error("too-much-output", "the program prints too much")
+                    .at(span)
+                    .expected(format!("at most {} MB", MOST_PRINTED >> 20))
+                    .help("write large results to a file: open(\"name\", \"w\")"),
+            );
+            return Err(silent());
+        }
+        self.env.printed.push(line);
+        Ok(())
+    }
+
+    pub fn condition(&mut self, m: &Module, expr: ExprId) -> Result<bool, Diagnostic> {
+        let value = self.expr(m, expr)?;
+        match self.read(value, m.program[expr].span)? {
+            Value::Number(x) => Ok(x.re() != 0.0),
+            other => Err(Diagnostic::error("wrong-condition", "a condition must be a number")
+                .at(m.program[expr].span)
+                .expected("a comparison, or a number (0 is false)")
+                .found(other.called())),
+        }
+    }
+
+    fn assert(
+        &mut self,
+        m: &Module,
+        condition: ExprId,
+        message: Option<ExprId>,
+    ) -> Result<(), Diagnostic> {
+        if self.condition(m, condition)? {
+            return Ok(());
+        }
+        let span = m.program[condition].span;
+        let mut text = format!("this does not hold: {}", m.program.slice(span));
+        if let Some(message) = message {
+            let value = self.expr(m, message)?;
+            text = crate::value::display::plain(&self.read(value, m.program[message].span)?);
+        }
+        let mut diagnostic = Diagnostic::error("assertion-failed", text).at(span);
+        // Both sides of a comparison, so that the numbers are at hand.
+        if let ExprKind::Binary { left, right, .. } = m.program[m.program.bare(condition)].kind {
+            let mut sides = Vec::new();
+            for side in [left, right] {
+                let value = self.expr(m, side)?;
+                sides.push(crate::value::display::plain(&self.read(value, span)?));
+            }
+            diagnostic = diagnostic.found(sides.join(" and "));
+        }
+        Err(diagnostic)
+    }
+
+    fn declare(
+        &mut self,
+        m: &Module,
+        id: StmtId,
+        global: bool,
+        (ty, ty_span): (Type, Span),
+        item: &Declarator,
+    ) -> Result<(), Diagnostic> {
+        let object = self.makes_object(m, ty, item);
+        if let Type::Other(symbol) = ty {
+            return Err(self.unknown_type(m.program.name(symbol)).at(ty_span));
+        }
+        let mut dims = Vec::new();
+        for &dim in &m.program[item.dims] {
+            let n = self.number(m, dim)?.re();
+            dims.push(variables::extent(n).map_err(|d| d.or_at(m.program[dim].span))?);
+        }
+        let value = match item.value {
+            Some(expr) => {
+                let span = m.program[expr].span;
+                let value = self.noting(object, |this| {
+                    let value = this.expr(m, expr)?;
+                    this.read(value, span)
+                })?;
+                // A single value fills a dimensioned array.
+                let value = match dims.is_empty() {
+                    true => variables::converted(ty, value).map_err(|d| d.or_at(span))?,
+                    false => value,
+                };
+                Some(crate::functions::sets::called(ty, value, m.program.name(item.name.symbol)))
+            }
+            None => None,
+        };
+        if let (true, Some(value)) = (object, &value) {
+            return self.implicit_object(m, id, ty, item, value.clone());
+        }
+        if !dims.is_empty() {
+            let count = dims.iter().fold(1usize, |count, &n| count.saturating_mul(n));
+            let held = self.held.saturating_add(count);
+            if held > MOST_HELD {
+                return Err(variables::too_many(held as f64, MOST_HELD as f64));
+            }
+            self.held = held;
+        }
+        let known = match (&value, &dims[..]) {
+            (Some(_), _) | (_, []) => Known::default(),
+            _ => Known::nothing(dims.iter().product()),
+        };
+        let shape = value.as_ref().map(variables::shape_of);
+        let value = variables::initial(ty, &dims, value).map_err(|d| match item.value {
+            Some(expr) => {
+                let declared =
+                    Span::new(item.name.span.file, item.name.span.start, span_end(m, item));
+                let of = |dims: &[usize]| {
+                    let all: Vec<String> = dims.iter().map(usize::to_string).collect();
+                    format!("{}[{}]", m.program.slice(ty_span), all.join(","))
+                };
+                let found = shape.map_or(String::new(), |s| s.to_string());
+                let span = m.program[expr].span;
+                self.differing(m, d, [declared, span], [&of(&dims), &found]).or_at(span)
+            }
+            None => d,
+        })?;
+        let what = Binding::Variable { ty, value, fixed: !dims.is_empty(), known };
+        let name = m.names[item.name.symbol.0 as usize];
+        self.check_free(name, item.name.span, true)?;
+        if global && !self.frame().global {
+            self.env.globals[name.0 as usize] = Some(Bound { span: item.name.span, what });
+        } else {
+            self.bind(name, item.name.span, what);
+        }
+        Ok(())
+    }
+
+    fn unknown_type(&self, word: &str) -> Diagnostic {
+        const TYPES: [&str; 12] = [
+            "int", "float", "string", "vector", "farray", "curve", "surface", "pcurve", "psurface",
+            "field", "set", "param",
+        ];
+        Diagnostic::error("unknown-type", format!("there is no type `{word}`"))
+            .suggest(word, TYPES)
+            .help("an object is declared with its data in parentheses: AbsPoint P(0, 0, 1);")
+    }
+
+    /// The binding of a name in the innermost frame.
+    fn own(&self, name: Name) -> Option<&Bound<T>> {
+        let frame = self.frames.last().expect("there is always a frame");
+        if frame.global {
+            return self.env.globals.get(name.0 as usize)?.as_ref();
+        }
+        frame.locals.iter().find(|(n, _)| *n == name).map(|(_, b)| b)
+    }
+
+    /// Marks the name of a failed declaration, so that its uses stay silent; a name that something
+    /// else has by right keeps its meaning.
+    pub fn poison(&mut self, m: &Module, ident: Ident) {
+        let name = m.names[ident.symbol.0 as usize];
+        let turn = self.frame().loops.last().map(|turn| turn.id);
+        let kept = self.own(name).is_some_and(|known| match known.what {
+            Binding::Turn { turn: made, .. } => turn == Some(made),
+            Binding::Object(_) | Binding::Param(_) | Binding::Instance(_) => true,
+            Binding::Variable { .. }
+            | Binding::Reference(_)
+            | Binding::Multiple(_)
+            | Binding::Poisoned => false,
+        });
+        if !kept {
+            self.bind(name, ident.span, Binding::Poisoned);
+        }
+    }
+
+    /// An object must not take a name that means something already; a variable may be declared
+    /// again in another turn of a loop.
+    pub fn check_free(&self, name: Name, span: Span, variable: bool) -> Result<(), Diagnostic> {
+        let Some(known) = self.own(name) else { return Ok(()) };
+        let clash = match &known.what {
+            Binding::Poisoned => false,
+            Binding::Variable { .. } | Binding::Reference(_) | Binding::Multiple(_) => !variable,
+            Binding::Turn { .. } | Binding::Instance(_) => variable,
+            Binding::Object(_) | Binding::Param(_) => true,
+        };
+        if !clash {
+            return Ok(());
+        }
+        let text = self.modules.text(name);
+        Err(Diagnostic::error("duplicate-name", format!("`{text}` is declared twice"))
+            .labelled(span, "declared again here")
+            .note_at(known.span, "first declared here")
+            .help("give one of them another name"))
+    }
+
+    fn param(
+        &mut self,
+        m: &Module,
+        ty: Option<(Type, Span)>,
+        name: Ident,
+        value: ExprId,
+        range: Option<(ExprId, ExprId)>,
+    ) -> Result<(), Diagnostic> {
+        if !self.frame().global || !self.frame().loops.is_empty() {
+            return Err(Diagnostic::error(
+                "misplaced-param",
+                "a parameter belongs at file level, outside loops and subroutines",
+            )
+            .at(name.span));
+        }
+        let is_int = match ty {
+            None | Some((Type::Float, _)) => false,
+            Some((Type::Int, _)) => true,
+            Some((_, span)) => {
+                return Err(
+                    Diagnostic::error("wrong-type", "a parameter is a float or an int").at(span)
+                );
+            }
+        };
+        let text = self.modules.text(m.names[name.symbol.0 as usize]);
+        let text = format!("{}{text}", self.frames.last().map_or("", |f| &*f.prefix));
+        let name_id = m.names[name.symbol.0 as usize];
+        self.check_free(name_id, name.span, false)?;
+        let default = self.number(m, value)?;
+        let range = match range {
+            Some((low, high)) => {
+                let (low, high) = (self.number(m, low)?.re(), self.number(m, high)?.re());
+                if low > high {
+                    return Err(Diagnostic::error("empty-range", format!("`{text}` has no value"))
+                        .at(name.span)
+                        .expected("[low, high] with low <= high")
+                        .found(format!("[{low}, {high}]")));
+                }
+                Some((low, high))
+            }
+            None => None,
+        };
+        let given = self.inputs.overrides.get(&text).copied();
+        let plain = given.map_or(default, T::from);
+        let x = plain.re();
+        let wrong = |expected: String| {
+            Diagnostic::error("out-of-range", format!("`{text}` = {x} is out of its range"))
+                .at(name.span)
+                .expected(expected)
+                .found(number::plain(x))
+        };
+        if let Some((low, high)) = range
+            && !(low..=high).contains(&x)
+        {
+            return Err(wrong(format!("a number from {low} to {high}")));
+        }
+        if !x.is_finite() {
+            return Err(wrong("a finite number".into()));
+        }
+        if is_int && x.fract() != 0.0 {
+            return Err(wrong("a whole number".into()));
+        }
+        let value = (self.inputs.seed)(&text, plain);
+        let number = self.env.params.len();
+        self.env.params.push(Param {
+            name: text,
+            value: value.re(),
+            default: default.re(),
+            range,
+            is_int,
+            span: name.span,
+        });
+        self.env.param_values.push(value);
+        self.bind(name_id, name.span, Binding::Param(number));
+        Ok(())
+    }
+
+    fn assign(
+        &mut self,
+        m: &Module,
+        target: ExprId,
+        op: AssignOp,
+        value: ExprId,
+    ) -> Result<(), Diagnostic> {
+        let right = match op {
+            AssignOp::Set => {
+                self.assigning = Some((ExprKey::of(m, value), target));
+                let right = self.expr(m, value);
+                self.assigning = None;
+                self.read(right?, m.program[value].span)?
+            }
+            AssignOp::With(op) => self.updated(m, target, op, value)?,
+        };
+        let place = self.place(m, target)?;
+        let shape = variables::shape_of(&right);
+        self.store(place, right).map_err(|d| {
+            let spans = [target, value].map(|e| m.program[e].span);
+            let to = match self.root(&place).map(|bound| &bound.what) {
+                Some(Binding::Variable { value, .. }) if d.id == "shapes-differ" => {
+                    variables::shape_at(value, &place)
+                }
+                _ => String::new(),
+            };
+            self.differing(m, d, spans, [&to, &shape.to_string()]).or_at(spans[0])
+        })
+    }
+
+    fn call_statement(&mut self, m: &Module, expr: ExprId) -> Result<Flow<T>, Diagnostic> {
+        if let ExprKind::Call { callee, args } = m.program[expr].kind
+            && let Some(symbol) = m.program.as_name(callee)
+            && let Some(&routine) = self.env.routines.get(&m.names[symbol.0 as usize])
+        {
+            self.call_routine(m, routine, args, None, m.program[expr].span)?;
+            return Ok(if self.env.stopped { Flow::Stop } else { Flow::Next });
+        }
+        // A call for its effect alone has none, but its errors are worth hearing.
+        self.expr(m, expr)?;
+        Ok(Flow::Next)
+    }
+
+    pub fn unknown_kind(&self, word: &str) -> Diagnostic {
+        let kinds = self.loader.registry.rows().filter(|r| r.kind).map(|r| &*r.name);
+        let routines = self.env.routines.keys().map(|&name| &**self.modules.text(name));
+        Diagnostic::error("unknown-entity", format!("there is no kind `{word}`"))
+            .expected("the name of an entity kind or of a subroutine")
+            .suggest(word, kinds.chain(routines))
+            .help("`moldloft doc --list` lists all kinds")
+    }
+
+    /// How many errors there are so far.
+    pub fn error_count(&self) -> usize {
+        self.errors
+    }
+
+    /// True while hints are worth a search.
+    pub fn hints(&self) -> bool {
+        self.errors < MOST_HINTS
+    }
+
+    /// The most alike of the names that mean something here.
+    pub fn nearest_name(&self, word: &str) -> Option<String> {
+        if !self.hints() {
+            return None;
+        }
+        let frame = self.frames.last().expect("there is always a frame");
+        let locals = frame.locals.iter().map(|(name, _)| *name);
+        let globals = self.env.globals.iter().enumerate();
+        let globals = globals.filter(|(_, b)| b.is_some()).map(|(k, _)| Name(k as u32));
+        let variables = locals.chain(globals).map(|name| &**self.modules.text(name));
+        let functions = self.loader.registry.rows().filter(|r| !r.kind).map(|r| &*r.name);
+        nearest(word, variables.chain(functions)).map(str::to_string)
+    }
+
+    pub fn store(&mut self, place: Place, value: Value<T>) -> Result<(), Diagnostic> {
+        let text = self.modules.text(place.name).clone();
+        if place.frame.is_none() && self.run.extent() == Extent::Edit {
+            return Err(Diagnostic::error(
+                "misplaced-assignment",
+                format!("an expression from outside does not change `{text}`"),
+            )
+            .expected("an expression that reads the program's variables")
+            .help("put the statement into the program"));
+        }
+        let Some(bound) = self.root_mut(&place) else { return Err(silent()) };
+        match &mut bound.what {
+            Binding::Variable { ty, value: old, fixed, known } => {
+                let taken = Taken { ty: *ty, fixed: *fixed, name: &text };
+                let replaced = variables::store(taken, old, &place, value)?;
+                known.give(place.section, old);
+                if let Some(replaced) = replaced {
+                    self.spare.give(replaced);
+                }
+                Ok(())
+            }
+            Binding::Poisoned => Err(silent()),
+            _ => {
+                Err(Diagnostic::error("not-assignable", format!("`{text}` cannot be assigned to"))
+                    .found("an object or parameter")
+                    .note_at(bound.span, "declared here")
+                    .help("objects are named once; change their data, or use a variable"))
+            }
+        }
+    }
+}
+
+/// Where a declarator's name and dimensions end.
+fn span_end(m: &Module, item: &Declarator) -> u32 {
+    let last = m.program[item.dims].last();
+    // The bracket after the last dimension.
+    last.map_or(item.name.span.end, |&dim| {
+        let end = m.program[dim].span.end;
+        let rest = m.program.text().get(end as usize..).unwrap_or("");
+        end + rest.find(']').map_or(0, |k| k as u32 + 1)
+    })
+}

@@ -1,0 +1,12 @@
+//! The interpreter: statements, expressions, objects, loops, calls, components, sketches and solve sets.
+
+mod component;
+pub(crate) mod expr;
+pub(crate) mod forward_reference;
+pub mod interpreter;
+mod loops;
+mod objects;
+pub mod program;
+mod routine;
+mod sketches;
+pub(crate) mod solve_set;

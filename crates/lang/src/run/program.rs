@@ -1,0 +1,245 @@
+//! A program as a producer of objects.
+
+use crate::model_file::names::plain_name;
+use crate::run::interpreter::{Inputs, Interpreter, STACK_BYTES};
+use crate::run::sketches::Site;
+use crate::source::env::{Binding, Bound, Environment, Evaluation};
+use crate::source::fault_location;
+use crate::source::module::{Convert, Loader, Module, Modules};
+use crate::source::sketch_file::SketchFile;
+use crate::source::world::World;
+use crate::value::number_path::NumberPath;
+use moldloft_diag::{Diagnostic, Sources, Span};
+use moldloft_model::{Applied, Extent, Graph, Object};
+use moldloft_registry::{Fault, Registry, Scalar, Value};
+use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
+use std::sync::Arc;
+
+/// What running a program needs.
+pub struct Program<'a> {
+    pub modules: &'a mut Modules,
+    pub world: &'a dyn World,
+    pub registry: &'a Registry,
+    pub sources: &'a mut Sources,
+    /// The sketch that is the model, when it is no program.
+    pub sketch: Option<Arc<SketchFile>>,
+    /// The program of a model file that is loaded.
+    pub converted: Convert,
+}
+
+/// Why a number of an object is no literal of the text.
+pub enum NotLiteral {
+    /// It is computed from these names.
+    Expression { span: Span, names: Vec<String> },
+    /// Several objects are made by the statement it stands in.
+    Shared { span: Span },
+    /// It is a default.
+    Default,
+}
+
+/// Runs `f` where a deeply nested program finds enough stack.
+pub fn with_stack<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, f);
+        match thread.expect("a thread can be started").join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    })
+}
+
+impl Program<'_> {
+    /// Runs module 0 and what it loads.
+    pub fn run<T: Scalar>(
+        self,
+        evaluation: &mut Evaluation<T>,
+        inputs: Inputs<'_, T>,
+        found: &mut Vec<Diagnostic>,
+    ) -> Applied {
+        evaluation.env = Environment::default();
+        let Evaluation { graph, env } = evaluation;
+        let loader = Loader {
+            world: self.world,
+            registry: self.registry,
+            sources: self.sources,
+            diagnostics: found,
+            converted: self.converted,
+        };
+        // What is left to evaluate after the program is evaluated in the caller's thread pool.
+        let (modules, sketch) = (self.modules, self.sketch);
+        graph
+            .apply(Extent::Whole, |run| {
+                with_stack(|| {
+                    let mut interpreter = Interpreter::new(modules, loader, run, env, inputs);
+                    interpreter.module(0);
+                    if let Some(sketch) = &sketch {
+                        let span = Span::new(sketch.file, 0, 0);
+                        interpreter.sketch(sketch, Site { origin: u32::MAX, span });
+                    }
+                });
+            })
+            .1
+    }
+
+    /// The value of an expression in the names that the last run left behind.
+    pub fn eval<T: Scalar>(
+        self,
+        evaluation: &mut Evaluation<T>,
+        inputs: Inputs<'_, T>,
+        text: &str,
+    ) -> Result<Value<T>, Vec<Diagnostic>> {
+        // One place for all expressions: a long session asks for many.
+        const NAME: &str = "expression";
+        let known = self.sources.find(NAME).filter(|&file| self.sources.ids().next() != Some(file));
+        let file = match known {
+            Some(file) => {
+                self.sources.replace(file, text);
+                file
+            }
+            None => self.sources.add(NAME, text),
+        };
+        let (program, expr, mut found) = sdl::parse_expr(text, file);
+        if found.iter().any(Diagnostic::is_error) {
+            return Err(found);
+        }
+        let at = self.modules.add_expression(program, self.registry);
+        let module = self.modules.get(at).clone();
+        let Evaluation { graph, env } = evaluation;
+        bind_objects(self.modules, &module, graph, env);
+        let stopped = std::mem::take(&mut env.stopped);
+        let loader = Loader {
+            world: self.world,
+            registry: self.registry,
+            sources: self.sources,
+            diagnostics: &mut found,
+            converted: self.converted,
+        };
+        let modules = &mut *self.modules;
+        let (value, _) = with_stack(|| {
+            graph.apply(Extent::Edit, |run| {
+                let mut interpreter = Interpreter::new(modules, loader, run, env, inputs);
+                interpreter.current = at;
+                interpreter.operand(&module, expr)
+            })
+        });
+        drop(module);
+        self.modules.remove_expression(at);
+        evaluation.env.stopped = stopped;
+        match value {
+            Ok(value) if found.is_empty() => Ok(value),
+            Ok(_) => Err(found),
+            Err(diagnostic) => {
+                if diagnostic.id != crate::run::interpreter::SILENT {
+                    found.push(diagnostic);
+                }
+                if found.is_empty() {
+                    found.push(Diagnostic::error(
+                        "no-value",
+                        "this depends on something that failed; see the model's own errors",
+                    ));
+                }
+                Err(found)
+            }
+        }
+    }
+}
+
+/// Where in the text the fault of an object lies.
+pub fn fault_span<T: Scalar>(
+    modules: &Modules,
+    env: &Environment<T>,
+    object: &Object<T>,
+    fault: &Fault,
+) -> Option<Span> {
+    let origin = env.origins.get(object.origin as usize)?;
+    let m = modules.get(origin.module as usize);
+    let stmt = m.program[origin.stmt];
+    let StmtKind::Object { args, .. } = stmt.kind else { return Some(stmt.span) };
+    let unnamed = m.program[args].iter().filter(|a| a.name.is_none()).count();
+    Some(fault_location::diagnostic(m, args, &object.row, unnamed, fault, stmt.span).span())
+}
+
+/// Where in the text an object is declared.
+pub fn declared_at<T: Scalar>(
+    modules: &Modules,
+    env: &Environment<T>,
+    object: &Object<T>,
+) -> Option<Span> {
+    let origin = env.origins.get(object.origin as usize)?;
+    let m = modules.get(origin.module as usize);
+    match m.program[origin.stmt].kind {
+        StmtKind::Object { name, .. } => Some(name.span),
+        StmtKind::Declare { items, .. } => {
+            let mut items = m.program[items].iter();
+            let item = items.find(|item| m.program.name(item.name.symbol) == &*object.name)?;
+            Some(item.name.span)
+        }
+        _ => None,
+    }
+}
+
+/// The literal of the text that a number of an object is.
+pub fn literal(
+    modules: &Modules,
+    env: &Environment<f64>,
+    object: &Object<f64>,
+    path: &NumberPath,
+) -> Result<(usize, LiteralId), NotLiteral> {
+    let Some(origin) = env.origins.get(object.origin as usize) else {
+        return Err(NotLiteral::Default);
+    };
+    let m = modules.get(origin.module as usize);
+    let stmt = m.program[origin.stmt];
+    let StmtKind::Object { args, .. } = stmt.kind else { return Err(NotLiteral::Default) };
+    let args = &m.program[args];
+    let unnamed = args.iter().filter(|a| a.name.is_none()).count();
+    let mut expr = fault_location::argument(m, args, &object.row, unnamed, path.field)
+        .ok_or(NotLiteral::Default)?;
+    for k in [path.item, path.component].into_iter().flatten() {
+        match fault_location::item(m, expr, k) {
+            Some(item) => expr = item,
+            None => return Err(computed(m, expr)),
+        }
+    }
+    let Some(literal) = m.program.as_literal(expr) else {
+        return Err(computed(m, expr));
+    };
+    if origin.repeated {
+        return Err(NotLiteral::Shared { span: m.program[expr].span });
+    }
+    Ok((origin.module as usize, literal))
+}
+
+fn computed(m: &crate::source::module::Module, expr: ExprId) -> NotLiteral {
+    let mut names = Vec::new();
+    crate::run::forward_reference::names_in(m, expr, &mut |symbol| {
+        names.push(m.program.name(symbol).to_string())
+    });
+    NotLiteral::Expression { span: m.program[expr].span, names }
+}
+
+/// Lets an expression find the objects that a model file made, by their names or by the
+/// identifiers that stand for them.
+fn bind_objects<T: Scalar>(
+    modules: &Modules,
+    expression: &Module,
+    graph: &Graph<T>,
+    env: &mut Environment<T>,
+) {
+    env.globals.resize_with(modules.name_count(), || None);
+    for &name in &expression.names {
+        let text = modules.text(name);
+        let known = &mut env.globals[name.0 as usize];
+        if known.is_none()
+            && let Some(key) = graph.find(text).or_else(|| graph.find(&plain_name(text)))
+        {
+            *known = Some(Bound { span: Span::UNKNOWN, what: Binding::Object(key) });
+        } else if known.is_none()
+            && let Some(&x) = env.numbers.get(&**text)
+        {
+            let ty = Type::Float;
+            let what = Binding::variable(ty, Value::Number(x));
+            *known = Some(Bound { span: Span::UNKNOWN, what });
+        }
+    }
+}

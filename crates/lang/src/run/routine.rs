@@ -1,0 +1,263 @@
+//! Runs a program: calls of subroutines and functions.
+
+use crate::run::interpreter::{Flow, Interpreter, silent};
+use crate::source::env::{Binding, Bound, Frame, Multiple, Passed};
+use crate::source::module::{Module, RoutineAt};
+use crate::value::subarray::Place;
+use crate::value::variables;
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_registry::{Scalar, Value};
+use moldloft_syntax::sdl::{Arg, ExprId, Formal, List, Type};
+use std::sync::Arc;
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// Calls a routine; `instance` goes before the names of the objects that it declares.
+    pub fn call_routine(
+        &mut self,
+        m: &Module,
+        at: RoutineAt,
+        args: List<Arg>,
+        instance: Option<Arc<str>>,
+        span: Span,
+    ) -> Result<Option<Value<T>>, Diagnostic> {
+        let callee = self.modules.get(at.module).clone();
+        let routine = callee.program[at.routine];
+        let name = callee.program.name(routine.name.symbol).to_string();
+        let formals: Vec<Formal> = callee.program[routine.formals].to_vec();
+        let given: Vec<Arg> = m.program[args].to_vec();
+        let ordered = self.order_arguments(m, &callee, &name, &formals, &given, span)?;
+
+        let prefix = instance.clone().unwrap_or_else(|| self.frame().prefix.clone());
+        let mut frame = Frame::new(false, prefix);
+        if instance.is_none() {
+            frame.loops = self.frame().loops.clone();
+        }
+        frame.called = Some((span, self.current as u32));
+        let mut returned: Vec<(Place, Span)> = Vec::new();
+        for (formal, exprs) in formals.iter().zip(ordered) {
+            let local = callee.names[formal.name.symbol.0 as usize];
+            let what = if formal.multiple {
+                let mut items = Vec::new();
+                for expr in exprs {
+                    if let Some(all) = self.multiple(m, expr) {
+                        // A multiple argument is passed on as a whole.
+                        for item in all {
+                            if let (true, Passed::Place(place)) = (formal.returned, &item) {
+                                returned.push((*place, m.program[expr].span));
+                            }
+                            items.push(item);
+                        }
+                    } else if formal.returned {
+                        let place = self.returned(m, &name, formal, expr)?;
+                        returned.push((place, m.program[expr].span));
+                        items.push(Passed::Place(place));
+                    } else {
+                        items.push(Passed::Value(self.argument(m, formal, expr)?));
+                    }
+                }
+                Binding::Multiple(Box::new(Multiple { ty: formal.ty.0, items, read: 0 }))
+            } else if formal.returned {
+                let place = self.returned(m, &name, formal, exprs[0])?;
+                returned.push((place, m.program[exprs[0]].span));
+                Binding::Reference(place)
+            } else {
+                match self.argument(m, formal, exprs[0])? {
+                    Value::Object(key) => Binding::Object(key),
+                    value => Binding::variable(formal.ty.0, value),
+                }
+            };
+            frame.locals.push((local, Bound { span: formal.name.span, what }));
+        }
+        for (k, (place, at)) in returned.iter().enumerate() {
+            if let Some((_, first)) = returned[..k].iter().find(|(p, _)| p.meets(place)) {
+                let text = m.program.slice(*at).trim();
+                return Err(Diagnostic::error(
+                    "overlapping-arguments",
+                    format!("`{text}` overlaps another returned argument of {name}"),
+                )
+                .labelled(*at, "these elements are written twice")
+                .note_at(*first, "and here")
+                .expected("returned arguments without common elements")
+                .help("pass different sections, or a copy of one and assign it afterwards"));
+            }
+        }
+        if !self.deeper(span) {
+            return Err(silent());
+        }
+        let held = self.held;
+        self.frames.push(frame);
+        let outer = std::mem::replace(&mut self.current, at.module);
+        let flow = self.statements(&callee, routine.body);
+        self.current = outer;
+        self.frames.pop();
+        self.depth -= 1;
+        self.held = held;
+        if callee.library && std::mem::take(&mut self.abandoned) {
+            // Told already; a caller in the library is left as well.
+            self.abandoned = m.library;
+            return Err(silent());
+        }
+        match flow {
+            Flow::Return(Some(value)) => match routine.result {
+                Some((ty, asked)) if !matches!(ty, Type::Other(_)) => {
+                    variables::converted(ty, value).map(Some).map_err(|d| {
+                        let message = format!("{name} returns another value: {}", d.message);
+                        let mut d = d.or_at(span).note_at(asked, "declared here");
+                        d.message = message;
+                        d
+                    })
+                }
+                _ => Ok(Some(value)),
+            },
+            Flow::Return(None) => Ok(None),
+            Flow::Stop => Err(silent()),
+            _ => Ok(None),
+        }
+    }
+
+    /// The arguments that a name stands for, when it is a multiple argument.
+    pub fn multiple(&self, m: &Module, expr: ExprId) -> Option<Vec<Passed<T>>> {
+        let symbol = m.program.as_name(expr)?;
+        match &self.lookup(m.names[symbol.0 as usize])?.what {
+            Binding::Multiple(multiple) => Some(multiple.items.clone()),
+            _ => None,
+        }
+    }
+
+    /// The place that a returned argument writes to.
+    fn returned(
+        &mut self,
+        m: &Module,
+        name: &str,
+        formal: &Formal,
+        expr: ExprId,
+    ) -> Result<Place, Diagnostic> {
+        let span = m.program[expr].span;
+        let text = m.program.slice(span).trim().to_string();
+        let place = self.place(m, expr).map_err(|d| match &*d.id {
+            "not-assignable" => Diagnostic::error(
+                "not-assignable",
+                format!("`{text}` cannot be returned to: {name} writes to this argument"),
+            )
+            .at(span)
+            .expected("a variable, or a part of one by [...] or .x .y .z")
+            .found("an expression")
+            .note_at(formal.name.span, "declared as returned here"),
+            _ => d,
+        })?;
+        let Some(bound) = self.root(&place) else { return Err(silent()) };
+        let (ty, value) = match &bound.what {
+            Binding::Variable { ty, value, .. } => (*ty, value),
+            Binding::Poisoned => return Err(silent()),
+            _ => {
+                return Err(Diagnostic::error(
+                    "not-assignable",
+                    format!("`{text}` cannot be assigned to, but {name} writes to this argument"),
+                )
+                .at(span)
+                .expected("a variable")
+                .found("an object or parameter")
+                .note_at(formal.name.span, "declared as returned here"));
+            }
+        };
+        let found = variables::type_at(ty, value, &place);
+        let number = |ty: Type| match ty {
+            Type::Int | Type::File => Type::Float,
+            other => other,
+        };
+        let same = number(found) == number(formal.ty.0) || matches!(formal.ty.0, Type::Other(_));
+        if same {
+            return Ok(place);
+        }
+        let (expected, found) = (variables::described(formal.ty.0), variables::described(found));
+        Err(Diagnostic::error("wrong-type", format!("expected {expected}, found {found}"))
+            .at(span)
+            .expected(expected)
+            .found(found)
+            .note_at(formal.ty.1, "asked for here")
+            .note_at(bound.span, "declared here"))
+    }
+
+    /// The expressions for each formal argument, in order.
+    fn order_arguments(
+        &self,
+        m: &Module,
+        callee: &Module,
+        name: &str,
+        formals: &[Formal],
+        given: &[Arg],
+        span: Span,
+    ) -> Result<Vec<Vec<ExprId>>, Diagnostic> {
+        let spelled: Vec<&str> =
+            formals.iter().map(|f| callee.program.name(f.name.symbol)).collect();
+        let signature = format!("{name}({})", spelled.join(", "));
+        let mut ordered: Vec<Vec<ExprId>> = vec![Vec::new(); formals.len()];
+        for (k, arg) in given.iter().enumerate() {
+            let at = match arg.name {
+                Some(ident) => {
+                    let word = m.program.name(ident.symbol);
+                    spelled.iter().position(|s| *s == word).ok_or_else(|| {
+                        Diagnostic::error(
+                            "unknown-argument",
+                            format!("{name} has no argument `{word}`"),
+                        )
+                        .at(ident.span)
+                        .expected(&signature)
+                        .suggest(word, spelled.iter().copied())
+                    })?
+                }
+                None if k < formals.len() => k,
+                None if formals.last().is_some_and(|f| f.multiple) => formals.len() - 1,
+                None => {
+                    return Err(Diagnostic::error(
+                        "too-many-arguments",
+                        format!("{name} takes {} arguments", formals.len()),
+                    )
+                    .at(m.program[arg.value].span)
+                    .expected(&signature)
+                    .found(format!("{} arguments", given.len())));
+                }
+            };
+            if !ordered[at].is_empty() && !formals[at].multiple {
+                return Err(Diagnostic::error(
+                    "argument-twice",
+                    format!("`{}` of {name} is given twice", spelled[at]),
+                )
+                .at(m.program[arg.value].span));
+            }
+            ordered[at].push(arg.value);
+        }
+        for (k, formal) in formals.iter().enumerate() {
+            if ordered[k].is_empty() && !formal.multiple {
+                return Err(Diagnostic::error(
+                    "missing-argument",
+                    format!("{name} needs `{}`", spelled[k]),
+                )
+                .at(span)
+                .expected(&signature)
+                .found(format!("{} arguments", given.len()))
+                .note_at(formal.name.span, "declared here"));
+            }
+        }
+        Ok(ordered)
+    }
+
+    /// The value of an argument of a routine, of the formal's type. An argument of an object class
+    /// (`AbsPoint p`, or any other word) takes an object as it is.
+    fn argument(
+        &mut self,
+        m: &Module,
+        formal: &Formal,
+        expr: ExprId,
+    ) -> Result<Value<T>, Diagnostic> {
+        let span = m.program[expr].span;
+        let value = self.expr(m, expr)?;
+        let shape = matches!(formal.ty.0, Type::Pcurve | Type::Psurface | Type::Other(_));
+        if shape && matches!(value, Value::Object(_)) {
+            return Ok(value);
+        }
+        let value = self.read(value, span)?;
+        variables::converted(formal.ty.0, value)
+            .map_err(|d| d.or_at(span).note_at(formal.ty.1, "asked for here"))
+    }
+}

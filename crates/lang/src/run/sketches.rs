@@ -1,0 +1,428 @@
+//! Runs a program: the objects of loaded sketches.
+
+use crate::run::interpreter::Interpreter;
+use crate::source::env::{Binding, Bound, Origin, Param};
+use crate::source::module::Module;
+use crate::source::sketch_file::{Drawn, SketchFile};
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_mesh::Mesh;
+use moldloft_model::{Declaration, Extent};
+use moldloft_num::Vec3;
+use moldloft_num::trace::Key;
+use moldloft_registry::{Given, Scalar, Value, arrange};
+use moldloft_sketch::curve::{Piece, Traced};
+use moldloft_sketch::{Axis, DimensionFault, PointId, RoundFace, Solid, solid, solve};
+use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Where a sketch is declared.
+#[derive(Clone, Copy)]
+pub(crate) struct Site {
+    pub origin: u32,
+    pub span: Span,
+}
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// `load "dam.skt"`: once, at file level.
+    pub fn load_sketch(&mut self, path: &str, id: StmtId, span: Span) -> Result<(), Diagnostic> {
+        let file = self.modules.load_sketch(self.current, path, span, &mut self.loader)?;
+        // The parser has told that it stands in a loop or subroutine.
+        if !self.frame().global || !self.frame().loops.is_empty() {
+            return Ok(());
+        }
+        if !self.sketches_done.insert(file.path.clone()) {
+            return Ok(());
+        }
+        let origin = self.sketch_origin(id);
+        self.sketch(&file, Site { origin, span });
+        Ok(())
+    }
+
+    fn sketch_origin(&mut self, id: StmtId) -> u32 {
+        let origin = self.env.origins.len() as u32;
+        // Several objects are made by the statement, so none of them has a literal in it.
+        self.env.origins.push(Origin { module: self.current as u32, stmt: id, repeated: true });
+        origin
+    }
+
+    /// Declares all objects of a sketch file, their dimensions as parameters.
+    pub fn sketch(&mut self, file: &Arc<SketchFile>, site: Site) {
+        file.faults.iter().for_each(|fault| self.report(fault.clone()));
+        for drawn in &file.objects {
+            let prefix = file.prefix(drawn);
+            let mut values = BTreeMap::new();
+            for (key, name, default, range) in drawn.parameters() {
+                let full = format!("{prefix}.{name}");
+                let place = Span::new(file.file, 0, 0);
+                match self.sketch_param(full, default, range, place) {
+                    Ok(Some(value)) => drop(values.insert(key.clone(), value)),
+                    Ok(None) => {}
+                    Err(diagnostic) => self.report(diagnostic),
+                }
+            }
+            self.drawn(drawn, &prefix, &values, site);
+            // Found under its own name as well, and in small letters: sketches do not tell them apart.
+            let own = crate::model_file::names::identifier(&drawn.object.name);
+            for alias in [&prefix, &prefix.to_ascii_lowercase(), &own] {
+                let name = self.modules.name(alias);
+                self.env.globals.resize_with(self.modules.name_count(), || None);
+                if self.lookup(name).is_none() {
+                    let what = Binding::Instance(prefix.as_str().into());
+                    self.env.globals[name.0 as usize] = Some(Bound { span: site.span, what });
+                }
+            }
+        }
+    }
+
+    /// A dimension as a parameter; its value when it is another than the file's, or has derivatives.
+    fn sketch_param(
+        &mut self,
+        name: String,
+        default: f64,
+        range: Option<[f64; 2]>,
+        span: Span,
+    ) -> Result<Option<T>, Diagnostic> {
+        let given = self.inputs.overrides.get(&name).copied();
+        let x = given.unwrap_or(default);
+        let range = range.map(|[low, high]| (low, high));
+        let inside = range.is_none_or(|(low, high)| (low..=high).contains(&x));
+        if !x.is_finite() || !inside {
+            let expected = match range {
+                Some((low, high)) => format!("a number from {low} to {high}"),
+                None => "a finite number".to_owned(),
+            };
+            let text = format!("`{name}` = {x} is out of its range");
+            return Err(Diagnostic::error("out-of-range", text)
+                .at(span)
+                .expected(expected)
+                .found(moldloft_syntax::number::plain(x)));
+        }
+        let value = (self.inputs.seed)(&name, T::from(x));
+        let changed = given.is_some() || !value.is_constant();
+        self.env.params.push(Param { name, value: x, default, range, is_int: false, span });
+        self.env.param_values.push(value);
+        Ok(changed.then_some(value))
+    }
+
+    /// `Sketch low("dam.skt", CREST = w);`: a sketch under a name of its own, with values that are no
+    /// parameters but depend on what the program says.
+    pub fn sketch_object(
+        &mut self,
+        m: &Module,
+        id: StmtId,
+        name: Ident,
+        args: List<Arg>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        if self.run.extent() == Extent::Edit {
+            return Err(Diagnostic::error("misplaced-object", "an expression declares no objects")
+                .at(name.span));
+        }
+        let wants = |at: Span| {
+            Diagnostic::error("wrong-argument", "a sketch takes its file, then dimensions by name")
+                .at(at)
+                .expected("Sketch low(\"dam.skt\", CREST = 20)")
+        };
+        let mut path = None;
+        let mut given: Vec<(Ident, T)> = Vec::new();
+        for arg in &m.program[args] {
+            let at = m.program[arg.value].span;
+            let value = self.operand(m, arg.value)?;
+            match (value, arg.name) {
+                (Value::Text(text), None) if path.is_none() => path = Some(text),
+                (Value::Number(x), Some(ident)) => given.push((ident, x)),
+                _ => return Err(wants(at)),
+            }
+        }
+        let path = path.ok_or_else(|| wants(span))?;
+        let file = self.modules.load_sketch(self.current, &path, span, &mut self.loader)?;
+        let [drawn] = &file.objects[..] else {
+            file.faults.iter().for_each(|fault| self.report(fault.clone()));
+            let found = format!("{} objects in `{path}`", file.objects.len());
+            return Err(Diagnostic::error("wrong-count", "a sketch under a name is one object")
+                .at(span)
+                .expected("a file with one object")
+                .found(found)
+                .help(format!("load \"{path}\" brings all of them in")));
+        };
+        file.faults.iter().for_each(|fault| self.report(fault.clone()));
+        let mut values = BTreeMap::new();
+        for (ident, x) in given {
+            let word = m.program.name(ident.symbol);
+            let key = word.to_ascii_lowercase();
+            if !drawn.object.dimensions.contains_key(&key)
+                && !drawn.object.variables.contains_key(&key)
+            {
+                let known: Vec<&str> = drawn.parameters().map(|p| p.1.as_str()).collect();
+                return Err(Diagnostic::error(
+                    "unknown-argument",
+                    format!("the sketch has no dimension `{word}`"),
+                )
+                .at(ident.span)
+                .expected(known.join(", "))
+                .suggest(word, known.iter().copied()));
+            }
+            values.insert(key, x);
+        }
+        let full = self.instance_name(m, name)?;
+        let origin = self.sketch_origin(id);
+        self.drawn(drawn, &full, &values, Site { origin, span });
+        Ok(())
+    }
+
+    /// Declares an object of a sketch with some of its numbers replaced.
+    fn drawn(&mut self, drawn: &Drawn, prefix: &str, values: &BTreeMap<String, T>, site: Site) {
+        let object = &drawn.object;
+        let layout = solve(object, &drawn.planes, values, &|| drawn.estimate());
+        for fault in &layout.faults {
+            if let Some(text) = fault_text(fault) {
+                let diagnostic =
+                    Diagnostic::error("sketch-unsolved", format!("`{prefix}`: {text}"));
+                self.report(diagnostic.at(site.span).help("change the dimensions, or see CHECK"));
+            }
+        }
+        if !layout.complete() && !object.drawing.points.is_empty() {
+            let missing = |a: Axis| (a, layout.counts[a.index()].missing);
+            let missing: Vec<String> = (Axis::ALL.map(missing).iter())
+                .filter(|m| m.1 > 0)
+                .map(|(a, n)| format!("{a}: {n}"))
+                .collect();
+            let text =
+                format!("`{prefix}` is not fully dimensioned; missing {}", missing.join(", "));
+            let diagnostic = Diagnostic::warning("sketch-incomplete", text);
+            self.report(
+                diagnostic.at(site.span).help("CONVERT in the sketch names the free points"),
+            );
+        }
+        let mut names = Names { prefix, site, members: Vec::new(), points: BTreeMap::new() };
+        for &id in drawn.planes.ids() {
+            if let Some(at) = layout.point(&drawn.planes, id) {
+                self.sketch_point(&mut names, id, at);
+            }
+        }
+        let body = solid(object, &drawn.planes, &layout);
+        for v in body.iter().flat_map(|b| &b.vertices) {
+            if !names.points.contains_key(&v.id) {
+                self.sketch_point(&mut names, v.id, v.at);
+            }
+        }
+        for (id, line) in &object.drawing.lines {
+            if let (Some(&p), Some(&q)) = (names.points.get(&line.p), names.points.get(&line.q)) {
+                let ends = vec![Value::Object(p), Value::Object(q)];
+                self.part(&mut names, &format!("l{id}"), "Line", ends, true);
+            }
+        }
+        if let Some(body) = &body {
+            self.sketch_body(&mut names, drawn, body);
+        }
+        for (key, d) in &object.dimensions {
+            let measured = || layout.measured(object, &drawn.planes, &d.measure);
+            let value = layout.values.get(key).copied().or_else(measured);
+            names.members.extend(value.map(|x| (d.name.clone(), Value::Number(x))));
+        }
+        for (key, v) in &object.variables {
+            let value = layout.values.get(key);
+            names.members.extend(value.map(|x| (v.name.clone(), Value::Number(*x))));
+        }
+        let members = names.members;
+        for (name, value) in members {
+            let full = format!("{prefix}.{name}");
+            self.env.sketch_members.insert(full.to_ascii_lowercase(), value.clone());
+            // Numbers as the sketch spells them; objects are in the graph.
+            self.env.sketch_members.insert(full, value);
+        }
+        self.env.sketches.push(prefix.to_owned());
+    }
+
+    fn sketch_point(&mut self, names: &mut Names<'_, T>, id: PointId, at: Vec3<T>) {
+        let xyz = at.to_array().map(Value::Number).to_vec();
+        if let Some(key) = self.part(names, &format!("p{id}"), "AbsPoint", xyz, true) {
+            names.points.insert(id, key);
+        }
+    }
+
+    /// Faces, curves, the mesh and its measures.
+    fn sketch_body(&mut self, names: &mut Names<'_, T>, drawn: &Drawn, body: &Solid<T>) {
+        let object = &drawn.object;
+        for (k, curve) in object.curves.values().enumerate() {
+            let Some(traced) = body.curves.get(&k) else { continue };
+            let ends = match &curve.points[..] {
+                [a, _, b] if !curve.kind.at_corner() => [Some(*a), Some(*b)],
+                [_, a, .., b, _] if !curve.kind.at_corner() => [Some(*a), Some(*b)],
+                _ => {
+                    let edge = body.edges.iter().find(|e| e.curve == Some(k));
+                    let ends = edge.filter(|_| traced.tangents.is_some() && curve.replaces);
+                    ends.map_or([None, None], |e| e.ends.map(|v| Some(body.vertices[v].id)))
+                }
+            };
+            let ends = ends.map(|id| id.and_then(|id| names.points.get(&id).copied()));
+            let (kind, args) = curve_arguments(traced, ends);
+            let name =
+                if is_taken(&curve.name) { format!("{}_", curve.name) } else { curve.name.clone() };
+            self.part(names, &name, kind, args, true);
+        }
+        for (id, face) in &object.faces {
+            let keys: Option<Vec<Value<T>>> =
+                face.outer.iter().map(|p| names.points.get(p).map(|&k| Value::Object(k))).collect();
+            if let Some(keys) = keys {
+                self.part(names, &format!("face{id}"), "FacePatch", vec![Value::list(keys)], false);
+            }
+        }
+        let mesh = body.faceted();
+        let mass = body.mass();
+        let corners = mesh.faces().iter().flat_map(|&[a, b, c, d]| {
+            let second = [a, c, d];
+            [Some([a, b, c]), (c != d).then_some(second)].into_iter().flatten()
+        });
+        let corners: Vec<T> = corners.flatten().map(|v| T::from(f64::from(v + 1))).collect();
+        let row = |n: Vec<T>| Value::Numbers(Arc::new(moldloft_registry::Array::row(n)));
+        let points = moldloft_registry::Vectors::row(mesh.positions().to_vec());
+        let args = vec![
+            Value::Vectors(Arc::new(points)),
+            row(corners),
+            if body.flat { Value::Unset } else { Value::Number(mass.volume) },
+            Value::Number(mass.area),
+            Value::Vector(mass.centroid),
+        ];
+        let key = self.part(names, "solid", "MeshBody", args, true);
+        if let Some(key) = key.filter(|_| !body.flat && mesh.report().closed) {
+            let args = face_arguments(body, &mesh, key);
+            self.part(names, "body", "FaceSet", args, false);
+        }
+        if !body.flat {
+            names.members.push(("volume".into(), Value::Number(mass.volume)));
+        }
+        names.members.push(("area".into(), Value::Number(mass.area)));
+        names.members.push(("centroid".into(), Value::Vector(mass.centroid)));
+    }
+
+    /// Declares `prefix.name`.
+    fn part(
+        &mut self,
+        names: &mut Names<'_, T>,
+        name: &str,
+        kind: &str,
+        args: Vec<Value<T>>,
+        shown: bool,
+    ) -> Option<Key> {
+        let row = self.loader.registry.get(kind)?.clone();
+        let full = format!("{}.{name}", names.prefix);
+        let given = Given { positional: args, named: Vec::new() };
+        let declared = arrange(&row, given, |key| self.run.class_of(key)).and_then(|filled| {
+            let (args, mut head) = filled;
+            head.visible = i32::from(shown);
+            if !shown {
+                // One panel: its corners are the face's.
+                (head.divisions, head.divided) = ([1, 1], true);
+            }
+            let origin = names.site.origin;
+            self.run.declare(Declaration { name: &full, row: &row, args, head, origin })
+        });
+        match declared {
+            Ok(key) => {
+                names.members.push((name.to_owned(), Value::Object(key)));
+                Some(key)
+            }
+            Err(fault) => {
+                self.report(crate::source::fault_location::unplaced(&fault).at(names.site.span));
+                None
+            }
+        }
+    }
+}
+
+/// The arguments of `FaceSet`: the mesh, the face of each triangle, and the round faces.
+fn face_arguments<T: Scalar>(body: &Solid<T>, mesh: &Mesh<T>, key: Key) -> Vec<Value<T>> {
+    let number = |n: usize| T::from((n + 1) as f64);
+    let mut sides = Vec::new();
+    for (n, patch) in mesh.patches().iter().enumerate() {
+        for &[_, _, c, d] in &mesh.faces()[patch.faces.clone()] {
+            sides.extend(std::iter::repeat_n(number(n), if c == d { 1 } else { 2 }));
+        }
+    }
+    let round = |r: RoundFace<T>| {
+        let [p, q, s] = r.profile;
+        [p, q, s, r.shift, Vec3::new(r.sweep, r.scale, number(r.face))]
+    };
+    let rounds: Vec<Vec3<T>> = body.rounds().into_iter().flat_map(round).collect();
+    let rounds = if rounds.is_empty() {
+        Value::Unset
+    } else {
+        Value::Vectors(Arc::new(moldloft_registry::Vectors::row(rounds)))
+    };
+    let sides = Value::Numbers(Arc::new(moldloft_registry::Array::row(sides)));
+    vec![Value::Object(key), sides, rounds]
+}
+
+/// What is being declared, and under which names.
+struct Names<'a, T: Scalar> {
+    prefix: &'a str,
+    site: Site,
+    members: Vec<(String, Value<T>)>,
+    points: BTreeMap<PointId, Key>,
+}
+
+/// Names that points, lines, faces and measures have.
+fn is_taken(name: &str) -> bool {
+    let numbered = ["p", "l", "face"].iter().any(|start| {
+        let number = name.strip_prefix(start).unwrap_or("");
+        !number.is_empty() && number.chars().all(|c| c.is_ascii_digit())
+    });
+    numbered || matches!(name, "solid" | "body" | "volume" | "area" | "centroid")
+}
+
+/// A traced curve as the kind that says it and its arguments.
+fn curve_arguments<T: Scalar>(
+    traced: &Traced<T>,
+    ends: [Option<Key>; 2],
+) -> (&'static str, Vec<Value<T>>) {
+    let end = |k: usize, at: Vec3<T>| ends[k].map_or(Value::Vector(at), Value::Object);
+    if let [Piece::Conic { centre, a, b, sweep }] = traced.pieces[..] {
+        let args = vec![
+            Value::Vector(centre),
+            end(0, centre + a),
+            Value::Vector(centre + b),
+            Value::Number(sweep),
+            ends[1].map_or(Value::Unset, Value::Object),
+        ];
+        return ("ConjugateArc", args);
+    }
+    let cubics: Vec<[Vec3<T>; 4]> = (traced.pieces.iter())
+        .filter_map(|p| match p {
+            Piece::Cubic(points) => Some(*points),
+            Piece::Conic { .. } => None,
+        })
+        .collect();
+    let mut points: Vec<Value<T>> = Vec::new();
+    for (k, piece) in cubics.iter().enumerate() {
+        let skip = usize::from(k > 0);
+        points.extend(piece[skip..].iter().map(|&p| Value::Vector(p)));
+    }
+    if let (Some(first), Some(last)) = (cubics.first(), cubics.last()) {
+        let n = points.len();
+        points[0] = end(0, first[0]);
+        points[n - 1] = end(1, last[3]);
+    }
+    ("CubicChain", vec![Value::list(points)])
+}
+
+/// What is wrong with a layout; redundant dimensions are no fault.
+fn fault_text(fault: &DimensionFault) -> Option<String> {
+    Some(match fault {
+        DimensionFault::Redundant { .. } => return None,
+        DimensionFault::Contradictory { name, asked, measured, .. } => {
+            format!("{name} asks {asked}, but the others make it {measured}")
+        }
+        DimensionFault::NoValue { name, reads } => {
+            format!("{name} reads {reads}, which has no value")
+        }
+        DimensionFault::Cycle { names } => {
+            format!("{} depend on each other in a circle", names.join(", "))
+        }
+        DimensionFault::NotFinite { name } => format!("{name} is not a finite number"),
+        DimensionFault::Unsolved { name, residual } => {
+            format!("{name} cannot be satisfied; it is missed by {residual}")
+        }
+    })
+}

@@ -1,0 +1,141 @@
+//! Solve sets in a run: their kind, and what a statement that declares one notes for the solver.
+
+use crate::run::interpreter::Interpreter;
+use crate::source::env::{Binding, Solve};
+use crate::source::fault_location;
+use crate::source::module::Module;
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_num::Real;
+use moldloft_registry::export::StaticRow;
+use moldloft_registry::{Array, Build, Context, Fault, Kind, Row, Scalar, Value, many};
+use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
+use std::sync::Arc;
+
+/// The name of the kind below.
+pub(crate) const KIND: &str = "SolveSet";
+
+/// Parameters that are found so that as many numbers become zero, by damped Newton steps from the
+/// values that they are given.
+///
+/// The unknowns are parameters of the program, and what is built on them is built on the solution;
+/// their ranges bound the search. The conditions are numbers computed from them, each zero when it
+/// holds: `hull.volume - 100`. `s.x` is the solution of the unknown x, `s.residual` the largest
+/// condition left, `s.iterations` the number of steps.
+#[derive(Kind)]
+#[kind(
+    class = Numbers,
+    example = "param float x = 1 in [0, 5]; param float y = 1; AbsPoint A(x, y, 0); \
+               AbsPoint B(0, 0, 0); Line l(A, B); SolveSet s({x, y}, {l.length - 5, A.x - 0.75*A.y});"
+)]
+pub struct SolveSet<T: Real> {
+    /// The parameters to find, by name.
+    #[field(min_items = 1)]
+    unknowns: Vec<T>,
+    /// As many numbers that become zero.
+    #[field(min_items = 1)]
+    conditions: Vec<T>,
+    /// The most steps.
+    #[field(default = 50, min = 1, max = 1000)]
+    steps: u32,
+}
+
+impl<T: Real> Build<T> for SolveSet<T> {
+    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+        let _ = (self.conditions, self.steps);
+        Ok(Value::Numbers(Arc::new(Array::row(self.unknowns))))
+    }
+}
+
+/// The row of this module.
+pub(crate) fn row() -> Row {
+    <SolveSet<f64> as StaticRow>::row()
+}
+
+impl<T: Scalar> Interpreter<'_, '_, T> {
+    /// Takes note of a solve set; its conditions are read.
+    #[allow(clippy::too_many_arguments)]
+    pub fn solve_set(
+        &mut self,
+        m: &Module,
+        args: List<Arg>,
+        row: &Row,
+        positional: usize,
+        filled: &mut [Value<T>],
+        full: &str,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        if !self.frame().global || !self.frame().loops.is_empty() {
+            return Err(Diagnostic::error(
+                "misplaced-param",
+                "a solve set belongs at file level, outside loops and subroutines",
+            )
+            .at(span));
+        }
+        let items: Vec<ExprId> = fault_location::argument(m, &m.program[args], row, positional, 0)
+            .map(|expr| match m.program[m.program.bare(expr)].kind {
+                ExprKind::List(items) => m.program[items].to_vec(),
+                _ => vec![expr],
+            })
+            .unwrap_or_default();
+        let mut unknowns: Vec<usize> = Vec::new();
+        for item in items {
+            let name = m.program.as_name(item).map(|symbol| m.names[symbol.0 as usize]);
+            let bound = name.and_then(|name| self.lookup(name));
+            let at = m.program[item].span;
+            let number = match bound.map(|b| &b.what) {
+                Some(Binding::Param(number)) => *number,
+                _ => {
+                    return Err(Diagnostic::error("not-an-unknown", "an unknown is a parameter")
+                        .at(at)
+                        .expected("the name of a parameter")
+                        .found(format!("`{}`", m.program.slice(at)))
+                        .help("declare it: param float x = 1 in [0, 5];"));
+                }
+            };
+            let param = &self.env.params[number];
+            if param.is_int {
+                return Err(Diagnostic::error("not-an-unknown", "an unknown varies continuously")
+                    .at(at)
+                    .expected("a parameter of type float")
+                    .found("an int"));
+            }
+            let others = self.env.solves.iter().flat_map(|s| &s.unknowns);
+            if unknowns.iter().chain(others).any(|&n| n == number) {
+                return Err(Diagnostic::error(
+                    "not-an-unknown",
+                    format!("`{}` is an unknown already", param.name),
+                )
+                .at(at)
+                .help("an unknown belongs to one solve set, once"));
+            }
+            unknowns.push(number);
+        }
+        let expr = fault_location::argument(m, &m.program[args], row, positional, 1);
+        let at = expr.map_or(span, |expr| m.program[expr].span);
+        filled[1] = self.read(filled[1].clone(), at)?;
+        let conditions: Vec<T> = match &filled[1] {
+            Value::Vector(v) => v.to_array().to_vec(),
+            other => many(other).map_err(|fault| fault_location::unplaced(&fault).at(at))?,
+        };
+        if conditions.len() != unknowns.len() {
+            return Err(Diagnostic::error(
+                "wrong-count",
+                format!(
+                    "{} conditions do not determine {} unknowns",
+                    conditions.len(),
+                    unknowns.len()
+                ),
+            )
+            .at(at)
+            .expected(format!("{} conditions", unknowns.len()))
+            .found(conditions.len().to_string())
+            .help("state one number that becomes zero for each unknown"));
+        }
+        let steps = match &filled[2] {
+            Value::Number(x) => x.re() as usize,
+            _ => 50,
+        };
+        self.env.solves.push(Solve { name: full.into(), span, unknowns, conditions, steps });
+        Ok(())
+    }
+}

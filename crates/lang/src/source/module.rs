@@ -1,0 +1,255 @@
+use crate::World;
+use crate::source::sketch_file::SketchFile;
+use moldloft_diag::{Diagnostic, Sources, Span};
+use moldloft_registry::{Registry, Row};
+use moldloft_syntax::sdl::{self, Program, RoutineId, Symbol};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A name, the same number in every file of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Name(pub u32);
+
+/// A routine of a module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RoutineAt {
+    pub module: usize,
+    pub routine: RoutineId,
+}
+
+/// A parsed file of a model, its names resolved against the others'.
+#[derive(Debug)]
+pub struct Module {
+    /// The name that the world gave it.
+    pub path: String,
+    pub program: Program,
+    /// The model-wide name of each symbol.
+    pub names: Vec<Name>,
+    /// The registry's row of each symbol.
+    pub rows: Vec<Option<Arc<Row>>>,
+    /// What is wrong with the text of a loaded file; told whenever it is run.
+    pub faults: Vec<Diagnostic>,
+    /// True for a library that comes with the program.
+    pub library: bool,
+}
+
+/// All files of a model: parsed once, executed often.
+#[derive(Debug, Default)]
+pub struct Modules {
+    modules: Vec<Arc<Module>>,
+    texts: HashMap<Arc<str>, Name>,
+    names: Vec<Arc<str>>,
+    /// Loaded files by the name the world gave, and the outcome of each request.
+    loaded: HashMap<(usize, String), Result<usize, Diagnostic>>,
+    /// Sketch files, and the outcome of each request.
+    sketches: Vec<Arc<SketchFile>>,
+    sketched: HashMap<(usize, String), Result<Arc<SketchFile>, Diagnostic>>,
+}
+
+impl Modules {
+    pub fn get(&self, module: usize) -> &Arc<Module> {
+        &self.modules[module]
+    }
+
+    /// The module, to edit its literals; no run is under way then.
+    pub fn get_mut(&mut self, module: usize) -> &mut Module {
+        Arc::get_mut(&mut self.modules[module]).expect("no run holds on to a module")
+    }
+
+    pub fn len(&self) -> usize {
+        self.modules.len()
+    }
+
+    pub fn name(&mut self, text: &str) -> Name {
+        if let Some(&name) = self.texts.get(text) {
+            return name;
+        }
+        let name = Name(self.names.len() as u32);
+        let text: Arc<str> = text.into();
+        self.names.push(text.clone());
+        self.texts.insert(text, name);
+        name
+    }
+
+    pub fn text(&self, name: Name) -> &Arc<str> {
+        &self.names[name.0 as usize]
+    }
+
+    pub fn name_count(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Takes in a parsed program; `at` replaces the module of that number.
+    pub fn add(
+        &mut self,
+        path: &str,
+        program: Program,
+        registry: &Registry,
+        at: Option<usize>,
+    ) -> usize {
+        let (names, rows) = self.resolve(&program, registry);
+        let module = Arc::new(Module {
+            path: path.into(),
+            program,
+            names,
+            rows,
+            faults: Vec::new(),
+            library: path.starts_with(crate::source::library::FOLDER),
+        });
+        match at {
+            Some(at) => {
+                self.modules[at] = module;
+                self.loaded.retain(|(from, _), _| *from != at);
+                self.sketched.retain(|(from, _), _| *from != at);
+                at
+            }
+            None => {
+                self.modules.push(module);
+                self.modules.len() - 1
+            }
+        }
+    }
+
+    /// Takes in an expression for a moment; it goes with [`Self::remove_expression`].
+    pub fn add_expression(&mut self, program: Program, registry: &Registry) -> usize {
+        self.add("", program, registry, None)
+    }
+
+    /// Removes the expression that came last.
+    pub fn remove_expression(&mut self, at: usize) {
+        if at + 1 == self.modules.len() {
+            self.modules.pop();
+        }
+    }
+
+    fn resolve(
+        &mut self,
+        program: &Program,
+        registry: &Registry,
+    ) -> (Vec<Name>, Vec<Option<Arc<Row>>>) {
+        (0..program.symbol_count() as u32)
+            .map(|k| {
+                let text = program.name(Symbol(k));
+                (self.name(text), registry.get(text).cloned())
+            })
+            .unzip()
+    }
+
+    /// Looks the rows up again, after the registry has changed.
+    pub fn relink(&mut self, registry: &Registry) {
+        for module in &mut self.modules {
+            let module = Arc::get_mut(module).expect("no run holds on to a module");
+            for (k, row) in module.rows.iter_mut().enumerate() {
+                *row = registry.get(module.program.name(Symbol(k as u32))).cloned();
+            }
+        }
+    }
+
+    /// The module that `load "path"` in module `from` means, read and parsed when it is new. The
+    /// diagnostics of its text are pushed once.
+    pub fn load(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<usize, Diagnostic> {
+        if let Some(known) = self.loaded.get(&(from, path.to_string())) {
+            return known.clone();
+        }
+        let outcome = self.read(from, path, span, loader);
+        self.loaded.insert((from, path.to_string()), outcome.clone());
+        outcome
+    }
+
+    /// The sketch file that `load "path"` in module `from` means, run when it is new.
+    pub fn load_sketch(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<Arc<SketchFile>, Diagnostic> {
+        if let Some(known) = self.sketched.get(&(from, path.to_string())) {
+            return known.clone();
+        }
+        let outcome = self.read_sketch(from, path, span, loader);
+        self.sketched.insert((from, path.to_string()), outcome.clone());
+        outcome
+    }
+
+    fn read_sketch(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<Arc<SketchFile>, Diagnostic> {
+        let from_path = self.modules[from].path.clone();
+        let read = loader
+            .world
+            .read(path, Some(&from_path))
+            .map_err(|e| Diagnostic::error("cannot-read", e.message).at(span).maybe_help(e.help))?;
+        let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
+        // A text that is the same as before was run before.
+        let known = self.sketches.iter().find(|s| {
+            s.path == read.name && loader.sources.text(s.file).is_some_and(|t| **t == *text)
+        });
+        if let Some(known) = known {
+            return Ok(known.clone());
+        }
+        let file = loader.sources.add(read.name.clone(), text);
+        let sketch = Arc::new(SketchFile::open(&read.name, text, file, loader.world));
+        self.sketches.push(sketch.clone());
+        Ok(sketch)
+    }
+
+    fn read(
+        &mut self,
+        from: usize,
+        path: &str,
+        span: Span,
+        loader: &mut Loader<'_>,
+    ) -> Result<usize, Diagnostic> {
+        // A library loads others from beside the user's program first, as the program itself would.
+        let from = if self.modules[from].library { 0 } else { from };
+        let from_path = self.modules[from].path.clone();
+        let read = loader.world.read(path, Some(&from_path)).or_else(|error| {
+            crate::source::library::text(path).ok_or_else(|| {
+                let near = crate::source::library::near(path);
+                Diagnostic::error("cannot-read", error.message)
+                    .at(span)
+                    .maybe_help(error.help)
+                    .maybe_help(near)
+            })
+        })?;
+        if let Some(at) = self.modules.iter().position(|m| m.path == read.name) {
+            return Ok(at);
+        }
+        let text = moldloft_syntax::decode(&read.bytes, &read.name).map_err(|d| d.or_at(span))?;
+        let text = if read.name.to_ascii_lowercase().ends_with(".ms2") {
+            (loader.converted)(&read.name, text, loader.registry).map_err(|d| d.at(span))?
+        } else {
+            text.to_string()
+        };
+        let text = text.as_str();
+        let file = loader.sources.add(read.name.clone(), text);
+        let (program, found) = sdl::parse(text, file);
+        let at = self.add(&read.name, program, loader.registry, None);
+        self.get_mut(at).faults = found;
+        Ok(at)
+    }
+}
+
+/// What loading a file needs.
+pub struct Loader<'a> {
+    pub world: &'a dyn World,
+    pub registry: &'a Registry,
+    pub sources: &'a mut Sources,
+    pub diagnostics: &'a mut Vec<Diagnostic>,
+    /// The program of a model file.
+    pub converted: Convert,
+}
+
+/// Makes a program of a model file: its name and text are given.
+pub type Convert = fn(&str, &str, &Registry) -> Result<String, Diagnostic>;

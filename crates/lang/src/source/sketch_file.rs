@@ -1,0 +1,183 @@
+//! Sketch files: run once, laid out in every run.
+//!
+//! `load "dam.skt"` runs the commands of the file and keeps its objects. Each run of the model then
+//! computes their coordinates from the present values of the dimensions, which are parameters, and
+//! declares ordinary objects: points, lines, curves, faces, the solid.
+
+use crate::World;
+use moldloft_diag::{Diagnostic, FileId, Span};
+use moldloft_sketch::{Estimate, Files, Object, Planes, Role, Session, json_format};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// Files that a sketch may read through one another.
+const MOST_FILES: usize = 32;
+
+/// More refused commands than this are not told one by one.
+const MOST_FAULTS: usize = 100;
+
+/// A file of sketches after its commands were run.
+#[derive(Debug)]
+pub struct SketchFile {
+    /// The name that the world gave it.
+    pub path: String,
+    /// Its text.
+    pub file: FileId,
+    /// Its objects.
+    pub objects: Vec<Drawn>,
+    /// Refused commands and warnings.
+    pub faults: Vec<Diagnostic>,
+}
+
+/// A sketched object with what its drawing alone decides.
+#[derive(Debug)]
+pub struct Drawn {
+    /// The object.
+    pub object: Object,
+    /// Its dimensioning planes.
+    pub planes: Planes,
+    estimate: OnceLock<Option<Estimate>>,
+}
+
+impl Drawn {
+    /// What the picture says about depths, computed when it is first asked for.
+    pub fn estimate(&self) -> Option<Estimate> {
+        let drawing = &self.object.drawing;
+        let compute =
+            || Estimate::of(drawing, &self.planes, self.object.reference().map(|r| r.point)?);
+        self.estimate.get_or_init(compute).clone()
+    }
+
+    /// The numbers that are parameters of the model, as key, name, value and range: driving dimensions
+    /// and variables that are plain numbers.
+    pub fn parameters(&self) -> impl Iterator<Item = (&String, &String, f64, Option<[f64; 2]>)> {
+        let variables = (self.object.variables.iter())
+            .filter_map(|(key, v)| Some((key, &v.name, v.value.literal()?, v.range)));
+        let dimensions = (self.object.dimensions.iter())
+            .filter(|(_, d)| d.role == Role::Driving)
+            .filter_map(|(key, d)| Some((key, &d.name, d.value.as_ref()?.literal()?, d.range)));
+        variables.chain(dimensions)
+    }
+}
+
+/// True for the names of sketch files.
+pub fn is_sketch(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    name.ends_with(".skt") || name.ends_with(".skt.json")
+}
+
+/// What a session has read so far, and what it asked for besides.
+#[derive(Debug, Default)]
+struct Shelf {
+    texts: BTreeMap<String, Result<String, String>>,
+    wanted: Option<String>,
+}
+
+struct ShelfFiles(Arc<Mutex<Shelf>>);
+
+impl Files for ShelfFiles {
+    fn read(&self, name: &str) -> Result<String, String> {
+        let mut shelf = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = shelf.texts.get(name) {
+            return known.clone();
+        }
+        shelf.wanted.get_or_insert_with(|| name.to_owned());
+        Err("it has not been read yet".to_owned())
+    }
+}
+
+impl SketchFile {
+    /// Runs the commands of a text. Other files are read through `world`, as seen from this one.
+    pub fn open(path: &str, text: &str, file: FileId, world: &dyn World) -> SketchFile {
+        let shelf = Arc::new(Mutex::new(Shelf::default()));
+        let whole = Span::new(file, 0, text.find('\n').unwrap_or(text.len()) as u32);
+        let script = if text.trim_start().starts_with(['{', '[']) {
+            match json_format::from_json(text) {
+                Ok(script) => Some(script),
+                Err(why) => {
+                    let fault = Diagnostic::error("no-sketch", format!("this is no sketch: {why}"))
+                        .at(whole)
+                        .help("SAVE writes files that can be read");
+                    return SketchFile {
+                        path: path.into(),
+                        file,
+                        objects: Vec::new(),
+                        faults: vec![fault],
+                    };
+                }
+            }
+        } else {
+            None
+        };
+        // A session cannot wait for the world, so it is run again with each file that it asks for.
+        for _ in 0..=MOST_FILES {
+            let mut session = Session::with_files(Box::new(ShelfFiles(shelf.clone())));
+            let mut faults = Vec::new();
+            let commands = script.as_deref().unwrap_or(text);
+            let mut at = 0;
+            for line in commands.split_inclusive('\n') {
+                let start = at;
+                at += line.len();
+                let line = line.trim_end_matches(['\n', '\r']);
+                let span = match script {
+                    Some(_) => whole,
+                    None => Span::new(file, start as u32, (start + line.len()) as u32),
+                };
+                faults.extend(session.run_line(line).into_iter().filter_map(|r| told(r, span)));
+                if session.over() {
+                    break;
+                }
+            }
+            let wanted = shelf.lock().unwrap_or_else(PoisonError::into_inner).wanted.take();
+            let Some(name) = wanted else {
+                let beyond = faults.len().saturating_sub(MOST_FAULTS);
+                faults.truncate(MOST_FAULTS);
+                if beyond > 0 {
+                    let text = format!("{beyond} more replies of the sketch are not listed");
+                    faults.push(Diagnostic::warning("too-many-errors", text).at(whole));
+                }
+                let objects = (session.names().iter())
+                    .filter_map(|name| session.object(name))
+                    .map(|object| Drawn {
+                        planes: Planes::of(&object.drawing),
+                        object: object.clone(),
+                        estimate: OnceLock::new(),
+                    })
+                    .collect();
+                return SketchFile { path: path.into(), file, objects, faults };
+            };
+            let read = world.read(&name, Some(path)).map_err(|e| e.message).and_then(|read| {
+                let text = moldloft_syntax::decode(&read.bytes, &read.name);
+                text.map(|t| t.to_string()).map_err(|d| d.message.clone())
+            });
+            shelf.lock().unwrap_or_else(PoisonError::into_inner).texts.insert(name, read);
+        }
+        let fault = Diagnostic::error("too-many-files", "the sketch reads too many files")
+            .at(whole)
+            .expected(format!("at most {MOST_FILES} files"));
+        SketchFile { path: path.into(), file, objects: Vec::new(), faults: vec![fault] }
+    }
+
+    /// The name of an object in the model: how the file is called when it has this one object of that
+    /// name, else the object's own.
+    pub fn prefix(&self, drawn: &Drawn) -> String {
+        let base = self.path.rsplit(['/', '\\']).next().unwrap_or(&self.path);
+        let stem = base.split('.').next().unwrap_or(base);
+        let name = &drawn.object.name;
+        let chosen =
+            if self.objects.len() == 1 && stem.eq_ignore_ascii_case(name) { stem } else { name };
+        crate::model_file::names::identifier(chosen)
+    }
+}
+
+/// A reply as a diagnostic; notes are nothing wrong.
+fn told(reply: moldloft_sketch::Reply, span: Span) -> Option<Diagnostic> {
+    let code = reply.code.map_or(String::new(), |c| format!(" [{c}]"));
+    let text = format!("{}{code}", reply.text);
+    let diagnostic = match reply.severity {
+        moldloft_diag::Severity::Error => Diagnostic::error("refused-command", text),
+        moldloft_diag::Severity::Warning => Diagnostic::warning("sketch", text),
+        _ => return None,
+    };
+    Some(diagnostic.at(span).maybe_help(reply.next))
+}

@@ -1,0 +1,171 @@
+//! What values own: `.x`, `.t`, `.length`, `.area` and the like.
+
+use moldloft_diag::Diagnostic;
+use moldloft_mesh::{Blocks, HexBlock, Mesh, PatchInfo, TopologyBuilder, measure};
+use moldloft_model::{Graph, Object};
+use moldloft_num::{Order, Real, Vec3, gauss_legendre};
+use moldloft_panel::{MOST_CELLS, MOST_PANELS, divisions, solid_grid, too_many_panels};
+use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value, Vectors};
+use std::sync::Arc;
+
+/// The member called `name`, if the value has one.
+pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<T>, Diagnostic>> {
+    if let Some(member) = of_found(value, name) {
+        return Some(Ok(member));
+    }
+    let axis = ["x", "y", "z"].iter().position(|c| *c == name);
+    let number = |x: T| Some(Ok(Value::Number(x)));
+    match (value, axis) {
+        (Value::Vector(v), Some(c)) => number(v[c]),
+        (Value::Point(p), Some(c)) => number(p.xyz[c]),
+        (Value::Vectors(a), Some(c)) => {
+            let items = a.planes[c].clone();
+            Some(Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items }))))
+        }
+        (Value::Point(p), None) => match (name, &p.on_curve, &p.on_surface) {
+            ("t", Some(place), _) => number(place.1),
+            ("u", _, Some(place)) => number(place.1[0]),
+            ("v", _, Some(place)) => number(place.1[1]),
+            _ => None,
+        },
+        (Value::Mesh(mesh), None) => match name {
+            "volume" => number(mesh.volume),
+            "area" => number(mesh.area),
+            "centroid" => Some(Ok(Value::Vector(mesh.centroid))),
+            _ => FLAWS.contains(&name).then(|| {
+                let flaw = mesh.flaws.iter().find(|f| f.name == name);
+                let places = flaw.map_or(&[][..], |f| &f.places);
+                let lifted = places.iter().map(|p| Vec3::lifted(*p)).collect();
+                Ok(Value::Vectors(Arc::new(Vectors::row(lifted))))
+            }),
+        },
+        (Value::Curve(curve), None) if name == "length" => {
+            // To about twelve digits, as the function of this name.
+            let speed = |t: f64| curve.jet(T::from(t), Order::First)[1].re().norm();
+            let rough = gauss_legendre(0.0, 1.0, speed);
+            if rough == 0.0 {
+                return number(T::zero());
+            }
+            number(moldloft_spline::arclen(&**curve, T::zero(), T::one(), 1e-12 * rough))
+        }
+        (Value::Numbers(_) | Value::Vectors(_) | Value::List(_), None) => {
+            let extents = crate::value::variables::extents(value)?;
+            let extent = match name {
+                "d1" => extents.first(),
+                "d2" => extents.get(1),
+                _ => None,
+            }?;
+            number(T::from(*extent as f64))
+        }
+        _ => None,
+    }
+}
+
+/// How the value was found: `.status`, `.residual`, `.iterations`, `.start`, `.alternatives`.
+fn of_found<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
+    let found = value.found()?;
+    let row = |all: &[f64]| {
+        Value::Numbers(Arc::new(Array::row(all.iter().map(|&x| T::from(x)).collect())))
+    };
+    Some(match name {
+        "status" => Value::text(found.status.word()),
+        "residual" => Value::Number(T::from(found.residual)),
+        "iterations" => Value::Number(T::from(f64::from(found.iterations))),
+        "start" => row(&found.start),
+        "alternatives" => {
+            let columns = found.alternatives.first().map_or(0, |(p, _)| p.len());
+            let all = found.alternatives.iter().flat_map(|(p, _)| p.iter().map(|&x| T::from(x)));
+            let items: Vec<T> = all.collect();
+            Value::Numbers(Arc::new(Array::grid(found.alternatives.len(), columns, items)))
+        }
+        _ => return None,
+    })
+}
+
+/// The places where the facets of a set are not quite what was asked for.
+const FLAWS: [&str; 3] = ["undecided", "blunt", "touching"];
+
+/// The members of what was found by a search.
+const FOUND: [&str; 5] = ["status", "residual", "iterations", "start", "alternatives"];
+
+/// The names of the members that a value has.
+pub fn names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
+    let mut names = own_names(value);
+    names.extend(value.found().iter().flat_map(|_| FOUND));
+    names
+}
+
+fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
+    match value {
+        Value::Vector(_) => vec!["x", "y", "z"],
+        Value::Point(p) => {
+            let mut names = vec!["x", "y", "z"];
+            names.extend(p.on_curve.as_ref().map(|_| "t"));
+            names.extend(p.on_surface.iter().flat_map(|_| ["u", "v"]));
+            names
+        }
+        Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)) => {
+            vec!["x", "y", "z", "d1", "d2"]
+        }
+        Value::Vectors(_) => vec!["x", "y", "z", "d1"],
+        Value::Numbers(_) | Value::List(_) => vec!["d1"],
+        Value::Curve(_) => vec!["length"],
+        Value::Surface(_) => vec!["area"],
+        Value::Mesh(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
+        Value::Solid(_) => vec!["volume"],
+        _ => Vec::new(),
+    }
+}
+
+/// The area of a surface object, measured on its panels, or the volume of a solid, on its cells.
+pub fn of_patch<T: Scalar>(
+    graph: &Graph<T>,
+    object: &Object<T>,
+    name: &str,
+) -> Option<Result<T, Diagnostic>> {
+    if let Value::Solid(solid) = object.value()? {
+        return (name == "volume").then(|| solid_volume(solid, object));
+    }
+    let Value::Surface(surface) = object.value()? else { return None };
+    if name != "area" {
+        return None;
+    }
+    let [nu, nv] = divisions(graph, object).map(|n| n as usize);
+    let panels = nu as u64 * nv as u64;
+    if panels > MOST_PANELS {
+        return Some(Err(crate::source::fault_location::unplaced(&too_many_panels(panels))));
+    }
+    let steps = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();
+    let mut points = vec![Vec3::zero(); (nu + 1) * (nv + 1)];
+    surface.grid(&steps(nu), &steps(nv), &mut points, None);
+    let mut builder = TopologyBuilder::new();
+    let vertices = builder.add_vertices(points.len()).ok()?;
+    builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), false).ok()?;
+    Some(Ok(measure(&Mesh::new(builder.build().into(), points).ok()?).area))
+}
+
+/// Cells along a direction of which the solid itself says nothing.
+const USUAL_CELLS: usize = 8;
+
+/// The volume of a solid, measured on its own cells; negative when it is left-handed.
+fn solid_volume<T: Scalar>(solid: &SolidRef<T>, object: &Object<T>) -> Result<T, Diagnostic> {
+    let cells = object.head.blocks.map(|n| if n == 0 { USUAL_CELLS } else { n as usize });
+    let count = cells.iter().map(|&n| n as u64).product::<u64>();
+    if count > MOST_CELLS {
+        let message = format!("{count} cells are too many");
+        return Err(Diagnostic::error("too-many-cells", message)
+            .expected(format!("at most {MOST_CELLS}"))
+            .help("lower the divisions of the solid"));
+    }
+    let points = solid_grid(solid, cells);
+    let block = HexBlock {
+        name: object.name.to_string(),
+        size: cells.map(|n| n + 1),
+        vertices: (0..points.len() as u32).collect(),
+        faces: Default::default(),
+    };
+    match Blocks::new(points, vec![block]) {
+        Ok(blocks) => Ok(blocks.volume()),
+        Err(error) => Err(Diagnostic::error("no-mesh", error.to_string())),
+    }
+}

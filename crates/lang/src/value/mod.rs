@@ -1,0 +1,9 @@
+//! Values of the language: what variables hold, parts of arrays, members, operators, and their display.
+
+pub mod display;
+pub(crate) mod initialised;
+pub mod member;
+pub mod number_path;
+pub(crate) mod ops;
+pub(crate) mod subarray;
+pub mod variables;

@@ -1,0 +1,303 @@
+//! Operators on values: element by element over rows and grids of equal shape, or with a scalar.
+
+use moldloft_diag::Diagnostic;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Array, ArrayShape, Value, Vectors as Planes};
+use moldloft_syntax::sdl::BinaryOp;
+use std::sync::Arc;
+
+/// A value as its elements: all numbers or all vectors, and the shape they form.
+enum Elements<'v, T: Real> {
+    Number(T),
+    Vector(Vec3<T>),
+    Numbers(&'v Array<T>),
+    Vectors(&'v Planes<T>),
+}
+
+fn elements<'v, T: Real>(value: &'v Value<T>, op: &str) -> Result<Elements<'v, T>, Diagnostic> {
+    Ok(match value {
+        Value::Number(x) => Elements::Number(*x),
+        Value::Vector(v) => Elements::Vector(*v),
+        Value::Point(p) => Elements::Vector(p.xyz),
+        Value::Numbers(a) => Elements::Numbers(a),
+        Value::Vectors(a) => Elements::Vectors(a),
+        other => {
+            let class = crate::value::variables::a(other);
+            let help = match other {
+                Value::Curve(_) => Some(
+                    "a pcurve is only assigned, passed and returned; compute with its points: \
+                     c(t), or distc(c, s) for a row of parameters",
+                ),
+                Value::Surface(_) => Some(
+                    "a psurface is only assigned, passed and returned; compute with its points: \
+                     s(u, v), or dists(s, us, vs)",
+                ),
+                _ => None,
+            };
+            return Err(Diagnostic::error(
+                "wrong-operand",
+                format!("`{op}` does not take {class}"),
+            )
+            .expected("numbers, vectors, farrays, curves or surfaces")
+            .found(class)
+            .maybe_help(help));
+        }
+    })
+}
+
+pub(crate) fn shapes_differ(a: ArrayShape, b: ArrayShape) -> Diagnostic {
+    Diagnostic::error("shapes-differ", format!("shapes differ: {a} and {b}"))
+        .expected("equal shapes, or a single value on one side")
+        .found(format!("{a} and {b}"))
+}
+
+/// A row or grid whose elements come one by one.
+trait Elementwise<E> {
+    fn shape(&self) -> ArrayShape;
+    fn each(&self) -> impl Iterator<Item = E>;
+}
+
+impl<E: Copy> Elementwise<E> for Array<E> {
+    fn shape(&self) -> ArrayShape {
+        self.shape
+    }
+    fn each(&self) -> impl Iterator<Item = E> {
+        self.items.iter().copied()
+    }
+}
+
+impl<T: Real> Elementwise<Vec3<T>> for Planes<T> {
+    fn shape(&self) -> ArrayShape {
+        self.shape
+    }
+    fn each(&self) -> impl Iterator<Item = Vec3<T>> {
+        self.iter()
+    }
+}
+
+fn zipped<A, B, C>(
+    a: &impl Elementwise<A>,
+    b: &impl Elementwise<B>,
+    mut f: impl FnMut(A, B) -> C,
+) -> Result<Array<C>, Diagnostic> {
+    if a.shape() != b.shape() {
+        return Err(shapes_differ(a.shape(), b.shape()));
+    }
+    let items = a.each().zip(b.each()).map(|(x, y)| f(x, y)).collect();
+    Ok(Array { shape: a.shape(), items })
+}
+
+fn mapped<A, C>(a: &impl Elementwise<A>, f: impl FnMut(A) -> C) -> Array<C> {
+    Array { shape: a.shape(), items: a.each().map(f).collect() }
+}
+
+fn numbers<T: Real>(array: Array<T>) -> Value<T> {
+    Value::Numbers(Arc::new(array))
+}
+
+fn vectors<T: Real>(array: Array<Vec3<T>>) -> Value<T> {
+    Value::Vectors(Arc::new(Planes::new(array.shape, array.items)))
+}
+
+/// What the operator does to two numbers, a number and a vector, and so on; `None` where it is
+/// not defined.
+struct Rules<T> {
+    nn: Option<fn(T, T) -> T>,
+    nv: Option<fn(T, Vec3<T>) -> Vec3<T>>,
+    vn: Option<fn(Vec3<T>, T) -> Vec3<T>>,
+    vv: Option<fn(Vec3<T>, Vec3<T>) -> Vec3<T>>,
+    /// Two vectors to a number: the dot product.
+    dot: bool,
+}
+
+/// The exponent, when it is a small whole number: such powers go by multiplication, exact for whole
+/// numbers and defined for negative bases.
+pub(crate) fn whole_power<T: Real>(b: T) -> Option<i32> {
+    let k = b.re();
+    (b.is_constant() && k.fract() == 0.0 && k.abs() <= 64.0).then_some(k as i32)
+}
+
+pub(crate) fn power<T: Real>(a: T, b: T) -> T {
+    match whole_power(b) {
+        Some(k) => a.powi(k),
+        None => a.powf(b),
+    }
+}
+
+/// True for what makes a chain of operators one of sets.
+pub(crate) fn is_set<T: Real>(value: &Value<T>) -> bool {
+    matches!(value, Value::Set(_))
+}
+
+fn rules<T: Real>(op: BinaryOp) -> Option<Rules<T>> {
+    let each = |f: fn(T, T) -> T, v: fn(Vec3<T>, Vec3<T>) -> Vec3<T>| Rules {
+        nn: Some(f),
+        nv: None,
+        vn: None,
+        vv: Some(v),
+        dot: false,
+    };
+    Some(match op {
+        BinaryOp::Add => each(|a, b| a + b, |a, b| a + b),
+        BinaryOp::Sub => each(|a, b| a - b, |a, b| a - b),
+        BinaryOp::Mul => Rules {
+            nv: Some(|a, b| b * a),
+            vn: Some(|a, b| a * b),
+            ..each(|a, b| a * b, |a, b| Vec3::new(a.x * b.x, a.y * b.y, a.z * b.z))
+        },
+        BinaryOp::Div => Rules {
+            vn: Some(|a, b| a / b),
+            ..each(|a, b| a / b, |a, b| Vec3::new(a.x / b.x, a.y / b.y, a.z / b.z))
+        },
+        BinaryOp::Caret => Rules { nn: Some(power), nv: None, vn: None, vv: None, dot: false },
+        BinaryOp::Cross => {
+            Rules { nn: None, nv: None, vn: None, vv: Some(Vec3::cross), dot: false }
+        }
+        BinaryOp::Dot => Rules { nn: None, nv: None, vn: None, vv: None, dot: true },
+        _ => return None,
+    })
+}
+
+/// The value of `a op b`.
+pub(crate) fn binary<T: Real>(
+    op: BinaryOp,
+    a: &Value<T>,
+    b: &Value<T>,
+) -> Result<Value<T>, Diagnostic> {
+    use Elements::*;
+    if let Some(outcome) = crate::functions::sets::binary(op, a, b) {
+        return outcome;
+    }
+    let word = op.spelling();
+    let Some(r) = rules::<T>(op) else { return compare(op, a, b) };
+    let undefined = || {
+        let name = |value: &Value<T>| {
+            let of = crate::value::variables::a(value);
+            of.split_once(' ').map_or(of, |(_, name)| name)
+        };
+        let found = format!("{} {word} {}", name(a), name(b));
+        let d = Diagnostic::error("wrong-operand", format!("`{word}` is not defined for {found}"));
+        match op {
+            BinaryOp::Add | BinaryOp::Sub => d.help(
+                "add numbers to numbers and vectors to vectors: take a component (.x) or write \
+                 {a, a, a}",
+            ),
+            BinaryOp::Caret => d.help("only numbers have powers; use . for a dot product"),
+            BinaryOp::Dot | BinaryOp::Cross => {
+                d.help("both sides must be vectors; multiply with *")
+            }
+            _ => d,
+        }
+    };
+    let (x, y) = (elements(a, word)?, elements(b, word)?);
+    if r.dot {
+        let dot = |a: Vec3<T>, b: Vec3<T>| a.dot(b);
+        return Ok(match (x, y) {
+            (Vector(a), Vector(b)) => Value::Number(dot(a, b)),
+            (Vectors(a), Vector(b)) => numbers(mapped(a, |a| dot(a, b))),
+            (Vector(a), Vectors(b)) => numbers(mapped(b, |b| dot(a, b))),
+            (Vectors(a), Vectors(b)) => numbers(zipped(a, b, dot)?),
+            _ => return Err(undefined()),
+        });
+    }
+    Ok(match (x, y, r.nn, r.nv, r.vn, r.vv) {
+        (Number(a), Number(b), Some(f), ..) => Value::Number(f(a, b)),
+        (Numbers(a), Number(b), Some(f), ..) => numbers(mapped(a, |a| f(a, b))),
+        (Number(a), Numbers(b), Some(f), ..) => numbers(mapped(b, |b| f(a, b))),
+        (Numbers(a), Numbers(b), Some(f), ..) => numbers(zipped(a, b, f)?),
+        (Number(a), Vector(b), _, Some(f), ..) => Value::Vector(f(a, b)),
+        (Numbers(a), Vector(b), _, Some(f), ..) => vectors(mapped(a, |a| f(a, b))),
+        (Number(a), Vectors(b), _, Some(f), ..) => vectors(mapped(b, |b| f(a, b))),
+        (Numbers(a), Vectors(b), _, Some(f), ..) => vectors(zipped(a, b, f)?),
+        (Vector(a), Number(b), _, _, Some(f), _) => Value::Vector(f(a, b)),
+        (Vectors(a), Number(b), _, _, Some(f), _) => vectors(mapped(a, |a| f(a, b))),
+        (Vector(a), Numbers(b), _, _, Some(f), _) => vectors(mapped(b, |b| f(a, b))),
+        (Vectors(a), Numbers(b), _, _, Some(f), _) => vectors(zipped(a, b, f)?),
+        (Vector(a), Vector(b), .., Some(f)) => Value::Vector(f(a, b)),
+        (Vectors(a), Vector(b), .., Some(f)) => vectors(mapped(a, |a| f(a, b))),
+        (Vector(a), Vectors(b), .., Some(f)) => vectors(mapped(b, |b| f(a, b))),
+        (Vectors(a), Vectors(b), .., Some(f)) => vectors(zipped(a, b, f)?),
+        _ => return Err(undefined()),
+    })
+}
+
+fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    let holds = match (a, b) {
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.re(), b.re());
+            match op {
+                BinaryOp::Lt => a < b,
+                BinaryOp::Gt => a > b,
+                BinaryOp::Le => a <= b,
+                BinaryOp::Ge => a >= b,
+                BinaryOp::Eq => a == b,
+                BinaryOp::Ne => a != b,
+                _ => return Err(unsupported(op, a_of(&Value::Number(T::from(a))))),
+            }
+        }
+        (Value::Text(a), Value::Text(b)) => match op {
+            BinaryOp::Eq => a == b,
+            BinaryOp::Ne => a != b,
+            _ => return Err(unsupported(op, "texts")),
+        },
+        _ => {
+            let found =
+                format!("{} and {}", crate::value::variables::a(a), crate::value::variables::a(b));
+            return Err(Diagnostic::error(
+                "wrong-operand",
+                format!("`{}` compares numbers, not {found}", op.spelling()),
+            )
+            .expected("two numbers")
+            .found(found)
+            .help("compare a component, or take min() or max() of an farray first"));
+        }
+    };
+    Ok(Value::Number(T::from(f64::from(u8::from(holds)))))
+}
+
+fn a_of<T: Real>(value: &Value<T>) -> &'static str {
+    value.class().a()
+}
+
+fn unsupported(op: BinaryOp, what: &str) -> Diagnostic {
+    Diagnostic::error("wrong-operand", format!("`{}` is not defined for {what}", op.spelling()))
+}
+
+/// `-a`.
+pub(crate) fn negated<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    if let Some(value) = crate::functions::sets::negated(a) {
+        return Ok(value);
+    }
+    Ok(match elements(a, "-")? {
+        Elements::Number(x) => Value::Number(-x),
+        Elements::Vector(v) => Value::Vector(-v),
+        Elements::Numbers(a) => numbers(mapped(a, |x| -x)),
+        Elements::Vectors(a) => vectors(mapped(a, |v| -v)),
+    })
+}
+
+/// `|a|`: the length of vectors, the absolute value of numbers.
+pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Result<Value<T>, Diagnostic> {
+    if let Some(value) = crate::functions::sets::magnitude(a) {
+        return Ok(value);
+    }
+    Ok(match elements(a, "|")? {
+        Elements::Number(x) => Value::Number(x.abs()),
+        Elements::Vector(v) => Value::Number(v.norm()),
+        Elements::Numbers(a) => numbers(mapped(a, T::abs)),
+        Elements::Vectors(a) => numbers(mapped(a, Vec3::norm)),
+    })
+}
+
+/// `{a, b, c, ...}`: a vector of three numbers, a row of vectors of three rows of numbers, else a
+/// list.
+pub(crate) fn braces<T: Real>(items: Vec<Value<T>>) -> Result<Value<T>, Diagnostic> {
+    if let [Value::Number(x), Value::Number(y), Value::Number(z)] = items[..] {
+        return Ok(Value::Vector(Vec3::new(x, y, z)));
+    }
+    if let [Value::Numbers(x), Value::Numbers(y), Value::Numbers(z)] = &items[..] {
+        let xy = zipped(&**x, &**y, |x, y| (x, y))?;
+        return Ok(vectors(zipped(&xy, &**z, |(x, y), z| Vec3::new(x, y, z))?));
+    }
+    Ok(Value::list(items))
+}

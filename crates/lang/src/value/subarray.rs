@@ -1,0 +1,265 @@
+//! Sections: which elements of an array a subscript names, and places: which part of which variable
+//! an assignment or a returned argument writes to.
+
+use crate::source::module::Name;
+use moldloft_diag::Diagnostic;
+use moldloft_registry::ArrayShape;
+
+/// What a subscript selects from a dimension: `count` positions from `start`, `step` apart, counted
+/// from 0; and whether the dimension stays (a range) or goes (an index).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Selection {
+    pub start: usize,
+    pub step: isize,
+    pub count: usize,
+    pub keeps: bool,
+}
+
+impl Selection {
+    pub fn whole(extent: usize) -> Self {
+        Self { start: 0, step: 1, count: extent, keeps: true }
+    }
+
+    pub fn at(position: usize) -> Self {
+        Self { start: position, step: 1, count: 1, keeps: false }
+    }
+
+    pub fn position(self, k: usize) -> usize {
+        (self.start as isize + self.step * k as isize) as usize
+    }
+
+    pub fn positions(self) -> impl ExactSizeIterator<Item = usize> {
+        (0..self.count).map(move |k| self.position(k))
+    }
+
+    /// The range of positions when they are neighbours in increasing order.
+    fn run(self) -> Option<std::ops::Range<usize>> {
+        (self.step == 1 || self.count == 1).then(|| self.start..self.start + self.count)
+    }
+
+    /// What `inner` selects from what this selects.
+    pub fn of(self, inner: Selection) -> Selection {
+        Selection {
+            start: self.position(inner.start),
+            step: self.step * inner.step,
+            count: inner.count,
+            keeps: inner.keeps,
+        }
+    }
+
+    fn bounds(self) -> (usize, usize) {
+        let (a, b) = (self.start, self.position(self.count.max(1) - 1));
+        (a.min(b), a.max(b))
+    }
+
+    fn holds(self, position: usize) -> bool {
+        let d = position as isize - self.start as isize;
+        d % self.step == 0 && (0..self.count as isize).contains(&(d / self.step))
+    }
+
+    /// True when both select some position.
+    fn meets(self, o: Selection) -> bool {
+        let ((a, b), (c, d)) = (self.bounds(), o.bounds());
+        if b < c || d < a {
+            return false;
+        }
+        let (few, many) = if self.count <= o.count { (self, o) } else { (o, self) };
+        few.positions().any(|k| many.holds(k))
+    }
+}
+
+/// What all subscripts select.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    Row(Selection),
+    Grid(Selection, Selection),
+}
+
+impl Section {
+    /// The whole of an array.
+    pub fn whole(shape: ArrayShape) -> Self {
+        match shape {
+            ArrayShape::Row(n) => Section::Row(Selection::whole(n)),
+            ArrayShape::Grid(m, n) => Section::Grid(Selection::whole(m), Selection::whole(n)),
+        }
+    }
+
+    /// The extents of what is selected; none for a single element.
+    pub fn extents(self) -> ([usize; 2], usize) {
+        let mut extents = ([0; 2], 0);
+        let parts = match self {
+            Section::Row(a) => [Some(a), None],
+            Section::Grid(a, b) => [Some(a), Some(b)],
+        };
+        for part in parts.into_iter().flatten().filter(|s| s.keeps) {
+            extents.0[extents.1] = part.count;
+            extents.1 += 1;
+        }
+        extents
+    }
+
+    /// The shape of what is selected; `None` for a single element.
+    pub fn shape(self) -> Option<ArrayShape> {
+        match self.extents() {
+            (_, 0) => None,
+            ([n, _], 1) => Some(ArrayShape::Row(n)),
+            ([m, n], _) => Some(ArrayShape::Grid(m, n)),
+        }
+    }
+
+    /// What `inner` selects from what this selects; `None` when it has other dimensions.
+    pub fn of(self, inner: Section) -> Option<Section> {
+        Some(match (self, inner) {
+            (Section::Row(a), Section::Row(s)) if a.keeps => Section::Row(a.of(s)),
+            (Section::Grid(a, b), Section::Grid(s, t)) if a.keeps && b.keeps => {
+                Section::Grid(a.of(s), b.of(t))
+            }
+            (Section::Grid(a, b), Section::Row(s)) if a.keeps && !b.keeps => {
+                Section::Grid(a.of(s), b)
+            }
+            (Section::Grid(a, b), Section::Row(s)) if b.keeps && !a.keeps => {
+                Section::Grid(a, b.of(s))
+            }
+            _ => return None,
+        })
+    }
+
+    /// True when some element is in both.
+    pub fn meets(self, o: Section) -> bool {
+        match (self, o) {
+            (Section::Row(a), Section::Row(b)) => a.meets(b),
+            (Section::Grid(a, b), Section::Grid(c, d)) => a.meets(c) && b.meets(d),
+            _ => true,
+        }
+    }
+
+    /// Calls `f` with the position in memory of each selected element, in order, as runs of
+    /// neighbours: (first position, count, step).
+    pub fn runs(self, shape: ArrayShape, mut f: impl FnMut(usize, usize, isize)) {
+        match (self, shape) {
+            (Section::Row(a), _) => f(a.start, a.count, a.step),
+            (Section::Grid(a, b), ArrayShape::Grid(_, n)) => {
+                if b.count == 1 {
+                    f(a.start * n + b.start, a.count, a.step * n as isize);
+                } else if b.run() == Some(0..n) && a.run().is_some() {
+                    f(a.start * n, a.count * n, 1);
+                } else {
+                    a.positions().for_each(|i| f(i * n + b.start, b.count, b.step));
+                }
+            }
+            (Section::Grid(..), ArrayShape::Row(_)) => {}
+        }
+    }
+}
+
+/// The selected elements of `items`, in order.
+pub fn picked<E: Copy>(items: &[E], shape: ArrayShape, section: Section) -> Vec<E> {
+    let mut out = Vec::with_capacity(section.shape().map_or(1, ArrayShape::count));
+    section.runs(shape, |start, count, step| {
+        if step == 1 {
+            out.extend_from_slice(&items[start..start + count]);
+        } else {
+            let at = |k: usize| (start as isize + step * k as isize) as usize;
+            out.extend((0..count).map(|k| items[at(k)]));
+        }
+    });
+    out
+}
+
+/// Writes `from`, in order, to the selected elements of `items`.
+pub fn put<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, from: &[E]) {
+    let mut done = 0;
+    section.runs(shape, |start, count, step| {
+        let part = &from[done..done + count];
+        done += count;
+        if step == 1 {
+            items[start..start + count].copy_from_slice(part);
+        } else {
+            let at = |k: usize| (start as isize + step * k as isize) as usize;
+            part.iter().enumerate().for_each(|(k, &x)| items[at(k)] = x);
+        }
+    });
+}
+
+/// Writes one value to all selected elements of `items`.
+pub fn put_all<E: Copy>(items: &mut [E], shape: ArrayShape, section: Section, x: E) {
+    section.runs(shape, |start, count, step| {
+        let at = |k: usize| (start as isize + step * k as isize) as usize;
+        (0..count).for_each(|k| items[at(k)] = x);
+    });
+}
+
+/// A part of a variable that is assigned to, or passed by reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The frame of the variable; `None` for a global one.
+    pub frame: Option<u32>,
+    pub name: Name,
+    /// The subscripts, when there are some.
+    pub section: Option<Section>,
+    /// The component x, y, z as 0, 1, 2.
+    pub component: Option<usize>,
+}
+
+impl Place {
+    /// A whole variable.
+    pub fn whole(frame: Option<u32>, name: Name) -> Self {
+        Self { frame, name, section: None, component: None }
+    }
+
+    /// A section of this place.
+    ///
+    /// # Errors
+    /// When this place has no such dimensions.
+    pub fn indexed(self, inner: Section) -> Result<Self, Diagnostic> {
+        let section = match self.section {
+            None => Some(inner),
+            Some(outer) => outer.of(inner),
+        };
+        match section {
+            Some(_) => Ok(Self { section, ..self }),
+            None => Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")),
+        }
+    }
+
+    /// True when writing to one may change the other.
+    pub fn meets(&self, o: &Place) -> bool {
+        let same = (self.frame, self.name) == (o.frame, o.name);
+        let components = match (self.component, o.component) {
+            (Some(a), Some(b)) => a == b,
+            _ => true,
+        };
+        let sections = match (self.section, o.section) {
+            (Some(a), Some(b)) => a.meets(b),
+            _ => true,
+        };
+        same && components && sections
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sections_of_sections() {
+        let shape = ArrayShape::Grid(4, 5);
+        let items: Vec<usize> = (0..20).collect();
+        let column = Section::Grid(Selection::whole(4), Selection::at(2));
+        assert_eq!(picked(&items, shape, column), [2, 7, 12, 17]);
+        let back = Selection { start: 3, step: -2, count: 2, keeps: true };
+        let part = column.of(Section::Row(back)).unwrap();
+        assert_eq!(picked(&items, shape, part), [17, 7]);
+        assert_eq!(part.shape(), Some(ArrayShape::Row(2)));
+        let block = Section::Grid(back, Selection { start: 1, step: 3, count: 2, keeps: true });
+        assert_eq!(picked(&items, shape, block), [16, 19, 6, 9]);
+        assert!(column.of(column).is_none());
+        let mut copy = items.clone();
+        put(&mut copy, shape, block, &[0, 0, 0, 1]);
+        assert_eq!((copy[16], copy[19], copy[6], copy[9], copy[7]), (0, 0, 0, 1, 7));
+        assert!(part.meets(column) && !part.meets(block));
+        let rows =
+            Section::Grid(Selection { start: 1, ..Selection::whole(2) }, Selection::whole(5));
+        assert_eq!(picked(&items, shape, rows), (5..15).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,526 @@
+//! Variables: types, sections, and assignment.
+
+use crate::value::subarray::{Place, Section, picked, put, put_all};
+use moldloft_diag::Diagnostic;
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Array, ArrayShape, Class, Value, Vectors};
+use moldloft_syntax::sdl::Type;
+use std::sync::Arc;
+
+/// The most elements of an array.
+const MOST_ELEMENTS: f64 = 1e7;
+
+/// What is known of the variable that a value is stored into.
+pub struct Taken<'a> {
+    pub ty: Type,
+    pub fixed: bool,
+    pub name: &'a str,
+}
+
+/// The type that holds a value as it is.
+pub fn type_of<T: Real>(value: &Value<T>) -> Type {
+    match value {
+        Value::Text(_) => Type::String,
+        Value::Vector(_) | Value::Point(_) => Type::Vector,
+        Value::Numbers(_) => Type::Farray,
+        Value::Vectors(a) if matches!(a.shape, ArrayShape::Grid(..)) => Type::Surface,
+        Value::Vectors(_) => Type::Curve,
+        Value::Curve(_) => Type::Pcurve,
+        Value::Surface(_) => Type::Psurface,
+        Value::Field(_) => Type::Field,
+        Value::Set(_) => Type::Set,
+        _ => Type::Float,
+    }
+}
+
+pub use moldloft_arrays::type_name as a;
+
+/// [`a`] as a method.
+pub trait Called {
+    fn called(&self) -> &'static str;
+}
+
+impl<T: Real> Called for Value<T> {
+    fn called(&self) -> &'static str {
+        a(self)
+    }
+}
+
+/// The word of a type and what it holds.
+pub fn described(ty: Type) -> &'static str {
+    match ty {
+        Type::Int => "a whole number",
+        Type::Float => "a number",
+        Type::String => "a text",
+        Type::File => "a file",
+        Type::Vector => "a vector",
+        Type::Farray => "an farray (a row of numbers)",
+        Type::Curve => "a curve (a row of points)",
+        Type::Surface => "a surface (a grid of vectors)",
+        Type::Pcurve => "a parametric curve",
+        Type::Psurface => "a parametric surface",
+        Type::Field => "a field",
+        Type::Set => "a set",
+        Type::Other(_) => "an object",
+    }
+}
+
+/// The value as a variable of type `ty` holds it.
+///
+/// # Errors
+/// When the type holds no such value.
+pub fn converted<T: Real>(ty: Type, value: Value<T>) -> Result<Value<T>, Diagnostic> {
+    let wrong = |value: &Value<T>| {
+        let found = a(value);
+        let help = match (ty, value) {
+            (Type::Curve, Value::Curve(_)) => Some("take points of it: distc(c, uniform(0, 1, n))"),
+            (Type::Surface, Value::Surface(_)) => Some("take points of it: dists(s, u, v)"),
+            (Type::Pcurve, Value::Vectors(_)) => {
+                Some("put a spline through the points: makecc(c, \"quadratic\", \"arc\")")
+            }
+            (Type::Psurface, Value::Vectors(_)) => {
+                Some("put a spline through the points: makecs(s, \"quadratic\", \"arc\")")
+            }
+            _ => None,
+        };
+        Diagnostic::error("wrong-type", format!("expected {}, found {found}", described(ty)))
+            .expected(described(ty))
+            .found(found)
+            .maybe_help(help)
+    };
+    Ok(match (ty, value) {
+        (Type::Other(_), value) => value,
+        (Type::Int, Value::Number(x)) if x.re().fract() != 0.0 => {
+            return Err(Diagnostic::error("not-whole", "an int holds whole numbers")
+                .expected("a whole number")
+                .found(x.re().to_string())
+                .help("declare it as float, or use round(), floor() or ceil()"));
+        }
+        (Type::Int | Type::Float | Type::File, value @ Value::Number(_))
+        | (Type::String, value @ Value::Text(_))
+        | (Type::Vector, value @ Value::Vector(_))
+        | (Type::Farray, value @ Value::Numbers(_))
+        | (Type::Pcurve, value @ Value::Curve(_))
+        | (Type::Psurface, value @ Value::Surface(_))
+        | (Type::Field, value @ Value::Field(_))
+        | (Type::Set, value @ Value::Set(_)) => value,
+        // A plane stands for its half-space, a number for a constant, a field for its solid side.
+        (Type::Field, value @ (Value::Plane(_) | Value::Number(_))) => {
+            match moldloft_field::primitive_of(&value) {
+                Some(f) => moldloft_field::field_value(f),
+                None => return Err(wrong(&value)),
+            }
+        }
+        (Type::Set, value @ (Value::Field(_) | Value::Plane(_))) => {
+            match moldloft_field::set_of(&value) {
+                Some(s) => moldloft_field::set_value(s),
+                None => return Err(wrong(&value)),
+            }
+        }
+        (Type::Vector, Value::Point(p)) => Value::Vector(p.xyz),
+        (Type::Farray, Value::Vector(v)) => {
+            Value::Numbers(Arc::new(Array::row(v.to_array().to_vec())))
+        }
+        (Type::Farray, Value::List(items)) => {
+            let numbers: Option<Vec<T>> = items
+                .iter()
+                .map(|item| match item {
+                    Value::Number(x) => Some(*x),
+                    _ => None,
+                })
+                .collect();
+            let Some(numbers) = numbers else { return Err(wrong(&Value::List(items))) };
+            Value::Numbers(Arc::new(Array::row(numbers)))
+        }
+        (Type::Curve, Value::List(items)) => {
+            let vectors: Option<Vec<Vec3<T>>> = items
+                .iter()
+                .map(|item| match item {
+                    Value::Vector(v) => Some(*v),
+                    Value::Point(p) => Some(p.xyz),
+                    _ => None,
+                })
+                .collect();
+            let Some(vectors) = vectors else { return Err(wrong(&Value::List(items))) };
+            Value::Vectors(Arc::new(Vectors::row(vectors)))
+        }
+        (Type::Curve, Value::Vectors(a)) if matches!(a.shape, ArrayShape::Row(_)) => {
+            Value::Vectors(a)
+        }
+        (Type::Surface, Value::Vectors(a)) if matches!(a.shape, ArrayShape::Grid(..)) => {
+            Value::Vectors(a)
+        }
+        (_, value) => return Err(wrong(&value)),
+    })
+}
+
+/// A declared dimension.
+///
+/// # Errors
+/// When it is not a whole number in range.
+pub fn extent(n: f64) -> Result<usize, Diagnostic> {
+    if n.fract() == 0.0 && (1.0..=MOST_ELEMENTS).contains(&n) {
+        return Ok(n as usize);
+    }
+    Err(Diagnostic::error("wrong-dimension", "a dimension is a positive whole number")
+        .expected(format!("a whole number from 1 to {MOST_ELEMENTS}"))
+        .found(n.to_string()))
+}
+
+/// More elements than there may be.
+pub fn too_many(found: f64, most: f64) -> Diagnostic {
+    Diagnostic::error("too-many-elements", "the array is too large")
+        .expected(format!("at most {most} elements"))
+        .found(format!("{found}"))
+}
+
+/// The first value of a variable with declared dimensions `dims`.
+///
+/// # Errors
+/// When dimensions, type and value do not go together.
+pub fn initial<T: Real>(
+    ty: Type,
+    dims: &[usize],
+    value: Option<Value<T>>,
+) -> Result<Value<T>, Diagnostic> {
+    let count = dims.iter().map(|&n| n as f64).product::<f64>();
+    if count > MOST_ELEMENTS {
+        return Err(too_many(count, MOST_ELEMENTS));
+    }
+    let empty = match (ty, dims) {
+        (Type::Farray, [n]) => Value::Numbers(Arc::new(Array::row(vec![T::zero(); *n]))),
+        (Type::Farray, [m, n]) => {
+            Value::Numbers(Arc::new(Array::grid(*m, *n, vec![T::zero(); m * n])))
+        }
+        (Type::Curve, [n]) => {
+            Value::Vectors(Arc::new(Vectors::filled(ArrayShape::Row(*n), Vec3::zero())))
+        }
+        (Type::Surface, [m, n]) => {
+            Value::Vectors(Arc::new(Vectors::filled(ArrayShape::Grid(*m, *n), Vec3::zero())))
+        }
+        (_, []) => {
+            return Ok(value.unwrap_or_else(|| match ty {
+                Type::Int | Type::Float => Value::Number(T::zero()),
+                Type::Vector => Value::Vector(Vec3::zero()),
+                Type::String => Value::text(""),
+                _ => Value::Unset,
+            }));
+        }
+        _ => {
+            return Err(Diagnostic::error(
+                "wrong-dimension",
+                format!("{} does not have {} dimensions", described(ty), dims.len()),
+            )
+            .expected("farray a[n], curve c[n] or surface s[m,n]"));
+        }
+    };
+    let Some(value) = value else { return Ok(empty) };
+    let mut filled = empty;
+    fill(&mut filled, None, None, value)?;
+    Ok(filled)
+}
+
+/// Stores a value into a variable or a part of it: the whole right side is known before anything is
+/// stored. Gives back the array that was replaced, when a whole one was, so that its memory can be
+/// used again.
+///
+/// # Errors
+/// When type or shape differ.
+pub fn store<T: Real>(
+    taken: Taken<'_>,
+    old: &mut Value<T>,
+    place: &Place,
+    value: Value<T>,
+) -> Result<Option<Value<T>>, Diagnostic> {
+    let whole = place.section.is_none() && place.component.is_none();
+    let array = matches!(taken.ty, Type::Farray | Type::Curve | Type::Surface);
+    if whole {
+        let alike = match (&*old, &value) {
+            (Value::Numbers(a), Value::Numbers(b)) => a.shape == b.shape,
+            (Value::Vectors(a), Value::Vectors(b)) => a.shape == b.shape,
+            _ => false,
+        };
+        if alike {
+            return Ok(Some(std::mem::replace(old, value)));
+        }
+        if !(array && (taken.fixed || !is_array(&value))) {
+            return Ok(Some(std::mem::replace(old, converted(taken.ty, value)?)));
+        }
+    }
+    if matches!(old, Value::Unset) {
+        return Err(Diagnostic::error(
+            "no-shape",
+            format!("`{}` has no dimensions yet", taken.name),
+        )
+        .help("declare them, or assign a whole array first"));
+    }
+    fill(old, place.section, place.component, value)?;
+    Ok(None)
+}
+
+fn is_array<T: Real>(value: &Value<T>) -> bool {
+    matches!(value, Value::Numbers(_) | Value::Vectors(_) | Value::List(_))
+}
+
+/// The section, or the whole; checked against the dimensions.
+fn section_of(shape: ArrayShape, section: Option<Section>) -> Result<Section, Diagnostic> {
+    match (shape, section) {
+        (_, None) => Ok(Section::whole(shape)),
+        (ArrayShape::Row(_), Some(s @ Section::Row(_)))
+        | (ArrayShape::Grid(..), Some(s @ Section::Grid(..))) => Ok(s),
+        (_, Some(section)) => {
+            let found = if matches!(section, Section::Row(_)) { 1 } else { 2 };
+            Err(Diagnostic::error("wrong-subscripts", "wrong number of subscripts")
+                .expected(match shape {
+                    ArrayShape::Row(_) => "one subscript, as in c[3]",
+                    ArrayShape::Grid(..) => "two subscripts, as in s[3,4]",
+                })
+                .found(format!("{found} subscripts")))
+        }
+    }
+}
+
+/// Writes `value` into the selected elements, or one component of them.
+fn fill<T: Real>(
+    old: &mut Value<T>,
+    section: Option<Section>,
+    component: Option<usize>,
+    value: Value<T>,
+) -> Result<(), Diagnostic> {
+    let differ = |to: Section, from: ArrayShape| {
+        let to = to.shape().map_or("a single element".to_string(), |s| s.to_string());
+        Diagnostic::error("shapes-differ", format!("shapes differ: {to} = {from}"))
+            .expected(format!("a value of shape {to}, or a single one"))
+            .found(from.to_string())
+    };
+    let wrong = |expected: &str, value: &Value<T>| {
+        let found = a(value);
+        Diagnostic::error("wrong-type", format!("expected {expected}, found {found}"))
+            .expected(expected.to_string())
+            .found(found)
+    };
+    let value = match value {
+        Value::Point(p) => Value::Vector(p.xyz),
+        Value::List(_) | Value::Vector(_) if matches!(old, Value::Numbers(_)) => {
+            converted(Type::Farray, value)?
+        }
+        Value::List(_) | Value::Vector(_) if component.is_some() => converted(Type::Farray, value)?,
+        Value::List(_) => converted(Type::Curve, value)?,
+        other => other,
+    };
+    let alike = |section: Section, from: ArrayShape| match section.shape() == Some(from) {
+        true => Ok(()),
+        false => Err(differ(section, from)),
+    };
+    match (&mut *old, component) {
+        (Value::Numbers(array), None) => {
+            let shape = array.shape;
+            let section = section_of(shape, section)?;
+            let items = &mut Arc::make_mut(array).items;
+            match &value {
+                Value::Number(x) => put_all(items, shape, section, *x),
+                Value::Numbers(from) => {
+                    alike(section, from.shape)?;
+                    put(items, shape, section, &from.items);
+                }
+                other => return Err(wrong("a number or an farray", other)),
+            }
+        }
+        (Value::Vectors(array), None) => {
+            let shape = array.shape;
+            let section = section_of(shape, section)?;
+            let planes = &mut Arc::make_mut(array).planes;
+            match &value {
+                Value::Vector(v) => {
+                    for (plane, x) in planes.iter_mut().zip(v.to_array()) {
+                        put_all(plane, shape, section, x);
+                    }
+                }
+                Value::Vectors(from) => {
+                    alike(section, from.shape)?;
+                    for (plane, from) in planes.iter_mut().zip(&from.planes) {
+                        put(plane, shape, section, from);
+                    }
+                }
+                other => return Err(wrong("a vector, a curve or a surface", other)),
+            }
+        }
+        (Value::Vectors(array), Some(c)) => {
+            let shape = array.shape;
+            let section = section_of(shape, section)?;
+            let plane = &mut Arc::make_mut(array).planes[c];
+            match &value {
+                Value::Number(x) => put_all(plane, shape, section, *x),
+                Value::Numbers(from) => {
+                    alike(section, from.shape)?;
+                    put(plane, shape, section, &from.items);
+                }
+                other => return Err(wrong("a number or an farray", other)),
+            }
+        }
+        (Value::Vector(v), Some(c)) if section.is_none() => match value {
+            Value::Number(x) => *component_mut(v, c) = x,
+            other => return Err(wrong("a number", &other)),
+        },
+        (other, _) => {
+            let class: Class = other.class();
+            return Err(Diagnostic::error(
+                "not-indexable",
+                format!("{} has no such part", class.a()),
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn component_mut<T>(v: &mut Vec3<T>, component: usize) -> &mut T {
+    match component {
+        0 => &mut v.x,
+        1 => &mut v.y,
+        _ => &mut v.z,
+    }
+}
+
+/// The selected part of an array.
+///
+/// # Errors
+/// When subscripts and dimensions do not go together.
+pub fn part<T: Real>(value: &Value<T>, section: Section) -> Result<Value<T>, Diagnostic> {
+    Ok(match value {
+        Value::Numbers(array) => {
+            let section = section_of(array.shape, Some(section))?;
+            let items = picked(&array.items, array.shape, section);
+            match section.shape() {
+                None => Value::Number(items[0]),
+                Some(shape) => Value::Numbers(Arc::new(Array { shape, items })),
+            }
+        }
+        Value::Vectors(array) => {
+            let section = section_of(array.shape, Some(section))?;
+            let planes = array.planes.each_ref().map(|p| picked(p, array.shape, section));
+            match section.shape() {
+                None => Value::Vector(Vec3::from(planes.map(|p| p[0]))),
+                Some(shape) => Value::Vectors(Arc::new(Vectors { shape, planes })),
+            }
+        }
+        Value::List(items) => match section {
+            Section::Row(one) if !one.keeps => items[one.start].clone(),
+            Section::Row(some) => Value::list(some.positions().map(|k| items[k].clone())),
+            Section::Grid(..) => {
+                return Err(Diagnostic::error("wrong-subscripts", "a list has one subscript"));
+            }
+        },
+        other => {
+            return Err(Diagnostic::error(
+                "not-indexable",
+                format!("{} has no elements to index", other.called()),
+            )
+            .expected("a row, grid or list")
+            .found(other.called()));
+        }
+    })
+}
+
+/// The value of a component of vectors; `None` when there is none.
+pub fn component<T: Real>(value: &Value<T>, c: usize) -> Option<Value<T>> {
+    Some(match value {
+        Value::Vector(v) => Value::Number(v[c]),
+        Value::Point(p) => Value::Number(p.xyz[c]),
+        Value::Vectors(a) => {
+            Value::Numbers(Arc::new(Array { shape: a.shape, items: a.planes[c].clone() }))
+        }
+        _ => return None,
+    })
+}
+
+/// What stands in a place of a variable whose value is `root`.
+///
+/// # Errors
+/// When it has no such part.
+pub fn at_place<T: Real>(root: &Value<T>, place: &Place) -> Result<Value<T>, Diagnostic> {
+    let value = match place.section {
+        Some(section) => part(root, section)?,
+        None => root.clone(),
+    };
+    match place.component {
+        None => Ok(value),
+        Some(c) => component(&value, c).ok_or_else(|| {
+            Diagnostic::error("not-indexable", format!("{} has no components", value.called()))
+        }),
+    }
+}
+
+/// The type of what stands in a place of a variable of type `ty` and value `root`.
+pub fn type_at<T: Real>(ty: Type, root: &Value<T>, place: &Place) -> Type {
+    let of =
+        |dimensions: usize, vectors: bool| match (vectors && place.component.is_none(), dimensions)
+        {
+            (true, 0) => Type::Vector,
+            (true, 1) => Type::Curve,
+            (true, _) => Type::Surface,
+            (false, 0) => Type::Float,
+            (false, _) => Type::Farray,
+        };
+    let dimensions = |shape: ArrayShape| place.section.unwrap_or(Section::whole(shape)).extents().1;
+    match root {
+        Value::Numbers(a) => of(dimensions(a.shape), false),
+        Value::Vectors(a) => of(dimensions(a.shape), true),
+        Value::Vector(_) => of(0, true),
+        _ => ty,
+    }
+}
+
+/// A type with the extents of a value of it: `curve[60]`, `surface[60,25]`, `number`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    Numbers(ArrayShape),
+    Vectors(ArrayShape),
+    List(usize),
+    Other(Class),
+}
+
+impl std::fmt::Display for Shape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Shape::Numbers(shape) => write!(f, "farray{shape}"),
+            Shape::Vectors(shape @ ArrayShape::Row(_)) => write!(f, "curve{shape}"),
+            Shape::Vectors(shape) => write!(f, "surface{shape}"),
+            Shape::List(n) => write!(f, "list[{n}]"),
+            Shape::Other(class) => f.write_str(class.name()),
+        }
+    }
+}
+
+/// The type and extents of a value.
+pub fn shape_of<T: Real>(value: &Value<T>) -> Shape {
+    match value {
+        Value::Numbers(a) => Shape::Numbers(a.shape),
+        Value::Vectors(a) => Shape::Vectors(a.shape),
+        Value::List(items) => Shape::List(items.len()),
+        other => Shape::Other(other.class()),
+    }
+}
+
+/// The same in words.
+pub fn shape_text<T: Real>(value: &Value<T>) -> String {
+    shape_of(value).to_string()
+}
+
+/// The type and extents of what stands in a place.
+pub fn shape_at<T: Real>(root: &Value<T>, place: &Place) -> String {
+    at_place(root, place).map_or_else(|_| shape_text(root), |value| shape_text(&value))
+}
+
+/// The extents of what can be indexed.
+pub fn extents<T: Real>(value: &Value<T>) -> Option<Vec<usize>> {
+    let of = |shape: ArrayShape| match shape {
+        ArrayShape::Row(n) => vec![n],
+        ArrayShape::Grid(m, n) => vec![m, n],
+    };
+    match value {
+        Value::Numbers(a) => Some(of(a.shape)),
+        Value::Vectors(a) => Some(of(a.shape)),
+        Value::List(items) => Some(vec![items.len()]),
+        _ => None,
+    }
+}

@@ -1,0 +1,112 @@
+//! Sets joined pair by pair (Tarjan 1975, with path halving).
+//!
+//! The smallest member stands for its set, so results do not depend on the order of the joins.
+
+/// Sets of the numbers 0 .. n.
+#[derive(Clone, Debug, Default)]
+pub struct UnionFind {
+    above: Vec<u32>,
+}
+
+impl UnionFind {
+    /// `n` sets of one number each.
+    pub fn new(n: usize) -> Self {
+        Self { above: (0..n as u32).collect() }
+    }
+
+    /// One more set, of one number, which is returned.
+    pub fn push(&mut self) -> u32 {
+        self.above.push(self.above.len() as u32);
+        self.above.len() as u32 - 1
+    }
+
+    /// The smallest member of the set of `k`.
+    pub fn find(&mut self, mut k: u32) -> u32 {
+        while self.above[k as usize] != k {
+            let next = self.above[self.above[k as usize] as usize];
+            self.above[k as usize] = next;
+            k = next;
+        }
+        k
+    }
+
+    /// Makes the sets of `a` and `b` one.
+    pub fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.above[a.max(b) as usize] = a.min(b);
+    }
+
+    /// True when `a` and `b` are in one set.
+    pub fn same(&mut self, a: u32, b: u32) -> bool {
+        self.find(a) == self.find(b)
+    }
+}
+
+/// Sets of the numbers 0 .. n whose members are alike or opposite to each other, such as patches that
+/// face the same side or not.
+#[derive(Clone, Debug, Default)]
+pub struct SignedUnionFind {
+    /// Another member of the set, and whether this one is opposite to it.
+    above: Vec<(usize, bool)>,
+}
+
+impl SignedUnionFind {
+    /// `n` sets of one number each.
+    pub fn new(n: usize) -> Self {
+        Self { above: (0..n).map(|k| (k, false)).collect() }
+    }
+
+    /// The smallest member of the set of `k`, and whether `k` is opposite to it.
+    pub fn find(&mut self, k: usize) -> (usize, bool) {
+        let mut chain = Vec::new();
+        let mut at = k;
+        while self.above[at].0 != at {
+            chain.push(at);
+            at = self.above[at].0;
+        }
+        let mut opposite = false;
+        for &link in chain.iter().rev() {
+            opposite ^= self.above[link].1;
+            self.above[link] = (at, opposite);
+        }
+        (at, opposite)
+    }
+
+    /// Makes the sets of `p` and `q` one, `opposite` to each other or alike. Numbers in one set already
+    /// stay as they are: a band with a twist has no sides.
+    pub fn join(&mut self, p: usize, q: usize, opposite: bool) {
+        let ((a, p_opposite), (b, q_opposite)) = (self.find(p), self.find(q));
+        if a != b {
+            self.above[a.max(b)] = (a.min(b), p_opposite ^ q_opposite ^ opposite);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_member_stands_for_the_set() {
+        let mut sets = UnionFind::new(6);
+        [(5, 3), (4, 5), (3, 4)].map(|(a, b)| sets.join(a, b));
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|k| sets.find(k)), [0, 1, 2, 3, 3, 3]);
+        sets.join(4, 1);
+        assert!(sets.same(1, 3) && !sets.same(0, 1));
+        assert_eq!(sets.find(5), 1);
+        assert_eq!(sets.push(), 6);
+        assert_eq!(sets.find(6), 6);
+    }
+
+    #[test]
+    fn signs_multiply_along_chains() {
+        let mut sets = SignedUnionFind::new(4);
+        sets.join(3, 2, true);
+        sets.join(2, 1, true);
+        assert_eq!([1, 2, 3].map(|k| sets.find(k)), [(1, false), (1, true), (1, false)]);
+        // A contradiction changes nothing.
+        sets.join(1, 3, true);
+        assert_eq!(sets.find(3), (1, false));
+        assert_eq!(sets.find(0), (0, false));
+    }
+}

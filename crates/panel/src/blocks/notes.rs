@@ -1,0 +1,55 @@
+//! What is noticed at the joins of blocks.
+
+use moldloft_num::Vec3;
+
+/// Something about the joins of blocks that the user may want to know.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BlockRemark {
+    /// The cells of one block along a part of another's edge do not fit, so they are not joined.
+    Divisions {
+        /// The block whose edge has several parts, and the other one along one of them.
+        blocks: [String; 2],
+        /// Cells along the edge of the first.
+        divisions: usize,
+        /// Cells of the other along the part.
+        along: f64,
+        /// The share of the edge that the part is.
+        share: f64,
+    },
+    /// A shared vertex is not in the same place in both blocks.
+    Apart {
+        /// The blocks.
+        blocks: [String; 2],
+        /// How far apart the two positions are.
+        distance: f64,
+        /// Where.
+        at: Vec3,
+    },
+}
+
+impl BlockRemark {
+    /// A stable word for its kind.
+    pub fn id(&self) -> &'static str {
+        match self {
+            BlockRemark::Divisions { .. } => "divisions-contradict",
+            BlockRemark::Apart { .. } => "faces-apart",
+        }
+    }
+}
+
+impl std::fmt::Display for BlockRemark {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            BlockRemark::Divisions { blocks: [a, b], divisions: n, along: m, share } => write!(
+                f,
+                "`{a}` has {n} cells along an edge of which `{b}` has {m} along a share of {share}, \
+                 so their cells do not join"
+            ),
+            BlockRemark::Apart { blocks: [a, b], distance, at } => write!(
+                f,
+                "`{a}` and `{b}` share a face or edge but lie {distance:.3e} apart at ({}, {}, {})",
+                at.x, at.y, at.z
+            ),
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Borders of sheets of triangles as patches without panels: each of the curves that a border runs along
+//! is one, so that divisions flow over it and its vertices are those of the neighbours.
+//!
+//! Such a patch is the curve itself at any v, with one division along v: its edges v = 0 and v = 1 are
+//! one line, and u = 0 and u = 1 are points.
+
+use moldloft_model::Object;
+use moldloft_num::trace::{Edge, Edges, Trace};
+use moldloft_num::{CurveJet, Order, Real, SurfJet, Surface};
+use moldloft_registry::{CurveRef, Hem, Hemmed, Scalar, SurfaceRef, Value};
+use std::sync::Arc;
+
+/// A hem among the drafts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HemCounts {
+    /// Which of its sheet's.
+    pub index: u32,
+    /// Divisions that are stated.
+    pub stated: Option<u32>,
+    /// Divisions when nothing else determines them.
+    pub usual: u32,
+}
+
+/// The border of an object that has one.
+pub(crate) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn Hemmed<T>>> {
+    match object.value()? {
+        Value::Mesh(facets) => Some(&facets.border.as_ref()?.0),
+        _ => None,
+    }
+}
+
+/// A hem as a patch; `None` for a curve that no neighbour can name.
+pub(crate) fn line<T: Real>(hem: &Hem<T>) -> Option<SurfaceRef<T>> {
+    let curve = &hem.curve;
+    let known = !curve.pieces().is_empty() || matches!(curve.trace(), Trace::Point(_));
+    known.then(|| SurfaceRef::new(Line(curve.clone()), curve.depth))
+}
+
+struct Line<T: Real>(CurveRef<T>);
+
+impl<T: Real> Surface<T> for Line<T> {
+    fn jet(&self, u: T, _: T, order: Order) -> SurfJet<T> {
+        let [p, d, dd]: CurveJet<T> = self.0.jet(u, order);
+        SurfJet { p, u: d, uu: dd, ..SurfJet::default() }
+    }
+
+    fn edges(&self) -> Edges<T> {
+        let [from, to] = self.0.end_points();
+        let along = match self.0.trace() {
+            Trace::Point(point) => Edge::Pole(point),
+            _ => Edge::Pieces(self.0.pieces()),
+        };
+        Edges {
+            edges: [along, Edge::Pole(to), Edge::SameAs(0), Edge::Pole(from)],
+            corners: [from, to, to, from],
+        }
+    }
+}

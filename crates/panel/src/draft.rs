@@ -1,0 +1,155 @@
+//! What takes part in a panelling: shown surfaces, hidden originals of images, borders of sheets.
+
+use crate::border_curves::{self, HemCounts};
+use moldloft_model::{Graph, Object};
+use moldloft_num::trace::{Edges, Key};
+use moldloft_registry::{Scalar, SurfaceRef, Value};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The points of edge 0..4 of a patch's grid, or (4) all of them.
+pub(crate) fn indices([nu, nv]: [usize; 2], part: u8) -> impl Iterator<Item = usize> {
+    let ((i0, i1), (j0, j1)) = match part {
+        0 => ((0, nu), (0, 0)),
+        1 => ((nu, nu), (0, nv)),
+        2 => ((0, nu), (nv, nv)),
+        3 => ((0, 0), (0, nv)),
+        _ => ((0, nu), (0, nv)),
+    };
+    (i0..=i1).flat_map(move |i| (j0..=j1).map(move |j| i * (nv + 1) + j))
+}
+
+pub(crate) fn surface_of<T: Scalar>(object: &Object<T>) -> Option<&SurfaceRef<T>> {
+    match object.value()? {
+        Value::Surface(surface) => Some(surface),
+        _ => None,
+    }
+}
+
+/// The divisions of a surface by itself: its own or, for an image without any, those of its
+/// original; where it leaves them to its neighbours, the usual ones.
+pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
+    let mut at = object;
+    while !at.head.divided
+        && let Some((key, _)) = surface_of(at).and_then(|s| s.image_of())
+        && let Some(original) = graph.get(key)
+    {
+        at = original;
+    }
+    at.head.own_divisions()
+}
+
+/// A surface to be panelled, or the hem of a sheet.
+pub(crate) struct Draft<'g> {
+    pub object: &'g Object<f64>,
+    pub surface: SurfaceRef<f64>,
+    pub hem: Option<HemCounts>,
+    pub edges: Edges<f64>,
+    /// The draft of which it is the image, and the number of the map.
+    pub image: Option<(usize, u32)>,
+    /// False for a hidden surface of which a shown one is the image.
+    pub meshed: bool,
+    pub reversed: bool,
+}
+
+impl Draft<'_> {
+    /// The divisions that are stated along u and v.
+    pub fn stated(&self) -> [Option<u32>; 2] {
+        match self.hem {
+            Some(hem) => [hem.stated, None],
+            None => self.object.head.stated_divisions(),
+        }
+    }
+
+    /// The divisions when nothing else determines them.
+    pub fn usual(&self) -> [u32; 2] {
+        match self.hem {
+            Some(hem) => [hem.usual, 1],
+            None => self.object.head.own_divisions(),
+        }
+    }
+
+    /// What tells it from all others, in any graph.
+    pub fn identity(&self) -> (Arc<str>, Option<u32>) {
+        (self.object.name.clone(), self.hem.map(|h| h.index))
+    }
+}
+
+/// The surfaces that take part, in the order of declaration, hidden ones after them, and the hems of
+/// sheets last.
+pub(crate) fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
+    let mut drafts: Vec<Draft> = Vec::new();
+    let draft = |object, meshed| {
+        let surface = surface_of(object)?.clone();
+        let (edges, reversed) = (surface.edges(), reversed(graph, object));
+        Some(Draft { object, surface, hem: None, edges, image: None, meshed, reversed })
+    };
+    let mut by_key = HashMap::new();
+    for object in graph.objects().filter(|o| o.head.shown()) {
+        if let Some(d) = draft(object, true) {
+            by_key.insert(object.key, drafts.len());
+            drafts.push(d);
+        }
+    }
+    // Hidden originals of images take part without panels, so that the images still join.
+    let mut maps: HashMap<String, u32> = HashMap::new();
+    let mut at = 0;
+    while at < drafts.len() {
+        let original = drafts[at].surface.image_of().and_then(|(key, _)| graph.get(key));
+        if let Some(object) = original {
+            if let std::collections::hash_map::Entry::Vacant(slot) = by_key.entry(object.key)
+                && let Some(d) = draft(object, false)
+            {
+                slot.insert(drafts.len());
+                drafts.push(d);
+            }
+            let next = maps.len() as u32;
+            let map = map_identity(drafts[at].object, object.key);
+            let map = *maps.entry(map).or_insert(next);
+            drafts[at].image = by_key.get(&object.key).map(|&original| (original, map));
+        }
+        at += 1;
+    }
+    for object in graph.objects().filter(|o| o.head.shown()) {
+        let Some(border) = border_curves::border(object) else { continue };
+        for (index, hem) in border.hems().iter().enumerate() {
+            let Some(surface) = border_curves::line(hem) else { continue };
+            let counts = HemCounts { index: index as u32, stated: hem.stated, usual: hem.usual };
+            drafts.push(Draft {
+                object,
+                edges: surface.edges(),
+                surface,
+                hem: Some(counts),
+                image: None,
+                meshed: false,
+                reversed: false,
+            });
+        }
+    }
+    drafts
+}
+
+/// True when panels run against the natural normal: by the user's word, or because the surface
+/// is a mirror image, whose natural normal points the other way.
+fn reversed(graph: &Graph<f64>, object: &Object<f64>) -> bool {
+    let mut turned = false;
+    let mut at = Some(object);
+    while let Some(object) = at {
+        turned ^= object.head.orientation == 1;
+        at = surface_of(object).and_then(|s| s.image_of()).and_then(|(key, turns)| {
+            turned ^= turns;
+            graph.get(key)
+        });
+    }
+    turned
+}
+
+/// The map of an image: its kind and its arguments other than the original.
+fn map_identity(object: &Object<f64>, original: Key) -> String {
+    let rest: Vec<_> = object
+        .args
+        .iter()
+        .filter(|arg| !matches!(arg, Value::Object(key) if *key == original))
+        .collect();
+    format!("{}{rest:?}", object.row.name)
+}

@@ -1,0 +1,201 @@
+//! Where the divisions of a patch lie in its parameters: along each edge by itself, so that points
+//! that neighbours mark are among them, and between the edges along straight lines of the
+//! parameter square.
+
+use crate::roots::{MarkSource, Stop, on_its_root, pieces};
+use moldloft_num::trace::{Edges, Key};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Point, Scalar, SurfaceRef};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// So many points of a patch are evaluated together.
+const PART: usize = 1024;
+
+/// How the divisions between two stops are spaced: shares of the way in ascending order, without 0
+/// and 1; `None` for even ones.
+pub(crate) type Shares = Option<Arc<[f64]>>;
+
+/// A run of divisions along an edge.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Segment {
+    /// The edge's parameter where it ends; it begins where the one before does, or at 0.
+    pub until: Stop,
+    pub count: u32,
+    pub shares: Shares,
+}
+
+/// How an edge is divided.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum EdgePlan {
+    /// From 0 to 1 in one run.
+    Whole(u32, Shares),
+    /// Run by run.
+    Segments(Vec<Segment>),
+    /// As edge 0..4 of the same patch.
+    As(u8),
+    /// As the same edge of another patch.
+    Like(u32),
+}
+
+/// What a scalar needs to know of a model to place divisions.
+pub(crate) trait Places<T: Real> {
+    /// How the edges of a draft are divided.
+    fn plans(&self, draft: u32) -> &[EdgePlan; 4];
+    /// The edges of a draft.
+    fn edges(&self, draft: u32) -> Option<&Edges<T>>;
+    /// The identity of its surface in this graph.
+    fn owner(&self, draft: u32) -> Key;
+    /// A point object, by its identity in the graph that was planned.
+    fn point(&self, key: Key) -> Option<&Point<T>>;
+}
+
+/// The parameters of the divisions of edge `k` of a draft, from 0 to 1.
+pub(crate) fn along_edge<T: Real>(k: usize, draft: u32, places: &impl Places<T>) -> Option<Vec<T>> {
+    let mut out = Vec::new();
+    let run = |out: &mut Vec<T>, from: T, to: T, count: u32, shares: &Shares| {
+        let step = to - from;
+        match shares {
+            Some(shares) => out.extend(shares.iter().map(|&s| from + step * s)),
+            None => out.extend((1..count).map(|i| from + step * (f64::from(i) / f64::from(count)))),
+        }
+    };
+    match &places.plans(draft)[k] {
+        EdgePlan::Whole(n, None) => {
+            // Plain quotients, so that all patches of equal divisions have them bit for bit.
+            return Some((0..=*n).map(|i| T::from(f64::from(i) / f64::from(*n))).collect());
+        }
+        EdgePlan::Whole(n, shares) => {
+            out.push(T::zero());
+            run(&mut out, T::zero(), T::one(), *n, shares);
+            out.push(T::one());
+        }
+        EdgePlan::As(other) => return along_edge(usize::from(*other), draft, places),
+        EdgePlan::Like(other) => return along_edge(k, *other, places),
+        EdgePlan::Segments(segments) => {
+            let edges = places.edges(draft)?;
+            let pieces = pieces(&edges.edges[k], places.owner(draft), k)?;
+            let begin = |p: u16| if p == 0 { T::zero() } else { pieces[usize::from(p) - 1].until };
+            let mut from = T::zero();
+            out.push(from);
+            for (at, segment) in segments.iter().enumerate() {
+                let to = match segment.until {
+                    _ if at + 1 == segments.len() => T::one(),
+                    Stop::Piece(p) => pieces.get(usize::from(p))?.until,
+                    Stop::Inside(p, source) => {
+                        let piece = pieces.get(usize::from(p))?;
+                        let t = parameter(source, places)?;
+                        let share = (t - piece.from.t) / (piece.to.t - piece.from.t);
+                        begin(p) + (piece.until - begin(p)) * share
+                    }
+                };
+                run(&mut out, from, to, segment.count, &segment.shares);
+                out.push(to);
+                from = to;
+            }
+        }
+    }
+    Some(out)
+}
+
+fn parameter<T: Real>(source: MarkSource, places: &impl Places<T>) -> Option<T> {
+    match source {
+        MarkSource::Bead(key) | MarkSource::Magnet(key, _) => {
+            on_its_root(places.point(key)?, source)
+        }
+        MarkSource::Piece { draft, edge, piece, end } => {
+            let k = usize::from(edge);
+            let pieces = pieces(&places.edges(draft)?.edges[k], places.owner(draft), k)?;
+            let piece = pieces.get(usize::from(piece))?;
+            Some(if end { piece.to.t } else { piece.from.t })
+        }
+    }
+}
+
+/// The points of a patch whose edges have their divisions at `edges`; that of (i, j) at
+/// `[i * (nv + 1) + j]`.
+pub(crate) fn evaluated<T: Scalar>(surface: &SurfaceRef<T>, edges: &[Vec<T>; 4]) -> Vec<Vec3<T>> {
+    let [south, east, north, west] = edges;
+    let (nu, nv) = (south.len(), west.len());
+    let mut points = vec![Vec3::zero(); nu * nv];
+    let even = |a: &[T], b: &[T]| a.iter().zip(b).all(|(x, y)| x.bits_eq(*y) && x.is_constant());
+    if even(south, north) && even(west, east) {
+        let real = |x: &[T]| x.iter().map(|t| t.re()).collect::<Vec<f64>>();
+        surface.grid(&real(south), &real(west), &mut points, None);
+        return points;
+    }
+    let uv = parameters(edges);
+    if uv.iter().flatten().all(|x| x.is_constant()) {
+        let real: Vec<[f64; 2]> = uv.iter().map(|p| p.map(T::re)).collect();
+        // In parts on all threads: a patch by itself may be most of a model.
+        let parts = points.par_chunks_mut(PART).zip(real.par_chunks(PART));
+        parts.for_each(|(points, uv)| surface.scattered(uv, points));
+    } else {
+        for (p, [u, v]) in points.iter_mut().zip(uv) {
+            *p = surface.jet(u, v, moldloft_num::Order::Zero).p;
+        }
+    }
+    points
+}
+
+/// The parameters of the points of a patch whose edges have their divisions at `edges`.
+pub(crate) fn parameters<T: Real>([south, east, north, west]: &[Vec<T>; 4]) -> Vec<[T; 2]> {
+    let mut uv = Vec::with_capacity(south.len() * west.len());
+    for i in 0..south.len() {
+        for j in 0..west.len() {
+            uv.push(crossing(south[i], north[i], west[j], east[j]));
+        }
+    }
+    uv
+}
+
+/// Where the line from (a, 0) to (b, 1) meets that from (0, c) to (1, d), in the unit square.
+///
+/// u = a + (b - a) v and v = c + (d - c) u. Lines of one family never cross inside the square when
+/// their ends ascend on both sides, so a grid of such points does not fold.
+fn crossing<T: Real>(a: T, b: T, c: T, d: T) -> [T; 2] {
+    let (lean, rise) = (b - a, d - c);
+    let below = T::one() - lean * rise;
+    if below.re() <= 0.0 {
+        return [a, c];
+    }
+    // On an edge the other family's ends are 0 or 1 exactly, and so must the results be.
+    if c.re() == d.re() && (c.re() == 0.0 || c.re() == 1.0) {
+        return [if c.re() == 0.0 { a } else { b }, c];
+    }
+    if a.re() == b.re() && (a.re() == 0.0 || a.re() == 1.0) {
+        return [a, if a.re() == 0.0 { c } else { d }];
+    }
+    [(a + lean * c) / below, (c + rise * a) / below]
+}
+
+/// How the panels along a side of a patch are spaced.
+pub(crate) fn shares_of(law: &moldloft_registry::Spacing, from: u32, to: u32, of: u32) -> Shares {
+    if law.is_even() || to - from < 2 {
+        return None;
+    }
+    let at = |i: u32| law.at(f64::from(i) / f64::from(of), of);
+    let (low, high) = (at(from), at(to));
+    Some((from + 1..to).map(|i| (at(i) - low) / (high - low)).collect())
+}
+
+/// The shares seen from the other end.
+pub(crate) fn reversed(shares: &Shares) -> Shares {
+    shares.as_ref().map(|s| s.iter().rev().map(|x| 1.0 - x).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_the_square_cross_where_they_should() {
+        let [u, v] = crossing(0.25, 0.25, 0.5, 0.75);
+        assert_eq!((u, v), (0.25, 0.5625));
+        let [u, v] = crossing(0.2, 0.6, 0.3, 0.1);
+        assert!((u - (0.2 + 0.4 * v)).abs() < 1e-15 && (v - (0.3 - 0.2 * u)).abs() < 1e-15);
+        assert_eq!(crossing(0.2, 0.6, 0.0, 0.0), [0.2, 0.0]);
+        assert_eq!(crossing(0.2, 0.6, 1.0, 1.0), [0.6, 1.0]);
+        assert_eq!(crossing(1.0, 1.0, 0.3, 0.1), [1.0, 0.1]);
+    }
+}

@@ -1,0 +1,153 @@
+//! Patches whose shared vertices are one: numbers of vertices, free edges, sides, connectivity.
+
+use crate::draft::indices;
+use crate::join::Joiner;
+use crate::notes::Remark;
+use crate::orientation::{Facing, RimEdge};
+use crate::topology::Skeleton;
+use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
+use moldloft_num::Vec3;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Two patches whose shared vertices disagree by more than this share of the model's size are
+/// reported.
+const JOIN_ACCURACY: f64 = 1e-9;
+
+/// What follows from a skeleton alone, but for the vertices that are their own images and the side
+/// that panels face.
+#[derive(Debug)]
+pub(crate) struct Joint {
+    pub topology: Arc<Topology>,
+    /// The vertex of each point of each patch; those that only patches without panels have come
+    /// after the topology's.
+    pub vertices: Vec<Vec<u32>>,
+    pub count: u32,
+    /// For each patch, which points of its boundary are their own images.
+    pub fixed: Vec<Vec<bool>>,
+    /// Panel edges with one panel: patch and the places of both ends in its grid.
+    pub rim: Vec<RimEdge>,
+    pub facing: Facing,
+    /// For each patch, whether its panels run against its natural normal.
+    pub turned: Vec<bool>,
+}
+
+impl Joint {
+    /// Joins the vertices, numbers them and turns the panels.
+    pub fn new(
+        skeleton: &Skeleton,
+        points: &[Arc<Vec<Vec3>>],
+        fixed: Vec<Vec<bool>>,
+    ) -> Result<Self, MeshError> {
+        let mut joiner = Joiner::new(skeleton);
+        joiner.join_images(|patch, at| fixed[patch].get(at) == Some(&true));
+        let Joiner { grids, mut joined, .. } = joiner;
+        let mut number = vec![u32::MAX; grids.count() as usize];
+        let mut count = 0u32;
+        let mut used = 0;
+        let mut vertices = vec![Vec::new(); skeleton.frames.len()];
+        for meshed in [true, false] {
+            for (patch, frame) in skeleton.frames.iter().enumerate() {
+                if frame.meshed != meshed {
+                    continue;
+                }
+                let numbered = grids.all(patch).map(|v| {
+                    let number = &mut number[joined.find(v) as usize];
+                    if *number == u32::MAX {
+                        *number = count;
+                        count += 1;
+                    }
+                    *number
+                });
+                vertices[patch] = numbered.collect();
+            }
+            if meshed {
+                used = count;
+            }
+        }
+        let rim = rim(skeleton, &vertices);
+        let topology = Arc::default();
+        let facing = Facing::new(skeleton, &vertices, &rim);
+        let turned = facing.turned(skeleton, points, &rim);
+        let mut joint = Self { topology, vertices, count, fixed, rim, facing, turned };
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(used as usize)?;
+        for (patch, frame) in skeleton.frames.iter().enumerate() {
+            let vertices = &joint.vertices[patch];
+            if !frame.meshed {
+                continue;
+            }
+            let [nu, nv] = frame.divisions;
+            let info = PatchInfo {
+                name: frame.name.to_string(),
+                tag: Tag::among(frame.tags.iter().map(|t| &**t)),
+                tags: frame.tags.iter().map(|t| t.to_string()).collect(),
+                colour: Some((frame.colour & 15) as u8),
+                kind: frame.kind.to_string(),
+            };
+            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), joint.turned[patch])?;
+        }
+        joint.topology = builder.build().into();
+        Ok(joint)
+    }
+
+    pub fn facing(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>]) -> Vec<bool> {
+        self.facing.turned(skeleton, points, &self.rim)
+    }
+
+    /// The pairs of patches whose shared vertices are not in one place.
+    pub fn apart(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<Remark> {
+        const NONE: u32 = u32::MAX;
+        let mut owner: Vec<(u32, Vec3)> = vec![(NONE, Vec3::zero()); self.count as usize];
+        let mut worst: HashMap<(u32, u32), (f64, Vec3)> = HashMap::new();
+        for (patch, frame) in skeleton.frames.iter().enumerate() {
+            for k in (0..4).flat_map(|k| indices(frame.divisions, k)) {
+                let p = points[patch][k];
+                let slot = &mut owner[self.vertices[patch][k] as usize];
+                if slot.0 == NONE {
+                    *slot = (patch as u32, p);
+                }
+                let distance = p.distance(slot.1);
+                if distance > JOIN_ACCURACY * size {
+                    let entry = worst.entry((slot.0, patch as u32)).or_insert((0.0, p));
+                    if distance > entry.0 {
+                        *entry = (distance, p);
+                    }
+                }
+            }
+        }
+        let mut worst: Vec<_> = worst.into_iter().collect();
+        worst.sort_by_key(|(pair, _)| *pair);
+        let name = |patch: u32| skeleton.frames[patch as usize].name.to_string();
+        worst
+            .into_iter()
+            .map(|((a, b), (distance, at))| {
+                let patches = [name(a), name(b)];
+                Remark::Apart { patches, distance, at }
+            })
+            .collect()
+    }
+}
+
+/// The panel edges at the rims of patches that have one panel, in the order of their vertices.
+fn rim(skeleton: &Skeleton, vertices: &[Vec<u32>]) -> Vec<RimEdge> {
+    let mut all: Vec<((u32, u32), RimEdge)> = Vec::new();
+    for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+        for k in 0..4 {
+            let mut before: Option<usize> = None;
+            for at in indices(frame.divisions, k) {
+                if let Some(last) = before {
+                    let (a, b) = (vertices[patch][last], vertices[patch][at]);
+                    if a != b {
+                        let places = (patch as u32, last as u32, at as u32);
+                        all.push(((a.min(b), a.max(b)), places));
+                    }
+                }
+                before = Some(at);
+            }
+        }
+    }
+    all.sort_unstable();
+    let alone = all.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() == 1);
+    alone.map(|run| run[0].1).collect()
+}

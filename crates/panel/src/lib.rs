@@ -1,0 +1,33 @@
+//! Meshes of a model: surfaces into panels, solids into blocks of cells, and contour lines.
+//!
+//! `Graph -> Panelling -> Mesh`, `Graph -> Blocking -> Blocks`, `surface -> ContourCutter -> contours`
+//!
+//! [`Panelling`] and [`Blocking`] hold the connectivity, which is independent of the scalar: both give
+//! positions, and their derivatives, from a graph of any scalar.
+//!
+//! Invariant: this crate knows no particular kind, no syntax and no file. Vertices are one by identity (the
+//! same division of the same interval of a root curve, the same point object), never because they look close.
+
+mod blocks;
+mod border_curves;
+mod contour;
+mod counts;
+mod draft;
+mod edges;
+mod join;
+mod joined_patches;
+mod notes;
+mod orientation;
+mod panelling;
+mod patch_values;
+mod roots;
+mod t_junctions;
+mod topology;
+mod triangle_bodies;
+
+pub use blocks::{BlockRemark, Blocking, MOST_CELLS, grid as solid_grid};
+pub use contour::{Polyline, Sectioned, body_section};
+pub use draft::divisions;
+pub use notes::{ChainStep, Remark};
+pub use panelling::{MOST_PANELS, Panelling, too_many_panels};
+pub use topology::Nominal;

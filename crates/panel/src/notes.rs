@@ -1,0 +1,196 @@
+//! What is noticed at the joins of patches and may interest the user.
+
+use moldloft_num::Vec3;
+
+/// A patch on the way from one stated count to another, and what it shares with the next.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChainStep {
+    /// The patch.
+    pub patch: String,
+    /// `'u'` or `'v'`: the parameter along which it has the count.
+    pub along: char,
+    /// What it shares with the next patch; empty for the last.
+    pub shares: String,
+}
+
+/// Something about the joins that the user may want to know.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remark {
+    /// Two stated counts belong to one chain of patches but differ, so that panels do not join
+    /// somewhere on the way.
+    Divisions {
+        /// The patches from one to the other.
+        chain: Vec<ChainStep>,
+        /// The counts stated for the first and the last.
+        divisions: [u32; 2],
+    },
+    /// The pieces of an edge do not add up to the count of its patch, so that panels do not join
+    /// there.
+    Pieces {
+        /// The patch.
+        patch: String,
+        /// The parameter along its edge.
+        along: char,
+        /// Its count.
+        divisions: u32,
+        /// The pieces of the edge with their counts.
+        pieces: Vec<(String, u32)>,
+    },
+    /// A shared vertex is not in the same place on both patches.
+    Apart {
+        /// The patches.
+        patches: [String; 2],
+        /// How far apart the two positions are.
+        distance: f64,
+        /// Where.
+        at: Vec3,
+    },
+    /// The corner of a patch lies in the middle of an edge of another and is no vertex of it, or at
+    /// a vertex of it that is another one.
+    Junction {
+        /// The patch, and the edge's patch.
+        patches: [String; 2],
+        /// (u, v) of the corner.
+        corner: [u8; 2],
+        /// Edge 0..4 (v = 0, u = 1, v = 1, u = 0) and the parameter along it.
+        edge: (u8, f64),
+        /// True when the edge has a vertex there.
+        twin: bool,
+        /// Where.
+        at: Vec3,
+    },
+    /// The border of a sheet of triangles crosses itself, or has no area, with the divisions that its
+    /// neighbours have; so it joins none of them.
+    Border {
+        /// The sheet.
+        patch: String,
+        /// The divisions of the curves that its border runs along.
+        divisions: Vec<usize>,
+    },
+    /// As many more contradictions as are not told one by one.
+    More(usize),
+}
+
+impl Remark {
+    /// A stable word for its kind.
+    pub fn id(&self) -> &'static str {
+        match self {
+            Remark::Divisions { .. } | Remark::Pieces { .. } | Remark::More(_) => {
+                "divisions-contradict"
+            }
+            Remark::Apart { .. } => "edges-apart",
+            Remark::Junction { .. } => "corner-not-joined",
+            Remark::Border { .. } => "border-not-joined",
+        }
+    }
+
+    /// How to mend it.
+    pub fn help(&self) -> &'static str {
+        match self {
+            Remark::Divisions { .. } => {
+                "state the count once and leave it out (or write 0) elsewhere on the chain"
+            }
+            Remark::Pieces { .. } => {
+                "leave out (or write 0 for) the count of the patch or of one of the pieces"
+            }
+            Remark::Apart { .. } => {
+                "let both surfaces use the same curve, or a snake of one as the edge of the other"
+            }
+            Remark::Junction { twin: false, .. } => {
+                "let the corner be a bead, ring or magnet on that edge, and the neighbours' edges run \
+                 along parts of its curve"
+            }
+            Remark::Junction { .. } => {
+                "build both patches on the same point and the same curves: places are not compared"
+            }
+            Remark::Border { .. } => "give it, or its neighbours, more divisions",
+            Remark::More(_) => "mend those that are told first",
+        }
+    }
+
+    /// The object that it is told with.
+    pub fn object(&self) -> Option<&str> {
+        match self {
+            Remark::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
+            Remark::Pieces { patch, .. } | Remark::Border { patch, .. } => Some(patch),
+            Remark::Apart { patches, .. } => Some(&patches[1]),
+            Remark::Junction { patches, .. } => Some(&patches[0]),
+            Remark::More(_) => None,
+        }
+    }
+}
+
+impl std::fmt::Display for Remark {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Remark::Divisions { chain, divisions: [m, n] } => {
+                let (Some(a), Some(b)) = (chain.first(), chain.last()) else { return Ok(()) };
+                write!(
+                    f,
+                    "`{}` has {m} divisions along {} and `{}` has {n} along {}, but panels run on \
+                     from one to the other: ",
+                    a.patch, a.along, b.patch, b.along
+                )?;
+                // Of a long chain the ends and the turns say enough.
+                let tells = |k: usize| {
+                    k < 6
+                        || k + 6 >= chain.len()
+                        || (k < 60 && chain[k].along != chain[k - 1].along)
+                };
+                let mut quiet = 0;
+                for (k, step) in chain.iter().enumerate() {
+                    if !tells(k) {
+                        quiet += 1;
+                        continue;
+                    }
+                    if quiet > 0 {
+                        write!(f, "({quiet} more patches), ")?;
+                        quiet = 0;
+                    }
+                    write!(f, "`{}` along {}", step.patch, step.along)?;
+                    if k > 0 && step.along != chain[k - 1].along {
+                        write!(f, " (the chain turns here)")?;
+                    }
+                    if k + 1 < chain.len() {
+                        write!(f, ", joined by {} to ", step.shares)?;
+                    }
+                }
+                Ok(())
+            }
+            Remark::Pieces { patch, along, divisions, pieces } => {
+                write!(
+                    f,
+                    "`{patch}` has {divisions} divisions along {along}, but the pieces of its edge "
+                )?;
+                let list: Vec<String> = pieces.iter().map(|(p, n)| format!("{n} ({p})")).collect();
+                write!(f, "have {}", list.join(" + "))
+            }
+            Remark::Apart { patches: [a, b], distance, at } => write!(
+                f,
+                "`{a}` and `{b}` share an edge but lie {distance:.3e} apart at ({}, {}, {})",
+                at.x, at.y, at.z
+            ),
+            Remark::Junction { patches: [a, b], corner: [u, v], edge: (k, t), twin, at } => {
+                let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(*k) % 4];
+                let along = if k % 2 == 0 { 'u' } else { 'v' };
+                let how = if *twin { "meets" } else { "lies in the middle of" };
+                write!(
+                    f,
+                    "the corner (u, v) = ({u}, {v}) of `{a}` {how} edge {edge} of `{b}` at {along} = \
+                     {t:.6} but is not joined to it, at ({}, {}, {})",
+                    at.x, at.y, at.z
+                )
+            }
+            Remark::Border { patch, divisions } => {
+                let counts: Vec<String> = divisions.iter().map(usize::to_string).collect();
+                write!(
+                    f,
+                    "the border of `{patch}` crosses itself or has no area with {} divisions, so it \
+                     joins nothing",
+                    counts.join(" + ")
+                )
+            }
+            Remark::More(n) => write!(f, "{n} more contradictions among divisions"),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Which way the panels of each patch face: neighbours alike, and bodies outward.
+
+use crate::draft::indices;
+use crate::topology::{Frame, Skeleton};
+use moldloft_num::Vec3;
+use moldloft_num::union_find::SignedUnionFind;
+use std::sync::Arc;
+
+/// Cones that come to less than this share of their absolute volumes do not say where outside is.
+const NEARLY_FLAT: f64 = 0.05;
+
+/// A panel edge with one panel: the patch and the places of both ends in its grid.
+pub(crate) type RimEdge = (u32, u32, u32);
+
+/// How the patches of a mesh hang together.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Facing {
+    /// For each patch the first one of its body, and whether it is turned against that one.
+    sides: Vec<(usize, bool)>,
+    /// For the first patch of each body, whether it has no rim.
+    closed: Vec<bool>,
+}
+
+impl Facing {
+    /// From the vertices of the patches, and the panel edges with one panel.
+    pub fn new(skeleton: &Skeleton, vertices: &[Vec<u32>], rim: &[RimEdge]) -> Self {
+        let mut bodies = SignedUnionFind::new(skeleton.frames.len());
+        let mut all: Vec<((u32, u32), usize, bool)> = Vec::new();
+        for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+            for k in 0..4 {
+                // A walk round the patch runs along its edges 0 and 1, and against 2 and 3.
+                let walk: Vec<u32> =
+                    indices(frame.divisions, k).map(|at| vertices[patch][at]).collect();
+                for ends in walk.windows(2).filter(|ends| ends[0] != ends[1]) {
+                    let pair = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+                    all.push((pair, patch, (ends[0] < ends[1]) == (k < 2)));
+                }
+            }
+        }
+        all.sort_unstable();
+        for run in all.chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, p, forward), (_, q, again)] = *run
+                && p != q
+            {
+                // Neighbours that face alike run along a common edge in opposite directions.
+                bodies.join(p, q, forward == again);
+            }
+        }
+        let sides: Vec<(usize, bool)> =
+            (0..skeleton.frames.len()).map(|p| bodies.find(p)).collect();
+        let mut closed = vec![true; sides.len()];
+        for &(patch, _, _) in rim {
+            closed[sides[patch as usize].0] = false;
+        }
+        Self { sides, closed }
+    }
+
+    /// For each patch, whether its panels run against its natural normal.
+    ///
+    /// Neighbours face alike, as the first of them says; a closed body faces outward: its volume is
+    /// positive. Open ones keep their sides towards one another and face outward together: the cone
+    /// from the middle of their rims (in the planes that close them) is positive. Nearly flat ones face as their surfaces
+    /// say.
+    pub fn turned(
+        &self,
+        skeleton: &Skeleton,
+        points: &[Arc<Vec<Vec3>>],
+        rim: &[RimEdge],
+    ) -> Vec<bool> {
+        let frames = &skeleton.frames;
+        let stated = |patch: usize| {
+            let (first, against) = self.sides[patch];
+            frames[first].reversed != against
+        };
+        let centre = apex(points, rim);
+        // The open bodies count as one, in the last place.
+        let mut cones = vec![(0.0, 0.0); frames.len() + 1];
+        for (patch, frame) in frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+            let sum = &mut cones[self.body(patch)];
+            let (volume, size) = cone(frame, &points[patch], centre);
+            sum.0 += if stated(patch) { -volume } else { volume };
+            sum.1 += size;
+        }
+        let inward = |patch: usize| {
+            let (volume, size) = cones[self.body(patch)];
+            volume < -NEARLY_FLAT * size
+        };
+        (0..frames.len()).map(|patch| stated(patch) != inward(patch)).collect()
+    }
+
+    fn body(&self, patch: usize) -> usize {
+        let first = self.sides[patch].0;
+        if self.closed[first] { first } else { self.sides.len() }
+    }
+}
+
+/// The middle of the rims; where all of them lie in coordinate planes, in which mirrors or the water
+/// close the bodies, a point of these planes: from there the closing parts have no cone.
+fn apex(points: &[Arc<Vec<Vec3>>], rim: &[RimEdge]) -> Vec3 {
+    let (mut centre, mut length) = (Vec3::<f64>::zero(), 0.0);
+    let (mut used, mut closing) = ([false; 3], true);
+    for &(patch, a, b) in rim {
+        let [a, b] = [a, b].map(|k| points[patch as usize][k as usize]);
+        let step = a.distance(b);
+        centre += (a + b) * (0.5 * step);
+        length += step;
+        let plane = (0..3).find(|&axis| a[axis].abs().max(b[axis].abs()) <= 1e-9 * step);
+        match plane {
+            Some(axis) => used[axis] = true,
+            None => closing = false,
+        }
+    }
+    if length == 0.0 {
+        return Vec3::zero();
+    }
+    let c = (centre / length).to_array();
+    let [x, y, z] = [0, 1, 2].map(|axis| if closing && used[axis] { 0.0 } else { c[axis] });
+    Vec3::of(x, y, z)
+}
+
+/// Six times the signed and the absolute volume of the cones from `centre` to the panels.
+fn cone(frame: &Frame, points: &[Vec3], centre: Vec3) -> (f64, f64) {
+    let [nu, nv] = frame.divisions;
+    let at = |i: usize, j: usize| points[i * (nv + 1) + j] - centre;
+    let (mut volume, mut size) = (0.0, 0.0);
+    for (i, j) in (0..nu).flat_map(|i| (0..nv).map(move |j| (i, j))) {
+        let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        let cone = (a + c).dot((c - a).cross(d - b));
+        volume += cone;
+        size += cone.abs();
+    }
+    (volume, size)
+}

@@ -1,0 +1,124 @@
+//! What a graph, of any scalar, says of the patches of a topology: surfaces, edges, the points that divide
+//! them; and the vertices of each patch by itself.
+
+use crate::border_curves;
+use crate::draft::surface_of;
+use crate::edges::{EdgePlan, Places, along_edge, evaluated};
+use crate::roots::{MarkSource, Stop};
+use crate::topology::{Frame, Skeleton};
+use moldloft_model::Graph;
+use moldloft_num::Vec3;
+use moldloft_num::trace::{Edges, Key};
+use moldloft_registry::{Point, Scalar, SurfaceRef, Value};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Patches of fewer points than this are evaluated on the calling thread.
+const WORTH_A_THREAD: usize = 4096;
+
+/// The points of each patch by itself, evaluated with the scalar of `graph`; those that `kept` has
+/// are not evaluated again.
+pub(crate) fn evaluated_all<T: Scalar>(
+    skeleton: &Skeleton,
+    names: &HashMap<Key, Arc<str>>,
+    graph: &Graph<T>,
+    kept: impl Fn(usize) -> Option<Arc<Vec<Vec3<T>>>> + Sync,
+) -> Vec<Option<Arc<Vec<Vec3<T>>>>> {
+    let known = Known::new(graph, skeleton, names);
+    let one = |patch: usize| {
+        if let Some(points) = kept(patch) {
+            return Some(points);
+        }
+        let surface = known.surfaces[patch].as_ref()?;
+        let edge = |k: usize| along_edge(k, patch as u32, &known);
+        let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
+        Some(Arc::new(evaluated(surface, &edges)))
+    };
+    let count = skeleton.frames.len();
+    let points = |f: &Frame| (f.divisions[0] + 1) * (f.divisions[1] + 1);
+    if count < 2 || skeleton.frames.iter().map(points).sum::<usize>() < WORTH_A_THREAD {
+        return (0..count).map(one).collect();
+    }
+    (0..count).into_par_iter().map(one).collect()
+}
+
+/// The names of the point objects that plans of edges refer to.
+pub(crate) fn names(graph: &Graph<f64>, skeleton: &Skeleton) -> HashMap<Key, Arc<str>> {
+    let mut names = HashMap::new();
+    for plan in skeleton.frames.iter().flat_map(|f| &f.plans) {
+        let EdgePlan::Segments(segments) = plan else { continue };
+        for segment in segments {
+            if let Stop::Inside(_, source) = segment.until
+                && let MarkSource::Bead(key) | MarkSource::Magnet(key, _) = source
+                && let Some(object) = graph.get(key)
+            {
+                names.insert(key, object.name.clone());
+            }
+        }
+    }
+    names
+}
+
+/// What a graph, of any scalar, says of the patches of a skeleton.
+pub(crate) struct Known<'a, T: Scalar> {
+    pub graph: &'a Graph<T>,
+    pub skeleton: &'a Skeleton,
+    names: &'a HashMap<Key, Arc<str>>,
+    keys: Vec<Option<Key>>,
+    pub surfaces: Vec<Option<SurfaceRef<T>>>,
+    edges: Vec<Option<Edges<T>>>,
+}
+
+impl<'a, T: Scalar> Known<'a, T> {
+    pub fn new(
+        graph: &'a Graph<T>,
+        skeleton: &'a Skeleton,
+        names: &'a HashMap<Key, Arc<str>>,
+    ) -> Self {
+        let keys: Vec<Option<Key>> = skeleton.frames.iter().map(|f| graph.find(&f.name)).collect();
+        let surface = |(key, frame): (&Option<Key>, &Frame)| {
+            let object = graph.get((*key)?)?;
+            match frame.hem {
+                Some(hem) => {
+                    border_curves::line(border_curves::border(object)?.hems().get(hem as usize)?)
+                }
+                None => surface_of(object).cloned(),
+            }
+        };
+        let surfaces: Vec<_> = keys.iter().zip(&skeleton.frames).map(surface).collect();
+        let edges = surfaces.iter().map(|s| Some(s.as_ref()?.edges())).collect();
+        Self { graph, skeleton, names, keys, surfaces, edges }
+    }
+
+    /// What says nothing of any patch, for where nothing is asked.
+    pub fn empty(
+        graph: &'a Graph<T>,
+        skeleton: &'a Skeleton,
+        names: &'a HashMap<Key, Arc<str>>,
+    ) -> Self {
+        Self { graph, skeleton, names, keys: vec![], surfaces: vec![], edges: vec![] }
+    }
+}
+
+impl<T: Scalar> Places<T> for Known<'_, T> {
+    fn plans(&self, draft: u32) -> &[EdgePlan; 4] {
+        &self.skeleton.frames[draft as usize].plans
+    }
+
+    fn edges(&self, draft: u32) -> Option<&Edges<T>> {
+        self.edges[draft as usize].as_ref()
+    }
+
+    fn owner(&self, draft: u32) -> Key {
+        self.keys[draft as usize].unwrap_or(Key(u32::MAX))
+    }
+
+    fn point(&self, key: Key) -> Option<&Point<T>> {
+        let object = self.graph.get(self.graph.find(self.names.get(&key)?)?)?;
+        match object.value()? {
+            Value::Point(point) => Some(point),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! The curves that patches run along, cut at every point that some patch marks on them.
+//!
+//! An edge of one patch may run along a whole curve, and those of its neighbours along parts of it,
+//! between beads. All marks of a root cut it into *stretches*; an edge is a chain of these, so the
+//! neighbours of a part have their corners among the vertices of the whole.
+
+use crate::draft::Draft;
+use moldloft_model::Graph;
+use moldloft_num::Real;
+use moldloft_num::trace::{Edge, Key, Mark, Piece, Root};
+use moldloft_registry::{Point, Value};
+use smallvec::SmallVec;
+use std::collections::HashMap;
+
+/// Two marks of the same point object count as one place within this distance in t: rounding of the
+/// ways in which an alias may reach its root.
+const SAME_MARK: f64 = 1e-9;
+
+/// Where the parameter of a mark is to be had, with any scalar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MarkSource {
+    /// The begin or end of a piece of an edge of a patch.
+    Piece { draft: u32, edge: u8, piece: u16, end: bool },
+    /// A bead or ring, by its object.
+    Bead(Key),
+    /// A magnet on an edge, 0..4, of its surface.
+    Magnet(Key, u8),
+}
+
+/// A place on a root that some patch ends at.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    /// Lowest and highest parameter under which it is known.
+    low: f64,
+    high: f64,
+    /// The point objects there.
+    pub points: SmallVec<[Key; 2]>,
+    source: MarkSource,
+}
+
+impl Place {
+    /// Its parameter on the root.
+    pub fn parameter(&self) -> f64 {
+        self.low
+    }
+}
+
+/// The number of a place among those of all roots.
+pub(crate) type PlaceId = u32;
+
+/// The stretch from a place to the next on its root has the number of the place.
+pub(crate) type StretchId = u32;
+
+/// The places of all roots in ascending order, root by root.
+#[derive(Debug, Default)]
+pub(crate) struct Roots {
+    ids: HashMap<Root, usize>,
+    /// The first place of each root, and one past the last.
+    start: Vec<u32>,
+    places: Vec<Place>,
+    roots: Vec<Root>,
+}
+
+/// A part of an edge that is one stretch of a root, or a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span {
+    /// `None` for a piece without length.
+    pub stretch: Option<StretchId>,
+    /// True when the edge runs against the root.
+    pub backwards: bool,
+    /// The places at its begin and end, in the direction of the edge.
+    pub ends: [PlaceId; 2],
+    /// The edge's parameter at its end.
+    pub until: Stop,
+}
+
+/// A parameter of an edge, as something that can be had with any scalar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Stop {
+    /// Where a piece ends.
+    Piece(u16),
+    /// Inside a piece, at a mark of its root.
+    Inside(u16, MarkSource),
+}
+
+struct Raw {
+    root: usize,
+    t: f64,
+    point: Option<Key>,
+    source: MarkSource,
+}
+
+impl Roots {
+    /// All places that edges and corners of the patches mark.
+    pub fn new(graph: &Graph<f64>, drafts: &[Draft]) -> Self {
+        let mut all = Self::default();
+        let mut raw = Vec::new();
+        for (d, draft) in drafts.iter().enumerate() {
+            for (k, edge) in draft.edges.edges.iter().enumerate() {
+                let Some(pieces) = pieces(edge, draft.object.key, k) else { continue };
+                for (p, piece) in pieces.iter().enumerate() {
+                    for (end, mark) in [piece.from, piece.to].into_iter().enumerate() {
+                        let source = MarkSource::Piece {
+                            draft: d as u32,
+                            edge: k as u8,
+                            piece: p as u16,
+                            end: end == 1,
+                        };
+                        let root = all.id(piece.root);
+                        raw.push(Raw { root, t: mark.t + 0.0, point: mark.point, source });
+                    }
+                }
+            }
+        }
+        all.mark_points(graph, drafts, &mut raw);
+        all.sort(raw);
+        all
+    }
+
+    fn id(&mut self, root: Root) -> usize {
+        let next = self.ids.len();
+        *self.ids.entry(root).or_insert_with(|| {
+            self.roots.push(root);
+            next
+        })
+    }
+
+    /// Corners and poles that are beads, rings or magnets mark the edges that they lie on, whether
+    /// or not an edge ends there.
+    fn mark_points(&mut self, graph: &Graph<f64>, drafts: &[Draft], raw: &mut Vec<Raw>) {
+        let poles = |draft: &Draft| -> SmallVec<[Key; 4]> {
+            let edges = draft.edges.edges.iter();
+            edges.filter_map(|e| if let Edge::Pole(p) = e { *p } else { None }).collect()
+        };
+        let mut seen = std::collections::HashSet::new();
+        for draft in drafts {
+            let corners = draft.edges.corners.into_iter().flatten();
+            for key in corners.chain(poles(draft)) {
+                if !seen.insert(key) {
+                    continue;
+                }
+                let Some(Value::Point(point)) = graph.get(key).and_then(|o| o.value()) else {
+                    continue;
+                };
+                for (root, t, source) in places_of(point, key) {
+                    // A root that no patch runs along needs no marks.
+                    if let Some(&root) = self.ids.get(&root) {
+                        raw.push(Raw { root, t: t + 0.0, point: Some(key), source });
+                    }
+                }
+            }
+        }
+    }
+
+    fn sort(&mut self, mut raw: Vec<Raw>) {
+        // Stable: among equal ones the first patch comes first.
+        raw.sort_by(|a, b| a.root.cmp(&b.root).then(a.t.total_cmp(&b.t)));
+        let mut root = None;
+        for Raw { root: at, t, point, source } in raw {
+            let same_root = root == Some(at);
+            root = Some(at);
+            while self.start.len() <= at {
+                self.start.push(self.places.len() as u32);
+            }
+            if let Some(last) = self.places.last_mut().filter(|_| same_root) {
+                let known = point.is_some_and(|p| last.points.contains(&p));
+                if t == last.high || (known && t - last.high <= SAME_MARK) {
+                    last.high = t;
+                    last.points.extend(point.filter(|_| !known));
+                    continue;
+                }
+            }
+            let points = point.into_iter().collect();
+            self.places.push(Place { low: t, high: t, points, source });
+        }
+        self.start.push(self.places.len() as u32);
+    }
+
+    /// The number of places; stretches are numbered alike.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The places.
+    pub fn places(&self) -> &[Place] {
+        &self.places
+    }
+
+    /// The root that a stretch is part of.
+    pub fn root_of(&self, stretch: StretchId) -> Root {
+        self.roots[self.start.partition_point(|&s| s <= stretch) - 1]
+    }
+
+    fn find(&self, root: usize, t: f64) -> PlaceId {
+        let (from, to) = (self.start[root] as usize, self.start[root + 1] as usize);
+        let places = &self.places[from..to];
+        (from + places.partition_point(|p| p.high < t)) as PlaceId
+    }
+
+    /// The stretches along the pieces of an edge.
+    pub fn spans(&self, pieces: &[Piece<f64>]) -> Vec<Span> {
+        let mut spans = Vec::with_capacity(pieces.len());
+        for (p, piece) in pieces.iter().enumerate() {
+            let root = self.ids[&piece.root];
+            let (from, to) =
+                (self.find(root, piece.from.t + 0.0), self.find(root, piece.to.t + 0.0));
+            let p = p as u16;
+            if from == to {
+                let until = Stop::Piece(p);
+                spans.push(Span { stretch: None, backwards: false, ends: [from, to], until });
+                continue;
+            }
+            let backwards = from > to;
+            let mut at = from;
+            while at != to {
+                let next = if backwards { at - 1 } else { at + 1 };
+                let until = if next == to {
+                    Stop::Piece(p)
+                } else {
+                    Stop::Inside(p, self.places[next as usize].source)
+                };
+                let stretch = Some(at.min(next));
+                spans.push(Span { stretch, backwards, ends: [at, next], until });
+                at = next;
+            }
+        }
+        spans
+    }
+}
+
+/// The places on roots where a point lies by its own data.
+fn places_of(point: &Point<f64>, key: Key) -> SmallVec<[(Root, f64, MarkSource); 2]> {
+    let mut places = SmallVec::new();
+    if let Some(place) = &point.on_curve {
+        let (curve, t) = (&place.0, place.1);
+        if let [piece] = curve.pieces().as_slice() {
+            places.push((piece.root, on_root(piece, t), MarkSource::Bead(key)));
+        }
+    }
+    if let Some(place) = &point.on_surface
+        && let (surface, [u, v]) = (&place.0, place.1)
+        && let Some(owner) = surface.key
+    {
+        let edges = surface.edges();
+        for (k, edge) in edges.edges.iter().enumerate() {
+            let (across, along) = if k % 2 == 0 { (v, u) } else { (u, v) };
+            let on = if k == 1 || k == 2 { 1.0 } else { 0.0 };
+            if across != on {
+                continue;
+            }
+            if let Some(pieces) = pieces(edge, owner, k)
+                && let [piece] = pieces.as_slice()
+            {
+                let source = MarkSource::Magnet(key, k as u8);
+                places.push((piece.root, on_root(piece, along), source));
+            }
+        }
+    }
+    places
+}
+
+fn on_root<T: Real>(piece: &Piece<T>, t: T) -> T {
+    piece.from.t + (piece.to.t - piece.from.t) * t
+}
+
+/// The pieces of an edge that has any: of its own, the whole of itself.
+pub(crate) fn pieces<T: Real>(
+    edge: &Edge<T>,
+    owner: Key,
+    k: usize,
+) -> Option<SmallVec<[Piece<T>; 1]>> {
+    match edge {
+        Edge::Own => {
+            let end = |t: f64| Mark { t: T::from(t), point: None };
+            let (from, to) = (end(0.0), end(1.0));
+            let root = Root::Edge(owner, k as u8);
+            Some(smallvec::smallvec![Piece { root, from, to, until: T::one() }])
+        }
+        Edge::Pieces(pieces) => Some(pieces.clone()),
+        Edge::SameAs(_) | Edge::Pole(_) => None,
+    }
+}
+
+/// The parameter on its root of a bead, ring or magnet that marks it.
+pub(crate) fn on_its_root<T: Real>(point: &Point<T>, source: MarkSource) -> Option<T> {
+    match source {
+        MarkSource::Bead(_) => {
+            let place = point.on_curve.as_ref()?;
+            place.0.pieces().first().map(|piece| on_root(piece, place.1))
+        }
+        MarkSource::Magnet(_, k) => {
+            let place = point.on_surface.as_ref()?;
+            let k = usize::from(k);
+            let pieces = pieces(&place.0.edges().edges[k], place.0.key?, k)?;
+            pieces.first().map(|piece| on_root(piece, place.1[k % 2]))
+        }
+        MarkSource::Piece { .. } => None,
+    }
+}

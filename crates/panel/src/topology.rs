@@ -1,0 +1,540 @@
+//! What of a model its panels' connectivity follows from: patches, the stretches that their edges
+//! run along, and the counts of divisions on these.
+
+use crate::counts::{Conflict, Divider, Links, Node, Sum};
+use crate::draft::Draft;
+use crate::edges::{EdgePlan, Segment, Shares, reversed, shares_of};
+use crate::notes::{ChainStep, Remark};
+use crate::roots::{PlaceId, Roots, Span, Stop, StretchId};
+use moldloft_model::Graph;
+use moldloft_num::trace::{Edge, Key, Root};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::Spacing;
+use std::collections::{HashMap, VecDeque};
+use std::sync::Arc;
+
+/// The most contradictions that are told one by one.
+const MOST_TOLD: usize = 20;
+
+/// Steps in which the length of an edge is measured, for sizes and shares.
+const LENGTH_STEPS: usize = 32;
+
+/// Any count of panels beyond this is refused elsewhere.
+const MOST_DIVISIONS: f64 = 1e6;
+
+/// What an edge of a patch runs along.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Rim {
+    /// These stretches, with the count on each.
+    Along(Vec<(Span, u32)>),
+    /// Stretches whose counts do not add up to that of the patch: its two ends.
+    Loose([PlaceId; 2]),
+    /// The same line as edge 0..4 of the patch.
+    Same(u8),
+    /// One point.
+    Pole(Option<Key>),
+}
+
+/// A patch without its shape.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Frame {
+    pub key: Key,
+    pub name: Arc<str>,
+    pub kind: Arc<str>,
+    pub colour: i32,
+    pub tags: Vec<Arc<str>>,
+    pub divisions: [usize; 2],
+    pub rims: [Rim; 4],
+    pub plans: [EdgePlan; 4],
+    pub corners: [Option<Key>; 4],
+    /// The patch of which it is the image, and the number of the map.
+    pub image: Option<(usize, u32)>,
+    /// True when its panels run against its natural normal, by what its surface says.
+    pub reversed: bool,
+    /// False for a hidden surface of which a shown one is the image, and for a hem.
+    pub meshed: bool,
+    /// For a hem, which of its sheet's.
+    pub hem: Option<u32>,
+}
+
+/// All of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Skeleton {
+    pub frames: Vec<Frame>,
+    /// The point objects at each place.
+    pub points: Vec<Vec<Key>>,
+}
+
+/// The skeleton and what was found while it was made.
+pub(crate) struct Made {
+    pub skeleton: Skeleton,
+    pub remarks: Vec<Remark>,
+    /// True when some count follows from lengths, so that it may change with any parameter.
+    pub measured: bool,
+}
+
+/// Direction 0 (u) or 1 (v) of a patch, as a node of the divider.
+fn side(patch: usize, direction: usize) -> Node {
+    2 * patch + direction
+}
+
+/// How stretches of so many divisions are divided: as the first patch says, which runs along them
+/// backwards or not.
+type Settled = HashMap<(StretchId, u32), (bool, Shares)>;
+
+/// The counts of divisions of another state of a model, to be kept where they are free.
+#[derive(Clone, Debug, Default)]
+pub struct Nominal(pub(crate) HashMap<(Arc<str>, Option<u32>), Counts>);
+
+#[derive(Clone, Debug)]
+pub(crate) struct Counts {
+    pub divisions: [usize; 2],
+    pub edges: [Vec<u32>; 4],
+}
+
+struct Maker<'a, 'g> {
+    graph: &'g Graph<f64>,
+    drafts: &'a [Draft<'g>],
+    roots: Roots,
+    spans: Vec<[Option<Vec<Span>>; 4]>,
+    divider: Divider,
+    /// The patch and edge of each sum.
+    summed: Vec<(usize, usize)>,
+    /// For each link: true when the two run in opposite directions.
+    turned: Vec<bool>,
+    measured: bool,
+}
+
+pub(crate) fn make<'g>(
+    graph: &'g Graph<f64>,
+    roots: Roots,
+    drafts: &[Draft<'g>],
+    nominal: Option<&Nominal>,
+) -> Made {
+    let spans: Vec<_> = drafts
+        .iter()
+        .map(|draft| {
+            std::array::from_fn(|k| {
+                let pieces = super::roots::pieces(&draft.edges.edges[k], draft.object.key, k)?;
+                Some(roots.spans(&pieces))
+            })
+        })
+        .collect();
+    let mut maker = Maker {
+        graph,
+        drafts,
+        roots,
+        spans,
+        divider: Divider::default(),
+        summed: Vec::new(),
+        turned: Vec::new(),
+        measured: false,
+    };
+    maker.state();
+    match nominal {
+        Some(nominal) => maker.recall(nominal),
+        None => maker.wish(),
+    }
+    let divided = maker.divider.solve();
+    let remarks = maker.told(&divided.conflicts, &divided.counts);
+    let measured = maker.measured;
+    Made { skeleton: maker.finish(&divided.counts), remarks, measured }
+}
+
+impl Maker<'_, '_> {
+    fn stretch(&self, stretch: StretchId) -> Node {
+        2 * self.drafts.len() + stretch as usize
+    }
+
+    /// Nodes, links and sums.
+    fn state(&mut self) {
+        for draft in self.drafts {
+            let (usual, stated) = (draft.usual(), draft.stated());
+            for direction in 0..2 {
+                self.divider.node(stated[direction], Some(usual[direction]));
+            }
+        }
+        for _ in 0..self.roots.len() {
+            self.divider.node(None, None);
+        }
+        for patch in 0..self.drafts.len() {
+            if let Some((original, _)) = self.drafts[patch].image {
+                let stated = self.drafts[patch].object.head.divided;
+                for direction in 0..2 {
+                    if !stated || self.divider.stated[side(patch, direction)].is_none() {
+                        // What an image says nothing of is as with its original.
+                        self.divider.stated[side(patch, direction)] = None;
+                        self.link(side(patch, direction), side(original, direction), false);
+                    }
+                }
+            }
+            for k in 0..4 {
+                let whole = side(patch, k % 2);
+                if let Edge::SameAs(other) = self.drafts[patch].edges.edges[k]
+                    && usize::from(other) % 2 != k % 2
+                {
+                    self.link(whole, side(patch, usize::from(other) % 2), false);
+                }
+                let Some(spans) = &self.spans[patch][k] else { continue };
+                let along: Vec<(StretchId, bool)> =
+                    spans.iter().filter_map(|s| Some((s.stretch?, s.backwards))).collect();
+                match along[..] {
+                    [] => {}
+                    [(stretch, backwards)] => self.link(whole, self.stretch(stretch), backwards),
+                    _ => {
+                        let weights = self.weights(patch, k);
+                        let nodes = along.iter().map(|s| self.stretch(s.0));
+                        let parts = nodes.zip(weights).collect();
+                        self.divider.sums.push(Sum { whole, parts });
+                        self.summed.push((patch, k));
+                    }
+                }
+            }
+        }
+        self.measured = !self.summed.is_empty();
+    }
+
+    fn link(&mut self, a: Node, b: Node, turned: bool) {
+        self.divider.links.push((a, b));
+        self.turned.push(turned);
+    }
+
+    /// The parameters of an edge between its spans.
+    fn stops(&self, patch: usize, k: usize) -> Vec<f64> {
+        let draft = &self.drafts[patch];
+        let Some(pieces) = super::roots::pieces(&draft.edges.edges[k], draft.object.key, k) else {
+            return vec![0.0, 1.0];
+        };
+        let begin = |p: u16| if p == 0 { 0.0 } else { pieces[usize::from(p) - 1].until };
+        let mut stops = vec![0.0];
+        for span in self.spans[patch][k].iter().flatten() {
+            stops.push(match span.until {
+                Stop::Piece(p) => pieces[usize::from(p)].until,
+                Stop::Inside(p, _) => {
+                    let piece = &pieces[usize::from(p)];
+                    let t = self.roots.places()[span.ends[1] as usize].parameter();
+                    let share = (t - piece.from.t) / (piece.to.t - piece.from.t);
+                    begin(p) + (piece.until - begin(p)) * share
+                }
+            });
+        }
+        stops
+    }
+
+    /// The lengths of the stretches of an edge.
+    fn weights(&self, patch: usize, k: usize) -> Vec<f64> {
+        let stops = self.stops(patch, k);
+        let spans = self.spans[patch][k].iter().flatten();
+        let within = stops.windows(2).zip(spans).filter(|(_, span)| span.stretch.is_some());
+        within.map(|(w, _)| self.length(patch, k, w[0], w[1])).collect()
+    }
+
+    /// The length of an edge (0..4) or middle line (4 along u, 5 along v) between two parameters.
+    fn length(&self, patch: usize, k: usize, from: f64, to: f64) -> f64 {
+        let surface = &self.drafts[patch].surface;
+        let n = LENGTH_STEPS as f64;
+        let ts: Vec<f64> =
+            (0..=LENGTH_STEPS).map(|i| from + (to - from) * (i as f64 / n)).collect();
+        let fixed = [match k {
+            0 | 3 => 0.0,
+            1 | 2 => 1.0,
+            _ => 0.5,
+        }];
+        let mut points = vec![Vec3::zero(); ts.len()];
+        match k % 2 {
+            0 => surface.grid(&ts, &fixed, &mut points, None),
+            _ => surface.grid(&fixed, &ts, &mut points, None),
+        }
+        points.windows(2).map(|w| w[0].distance(w[1])).sum()
+    }
+
+    /// Counts that follow from sizes.
+    fn wish(&mut self) {
+        for (patch, draft) in self.drafts.iter().enumerate() {
+            let Some(panels) = &draft.object.head.panels else { continue };
+            for direction in 0..2 {
+                let Some(size) = panels.size[direction] else { continue };
+                if self.divider.stated[side(patch, direction)].is_some() {
+                    continue;
+                }
+                let lines = if direction == 0 { [0, 2, 4] } else { [3, 1, 5] };
+                let length = lines.map(|k| self.length(patch, k, 0.0, 1.0)).into_iter();
+                let count = count_of(length.fold(0.0, f64::max), size, panels.spacing[direction]);
+                self.divider.wished[side(patch, direction)] = Some(count);
+                self.measured = true;
+            }
+        }
+    }
+
+    /// The counts of another state of the model, where they are free.
+    fn recall(&mut self, nominal: &Nominal) {
+        self.measured = true;
+        for (patch, draft) in self.drafts.iter().enumerate() {
+            let Some(counts) = nominal.0.get(&draft.identity()) else { continue };
+            for direction in 0..2 {
+                self.divider.wished[side(patch, direction)] =
+                    Some(counts.divisions[direction] as u32);
+            }
+            for k in 0..4 {
+                let spans = self.spans[patch][k].iter().flatten();
+                let along: Vec<StretchId> = spans.filter_map(|s| s.stretch).collect();
+                if along.len() == counts.edges[k].len() {
+                    for (stretch, &n) in along.into_iter().zip(&counts.edges[k]) {
+                        let node = self.stretch(stretch);
+                        self.divider.wished[node] = Some(n);
+                    }
+                }
+            }
+        }
+    }
+
+    fn told(&self, conflicts: &[Conflict], counts: &[u32]) -> Vec<Remark> {
+        let mut remarks: Vec<Remark> = conflicts
+            .iter()
+            .take(MOST_TOLD)
+            .map(|conflict| match conflict {
+                Conflict::Chain(path) => self.chain(path),
+                Conflict::Sum(sum) => self.pieces(*sum, counts),
+            })
+            .collect();
+        if conflicts.len() > MOST_TOLD {
+            remarks.push(Remark::More(conflicts.len() - MOST_TOLD));
+        }
+        remarks
+    }
+
+    fn letter(direction: usize) -> char {
+        if direction == 0 { 'u' } else { 'v' }
+    }
+
+    fn chain(&self, path: &[Node]) -> Remark {
+        let patches = 2 * self.drafts.len();
+        let mut chain: Vec<ChainStep> = Vec::new();
+        for (at, &node) in path.iter().enumerate() {
+            if node >= patches {
+                continue;
+            }
+            let shares = match path.get(at + 1) {
+                Some(&next) if next >= patches => self.curve((next - patches) as StretchId),
+                Some(_) => "being its image".into(),
+                None => String::new(),
+            };
+            chain.push(ChainStep {
+                patch: self.drafts[node / 2].object.name.to_string(),
+                along: Self::letter(node % 2),
+                shares,
+            });
+        }
+        let stated = |node: Option<&Node>| node.and_then(|&n| self.divider.stated[n]).unwrap_or(0);
+        Remark::Divisions { chain, divisions: [stated(path.first()), stated(path.last())] }
+    }
+
+    fn pieces(&self, sum: usize, counts: &[u32]) -> Remark {
+        let (patch, k) = self.summed[sum];
+        let Sum { whole, parts } = &self.divider.sums[sum];
+        let patches = 2 * self.drafts.len();
+        let pieces = parts
+            .iter()
+            .map(|&(node, _)| (self.curve((node - patches) as StretchId), counts[node]))
+            .collect();
+        Remark::Pieces {
+            patch: self.drafts[patch].object.name.to_string(),
+            along: Self::letter(k % 2),
+            divisions: counts[*whole],
+            pieces,
+        }
+    }
+
+    /// The words for what a stretch is part of.
+    fn curve(&self, stretch: StretchId) -> String {
+        let name = |key: Key| self.graph.get(key).map_or("", |o| &*o.name);
+        match self.roots.root_of(stretch) {
+            Root::Curve(key) => format!("`{}`", name(key)),
+            Root::Segment(a, b) | Root::Governed(a, b, _) => {
+                format!("the line from `{}` to `{}`", name(a), name(b))
+            }
+            Root::Edge(key, k) => {
+                let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(k) % 4];
+                format!("edge {edge} of `{}`", name(key))
+            }
+        }
+    }
+
+    /// The spacing of each direction of each patch: its own, else that of the nearest in its chain.
+    fn spacings(&self) -> Vec<Spacing> {
+        let nodes = self.divider.stated.len();
+        let mut spacing: Vec<Option<Spacing>> = vec![None; nodes];
+        let mut queue = VecDeque::new();
+        for (patch, draft) in self.drafts.iter().enumerate() {
+            let Some(panels) = &draft.object.head.panels else { continue };
+            for direction in 0..2 {
+                if let Some(own) = panels.spacing[direction] {
+                    spacing[side(patch, direction)] = Some(own);
+                    queue.push_back(side(patch, direction));
+                }
+            }
+        }
+        if !queue.is_empty() {
+            let links = Links::new(nodes, &self.divider.links);
+            let turned: HashMap<(Node, Node), bool> =
+                self.divider.links.iter().copied().zip(self.turned.iter().copied()).collect();
+            while let Some(node) = queue.pop_front() {
+                for &next in links.of(node) {
+                    if spacing[next].is_none() {
+                        let turned = turned.get(&(node, next)).or(turned.get(&(next, node)));
+                        let here = spacing[node].unwrap_or_default();
+                        let turned = turned.is_some_and(|t| *t);
+                        spacing[next] = Some(if turned { here.reversed() } else { here });
+                        queue.push_back(next);
+                    }
+                }
+            }
+        }
+        spacing.into_iter().map(Option::unwrap_or_default).collect()
+    }
+
+    fn finish(&self, counts: &[u32]) -> Skeleton {
+        let spacings = self.spacings();
+        let mut settled = Settled::new();
+        let mut frames = Vec::with_capacity(self.drafts.len());
+        for (patch, draft) in self.drafts.iter().enumerate() {
+            let divisions = [0, 1].map(|d| counts[side(patch, d)]);
+            let mut rims: [Rim; 4] = std::array::from_fn(|_| Rim::Pole(None));
+            let mut plans: [EdgePlan; 4] =
+                std::array::from_fn(|k| EdgePlan::Whole(divisions[k % 2], None));
+            for k in 0..4 {
+                let n = divisions[k % 2];
+                let law = &spacings[side(patch, k % 2)];
+                (rims[k], plans[k]) = match &draft.edges.edges[k] {
+                    Edge::Pole(point) => (Rim::Pole(*point), EdgePlan::Whole(n, None)),
+                    Edge::SameAs(other) => (Rim::Same(*other), EdgePlan::As(*other)),
+                    _ => {
+                        let spans = self.spans[patch][k].as_deref().unwrap_or_default();
+                        self.edge(spans, n, law, counts, &mut settled)
+                    }
+                };
+            }
+            for k in 0..4 {
+                let opposite = (k + 2) % 4;
+                if matches!(plans[k], EdgePlan::As(other) if usize::from(other) % 2 != k % 2) {
+                    plans[k] = EdgePlan::Whole(divisions[k % 2], None);
+                }
+                if !matches!(rims[k], Rim::Pole(_)) {
+                    continue;
+                }
+                plans[k] = match rims[opposite] {
+                    Rim::Pole(_) | Rim::Same(_) => {
+                        let n = divisions[k % 2];
+                        EdgePlan::Whole(n, shares_of(&spacings[side(patch, k % 2)], 0, n, n))
+                    }
+                    _ => EdgePlan::As(opposite as u8),
+                };
+            }
+            if let Some((original, _)) = draft.image
+                && counts[side(original, 0)] == divisions[0]
+                && counts[side(original, 1)] == divisions[1]
+            {
+                for k in 0..4 {
+                    // Its vertices are the images of those of its original, wherever these lie.
+                    if matches!(&rims[k], Rim::Along(spans) if spans.len() == 1) {
+                        plans[k] = EdgePlan::Like(original as u32);
+                    }
+                }
+            }
+            frames.push(Frame {
+                key: draft.object.key,
+                name: draft.object.name.clone(),
+                kind: draft.object.row.name.as_ref().into(),
+                colour: draft.object.head.colour,
+                tags: draft.object.head.panels.as_ref().map_or(Vec::new(), |p| p.tags.clone()),
+                divisions: divisions.map(|n| n as usize),
+                rims,
+                plans,
+                corners: draft.edges.corners,
+                image: draft.image,
+                reversed: draft.reversed,
+                meshed: draft.meshed,
+                hem: draft.hem.map(|h| h.index),
+            });
+        }
+        let points = self.roots.places().iter().map(|p| p.points.to_vec()).collect();
+        Skeleton { frames, points }
+    }
+
+    fn edge(
+        &self,
+        spans: &[Span],
+        n: u32,
+        law: &Spacing,
+        counts: &[u32],
+        settled: &mut Settled,
+    ) -> (Rim, EdgePlan) {
+        let along = spans.iter().filter(|s| s.stretch.is_some()).count();
+        let count = |span: &Span| match span.stretch {
+            None => 0,
+            // The only stretch has the patch's own count, even where a chain was cut.
+            Some(_) if along == 1 => n,
+            Some(stretch) => counts[self.stretch(stretch)],
+        };
+        let (Some(first), Some(last)) = (spans.first(), spans.last()) else {
+            return (Rim::Pole(None), EdgePlan::Whole(n, None));
+        };
+        if along == 0 {
+            let point = self.roots.places()[first.ends[0] as usize].points.first().copied();
+            return (Rim::Pole(point), EdgePlan::Whole(n, None));
+        }
+        if spans.iter().map(count).sum::<u32>() != n {
+            let ends = [first.ends[0], last.ends[1]];
+            return (Rim::Loose(ends), EdgePlan::Whole(n, None));
+        }
+        let mut begin = 0;
+        let mut segments = Vec::with_capacity(along);
+        for span in spans {
+            let Some(stretch) = span.stretch else { continue };
+            let count = count(span);
+            let own = || (span.backwards, shares_of(law, begin, begin + count, n));
+            let (backwards, shares) = settled.entry((stretch, count)).or_insert_with(own);
+            let same_way = *backwards == span.backwards;
+            let shares = if same_way { shares.clone() } else { reversed(shares) };
+            segments.push(Segment { until: span.until, count, shares });
+            begin += count;
+        }
+        let plan = match &segments[..] {
+            [only] => EdgePlan::Whole(n, only.shares.clone()),
+            _ => EdgePlan::Segments(segments),
+        };
+        (Rim::Along(spans.iter().map(|s| (*s, count(s))).collect()), plan)
+    }
+}
+
+/// How many panels of about `size` a length takes: of equal ones none is longer; of growing ones
+/// the smallest has that size.
+fn count_of(length: f64, size: f64, spacing: Option<Spacing>) -> u32 {
+    let ratio = length / size;
+    let n = match spacing {
+        Some(Spacing::Growth(q)) if q != 1.0 => {
+            // size (q^n - 1) / (q - 1) = length, with the growth above 1.
+            let q = q.max(1.0 / q);
+            Real::ln(1.0 + ratio * (q - 1.0)) / Real::ln(q)
+        }
+        _ => ratio,
+    };
+    // Rounding must not turn 10.000000001 panels into 11.
+    (n - 1e-6).ceil().clamp(1.0, MOST_DIVISIONS) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_make_counts() {
+        assert_eq!(count_of(10.0, 0.5, None), 20);
+        assert_eq!(count_of(10.1, 0.5, None), 21);
+        assert_eq!(count_of(0.0, 0.5, None), 1);
+        // 1 + 2 + 4 + 8 = 15.
+        assert_eq!(count_of(15.0, 1.0, Some(Spacing::Growth(2.0))), 4);
+        assert_eq!(count_of(15.0, 1.0, Some(Spacing::Growth(0.5))), 4);
+        assert_eq!(count_of(1e30, 1e-9, None), 1_000_000);
+    }
+}

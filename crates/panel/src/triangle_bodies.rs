@@ -1,0 +1,295 @@
+//! Bodies of triangles among the panels: they come as they are, but for sheets with a border, whose
+//! vertices there are those of their neighbours.
+
+use crate::border_curves::border;
+use crate::edges::along_edge;
+use crate::joined_patches::Joint;
+use crate::notes::Remark;
+use crate::patch_values::Known;
+use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
+use moldloft_model::{Graph, Object};
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Facets, Scalar, Value};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+/// A shown object that is a body.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    name: Arc<str>,
+    kind: Arc<str>,
+    colour: i32,
+    tags: Vec<Arc<str>>,
+    reversed: bool,
+    pub facets: Arc<Facets<f64>>,
+    /// The parameters at which its border is divided, curve by curve; none when it has no border.
+    divided: Vec<Vec<f64>>,
+    /// The patch without panels that stands for each curve of its border, where there is one.
+    hems: Vec<Option<usize>>,
+    /// Which of its vertices are those of each curve.
+    rims: Vec<Vec<u32>>,
+    /// The number of each of its vertices in the mesh, and which are its own.
+    vertices: Vec<u32>,
+    own: Vec<u32>,
+}
+
+/// The shown bodies in the order of declaration, as they are by themselves.
+pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
+    let shown = graph.objects().filter(|o| o.head.shown());
+    shown
+        .filter_map(|object| {
+            let Some(Value::Mesh(facets)) = object.value() else { return None };
+            Some(Body {
+                name: object.name.clone(),
+                kind: object.row.name.as_ref().into(),
+                colour: object.head.colour,
+                tags: object.head.panels.as_ref().map_or(Vec::new(), |p| p.tags.clone()),
+                reversed: object.head.orientation == 1,
+                facets: facets.clone(),
+                divided: Vec::new(),
+                hems: Vec::new(),
+                rims: Vec::new(),
+                vertices: Vec::new(),
+                own: Vec::new(),
+            })
+        })
+        .collect()
+}
+
+/// A topology and the bodies after it.
+pub(crate) fn with_bodies(base: &Topology, bodies: &[Body]) -> Result<Arc<Topology>, MeshError> {
+    let mut builder = TopologyBuilder::extending(base.clone());
+    for body in bodies {
+        body.add(&mut builder)?;
+    }
+    Ok(builder.build().into())
+}
+
+/// Divides the borders of the bodies as the patches that stand for them are, and gives all of their
+/// vertices a number; `before` are those of an earlier state and what it calls unchanged. Returns what
+/// does not join.
+pub(crate) fn sewn(
+    bodies: &mut [Body],
+    known: &Known<f64>,
+    joint: &Joint,
+    before: Option<(&[Body], &dyn Fn(&Object<f64>) -> bool)>,
+) -> Vec<Remark> {
+    let mut remarks = Vec::new();
+    let mut hems: HashMap<(Arc<str>, u32), usize> = HashMap::new();
+    for (patch, frame) in known.skeleton.frames.iter().enumerate() {
+        if let Some(hem) = frame.hem {
+            hems.insert((frame.name.clone(), hem), patch);
+        }
+    }
+    let used = joint.topology.vertex_count() as u32;
+    let mut next = used;
+    // Vertices of borders that no panel has.
+    let mut between: HashMap<u32, u32> = HashMap::new();
+    let mut edges: Option<HashSet<(u32, u32)>> = None;
+    for body in bodies {
+        let object = known.graph.find(&body.name).and_then(|key| known.graph.get(key));
+        let same = before.and_then(|(all, unchanged)| {
+            let twin = all.iter().find(|b| b.name == body.name)?;
+            object.is_some_and(unchanged).then_some(twin)
+        });
+        if let Some(divisions) = body.divide(object, &hems, known, same) {
+            remarks.push(Remark::Border { patch: body.name.to_string(), divisions });
+        }
+        body.vertices = vec![u32::MAX; body.facets.points.len()];
+        let numbers = |patch: usize| joint.vertices[patch].iter().step_by(2).copied();
+        let mut pending = Vec::new();
+        for (rim, patch) in body.rims.iter().zip(&body.hems) {
+            let Some(patch) = *patch else { continue };
+            for (&vertex, number) in rim.iter().zip(numbers(patch)) {
+                let slot = &mut body.vertices[vertex as usize];
+                let found =
+                    if number < used { Some(number) } else { between.get(&number).copied() };
+                match found {
+                    Some(found) if *slot == u32::MAX => *slot = found,
+                    Some(_) => {}
+                    None => pending.push((vertex, number)),
+                }
+            }
+        }
+        body.own.clear();
+        for (vertex, slot) in body.vertices.iter_mut().enumerate() {
+            if *slot == u32::MAX {
+                *slot = next;
+                next += 1;
+                body.own.push(vertex as u32);
+            }
+        }
+        for (vertex, number) in pending {
+            between.entry(number).or_insert(body.vertices[vertex as usize]);
+        }
+        if !body.hems.is_empty() {
+            let edges = edges.get_or_insert_with(|| directed(joint.topology.faces()));
+            body.face_like(edges);
+            edges.extend(body.faces().flat_map(sides));
+        }
+    }
+    remarks
+}
+
+/// The edges of a panel in the direction in which it runs round.
+fn sides([a, b, c, d]: [u32; 4]) -> impl Iterator<Item = (u32, u32)> {
+    [(a, b), (b, c), (c, d), (d, a)].into_iter().filter(|(p, q)| p != q)
+}
+
+fn directed(faces: &[[u32; 4]]) -> HashSet<(u32, u32)> {
+    faces.iter().copied().flat_map(sides).collect()
+}
+
+impl Body {
+    /// True when it makes the same panels.
+    pub fn is_like(&self, o: &Body) -> bool {
+        let heads = (self.colour, &self.tags, self.reversed) == (o.colour, &o.tags, o.reversed);
+        heads
+            && (&self.name, &self.kind) == (&o.name, &o.kind)
+            && self.vertices == o.vertices
+            && self.facets.triangles == o.facets.triangles
+            && self.facets.groups == o.facets.groups
+    }
+
+    /// How many panels it has.
+    pub fn panels(&self) -> u64 {
+        self.facets.triangles.len() as u64
+    }
+
+    /// True when it may join neighbours.
+    pub fn has_border(&self) -> bool {
+        self.facets.border.is_some()
+    }
+
+    /// Divides its border; a border that would cross itself stays as it was and joins nothing, and the
+    /// divisions that would make it are returned.
+    fn divide(
+        &mut self,
+        object: Option<&Object<f64>>,
+        hems: &HashMap<(Arc<str>, u32), usize>,
+        known: &Known<f64>,
+        same: Option<&Body>,
+    ) -> Option<Vec<usize>> {
+        let border = border(object?)?;
+        let count = border.hems().len() as u32;
+        let patches: Vec<_> =
+            (0..count).map(|k| hems.get(&(self.name.clone(), k)).copied()).collect();
+        let at = parameters(&patches, known, border.hems().iter().map(|h| h.usual))?;
+        let alike = |a: &[Vec<f64>], b: &[Vec<f64>]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b)
+        };
+        let made = match same.filter(|b| alike(&b.divided, &at)) {
+            Some(before) => Some((before.facets.clone(), before.rims.clone())),
+            None => border.divided(&at).map(|(mut facets, rims)| {
+                facets.border = self.facets.border.clone();
+                (Arc::new(facets), rims)
+            }),
+        };
+        let Some((facets, rims)) = made else {
+            return Some(at.iter().map(|ts| ts.len() - 1).collect());
+        };
+        (self.facets, self.rims) = (facets, rims);
+        (self.hems, self.divided) = (patches, at);
+        None
+    }
+
+    /// Turns it so that it faces as its neighbours do: these run along common edges the other way.
+    fn face_like(&mut self, edges: &HashSet<(u32, u32)>) {
+        let (mut alike, mut against) = (0, 0);
+        for (a, b) in self.faces().flat_map(sides) {
+            alike += usize::from(edges.contains(&(b, a)));
+            against += usize::from(edges.contains(&(a, b)));
+        }
+        if against > alike {
+            self.reversed = !self.reversed;
+        }
+    }
+
+    /// Its panels in the numbers of the mesh; those that joins have made lines are left out.
+    fn faces(&self) -> impl Iterator<Item = [u32; 4]> {
+        self.facets.triangles.iter().filter_map(|t| self.face(t))
+    }
+
+    fn face(&self, t: &[u32; 3]) -> Option<[u32; 4]> {
+        let [a, b, c] = t.map(|v| self.vertices[v as usize]);
+        let [a, c] = if self.reversed { [c, a] } else { [a, c] };
+        (a != b && b != c && c != a).then_some([a, b, c, c])
+    }
+
+    /// Adds its vertices and panels.
+    fn add(&self, builder: &mut TopologyBuilder) -> Result<(), MeshError> {
+        builder.add_vertices(self.own.len())?;
+        let info = PatchInfo {
+            name: self.name.to_string(),
+            tag: Tag::among(self.tags.iter().map(|t| &**t)),
+            tags: self.tags.iter().map(|t| t.to_string()).collect(),
+            colour: Some((self.colour & 15) as u8),
+            kind: self.kind.to_string(),
+        };
+        if self.facets.groups.is_empty() {
+            return builder.add_faces(info, self.faces());
+        }
+        for group in &self.facets.groups {
+            let own = PatchInfo {
+                name: format!("{}.{}", self.name, group.name),
+                kind: group.kind.clone(),
+                colour: group.colour.or(info.colour),
+                tags: info.tags.iter().chain(&group.tags).cloned().collect(),
+                ..info.clone()
+            };
+            let triangles = &self.facets.triangles[group.triangles.clone()];
+            builder.add_faces(own, triangles.iter().filter_map(|t| self.face(t)))?;
+        }
+        Ok(())
+    }
+
+    /// Its facets with the scalar of `graph`, divided as here; `None` when it has no value there, or other
+    /// triangles.
+    pub fn facets_in<'k, T: Scalar>(
+        &self,
+        graph: &Graph<T>,
+        known: impl FnOnce() -> &'k Known<'k, T>,
+    ) -> Option<Arc<Facets<T>>> {
+        let object = graph.get(graph.find(&self.name)?)?;
+        let Some(Value::Mesh(facets)) = object.value() else { return None };
+        let facets = match border(object).filter(|_| !self.hems.is_empty()) {
+            None => facets.clone(),
+            Some(border) => {
+                let usual = border.hems().iter().map(|h| h.usual);
+                let at = parameters(&self.hems, known(), usual)?;
+                Arc::new(border.divided(&at)?.0)
+            }
+        };
+        (facets.points.len() == self.facets.points.len()).then_some(facets)
+    }
+
+    /// The positions of its own vertices, from those of its facets and of the patches.
+    pub fn own_points<T: Real>(
+        &self,
+        facets: &Facets<T>,
+        patches: &[Arc<Vec<Vec3<T>>>],
+    ) -> impl Iterator<Item = Vec3<T>> {
+        let mut points = facets.points.clone();
+        for (rim, patch) in self.rims.iter().zip(&self.hems) {
+            let Some(patch) = *patch else { continue };
+            for (&vertex, &p) in rim.iter().zip(patches[patch].iter().step_by(2)) {
+                points[vertex as usize] = p;
+            }
+        }
+        self.own.iter().map(move |&v| points[v as usize])
+    }
+}
+
+/// The parameters at which the curves of a border are divided; evenly where no patch says.
+fn parameters<T: Scalar>(
+    patches: &[Option<usize>],
+    known: &Known<T>,
+    usual: impl Iterator<Item = u32>,
+) -> Option<Vec<Vec<T>>> {
+    let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();
+    let of = |(patch, n): (&Option<usize>, u32)| match patch {
+        Some(patch) => along_edge(0, *patch as u32, known),
+        None => Some(even(n)),
+    };
+    patches.iter().zip(usual).map(of).collect()
+}

@@ -1,0 +1,515 @@
+//! From dimensions to coordinates, with an exact account of what is missing and what is too much.
+//!
+//! A dimension along an axis joins two planes with an offset. The planes and one ground node (joined
+//! to the reference point's planes) form a graph; dimensions that join two parts drive, one that
+//! closes a loop is redundant or contradicts the loop. Coordinates are sums of ±d along the only path
+//! from the ground (routine CVTSTR), so nothing is solved, nothing flips, and derivatives are exact.
+
+use crate::dimension::solver::solve_derived;
+use crate::dimension::{Dimension, Measure, Role};
+use crate::drawing::estimate::Estimate;
+use crate::drawing::planes::Planes;
+use crate::object::Object;
+use crate::{Axis, PointId};
+use moldloft_num::{Real, Vec3};
+use std::collections::{BTreeMap, VecDeque};
+
+/// A dimension that does not do what it says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DimensionFault {
+    /// The others determine it already; it agrees.
+    Redundant {
+        /// Its name.
+        name: String,
+        /// The dimensions that determine it.
+        path: Vec<String>,
+    },
+    /// The others determine it already, to another value.
+    Contradictory {
+        /// Its name.
+        name: String,
+        /// What it asks.
+        asked: f64,
+        /// What the others make it.
+        measured: f64,
+        /// The dimensions that determine it.
+        path: Vec<String>,
+    },
+    /// Its expression reads an unknown or unset name.
+    NoValue {
+        /// Its name.
+        name: String,
+        /// The name it reads.
+        reads: String,
+    },
+    /// Its expression depends on itself.
+    Cycle {
+        /// All names of the cycle.
+        names: Vec<String>,
+    },
+    /// Its value is not a finite number.
+    NotFinite {
+        /// Its name.
+        name: String,
+    },
+    /// A derived dimension (length, slope, angle, equal) has no solution near the drawing.
+    Unsolved {
+        /// Its name.
+        name: String,
+        /// By how much it is missed.
+        residual: f64,
+    },
+}
+
+/// Planes of an axis that hang together but not on the reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loose {
+    /// The axis.
+    pub axis: Axis,
+    /// The planes.
+    pub planes: Vec<usize>,
+    /// Their points.
+    pub points: Vec<PointId>,
+}
+
+/// The account of one axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Count {
+    /// Planes less one.
+    pub required: usize,
+    /// Dimensions that drive.
+    pub given: usize,
+    /// Still to be given.
+    pub missing: usize,
+}
+
+/// Where everything is.
+#[derive(Clone, Debug)]
+pub struct Layout<T> {
+    /// The coordinate of each plane of each axis, as far as determined.
+    pub coordinates: [Vec<Option<T>>; 3],
+    /// The account of each axis.
+    pub counts: [Count; 3],
+    /// Parts that are not connected to the reference.
+    pub loose: Vec<Loose>,
+    /// Dimensions in trouble.
+    pub faults: Vec<DimensionFault>,
+    /// Values of all dimensions and variables by folded name.
+    pub values: BTreeMap<String, T>,
+}
+
+impl<T: Real> Layout<T> {
+    /// Whether every point is determined.
+    pub fn complete(&self) -> bool {
+        self.counts.iter().all(|c| c.missing == 0)
+    }
+
+    /// The coordinate of a point on an axis.
+    pub fn coordinate(&self, planes: &Planes, axis: Axis, point: PointId) -> Option<T> {
+        self.coordinates[axis.index()].get(planes.plane(axis, point)?).copied().flatten()
+    }
+
+    /// Where a point is.
+    pub fn point(&self, planes: &Planes, point: PointId) -> Option<Vec3<T>> {
+        let [x, y, z] = Axis::ALL.map(|a| self.coordinate(planes, a, point));
+        Some(Vec3::new(x?, y?, z?))
+    }
+
+    /// All positions, in the order of [`Planes::ids`]; `None` when one is undetermined.
+    pub fn positions(&self, planes: &Planes) -> Option<Vec<Vec3<T>>> {
+        let at =
+            |axis: Axis, k: usize| self.coordinates[axis.index()][planes.classes(axis)[k] as usize];
+        (0..planes.ids().len())
+            .map(|k| Some(Vec3::new(at(Axis::X, k)?, at(Axis::Y, k)?, at(Axis::Z, k)?)))
+            .collect()
+    }
+
+    /// What a measure comes to, if its points are determined.
+    pub fn measured(&self, object: &Object, planes: &Planes, measure: &Measure) -> Option<T> {
+        match *measure {
+            Measure::Along { axis, p, q } => {
+                Some(self.coordinate(planes, axis, q)? - self.coordinate(planes, axis, p)?)
+            }
+            Measure::Datum { axis, point } => self.coordinate(planes, axis, point),
+            _ => crate::dimension::solver::value(object, measure, &|p| self.point(planes, p)),
+        }
+    }
+}
+
+/// The dimension graph of one axis: planes and the ground.
+struct Graph {
+    /// Per node: (other node, dimension, whether the other node is its far end).
+    next: Vec<Vec<(usize, usize, bool)>>,
+    parent: Vec<usize>,
+}
+
+impl Graph {
+    fn new(nodes: usize) -> Graph {
+        Graph { next: vec![Vec::new(); nodes], parent: (0..nodes).collect() }
+    }
+
+    fn root(&mut self, mut k: usize) -> usize {
+        while self.parent[k] != k {
+            self.parent[k] = self.parent[self.parent[k]];
+            k = self.parent[k];
+        }
+        k
+    }
+
+    fn join(&mut self, a: usize, b: usize, dimension: usize) {
+        self.next[a].push((b, dimension, true));
+        self.next[b].push((a, dimension, false));
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+
+    /// The dimensions on the way from `a` to `b`, each with its sign.
+    fn path(&self, a: usize, b: usize) -> Vec<(usize, bool)> {
+        let mut from = vec![None; self.next.len()];
+        let mut queue = VecDeque::from([a]);
+        while let Some(at) = queue.pop_front() {
+            for &(to, d, forward) in &self.next[at] {
+                if to != a && from[to].is_none() {
+                    from[to] = Some((at, d, forward));
+                    queue.push_back(to);
+                }
+            }
+        }
+        let mut path = Vec::new();
+        let mut at = b;
+        while let Some((before, d, forward)) = from[at] {
+            path.push((d, forward));
+            at = before;
+        }
+        path.reverse();
+        path
+    }
+}
+
+/// Not a dimension but the reference point.
+const REFERENCE: usize = usize::MAX;
+
+/// The two nodes that a dimension joins on its axis, from and to; the ground is node `planes`.
+fn ends(planes: &Planes, measure: &Measure) -> Option<(Axis, usize, usize)> {
+    match *measure {
+        Measure::Along { axis, p, q } => {
+            Some((axis, planes.plane(axis, p)?, planes.plane(axis, q)?))
+        }
+        Measure::Datum { axis, point } => {
+            Some((axis, planes.counts()[axis.index()], planes.plane(axis, point)?))
+        }
+        _ => None,
+    }
+}
+
+/// The chain of driving dimensions between two points on an axis, as the points it goes through and
+/// the dimensions' names; `None` when they are not connected.
+pub fn chain(
+    object: &Object,
+    planes: &Planes,
+    axis: Axis,
+    p: PointId,
+    q: PointId,
+) -> Option<(Vec<PointId>, Vec<String>)> {
+    let (a, b) = (planes.plane(axis, p)?, planes.plane(axis, q)?);
+    let graph = &graphs(object, planes).0[axis.index()];
+    let path = graph.path(a, b);
+    if path.is_empty() && a != b {
+        return None;
+    }
+    let ground = planes.counts()[axis.index()];
+    let (mut points, mut names) = (vec![p], Vec::new());
+    let mut at = a;
+    for (d, forward) in path {
+        let far = graph.next[at].iter().find(|n| n.1 == d && n.2 == forward).map(|n| n.0);
+        at = far.unwrap_or(b);
+        let (first, last, name) = match object.dimensions.get_index(d) {
+            Some((_, dimension)) => match dimension.measure {
+                Measure::Along { p, q, .. } if forward => (p, q, dimension.name.clone()),
+                Measure::Along { p, q, .. } => (q, p, dimension.name.clone()),
+                Measure::Datum { point, .. } => (point, point, dimension.name.clone()),
+                _ => continue,
+            },
+            None => match object.reference() {
+                Some(r) => (r.point, r.point, "REFERENCE".to_owned()),
+                None => continue,
+            },
+        };
+        for point in [first, last] {
+            let known = points.last().is_some_and(|l| planes.same(axis, *l, point));
+            if !known && at != ground {
+                points.push(point);
+            }
+        }
+        names.push(name);
+    }
+    if let Some(last) = points.last_mut() {
+        *last = q;
+    }
+    Some((points, names))
+}
+
+/// `1>4>2`.
+pub fn chain_text(points: &[PointId]) -> String {
+    points.iter().map(ToString::to_string).collect::<Vec<_>>().join(">")
+}
+
+/// The forests of driving dimensions, and the dimensions that close loops in them.
+fn graphs(object: &Object, planes: &Planes) -> ([Graph; 3], Vec<usize>) {
+    let mut graphs = planes.counts().map(|n| Graph::new(n + 1));
+    if let Some(r) = object.reference() {
+        for axis in Axis::ALL {
+            if let Some(plane) = planes.plane(axis, r.point) {
+                graphs[axis.index()].join(planes.counts()[axis.index()], plane, REFERENCE);
+            }
+        }
+    }
+    let mut closing = Vec::new();
+    for (k, dimension) in object.dimensions.values().enumerate() {
+        let Some((axis, a, b)) = ends(planes, &dimension.measure) else { continue };
+        if dimension.role != Role::Driving || dimension.value.is_none() {
+            continue;
+        }
+        let graph = &mut graphs[axis.index()];
+        if graph.root(a) == graph.root(b) {
+            closing.push(k);
+        } else {
+            graph.join(a, b, k);
+        }
+    }
+    (graphs, closing)
+}
+
+/// Computes the layout. `overrides` replaces the values of dimensions and variables (folded names);
+/// `estimate` is asked for only when derived dimensions (length, slope, …) need a start.
+pub fn solve<T: Real>(
+    object: &Object,
+    planes: &Planes,
+    overrides: &BTreeMap<String, T>,
+    estimate: &dyn Fn() -> Option<Estimate>,
+) -> Layout<T> {
+    let (values, mut faults) = evaluate(object, overrides);
+    let (graphs, closing) = graphs(object, planes);
+    let value = |k: usize| -> Option<T> {
+        let (key, _) = object.dimensions.get_index(k)?;
+        values.get(key).copied()
+    };
+    let mut coordinates = planes.counts().map(|n| vec![None; n]);
+    let mut floating: Vec<(Axis, Vec<(usize, T)>)> = Vec::new();
+    let mut counts = [Count::default(); 3];
+    for axis in Axis::ALL {
+        let k = axis.index();
+        let (graph, ground) = (&graphs[k], planes.counts()[k]);
+        let mut offset: Vec<Option<T>> = vec![None; ground + 1];
+        for start in std::iter::once(ground).chain(0..ground) {
+            if offset[start].is_some() {
+                continue;
+            }
+            offset[start] = Some(T::zero());
+            let mut part = vec![(start, T::zero())];
+            let mut done = 0;
+            while let Some(&(at, here)) = part.get(done) {
+                done += 1;
+                for &(to, d, forward) in &graph.next[at] {
+                    if offset[to].is_some() {
+                        continue;
+                    }
+                    let step = if d == REFERENCE {
+                        object.reference().map(|r| T::from(r.at[k]))
+                    } else {
+                        value(d)
+                    };
+                    // A dimension without a value leaves its far side open.
+                    let Some(step) = step else { continue };
+                    let there = if forward { here + step } else { here - step };
+                    offset[to] = Some(there);
+                    part.push((to, there));
+                }
+            }
+            if start == ground {
+                for &(plane, at) in &part[1..] {
+                    coordinates[k][plane] = Some(at);
+                }
+            } else {
+                floating.push((axis, part));
+            }
+        }
+        let parts = floating.iter().filter(|(a, _)| *a == axis).count();
+        let required = planes.required(axis);
+        counts[k] = Count { required, given: required.saturating_sub(parts), missing: parts };
+    }
+    let derived: Vec<&Dimension> = (object.dimensions.values())
+        .filter(|d| d.role == Role::Driving && d.value.is_some())
+        .filter(|d| ends(planes, &d.measure).is_none())
+        .collect();
+    let mut layout = Layout { coordinates, counts, loose: Vec::new(), faults: Vec::new(), values };
+    if !derived.is_empty() {
+        faults.extend(solve_derived(
+            object,
+            planes,
+            &mut layout,
+            &mut floating,
+            &derived,
+            estimate,
+        ));
+    }
+    for (axis, part) in floating {
+        let mut own: Vec<usize> = part.iter().map(|p| p.0).collect();
+        own.sort_unstable();
+        let mut points: Vec<PointId> = own.iter().flat_map(|&p| planes.members(axis, p)).collect();
+        points.sort_unstable();
+        layout.loose.push(Loose { axis, planes: own, points });
+    }
+    for k in closing {
+        let Some((key, dimension)) = object.dimensions.get_index(k) else { continue };
+        let Some((axis, a, b)) = ends(planes, &dimension.measure) else { continue };
+        let Some(asked) = layout.values.get(key).copied() else { continue };
+        let mut path = Vec::new();
+        let mut sum = T::zero();
+        for (d, forward) in graphs[axis.index()].path(a, b) {
+            let (name, step) = match object.dimensions.get_index(d) {
+                Some((key, d)) => (d.name.clone(), layout.values.get(key).copied()),
+                None => {
+                    let at = object.reference().map(|r| T::from(r.at[axis.index()]));
+                    ("REFERENCE".to_owned(), at)
+                }
+            };
+            path.push(name);
+            let step = step.unwrap_or_default();
+            sum = if forward { sum + step } else { sum - step };
+        }
+        let name = dimension.name.clone();
+        let (asked, measured) = (asked.re(), sum.re());
+        faults.push(if agree(asked, measured) {
+            DimensionFault::Redundant { name, path }
+        } else {
+            DimensionFault::Contradictory { name, asked, measured, path }
+        });
+    }
+    layout.faults = faults;
+    layout
+}
+
+/// Whether two values of a dimension are the same number but for rounding.
+pub fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
+}
+
+/// Evaluates all variables and dimensions, each after those it reads.
+fn evaluate<T: Real>(
+    object: &Object,
+    overrides: &BTreeMap<String, T>,
+) -> (BTreeMap<String, T>, Vec<DimensionFault>) {
+    let mut values: BTreeMap<String, T> = BTreeMap::new();
+    let mut faults = Vec::new();
+    let mut waiting = Vec::new();
+    let variables = object.variables.iter().map(|(k, v)| (k, Some(&v.value)));
+    let dimensions = object.dimensions.iter().map(|(k, d)| (k, d.value.as_ref()));
+    for (key, expr) in variables.chain(dimensions) {
+        let Some(expr) = expr else { continue };
+        if let Some(given) = overrides.get(key) {
+            values.insert(key.clone(), *given);
+        } else if let Some(number) = expr.literal() {
+            values.insert(key.clone(), T::from(number));
+        } else {
+            waiting.push((key, expr));
+        }
+    }
+    // Names that wait for a name, by that name.
+    let mut waits: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    let mut ready: VecDeque<usize> = (0..waiting.len()).collect();
+    let mut open = vec![true; waiting.len()];
+    let mut missing: Vec<Option<String>> = vec![None; waiting.len()];
+    while let Some(k) = ready.pop_front() {
+        let (key, expr) = waiting[k];
+        if !open[k] {
+            continue;
+        }
+        match expr.eval(&|name| values.get(name).copied()) {
+            Ok(value) => {
+                open[k] = false;
+                values.insert(key.clone(), value);
+                ready.extend(waits.remove(key.as_str()).unwrap_or_default());
+            }
+            Err(no) => {
+                if let Some(name) = expr.names().find(|n| *n == no.name) {
+                    waits.entry(name).or_default().push(k);
+                }
+                missing[k] = Some(no.name);
+            }
+        }
+    }
+    let stuck: BTreeMap<&str, &str> = (0..waiting.len())
+        .filter(|&k| open[k])
+        .filter_map(|k| Some((waiting[k].0.as_str(), missing[k].as_deref()?)))
+        .collect();
+    let mut cycles: Vec<Vec<String>> = Vec::new();
+    for (&name, &reads) in &stuck {
+        // Follow what each waits for: it ends at a name without a value or runs in a circle.
+        let mut way = vec![name];
+        let mut at = reads;
+        while let Some(&next) = stuck.get(at) {
+            if let Some(k) = way.iter().position(|w| *w == at) {
+                let mut names: Vec<String> = way[k..].iter().map(|s| (*s).to_owned()).collect();
+                names.sort_unstable();
+                if !cycles.contains(&names) {
+                    cycles.push(names);
+                }
+                break;
+            }
+            way.push(at);
+            at = next;
+        }
+        if !stuck.contains_key(at) {
+            // As the user wrote it; keys are folded.
+            let dimension = object.dimensions.get(name).map(|d| &d.name);
+            let written = dimension.or(object.variables.get(name).map(|v| &v.name));
+            let name = written.map_or_else(|| name.to_owned(), Clone::clone);
+            faults.push(DimensionFault::NoValue { name, reads: at.into() });
+        }
+    }
+    faults.extend(cycles.into_iter().map(|names| DimensionFault::Cycle { names }));
+    values.retain(|name, value| {
+        let fine = value.is_finite();
+        if !fine {
+            faults.push(DimensionFault::NotFinite { name: name.clone() });
+        }
+        fine
+    });
+    (values, faults)
+}
+
+/// The driving dimensions between two points as a sum of names; `None` when they are not connected,
+/// or through given coordinates only.
+pub fn chain_expression(
+    object: &Object,
+    planes: &Planes,
+    axis: Axis,
+    p: PointId,
+    q: PointId,
+) -> Option<String> {
+    let (a, b) = (planes.plane(axis, p)?, planes.plane(axis, q)?);
+    let path = graphs(object, planes).0[axis.index()].path(a, b);
+    let mut sum = String::new();
+    for (d, forward) in path {
+        // The reference is a number, and so is what hangs on given coordinates.
+        let term = match object.dimensions.get_index(d) {
+            Some((_, dimension)) => dimension.name.clone(),
+            None => {
+                let at = object.reference()?.at[axis.index()];
+                if at == 0.0 {
+                    continue;
+                }
+                format!("({})", moldloft_syntax::number::plain(at))
+            }
+        };
+        sum.push_str(match (forward, sum.is_empty()) {
+            (true, true) => "",
+            (true, false) => " + ",
+            (false, true) => "-",
+            (false, false) => " - ",
+        });
+        sum.push_str(&term);
+    }
+    (!sum.is_empty()).then_some(sum)
+}

@@ -1,0 +1,192 @@
+//! The JSON twin of a sketch file, and the data of finished objects.
+
+use crate::format::json::Json;
+use crate::format::script::measure_text;
+use crate::{Axis, Face, FaceId, Layout, LineId, Loose, Mass, Object, Planes, PointId, Solid};
+use moldloft_num::Vec3;
+
+/// What a finished (or unfinished) object is, for hosts.
+#[derive(Clone, Debug)]
+pub struct ObjectData {
+    /// Its name.
+    pub name: String,
+    /// `sketch`, `planes` (fully dimensioned) or `solid`.
+    pub state: &'static str,
+    /// Points and tangent points with their coordinates, as far as determined.
+    pub points: Vec<(PointId, [Option<f64>; 3])>,
+    /// Lines: label, ends, type (`X`, `XY`, `O`, or empty while unknown).
+    pub lines: Vec<(LineId, PointId, PointId, &'static str)>,
+    /// Faces before curves are built in.
+    pub faces: Vec<(FaceId, Face)>,
+    /// Enclosed volume, of a solid.
+    pub volume: Option<f64>,
+    /// Area of all faces.
+    pub area: Option<f64>,
+    /// Centre of the volume, or of the area of a cross section.
+    pub centroid: Option<Vec3>,
+    /// Area, volume, centroid and inertia together.
+    pub mass: Option<Mass<f64>>,
+    /// Dimensions missing on X, Y, Z.
+    pub missing: [usize; 3],
+    /// What they would connect.
+    pub loose: Vec<Loose>,
+    /// Dimensions with their values, in order.
+    pub dimensions: Vec<(String, String, Option<f64>)>,
+    /// The body with curves, of a solid or a section with faces.
+    pub solid: Option<Solid<f64>>,
+}
+
+/// The data of an object from what was computed about it.
+pub fn object_data(
+    object: &Object,
+    planes: &Planes,
+    layout: &Layout<f64>,
+    solid: Option<Solid<f64>>,
+) -> ObjectData {
+    let mut points: Vec<(PointId, [Option<f64>; 3])> = (planes.ids().iter())
+        .map(|&p| (p, Axis::ALL.map(|a| layout.coordinate(planes, a, p))))
+        .collect();
+    if let Some(solid) = &solid {
+        let new = solid.vertices.iter().filter(|v| !object.drawing.points.contains_key(&v.id));
+        points.extend(new.map(|v| (v.id, v.at.to_array().map(Some))));
+        points.sort_by_key(|p| p.0);
+    }
+    let lines = (object.drawing.lines.iter())
+        .map(|(id, l)| (*id, l.p, l.q, l.free.map_or("", crate::Free::spelling)));
+    let mass = solid.as_ref().map(Solid::mass);
+    let flat = object.drawing.section.is_some();
+    ObjectData {
+        name: object.name.clone(),
+        state: if solid.is_some() {
+            "solid"
+        } else if layout.complete() && !points.is_empty() {
+            "planes"
+        } else {
+            "sketch"
+        },
+        points,
+        lines: lines.collect(),
+        faces: object.faces.iter().map(|(id, f)| (*id, f.clone())).collect(),
+        volume: mass.filter(|_| !flat).map(|m| m.volume),
+        area: mass.map(|m| m.area),
+        centroid: mass.map(|m| m.centroid),
+        mass,
+        missing: layout.counts.map(|c| c.missing),
+        loose: layout.loose.clone(),
+        dimensions: (object.dimensions.iter())
+            .map(|(k, d)| (d.name.clone(), measure_text(&d.measure), layout.values.get(k).copied()))
+            .collect(),
+        solid,
+    }
+}
+
+impl ObjectData {
+    /// As JSON, with the members of this struct but the solid.
+    pub fn to_json(&self) -> Json {
+        let numbers = |x: &[f64]| Json::list(x.iter().map(|&x| Json::from(x)));
+        let labels = |c: &[PointId]| Json::list(c.iter().map(|p| p.0.into()));
+        let points = self.points.iter().map(|(id, at)| {
+            Json::map([("id", id.0.into()), ("at", Json::list(at.iter().map(|x| Json::from(*x))))])
+        });
+        let lines = self.lines.iter().map(|(id, p, q, free)| {
+            Json::map([
+                ("id", id.0.into()),
+                ("points", labels(&[*p, *q])),
+                ("type", (*free).into()),
+            ])
+        });
+        let faces = self.faces.iter().map(|(id, f)| {
+            let holes = Json::list(f.holes.iter().map(|h| labels(h)));
+            Json::map([("id", id.0.into()), ("outer", labels(&f.outer)), ("holes", holes)])
+        });
+        let missing = Axis::ALL.map(|a| (a.letter(), Json::from(self.missing[a.index()])));
+        let loose = self
+            .loose
+            .iter()
+            .map(|l| Json::map([("axis", l.axis.letter().into()), ("points", labels(&l.points))]));
+        let dimensions = self.dimensions.iter().map(|(name, what, value)| {
+            Json::map([
+                ("name", name.as_str().into()),
+                ("measures", what.as_str().into()),
+                ("value", Json::from(*value)),
+            ])
+        });
+        Json::map([
+            ("name", self.name.as_str().into()),
+            ("state", self.state.into()),
+            ("points", Json::list(points)),
+            ("lines", Json::list(lines)),
+            ("faces", Json::list(faces)),
+            ("volume", self.volume.into()),
+            ("area", self.area.into()),
+            ("centroid", self.centroid.map_or(Json::Null, |c| numbers(&c.to_array()))),
+            (
+                "inertia",
+                self.mass
+                    .filter(|_| self.volume.is_some())
+                    .map_or(Json::Null, |m| numbers(&m.inertia)),
+            ),
+            ("missing", Json::map(missing)),
+            ("loose", Json::list(loose)),
+            ("dimensions", Json::list(dimensions)),
+        ])
+    }
+}
+
+/// The twin: format and version, the fields of the object as data, and the commands that make it,
+/// which are what is read back.
+pub fn to_json(object: &Object) -> Json {
+    let d = &object.drawing;
+    let points = d
+        .points
+        .iter()
+        .map(|(id, p)| Json::map([("id", Json::from(id.0)), ("u", p.u.into()), ("v", p.v.into())]));
+    let lines = d.lines.iter().map(|(id, l)| {
+        Json::map([
+            ("id", Json::from(id.0)),
+            ("p", l.p.0.into()),
+            ("q", l.q.0.into()),
+            ("free", l.free.map(crate::Free::spelling).into()),
+            ("source", l.source.word().into()),
+            ("confidence", l.confidence.into()),
+        ])
+    });
+    let script = crate::format::script::script(object);
+    Json::map([
+        ("format", Json::from("sketch")),
+        ("version", Json::from(1.0)),
+        ("name", object.name.as_str().into()),
+        ("display", object.display.into()),
+        ("units", object.units.as_deref().into()),
+        ("axes", Json::list(d.projection.angle_deg.map(Json::from))),
+        ("scale", Json::list(d.projection.scale.map(Json::from))),
+        ("section", d.section.map(Axis::letter).into()),
+        ("points", Json::list(points)),
+        ("lines", Json::list(lines)),
+        ("script", Json::list(script.lines().map(Json::from))),
+    ])
+}
+
+/// The commands of a twin, or of a list of twins.
+///
+/// # Errors
+/// Says what the text lacks.
+pub fn from_json(text: &str) -> Result<String, String> {
+    let json = Json::parse(text)?;
+    let one = [json.clone()];
+    let twins = if json.items().is_empty() { &one[..] } else { json.items() };
+    let mut out = String::new();
+    for twin in twins {
+        if twin.get("format").and_then(Json::text) != Some("sketch") {
+            return Err("no member \"format\" of value \"sketch\"".to_owned());
+        }
+        if twin.get("version").and_then(Json::number) != Some(1.0) {
+            return Err("only version 1 is known".to_owned());
+        }
+        for line in twin.get("script").map_or(&[][..], Json::items) {
+            out.push_str(line.text().ok_or("a line of the script is no text")?);
+            out.push('\n');
+        }
+    }
+    Ok(out)
+}

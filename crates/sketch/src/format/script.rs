@@ -1,0 +1,147 @@
+//! An object as the commands that make it: the file format.
+
+use crate::solid::curve::{Curve, CurveKind};
+use crate::{Axis, Measure, Object, Role, Source};
+use moldloft_syntax::number::plain;
+use std::fmt::Write;
+
+/// A name or expression, in quotes where a command needs them.
+fn quoted(text: &str) -> String {
+    let simple = text.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.');
+    let number = text.parse::<f64>().is_ok_and(f64::is_finite)
+        && !text.starts_with(|c: char| c.is_alphabetic());
+    match (simple || number, text.contains('"')) {
+        (true, _) => text.to_owned(),
+        (_, true) => format!("'{text}'"),
+        _ => format!("\"{text}\""),
+    }
+}
+
+/// `X 1 TO 3`, `LENGTH 4`: what a dimension measures, as in its command.
+pub(crate) fn measure_text(measure: &Measure) -> String {
+    match measure {
+        Measure::Along { axis, p, q } => format!("{axis} {p} TO {q}"),
+        Measure::Datum { axis, point } => format!("POINT {point} {axis}"),
+        Measure::Length(l) => format!("LENGTH {l}"),
+        Measure::Slope(l) => format!("SLOPE {l}"),
+        Measure::Angle(a, b) => format!("ANGLE {a} {b}"),
+        Measure::Equal(a, b) => format!("EQUAL {a} {b}"),
+    }
+}
+
+fn range_text(range: Option<[f64; 2]>) -> String {
+    range.map_or(String::new(), |[a, b]| format!(" IN {} {}", plain(a), plain(b)))
+}
+
+/// The commands that make an object. Running them gives the same object.
+pub fn script(object: &Object) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(object, &mut out);
+    out
+}
+
+fn write(object: &Object, out: &mut String) -> std::fmt::Result {
+    let drawing = &object.drawing;
+    let section = match drawing.section {
+        Some(Axis::X) => " 2D YZ",
+        Some(Axis::Y) => " 2D XZ",
+        Some(Axis::Z) => " 2D XY",
+        None => "",
+    };
+    writeln!(out, "SKETCH {}{section}", quoted(&object.name))?;
+    if drawing.letters.up != Axis::Z {
+        writeln!(out, "SET UP {}", drawing.letters.up)?;
+    }
+    if drawing.letters.naming == crate::Naming::Seed {
+        writeln!(out, "SET NAMES SEED")?;
+    }
+    if let Some(units) = &object.units {
+        writeln!(out, "SET UNITS {units}")?;
+    }
+    let p = &drawing.projection;
+    let [a, b, c] = p.angle_deg.map(plain);
+    write!(out, "AXES {a} {b} {c}")?;
+    if p.scale != [1.0; 3] {
+        write!(out, " SCALE {}", p.scale.map(plain).join(" "))?;
+    }
+    writeln!(out)?;
+    for (id, p) in &drawing.points {
+        writeln!(out, "POINT {id} AT {} {}", plain(p.u), plain(p.v))?;
+    }
+    for (id, l) in &drawing.lines {
+        write!(out, "LINE {id} FROM {} TO {}", l.p, l.q)?;
+        let slope = drawing.slope_type(l);
+        let by_slope = l.source == Source::Auto
+            && slope.map_or((None, 0.0), |s| (Some(s.0), s.1)) == (l.free, l.confidence);
+        if !by_slope {
+            write!(out, " TYPE {}", l.free.map_or("NONE", crate::Free::spelling))?;
+            match l.source {
+                Source::User => {}
+                Source::Auto => write!(out, " AUTO {}", plain(l.confidence))?,
+                Source::Inferred => write!(out, " INFERRED {}", plain(l.confidence))?,
+            }
+        }
+        writeln!(out)?;
+    }
+    for a in &drawing.aligns {
+        writeln!(out, "ALIGN {} {} {}", a.axis, a.p, a.q)?;
+    }
+    if let Some(r) = object.reference {
+        writeln!(out, "REFERENCE {} {}", r.point, r.at.map(plain).join(" "))?;
+    }
+    for v in object.variables.values() {
+        writeln!(out, "DECLARE {} {}{}", v.name, quoted(v.value.text()), range_text(v.range))?;
+    }
+    for d in object.dimensions.values() {
+        let value = d.value.as_ref().map_or("UNSET".to_owned(), |v| quoted(v.text()));
+        let role = if d.role == Role::Reference { " ONLY" } else { "" };
+        let text = measure_text(&d.measure);
+        writeln!(out, "GIVE {} {text} = {value}{role}{}", d.name, range_text(d.range))?;
+    }
+    for (id, f) in &object.faces {
+        let cycles: Vec<String> = (f.loops())
+            .map(|c| c.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "))
+            .collect();
+        writeln!(out, "FACE {id} RUNS {}", cycles.join(" HOLE "))?;
+    }
+    for c in object.curves.values() {
+        writeln!(out, "{}", curve_text(c))?;
+    }
+    if !object.display {
+        writeln!(out, "ERASE {}", quoted(&object.name))?;
+    }
+    writeln!(out, "END")
+}
+
+fn curve_text(c: &Curve) -> String {
+    let points: Vec<String> = c.points.iter().map(ToString::to_string).collect();
+    let mut text = match (c.kind, &points[..]) {
+        (CurveKind::EllipticalArc, [a, m, b]) => {
+            format!("ELLIPSE {} ARC CORNER {m} {a} {b}", c.name)
+        }
+        (kind, [a, m, b]) if kind.at_corner() => {
+            format!("{} {} CORNER {m} {a} {b}", kind.word(), c.name)
+        }
+        (kind, _) => format!("{} {} POINTS {}", kind.word(), c.name, points.join(" ")),
+    };
+    if let Some(r) = &c.radius {
+        text.push_str(&format!(" RADIUS {}", quoted(r.text())));
+    }
+    if let Some([m, n]) = &c.semi {
+        text.push_str(&format!(" SEMI {} {}", quoted(m.text()), quoted(n.text())));
+    }
+    if let Some(n) = c.steps {
+        text.push_str(&format!(" STEPS {n}"));
+    }
+    match (c.kind.at_corner(), c.replaces) {
+        (true, false) => text.push_str(" KEEP"),
+        (false, true) => text.push_str(" REPLACE"),
+        _ => {}
+    }
+    if c.centripetal {
+        text.push_str(" CENTRIPETAL");
+    }
+    text
+}

@@ -1,0 +1,108 @@
+//! Derivatives of a finished object by its dimensions and variables.
+
+use crate::solid::Vertex;
+use crate::{Estimate, Object, Planes, solid, solve};
+use moldloft_num::{Dual, Vec3};
+use std::collections::BTreeMap;
+
+/// Directions of one pass.
+const WIDTH: usize = 4;
+
+/// The exact derivatives by one number each, in the order they were asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gradient {
+    /// Of the volume; zero for a flat figure.
+    pub volume: Vec<f64>,
+    /// Of the area.
+    pub area: Vec<f64>,
+    /// Of the centroid.
+    pub centroid: Vec<Vec3>,
+    /// Of the vertices of [`crate::Solid`], in their order.
+    pub points: Vec<Vec<Vec3>>,
+}
+
+/// Derivatives by dimensions and variables (any case). A number that an expression computes is varied
+/// as if it stood there by itself.
+///
+/// # Errors
+/// The first name that is no dimension or variable with a value; an empty one when there is no solid.
+pub fn gradient(object: &Object, planes: &Planes, by: &[String]) -> Result<Gradient, String> {
+    let estimate = || Estimate::of(&object.drawing, planes, object.reference()?.point);
+    let plain = solve(object, planes, &BTreeMap::<String, f64>::new(), &estimate);
+    let keys: Vec<String> = by.iter().map(|n| n.to_ascii_lowercase()).collect();
+    if let Some(k) = keys.iter().position(|k| !plain.values.contains_key(k)) {
+        return Err(by[k].clone());
+    }
+    // A computed number is seeded by itself, or the others' way through it would be cut.
+    let plain_number = |key: &String| {
+        let dimension = object.dimensions.get(key).and_then(|d| d.value.as_ref());
+        dimension
+            .or(object.variables.get(key).map(|v| &v.value))
+            .is_some_and(|e| e.literal().is_some())
+    };
+    let (given, computed): (Vec<usize>, Vec<usize>) =
+        (0..keys.len()).partition(|&k| plain_number(&keys[k]));
+    let passes = given.chunks(WIDTH).chain(computed.chunks(1));
+    let n = keys.len();
+    let mut out = Gradient {
+        volume: vec![0.0; n],
+        area: vec![0.0; n],
+        centroid: vec![Vec3::zero(); n],
+        points: vec![Vec::new(); n],
+    };
+    for pass in passes {
+        let seeded: BTreeMap<String, Dual<WIDTH>> = (pass.iter().enumerate())
+            .map(|(d, &k)| (keys[k].clone(), Dual::seeded(plain.values[&keys[k]], d)))
+            .collect();
+        let layout = solve(object, planes, &seeded, &estimate);
+        let body = solid(object, planes, &layout).ok_or_else(String::new)?;
+        let mass = body.mass();
+        for (d, &k) in pass.iter().enumerate() {
+            let part = |v: Vec3<Dual<WIDTH>>| v.map(|x| x.eps[d]);
+            out.volume[k] = mass.volume.eps[d];
+            out.area[k] = mass.area.eps[d];
+            out.centroid[k] = part(mass.centroid);
+            let at = |v: &Vertex<Dual<WIDTH>>| part(v.at);
+            out.points[k] = body.vertices.iter().map(at).collect();
+        }
+    }
+    Ok(out)
+}
+
+/// What a value of a swept number made of the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swept {
+    /// Its value.
+    pub value: f64,
+    /// Volume, area and centroid; `None` where there is no body.
+    pub mass: Option<crate::Mass<f64>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Session;
+
+    #[test]
+    fn a_dam_by_its_dimensions() {
+        let mut s = Session::new();
+        s.run_text(include_str!("../../../../examples/sketch/dam.skt"));
+        let names: Vec<String> =
+            ["Crest", "run", "LENGTH1", "HEIGHT", "PARAPET"].map(String::from).to_vec();
+        let g = s.gradient("dam", &names).unwrap();
+        // V = LENGTH (CREST (HEIGHT + PARAPET) + RUN HEIGHT / 2), RUN = 0.75 HEIGHT.
+        let expected = [50.0 * 90.0, 50.0 * 36.0, 3384.0, 50.0 * (16.0 + 27.0 + 27.0), 800.0];
+        for (k, (got, want)) in g.volume.iter().zip(expected).enumerate() {
+            assert!((got - want).abs() < 1e-8, "{}: {got}", names[k]);
+        }
+        let h = s.gradient("dam", &["HEIGHT".into()]).unwrap();
+        assert!((h.volume[0] - 3500.0).abs() < 1e-8, "{:?}", h.volume);
+        let swept = s.sweep("dam", "height", &[72.0, 60.0]).unwrap();
+        assert_eq!(swept[0].mass.unwrap().volume, 169_200.0);
+        let (up, down) = (72.0 + 1e-4, 72.0 - 1e-4);
+        let pair = s.sweep("dam", "height", &[up, down]).unwrap();
+        let slope = (pair[0].mass.unwrap().volume - pair[1].mass.unwrap().volume) / (up - down);
+        assert!((slope - h.volume[0]).abs() < 1e-3);
+        assert_eq!(s.gradient("dam", &["nothing".into()]), Err("nothing".into()));
+        assert!(s.sweep("dam", "nothing", &[1.0]).is_err());
+    }
+}

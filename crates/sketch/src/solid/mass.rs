@@ -1,0 +1,150 @@
+//! Area, volume, centroid and inertia, by exact formulas for triangles and Gauss's rule for curves.
+
+use crate::solid::curve::{GAUSS, Piece};
+use moldloft_num::{Real, Vec3};
+
+/// Properties of a solid of unit density, or of a flat figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mass<T> {
+    /// Area of all faces.
+    pub area: T,
+    /// Enclosed volume; zero for a flat figure.
+    pub volume: T,
+    /// Centre of the volume, or of the area of a flat figure.
+    pub centroid: Vec3<T>,
+    /// Moments of inertia about the centroid: Ixx, Iyy, Izz, and the products of inertia
+    /// ∫yz, ∫zx, ∫xy. Zero for a flat figure.
+    pub inertia: [T; 6],
+}
+
+/// Surface integrals, taken from an origin near the body.
+#[derive(Clone, Debug)]
+pub(crate) struct Sums<T> {
+    origin: Vec3<T>,
+    pub area: T,
+    area_moment: Vec3<T>,
+    volume: T,
+    moment: Vec3<T>,
+    /// ∫ xx, yy, zz, yz, zx, xy dV.
+    second: [T; 6],
+}
+
+impl<T: Real> Sums<T> {
+    pub fn new(origin: Vec3<T>) -> Sums<T> {
+        let (t, v) = (T::zero(), Vec3::zero());
+        Sums { origin, area: t, area_moment: v, volume: t, moment: v, second: [t; 6] }
+    }
+
+    fn products(p: Vec3<T>) -> [T; 6] {
+        [p.x * p.x, p.y * p.y, p.z * p.z, p.y * p.z, p.z * p.x, p.x * p.y]
+    }
+
+    /// Adds a surface element at `p` of vector area `da`: the divergence theorem with the fields
+    /// p, x p, x y p of divergence 3, 4 x, 5 x y.
+    fn element(&mut self, p: Vec3<T>, da: Vec3<T>) {
+        let flux = p.dot(da);
+        self.volume += flux / 3.0;
+        self.moment += p * (flux / 4.0);
+        for (sum, x) in self.second.iter_mut().zip(Self::products(p)) {
+            *sum += x * (flux / 5.0);
+        }
+    }
+
+    /// Adds the tetrahedron from the origin over a straight triangle.
+    fn triangle(&mut self, a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) {
+        let (a, b, c) = (a - self.origin, b - self.origin, c - self.origin);
+        let volume = a.dot(b.cross(c)) / 6.0;
+        let sum = a + b + c;
+        self.volume += volume;
+        self.moment += sum * (volume / 4.0);
+        // ∫ x y over a tetrahedron with a corner at the origin: V/20 (Σ Σ + Σ x_i y_i).
+        let (s, pa, pb, pc) =
+            (Self::products(sum), Self::products(a), Self::products(b), Self::products(c));
+        for k in 0..6 {
+            self.second[k] += (s[k] + pa[k] + pb[k] + pc[k]) * (volume / 20.0);
+        }
+    }
+
+    /// Adds a plane face. `edges` are its directed edges; straight ones have no piece.
+    pub fn plane(&mut self, edges: &[(Vec3<T>, Vec3<T>, Option<Piece<T>>)]) {
+        let Some(&(apex, ..)) = edges.first() else { return };
+        let mut vector = Vec3::zero();
+        let mut moments: Vec<(Vec3<T>, Vec3<T>)> = Vec::new();
+        for &(p, q, piece) in edges {
+            match piece {
+                None => {
+                    self.triangle(apex, p, q);
+                    let da = (p - apex).cross(q - apex) * T::from(0.5);
+                    vector += da;
+                    moments.push(((apex + p + q) / T::from(3.0) - self.origin, da));
+                }
+                Some(piece) => {
+                    // The sector from the apex to the curve: apex + r (c(s) - apex).
+                    for (s, w) in along() {
+                        let arm = piece.at(T::from(s)) - apex;
+                        let normal = arm.cross(piece.velocity(T::from(s))) * T::from(w);
+                        for (r, wr) in GAUSS {
+                            let p = apex + arm * T::from(r) - self.origin;
+                            let da = normal * T::from(r * wr);
+                            self.element(p, da);
+                            vector += da;
+                            moments.push((p, da));
+                        }
+                    }
+                }
+            }
+        }
+        let area = vector.norm();
+        self.area += area;
+        if let Some(n) = vector.normalized() {
+            for (p, da) in moments {
+                self.area_moment += p * da.dot(n);
+            }
+        }
+    }
+
+    /// Adds a ruled patch: straight lines from `near(s)` to `far(s)`; its outward side is that of
+    /// (∂/∂s) × (∂ from near to far).
+    pub fn ruled(&mut self, near: &Piece<T>, far: &dyn Fn(T) -> (Vec3<T>, Vec3<T>)) {
+        for (s, w) in along() {
+            let s = T::from(s);
+            let (a, da) = (near.at(s), near.velocity(s));
+            let (b, db) = far(s);
+            for (t, wt) in GAUSS {
+                let t = T::from(t);
+                let element = da.lerp(db, t).cross(b - a) * T::from(w * wt);
+                let p = a.lerp(b, t) - self.origin;
+                self.element(p, element);
+                let area = element.norm();
+                self.area += area;
+                self.area_moment += p * area;
+            }
+        }
+    }
+
+    /// The properties of the body so enclosed.
+    pub fn finish(self, flat: bool) -> Mass<T> {
+        let zero = T::zero();
+        if flat || self.volume.re() == 0.0 {
+            let centre =
+                if self.area.re() > 0.0 { self.area_moment / self.area } else { Vec3::zero() };
+            let centroid = self.origin + centre;
+            return Mass { area: self.area, volume: zero, centroid, inertia: [zero; 6] };
+        }
+        let c = self.moment / self.volume;
+        let own = Self::products(c);
+        let about: [T; 6] = std::array::from_fn(|k| self.second[k] - own[k] * self.volume);
+        let [xx, yy, zz, yz, zx, xy] = about;
+        Mass {
+            area: self.area,
+            volume: self.volume,
+            centroid: self.origin + c,
+            inertia: [yy + zz, zz + xx, xx + yy, yz, zx, xy],
+        }
+    }
+}
+
+/// Gauss's nodes on four parts of [0, 1]: arcs up to a half turn come out to rounding.
+fn along() -> impl Iterator<Item = (f64, f64)> {
+    (0..4).flat_map(|k| GAUSS.map(|(x, w)| ((f64::from(k) + x) / 4.0, w / 4.0)))
+}

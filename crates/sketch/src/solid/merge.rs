@@ -1,0 +1,561 @@
+//! Uniting objects, and changes of whole objects that keep them parametric.
+
+use crate::dimension::layout::chain_expression;
+use crate::{
+    Align, Axis, Dimension, DimensionFault, Drawing, Expr, Face, Layout, Line, Measure, Object,
+    Planes, Point, PointId, Projection, Reference, Role, Variable,
+};
+use moldloft_num::Vec3;
+use moldloft_syntax::number::plain;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// An object with its positions.
+pub struct Placed<'a> {
+    /// The object.
+    pub object: &'a Object,
+    /// Its points and where they are.
+    pub at: BTreeMap<PointId, Vec3>,
+}
+
+/// What came of a merge.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Merged {
+    /// Points that were there twice.
+    pub shared: usize,
+    /// Lines that were there twice.
+    pub lines: usize,
+    /// Dimensions that contradict others; they only measure now.
+    pub contradictory: Vec<String>,
+}
+
+/// Unites objects under a name, the first one's names unchanged when `keep_first`, all others
+/// prefixed by their object. Equal points (within `tolerance`) and lines become one; dimensions
+/// of all survive.
+pub fn merge(
+    name: &str,
+    parts: &[Placed],
+    tolerance: f64,
+    keep_first: bool,
+    solve: &dyn Fn(&Object) -> Layout<f64>,
+) -> (Object, Merged) {
+    let mut out = Object::new(name, None);
+    let mut report = Merged::default();
+    let mut placed: Vec<(PointId, Vec3)> = Vec::new();
+    let mut references: Vec<(String, PointId, Vec3)> = Vec::new();
+    for (k, part) in parts.iter().enumerate() {
+        let old = part.object;
+        if k == 0 {
+            out.units.clone_from(&old.units);
+            let drawing = out.draw();
+            (drawing.projection, drawing.letters) = (old.drawing.projection, old.drawing.letters);
+        }
+        let prefix = if k == 0 && keep_first {
+            String::new()
+        } else {
+            format!("{}.", identifier(&old.name))
+        };
+        let mut number: BTreeMap<PointId, PointId> = BTreeMap::new();
+        for (&id, &p) in &part.at {
+            let equal = placed.iter().find(|(_, q)| q.distance(p) <= tolerance).map(|x| x.0);
+            report.shared += usize::from(equal.is_some());
+            let new = equal.unwrap_or_else(|| {
+                let new = PointId(placed.len() as u32 + 1);
+                placed.push((new, p));
+                let [u, v] = out.drawing.projection.project(p);
+                out.draw().points.insert(new, Point { u, v });
+                new
+            });
+            number.insert(id, new);
+        }
+        let mut lines = BTreeMap::new();
+        for (&id, line) in &old.drawing.lines {
+            let (p, q) = (number[&line.p], number[&line.q]);
+            let same = out.drawing.line_between(p, q);
+            report.lines += usize::from(same.is_some());
+            let new = same.unwrap_or_else(|| out.drawing.next_line());
+            if p != q && same.is_none() {
+                out.draw().lines.insert(new, Line { p, q, ..*line });
+            }
+            lines.insert(id, new);
+        }
+        for a in &old.drawing.aligns {
+            let a = Align { axis: a.axis, p: number[&a.p], q: number[&a.q] };
+            if a.p != a.q && !out.drawing.aligns.contains(&a) {
+                out.draw().aligns.push(a);
+            }
+        }
+        let own = |n: &str| old.has_name(n).then(|| format!("{prefix}{n}"));
+        for v in old.variables.values() {
+            let name = format!("{prefix}{}", v.name);
+            let new = Variable { name: name.clone(), value: v.value.renamed(&own), range: v.range };
+            out.variables.insert(name.to_ascii_lowercase(), new);
+        }
+        for d in old.dimensions.values() {
+            let point = |p: PointId| number[&p];
+            let measure = match d.measure {
+                Measure::Along { axis, p, q } => Measure::Along { axis, p: point(p), q: point(q) },
+                Measure::Datum { axis, point: p } => Measure::Datum { axis, point: point(p) },
+                Measure::Length(l) => Measure::Length(lines[&l]),
+                Measure::Slope(l) => Measure::Slope(lines[&l]),
+                Measure::Angle(a, b) => Measure::Angle(lines[&a], lines[&b]),
+                Measure::Equal(a, b) => Measure::Equal(lines[&a], lines[&b]),
+            };
+            let value = d.value.as_ref().map(|v| v.renamed(&own));
+            let name = format!("{prefix}{}", d.name);
+            out.add_dimension(Dimension { name, measure, value, ..d.clone() });
+        }
+        for c in old.curves.values() {
+            let mut c = c.clone();
+            c.name = format!("{prefix}{}", c.name);
+            c.points.iter_mut().for_each(|p| *p = number[p]);
+            c.radius = c.radius.map(|r| r.renamed(&own));
+            c.semi = c.semi.map(|[a, b]| [a.renamed(&own), b.renamed(&own)]);
+            let twin = |o: &crate::solid::curve::Curve| o.kind == c.kind && o.points == c.points;
+            if !out.curves.values().any(twin) {
+                out.curves.insert(c.name.to_ascii_lowercase(), c);
+            }
+        }
+        if let Some(r) = old.reference() {
+            references.push((prefix, number[&r.point], r.at.into()));
+        }
+    }
+    if let Some((_, point, at)) = references.first() {
+        out.reference = Some(Reference { point: *point, at: at.to_array() });
+    }
+    settle(&mut out, &mut report, solve);
+    // What hangs on no common plane keeps the place of its own reference.
+    for (prefix, point, at) in references.iter().skip(1) {
+        for axis in Axis::ALL {
+            let planes = Planes::of(&out.drawing);
+            if solve(&out).coordinate(&planes, axis, *point).is_none() {
+                out.add_dimension(Dimension {
+                    name: format!("{prefix}ref_{}", axis.letter().to_ascii_lowercase()),
+                    measure: Measure::Datum { axis, point: *point },
+                    value: Some(Expr::number(at[axis.index()])),
+                    role: Role::Driving,
+                    range: None,
+                });
+            }
+        }
+    }
+    settle(&mut out, &mut report, solve);
+    (out, report)
+}
+
+/// Makes references of dimensions that others determine.
+pub(crate) fn settle(
+    out: &mut Object,
+    report: &mut Merged,
+    solve: &dyn Fn(&Object) -> Layout<f64>,
+) {
+    for fault in solve(out).faults {
+        let (name, wrong) = match fault {
+            DimensionFault::Redundant { name, .. } => (name, false),
+            DimensionFault::Contradictory { name, .. } => (name, true),
+            _ => continue,
+        };
+        if let Some(d) = out.dimensions.get_mut(&name.to_ascii_lowercase()) {
+            d.role = Role::Reference;
+        }
+        if wrong {
+            report.contradictory.push(name);
+        }
+    }
+}
+
+/// A name as it can stand in an expression.
+fn identifier(name: &str) -> String {
+    let fine = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' };
+    let text: String = name.chars().map(fine).collect();
+    if text.starts_with(|c: char| c.is_ascii_alphabetic()) { text } else { format!("o{text}") }
+}
+
+/// Removes lines (scribed ones) and then points inside straight lines. Dimensions that end at such
+/// points become variables, and their sums take their place, so the object stays parametric.
+pub fn clean(object: &Object, lines: &[[PointId; 2]], at: &BTreeMap<PointId, Vec3>) -> Object {
+    let mut out = object.clone();
+    for [p, q] in lines {
+        if let Some(id) = out.drawing.line_between(*p, *q) {
+            out.draw().lines.remove(&id);
+        }
+    }
+    let mut gone: Vec<PointId> = Vec::new();
+    loop {
+        let straight = out.drawing.points.keys().copied().find_map(|p| {
+            let mut own = out.drawing.lines.iter().filter(|(_, l)| l.p == p || l.q == p);
+            match (own.next(), own.next(), own.next()) {
+                (None, ..) => Some((p, None)),
+                (Some((&i, a)), Some((&j, b)), None) => {
+                    let far = |l: &Line| if l.p == p { l.q } else { l.p };
+                    let (a, b) = (at.get(&far(a))?, at.get(&far(b))?);
+                    let here = *at.get(&p)?;
+                    let (da, db) = (*a - here, *b - here);
+                    let flat = da.cross(db).norm() <= 1e-9 * da.norm() * db.norm();
+                    (flat && da.dot(db) < 0.0).then_some((p, Some((i, j))))
+                }
+                _ => None,
+            }
+        });
+        let Some((p, pair)) = straight else { break };
+        let drawing = out.draw();
+        if let Some((i, j)) = pair {
+            let far = |l: Line| if l.p == p { l.q } else { l.p };
+            let (a, b) = (drawing.lines[&i], drawing.lines[&j]);
+            let joined = Line { p: far(a), q: far(b), ..a };
+            drawing.lines.remove(&j);
+            if drawing.line_between(joined.p, joined.q).is_none() {
+                drawing.lines.insert(i, joined);
+            } else {
+                drawing.lines.remove(&i);
+            }
+        }
+        drawing.remove_point(p);
+        gone.push(p);
+    }
+    let Some(reference) = object.reference() else { return out };
+    // The reference must stay: its place is that of another corner.
+    if gone.contains(&reference.point)
+        && let Some((&point, p)) = at.iter().find(|(p, _)| !gone.contains(p))
+    {
+        out.reference = Some(Reference { point, at: p.to_array() });
+    }
+    let doomed: Vec<String> = (object.dimensions.iter())
+        .filter(|(_, d)| match d.measure {
+            Measure::Along { p, q, .. } => gone.contains(&p) || gone.contains(&q),
+            Measure::Datum { point, .. } => gone.contains(&point),
+            _ => false,
+        })
+        .map(|(k, _)| k.clone())
+        .collect();
+    for key in &doomed {
+        if let Some(Dimension { name, value: Some(value), range, .. }) =
+            out.dimensions.shift_remove(key)
+        {
+            out.variables.insert(key.clone(), Variable { name, value, range });
+        }
+    }
+    out.drop_dangling();
+    out.faces.clear();
+    let (old_planes, new_planes) = (Planes::of(&object.drawing), Planes::of(&out.drawing));
+    let Some(from) = out.reference() else { return out };
+    for axis in Axis::ALL {
+        let mut seen: Vec<usize> = Vec::new();
+        for &p in new_planes.ids() {
+            let Some(plane) = new_planes.plane(axis, p) else { continue };
+            if seen.contains(&plane) {
+                continue;
+            }
+            seen.push(plane);
+            let linked = crate::chain(&out, &new_planes, axis, from.point, p).is_some();
+            if linked || new_planes.same(axis, from.point, p) {
+                continue;
+            }
+            let sum = chain_expression(object, &old_planes, axis, from.point, p);
+            let here = at.get(&p).map_or(0.0, |x| x[axis.index()]);
+            let there = at.get(&from.point).map_or(0.0, |x| x[axis.index()]);
+            let value = sum
+                .and_then(|s| Expr::parse(&s).ok())
+                .unwrap_or_else(|| Expr::number(here - there));
+            let measure = Measure::Along { axis, p: from.point, q: p };
+            let name = out.fresh_name("D");
+            out.add_dimension(Dimension {
+                name,
+                measure,
+                value: Some(value),
+                role: Role::Driving,
+                range: None,
+            });
+        }
+    }
+    out
+}
+
+/// Makes a solid wireframe of a cross section: a second copy along its normal, `name` being the
+/// dimension between the two.
+pub fn extrude(section: &Object, name: &str, value: Expr) -> Option<Object> {
+    let normal = section.drawing.section?;
+    let mut out = section.clone();
+    out.faces.clear();
+    let flat: Drawing = (*section.drawing).clone();
+    let shift = flat.next_point().0 - 1;
+    let depth = flat.points.values().map(|p| p.u.abs().max(p.v.abs())).fold(1.0, f64::max);
+    let [du, dv] = flat.projection.unit(normal);
+    let up = |p: PointId| PointId(p.0 + shift);
+    let drawing = out.draw();
+    drawing.section = None;
+    for (&id, p) in &flat.points {
+        drawing.points.insert(up(id), Point { u: p.u + du * depth, v: p.v + dv * depth });
+    }
+    for line in flat.lines.values() {
+        let id = drawing.next_line();
+        drawing.lines.insert(id, Line { p: up(line.p), q: up(line.q), ..*line });
+    }
+    for &id in flat.points.keys() {
+        let line = Line {
+            p: id,
+            q: up(id),
+            free: Some(crate::Free::along(normal)),
+            source: crate::Source::User,
+            confidence: 1.0,
+        };
+        let number = drawing.next_line();
+        drawing.lines.insert(number, line);
+    }
+    let first = *flat.points.keys().next()?;
+    for &id in flat.points.keys().skip(1) {
+        let planes = Planes::of(drawing);
+        if !planes.same(normal, first, id) {
+            drawing.aligns.push(Align { axis: normal, p: first, q: id });
+        }
+    }
+    for c in section.curves.values() {
+        let mut copy = c.clone();
+        copy.points.iter_mut().for_each(|p| *p = up(*p));
+        copy.name = out.fresh_name(&format!("{}_", c.name));
+        out.curves.insert(copy.name.to_ascii_lowercase(), copy);
+    }
+    out.add_dimension(Dimension {
+        name: name.to_owned(),
+        measure: Measure::Along { axis: normal, p: first, q: up(first) },
+        value: Some(value),
+        role: Role::Driving,
+        range: None,
+    });
+    Some(out)
+}
+
+fn product(e: &Expr, factor: f64) -> Expr {
+    match e.literal() {
+        Some(x) => Expr::number(x * factor),
+        None => Expr::parse(&format!("({e})*({})", plain(factor))).unwrap_or_else(|_| e.clone()),
+    }
+}
+
+/// Every length times a positive factor.
+pub fn scaled(object: &Object, factor: f64) -> Object {
+    let mut out = object.clone();
+    for d in out.dimensions.values_mut() {
+        if matches!(d.measure, Measure::Along { .. } | Measure::Datum { .. } | Measure::Length(_)) {
+            d.value = d.value.as_ref().map(|v| product(v, factor));
+            d.range = d.range.map(|r| r.map(|x| x * factor));
+        }
+    }
+    for c in out.curves.values_mut() {
+        c.radius = c.radius.as_ref().map(|r| product(r, factor));
+        c.semi = c.semi.as_ref().map(|s| [product(&s[0], factor), product(&s[1], factor)]);
+    }
+    if let Some(r) = object.reference() {
+        out.reference = Some(Reference { at: r.at.map(|x| x * factor), ..r });
+    }
+    out
+}
+
+/// Moved by a vector.
+pub fn moved(object: &Object, by: Vec3) -> Object {
+    let mut out = object.clone();
+    if let Some(r) = object.reference() {
+        let at = Vec3::from(r.at) + by;
+        out.reference = Some(Reference { at: at.to_array(), ..r });
+    }
+    for d in out.dimensions.values_mut() {
+        if let (Measure::Datum { axis, .. }, Some(v)) = (d.measure, &d.value) {
+            let shift = by[axis.index()];
+            d.value = Some(match v.literal() {
+                Some(x) => Expr::number(x + shift),
+                None => {
+                    Expr::parse(&format!("({v})+({})", plain(shift))).unwrap_or_else(|_| v.clone())
+                }
+            });
+        }
+    }
+    out
+}
+
+/// Mirrored in the plane through the origin perpendicular to an axis.
+pub fn mirrored(object: &Object, axis: Axis) -> Object {
+    let mut out = object.clone();
+    for d in out.dimensions.values_mut() {
+        match &mut d.measure {
+            Measure::Along { axis: a, p, q } if *a == axis => std::mem::swap(p, q),
+            Measure::Datum { axis: a, .. } if *a == axis => {
+                d.value = d.value.as_ref().map(|v| product(v, -1.0));
+            }
+            _ => {}
+        }
+    }
+    if let Some(r) = object.reference() {
+        let mut at = r.at;
+        at[axis.index()] = -at[axis.index()];
+        out.reference = Some(Reference { at, ..r });
+    }
+    out.faces = out.faces.iter().map(|(id, f)| (*id, f.reversed())).collect();
+    out
+}
+
+/// Turned by a quarter about an axis, right-handed: exchange the two other axes, then mirror.
+pub fn quarter_turned(object: &Object, about: Axis) -> Object {
+    let (a, b) = match about {
+        Axis::X => (Axis::Y, Axis::Z),
+        Axis::Y => (Axis::Z, Axis::X),
+        Axis::Z => (Axis::X, Axis::Y),
+    };
+    let other = |x: Axis| {
+        if x == a {
+            b
+        } else if x == b {
+            a
+        } else {
+            x
+        }
+    };
+    let mut out = object.clone();
+    let drawing = out.draw();
+    drawing.section = drawing.section.map(other);
+    drawing.lines.values_mut().for_each(|l| l.free = l.free.map(|f| f.swapped(a, b)));
+    drawing.aligns.iter_mut().for_each(|l| l.axis = other(l.axis));
+    for d in out.dimensions.values_mut() {
+        match &mut d.measure {
+            Measure::Along { axis, .. } | Measure::Datum { axis, .. } => *axis = other(*axis),
+            _ => {}
+        }
+    }
+    if let Some(r) = object.reference() {
+        let mut at = r.at;
+        at.swap(a.index(), b.index());
+        out.reference = Some(Reference { at, ..r });
+    }
+    // The exchange has turned faces inside out; the mirror turns them back.
+    out.faces = out.faces.iter().map(|(id, f)| (*id, f.reversed())).collect();
+    mirrored(&out, a)
+}
+
+/// The picture drawn anew from positions.
+pub fn redrawn(object: &Object, at: &BTreeMap<PointId, Vec3>) -> Object {
+    let mut out = object.clone();
+    if let Some(normal) = out.drawing.section {
+        out.draw().projection = Projection::section(normal);
+    }
+    let drawing = Arc::make_mut(&mut out.drawing);
+    for (id, point) in &mut drawing.points {
+        if let Some(p) = at.get(id) {
+            let [u, v] = drawing.projection.project(*p);
+            *point = Point { u, v };
+        }
+    }
+    out
+}
+
+/// A cross section turned about a line in it, in chords of at most 10°. Every coordinate of the
+/// result is given outright: it has no dimensions of its own.
+pub fn revolved(
+    section: &Object,
+    at: &BTreeMap<PointId, Vec3>,
+    axis: [Vec3; 2],
+    angle_deg: f64,
+) -> Option<Object> {
+    const CHORD: f64 = 10.0;
+    let turn = moldloft_num::Axis::through(axis[0], axis[1])?;
+    let full = angle_deg.abs() >= 360.0;
+    let steps =
+        (angle_deg.abs().min(360.0) / CHORD).ceil().max(if full { 3.0 } else { 1.0 }) as usize;
+    let size = at.values().map(|p| p.distance(axis[0])).fold(0.0, f64::max);
+    let on_axis = |p: Vec3| turn.foot(p).distance(p) <= 1e-9 * size;
+    let mut out = Object::new(&section.name, None);
+    out.units.clone_from(&section.units);
+    out.draw().letters = section.drawing.letters;
+    let rings = if full { steps } else { steps + 1 };
+    let mut number: BTreeMap<(PointId, usize), PointId> = BTreeMap::new();
+    let mut places: Vec<(PointId, Vec3)> = Vec::new();
+    for k in 0..rings {
+        let angle = (angle_deg.clamp(-360.0, 360.0) * k as f64 / steps as f64).to_radians();
+        for (&id, &p) in at {
+            let new = match number.get(&(id, 0)).filter(|_| on_axis(p)) {
+                Some(&first) => first,
+                None => {
+                    let new = PointId(places.len() as u32 + 1);
+                    places.push((new, turn.rotated(p, angle)));
+                    new
+                }
+            };
+            number.insert((id, k), new);
+        }
+    }
+    let projection = out.drawing.projection;
+    let drawing = out.draw();
+    for &(id, p) in &places {
+        let [u, v] = projection.project(p);
+        drawing.points.insert(id, Point { u, v });
+    }
+    let mut faces: Vec<Face> = Vec::new();
+    for f in section.faces.values() {
+        for k in 0..steps {
+            let next = (k + 1) % rings;
+            for cycle in f.loops() {
+                for i in 0..cycle.len() {
+                    let (p, q) = (cycle[i], cycle[(i + 1) % cycle.len()]);
+                    let mut outer = vec![
+                        number[&(p, k)],
+                        number[&(q, k)],
+                        number[&(q, next)],
+                        number[&(p, next)],
+                    ];
+                    outer.dedup();
+                    if outer.first() == outer.last() {
+                        outer.pop();
+                    }
+                    if outer.len() >= 3 {
+                        faces.push(Face { outer, holes: vec![] });
+                    }
+                }
+            }
+        }
+        if !full {
+            let cap = |k: usize| {
+                let ring = |c: &[PointId]| c.iter().map(|p| number[&(*p, k)]).collect::<Vec<_>>();
+                Face { outer: ring(&f.outer), holes: f.holes.iter().map(|h| ring(h)).collect() }
+            };
+            faces.push(cap(0).reversed());
+            faces.push(cap(rings - 1));
+        }
+    }
+    let place: BTreeMap<PointId, Vec3> = places.iter().copied().collect();
+    let volume: f64 = (faces.iter().flat_map(Face::loops))
+        .flat_map(|c| (1..c.len().saturating_sub(1)).map(move |k| [c[0], c[k], c[k + 1]]))
+        .map(|t| t.map(|p| place[&p] - axis[0]))
+        .map(|[a, b, c]| a.dot(b.cross(c)))
+        .sum();
+    for face in faces {
+        let face = if volume < 0.0 { face.reversed() } else { face };
+        for cycle in face.loops() {
+            for k in 0..cycle.len() {
+                let (p, q) = (cycle[k], cycle[(k + 1) % cycle.len()]);
+                let drawing = out.draw();
+                if drawing.line_between(p, q).is_none() {
+                    let id = drawing.next_line();
+                    let free = Some(crate::Free::OBLIQUE);
+                    drawing.lines.insert(
+                        id,
+                        Line { p, q, free, source: crate::Source::User, confidence: 1.0 },
+                    );
+                }
+            }
+        }
+        let id = out.next_face();
+        out.faces.insert(id, face);
+    }
+    let (first, origin) = *places.first()?;
+    out.reference = Some(Reference { point: first, at: origin.to_array() });
+    for (id, p) in places.iter().skip(1) {
+        for axis in Axis::ALL {
+            out.add_dimension(Dimension {
+                name: format!("P{id}.{}", axis.letter().to_ascii_lowercase()),
+                measure: Measure::Datum { axis, point: *id },
+                value: Some(Expr::number(p[axis.index()])),
+                role: Role::Driving,
+                range: None,
+            });
+        }
+    }
+    Some(out)
+}

@@ -1,0 +1,881 @@
+//! The finished body: faces of an object at their positions, with curves in place of corners.
+//!
+//! The drawing keeps its sharp corners, so a radius stays a parameter; here they are replaced
+//! (routines DELCOR, DEL4CR, DEL4EL). A corner between two lines becomes two tangent points and an
+//! arc; the third line at the corner becomes two, with a ruled patch between them (a cylinder when
+//! its other end has the same arc, a cone when it has none).
+
+pub mod curve;
+pub mod faces;
+pub(crate) mod gradient;
+pub(crate) mod mass;
+pub mod merge;
+pub(crate) mod ruled_faces;
+
+use crate::solid::curve::{Curve, CurveFault, CurveKind, Piece, Traced, trace};
+use crate::solid::mass::{Mass, Sums};
+use crate::{FaceId, Layout, Object, Planes, PointId};
+use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, triangulate};
+use moldloft_num::{Real, Vec3};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// A vertex of a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex<T> {
+    /// The label: a point's, or the next free one for a tangent point.
+    pub id: PointId,
+    /// Where it is.
+    pub at: Vec3<T>,
+}
+
+/// An edge of a solid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidEdge<T> {
+    /// Indices of its vertices.
+    pub ends: [usize; 2],
+    /// Its curve from the first to the second; straight when `None`.
+    pub piece: Option<Piece<T>>,
+    /// The curve's index in the object.
+    pub curve: Option<usize>,
+}
+
+/// A face of a solid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidFace {
+    /// The face of the object; `None` for the patch of a curve.
+    pub id: Option<FaceId>,
+    /// Whether it is a ruled patch: its first edge against its third (a point when there are three).
+    pub ruled: bool,
+    /// Directed edges, counter-clockwise from outside: outer cycle, then holes.
+    pub loops: Vec<Vec<(usize, bool)>>,
+}
+
+/// A curve that could not be built in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnbuiltCurve {
+    /// Its name.
+    pub curve: String,
+    /// Why.
+    pub why: UnbuiltReason,
+}
+
+/// Why a curve was not built in.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UnbuiltReason {
+    /// It cannot be drawn at all.
+    Curve(CurveFault),
+    /// Its corner has more than three lines or faces.
+    Crowded(PointId),
+    /// Another curve takes the same corner or line.
+    Taken(PointId),
+    /// A face that is not flat with it and has not four edges.
+    Face(FaceId),
+    /// Its lines are no edges of the solid.
+    NoEdge,
+    /// Two tangent points on one line pass each other.
+    Overlap(PointId, PointId),
+}
+
+/// A body bounded by faces, or the faces of a flat figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid<T> {
+    /// Its vertices; those without edges are left out.
+    pub vertices: Vec<Vertex<T>>,
+    /// Its edges.
+    pub edges: Vec<SolidEdge<T>>,
+    /// Its faces.
+    pub faces: Vec<SolidFace>,
+    /// Whether it is a flat figure.
+    pub flat: bool,
+    /// Curves traced, by index, whether built in or not.
+    pub curves: BTreeMap<usize, Traced<T>>,
+    /// Curves that could not be built in.
+    pub unbuilt: Vec<UnbuiltCurve>,
+    steps: BTreeMap<usize, u32>,
+}
+
+/// A corner to be replaced.
+struct Corner<T> {
+    curve: usize,
+    ends: [PointId; 2],
+    tangents: [Vec3<T>; 2],
+    /// From the first tangent point to the second.
+    piece: Piece<T>,
+    /// Labels of the tangent points.
+    ids: [PointId; 2],
+}
+
+/// Builds the solid of an object. `None` while positions are undetermined or there are no faces.
+pub fn solid<T: Real>(object: &Object, planes: &Planes, layout: &Layout<T>) -> Option<Solid<T>> {
+    if object.faces.is_empty() {
+        return None;
+    }
+    let place = Places { labels: Labels::new(planes.ids()), at: layout.positions(planes)? };
+    let mut around: BTreeMap<PointId, BTreeSet<PointId>> = BTreeMap::new();
+    if !object.curves.is_empty() {
+        for cycle in object.faces.values().flat_map(|f| f.loops()) {
+            let n = cycle.len();
+            for k in 0..n {
+                around
+                    .entry(cycle[k])
+                    .or_default()
+                    .extend([cycle[(k + n - 1) % n], cycle[(k + 1) % n]]);
+            }
+        }
+    }
+    let mut build = Builder {
+        object,
+        place,
+        around,
+        corners: BTreeMap::new(),
+        bent: BTreeMap::new(),
+        curves: BTreeMap::new(),
+        unbuilt: Vec::new(),
+        next: object.drawing.next_point().0,
+    };
+    for (k, curve) in object.curves.values().enumerate() {
+        let traced = trace(curve, &|p| build.place.get(p), &layout.values);
+        match traced {
+            Ok(traced) => {
+                let result = if curve.replaces { build.take(k, curve, &traced) } else { Ok(()) };
+                build.curves.insert(k, traced);
+                if let Err(why) = result {
+                    build.unbuilt.push(UnbuiltCurve { curve: curve.name.clone(), why });
+                }
+            }
+            Err(fault) => {
+                let (curve, why) = (curve.name.clone(), UnbuiltReason::Curve(fault));
+                build.unbuilt.push(UnbuiltCurve { curve, why });
+            }
+        }
+    }
+    build.share_tangents();
+    Some(build.finish())
+}
+
+/// Labels of points as places in a list: by a table where they are dense, else by search.
+struct Labels<'a> {
+    ids: &'a [PointId],
+    table: Vec<u32>,
+}
+
+impl<'a> Labels<'a> {
+    fn new(ids: &'a [PointId]) -> Labels<'a> {
+        let last = ids.last().map_or(0, |p| p.0 as usize);
+        let mut table = Vec::new();
+        if last <= 4 * ids.len() + 64 {
+            table.resize(last + 1, u32::MAX);
+            ids.iter().enumerate().for_each(|(k, p)| table[p.0 as usize] = k as u32);
+        }
+        Labels { ids, table }
+    }
+
+    fn index(&self, p: PointId) -> Option<usize> {
+        if self.table.is_empty() {
+            return self.ids.binary_search(&p).ok();
+        }
+        self.table.get(p.0 as usize).filter(|k| **k != u32::MAX).map(|k| *k as usize)
+    }
+}
+
+/// Where the points of the drawing are.
+struct Places<'a, T> {
+    labels: Labels<'a>,
+    at: Vec<Vec3<T>>,
+}
+
+impl<T: Real> Places<'_, T> {
+    fn get(&self, p: PointId) -> Option<Vec3<T>> {
+        self.labels.index(p).map(|k| self.at[k])
+    }
+
+    /// The place of a point of a face or curve: those exist.
+    fn of(&self, p: PointId) -> Vec3<T> {
+        self.get(p).unwrap_or_default()
+    }
+}
+
+fn pair(a: PointId, b: PointId) -> (PointId, PointId) {
+    (a.min(b), a.max(b))
+}
+
+struct Builder<'a, T> {
+    object: &'a Object,
+    place: Places<'a, T>,
+    /// Points that share an edge of a face, where there are curves.
+    around: BTreeMap<PointId, BTreeSet<PointId>>,
+    corners: BTreeMap<PointId, Corner<T>>,
+    /// Edges that become curves: from the lower label to the higher.
+    bent: BTreeMap<(PointId, PointId), (usize, Piece<T>)>,
+    curves: BTreeMap<usize, Traced<T>>,
+    unbuilt: Vec<UnbuiltCurve>,
+    next: u32,
+}
+
+impl<T: Real> Builder<'_, T> {
+    /// Records what a curve replaces.
+    fn take(&mut self, k: usize, curve: &Curve, traced: &Traced<T>) -> Result<(), UnbuiltReason> {
+        match (curve.kind, &curve.points[..]) {
+            (CurveKind::Quadratic, p) if p.len() == 3 => {
+                self.bend(k, &[(p[0], p[1]), (p[1], p[2])], &traced.pieces)
+            }
+            (CurveKind::Cubic, p) => {
+                let edges: Vec<_> = p.windows(2).map(|w| (w[0], w[1])).collect();
+                self.bend(k, &edges[1..edges.len() - 1], &traced.pieces)
+            }
+            (CurveKind::Arc | CurveKind::EllipticalArc, &[a, m, b]) => {
+                let tangents = traced.tangents.ok_or(UnbuiltReason::NoEdge)?;
+                self.corner(k, m, [a, b], tangents, traced.pieces[0])
+            }
+            (CurveKind::Circle | CurveKind::Ellipse, &[a, m, b]) => self.ring(k, [a, m, b], traced),
+            _ => Err(UnbuiltReason::NoEdge),
+        }
+    }
+
+    fn bend(
+        &mut self,
+        k: usize,
+        edges: &[(PointId, PointId)],
+        pieces: &[Piece<T>],
+    ) -> Result<(), UnbuiltReason> {
+        let drawing = &self.object.drawing;
+        for &(p, q) in edges {
+            if drawing.line_between(p, q).is_none() {
+                return Err(UnbuiltReason::NoEdge);
+            }
+            if self.bent.contains_key(&pair(p, q)) {
+                return Err(UnbuiltReason::Taken(p));
+            }
+        }
+        for (&(p, q), piece) in edges.iter().zip(pieces) {
+            let forward = if p < q { *piece } else { piece.reversed() };
+            self.bent.insert(pair(p, q), (k, forward));
+        }
+        Ok(())
+    }
+
+    fn corner(
+        &mut self,
+        curve: usize,
+        at: PointId,
+        ends: [PointId; 2],
+        tangents: [Vec3<T>; 2],
+        piece: Piece<T>,
+    ) -> Result<(), UnbuiltReason> {
+        if self.corners.contains_key(&at) {
+            return Err(UnbuiltReason::Taken(at));
+        }
+        let neighbours = self.neighbours(at);
+        if !ends.iter().all(|e| neighbours.contains(e)) {
+            return Err(UnbuiltReason::NoEdge);
+        }
+        if neighbours.len() > 3 {
+            return Err(UnbuiltReason::Crowded(at));
+        }
+        let ids = [PointId(self.next), PointId(self.next.saturating_add(1))];
+        self.next = self.next.saturating_add(2);
+        self.corners.insert(at, Corner { curve, ends, tangents, piece, ids });
+        Ok(())
+    }
+
+    /// The points that share an edge of a face with `at`.
+    fn neighbours(&self, at: PointId) -> BTreeSet<PointId> {
+        self.around.get(&at).cloned().unwrap_or_default()
+    }
+
+    /// A full circle or ellipse inscribed in the parallelogram of its lines: four corners at once.
+    fn ring(
+        &mut self,
+        k: usize,
+        [a, m, b]: [PointId; 3],
+        traced: &Traced<T>,
+    ) -> Result<(), UnbuiltReason> {
+        let [pa, pm, pb] = [a, m, b].map(|p| self.place.of(p));
+        let fourth = pa + pb - pm;
+        let size = (pa - pm).re().norm() + (pb - pm).re().norm();
+        let close = |p: Vec3<T>, q: Vec3<T>| (p - q).re().norm() <= 1e-9 * size;
+        let drawing = &self.object.drawing;
+        let c = (self.place.labels.ids.iter().zip(&self.place.at))
+            .find(|(id, p)| {
+                let linked = |other| drawing.line_between(**id, other).is_some();
+                close(**p, fourth) && linked(a) && linked(b)
+            })
+            .map(|(id, _)| *id)
+            .ok_or(UnbuiltReason::NoEdge)?;
+        let [t1, t2] = traced.tangents.ok_or(UnbuiltReason::NoEdge)?;
+        let half = T::from(0.5);
+        if !close(t1, (pa + pm) * half) || !close(t2, (pb + pm) * half) {
+            // Not inscribed: the sides stay as they are.
+            return Err(UnbuiltReason::NoEdge);
+        }
+        let centre = (pa + pb) * half;
+        let way = [(b, m, a), (m, a, c), (a, c, b), (c, b, m)];
+        if way.iter().any(|(_, at, _)| self.corners.contains_key(at)) {
+            return Err(UnbuiltReason::Taken(m));
+        }
+        for (from, at, to) in way {
+            let [pf, p, pt] = [from, at, to].map(|id| self.place.of(id));
+            let tangents = [(pf + p) * half, (p + pt) * half];
+            let sweep = T::from(0.5 * std::f64::consts::PI);
+            let piece =
+                Piece::Conic { centre, a: tangents[0] - centre, b: tangents[1] - centre, sweep };
+            self.corner(k, at, [from, to], tangents, piece)?;
+        }
+        Ok(())
+    }
+
+    /// Gives tangent points that meet in the middle of a line one label, and refuses crossed ones.
+    fn share_tangents(&mut self) {
+        let on_line = |c: &Corner<T>, other: PointId| c.ends.iter().position(|e| *e == other);
+        let keys: Vec<PointId> = self.corners.keys().copied().collect();
+        for &p in &keys {
+            for side in 0..2 {
+                let Some(own) = self.corners.get(&p) else { continue };
+                let (q, tangent, id) = (own.ends[side], own.tangents[side], own.ids[side]);
+                let Some(other) = self.corners.get(&q).filter(|_| p < q) else { continue };
+                let Some(back) = on_line(other, p) else { continue };
+                let (from, to) = (self.place.of(p).re(), self.place.of(q).re());
+                let length = from.distance(to);
+                let reach = from.distance(tangent.re()) + to.distance(other.tangents[back].re());
+                if reach > length * (1.0 + 1e-9) {
+                    let curve = other.curve;
+                    let curve = self.object.curves[curve].name.clone();
+                    self.unbuilt.push(UnbuiltCurve { curve, why: UnbuiltReason::Overlap(p, q) });
+                    self.corners.remove(&q);
+                } else if reach >= length * (1.0 - 1e-9)
+                    && let Some(other) = self.corners.get_mut(&q)
+                {
+                    other.ids[back] = id;
+                    other.tangents[back] = tangent;
+                }
+            }
+        }
+    }
+
+    /// What stands for corner `p` on the way from or to `other`.
+    fn stand_in(&self, p: PointId, other: PointId) -> Option<(PointId, Vec3<T>)> {
+        match self.corners.get(&p) {
+            None => Some((p, self.place.of(p))),
+            Some(c) => {
+                let side = c.ends.iter().position(|e| *e == other)?;
+                Some((c.ids[side], c.tangents[side]))
+            }
+        }
+    }
+
+    fn finish(mut self) -> Solid<T> {
+        self.drop_unsupported();
+        let halves: usize = self
+            .object
+            .faces
+            .values()
+            .map(|f| f.loops().map(<[PointId]>::len).sum::<usize>())
+            .sum();
+        let mut out = Assembly {
+            vertices: Vec::with_capacity(self.place.at.len()),
+            number: HashMap::with_capacity_and_hasher(self.place.at.len(), Quick::default()),
+            edges: Vec::with_capacity(halves / 2),
+            known: HashMap::with_capacity_and_hasher(halves / 2, Quick::default()),
+        };
+        let mut faces: Vec<SolidFace> = Vec::new();
+        // Per third line of a corner, how a face runs its two successors.
+        let mut seams: BTreeMap<PointId, PointId> = BTreeMap::new();
+        for (&id, face) in &self.object.faces {
+            let mut loops = Vec::new();
+            for cycle in face.loops() {
+                let edges = self.cycle(cycle, &mut out, &mut seams);
+                if edges.len() >= 3 || edges.iter().any(|&(e, _)| out.edges[e].piece.is_some()) {
+                    loops.push(edges);
+                }
+            }
+            if !loops.is_empty() {
+                let ruled = self.ruled_face(&loops, &out);
+                if ruled == Some(true) {
+                    // A ruled patch starts with a curved edge.
+                    let bent = |h: &(usize, bool)| out.edges[h.0].piece.is_some();
+                    let first = loops[0].iter().position(bent).unwrap_or(0);
+                    loops[0].rotate_left(first);
+                }
+                if ruled.is_none() {
+                    for k in loops.iter().flatten().filter_map(|h| out.edges[h.0].curve) {
+                        let curve = self.object.curves[k].name.clone();
+                        let unbuilt = UnbuiltCurve { curve, why: UnbuiltReason::Face(id) };
+                        if !self.unbuilt.contains(&unbuilt) {
+                            self.unbuilt.push(unbuilt);
+                        }
+                    }
+                }
+                faces.push(SolidFace { id: Some(id), ruled: ruled == Some(true), loops });
+            }
+        }
+        faces.extend(self.patches(&mut out, &seams));
+        let steps = (self.object.curves.values().enumerate())
+            .filter_map(|(k, c)| Some((k, c.steps?)))
+            .collect();
+        Solid {
+            vertices: out.vertices,
+            edges: out.edges,
+            faces,
+            flat: self.object.drawing.section.is_some(),
+            curves: self.curves,
+            unbuilt: self.unbuilt,
+            steps,
+        }
+    }
+
+    /// A corner whose third line ends in a corner of which it is a side cannot be patched.
+    fn drop_unsupported(&mut self) {
+        let keys: Vec<PointId> = self.corners.keys().copied().collect();
+        for p in keys {
+            let Some(c) = self.corners.get(&p) else { continue };
+            let third = self.neighbours(p).into_iter().find(|n| !c.ends.contains(n));
+            let blocked =
+                third.filter(|t| self.corners.get(t).is_some_and(|far| far.ends.contains(&p)));
+            if blocked.is_some() {
+                let curve = self.object.curves[c.curve].name.clone();
+                self.unbuilt.push(UnbuiltCurve { curve, why: UnbuiltReason::Taken(p) });
+                self.corners.remove(&p);
+            }
+        }
+    }
+
+    /// The edges that a cycle of points becomes.
+    fn cycle(
+        &self,
+        cycle: &[PointId],
+        out: &mut Assembly<T>,
+        seams: &mut BTreeMap<PointId, PointId>,
+    ) -> Vec<(usize, bool)> {
+        let n = cycle.len();
+        let mut edges = Vec::new();
+        for k in 0..n {
+            let (before, p, q) = (cycle[(k + n - 1) % n], cycle[k], cycle[(k + 1) % n]);
+            if let Some(c) = self.corners.get(&p)
+                && c.ends.contains(&before)
+                && c.ends.contains(&q)
+            {
+                let forward = c.ends[0] == before;
+                let [a, b] = [0, 1].map(|s| out.vertex(c.ids[s], c.tangents[s]));
+                let e = out.edge([a, b], Some((c.curve, c.piece)));
+                edges.push((e, forward));
+            }
+            // Where the line leaves p and where it arrives at q.
+            let seam = |at: PointId, other: PointId, side: PointId| {
+                self.stand_in(at, other).or_else(|| self.stand_in(at, side))
+            };
+            let after = cycle[(k + 2) % n];
+            let (Some(from), Some(to)) = (seam(p, q, before), seam(q, p, after)) else { continue };
+            if let Some(c) = self.corners.get(&p).filter(|c| !c.ends.contains(&q)) {
+                // This face runs the third line outwards beside the end `before`.
+                if c.ends.contains(&before) {
+                    seams.insert(p, before);
+                }
+            }
+            if from.0 == to.0 {
+                continue;
+            }
+            let (a, b) = (out.vertex(from.0, from.1), out.vertex(to.0, to.1));
+            let bent = self.bent.get(&pair(p, q)).filter(|_| from.0 == p && to.0 == q);
+            let e = match bent {
+                Some(&(curve, piece)) => {
+                    let piece = if p < q { piece } else { piece.reversed() };
+                    out.edge([a, b], Some((curve, piece)))
+                }
+                None => out.edge([a, b], None),
+            };
+            edges.push((e, out.edges[e].ends[0] == a));
+        }
+        edges
+    }
+
+    /// `Some(false)` plane, `Some(true)` ruled, `None` neither.
+    fn ruled_face(&self, loops: &[Vec<(usize, bool)>], out: &Assembly<T>) -> Option<bool> {
+        let all = || loops.iter().flatten();
+        if all().all(|h| out.edges[h.0].piece.is_none()) {
+            return Some(false);
+        }
+        let mut vector = Vec3::zero();
+        let mut samples: Vec<Vec3> = Vec::new();
+        let apex = out.vertices[out.edges[loops[0][0].0].ends[0]].at.re();
+        for &(e, forward) in all() {
+            let edge = &out.edges[e];
+            let [p, q] = edge.ends.map(|v| out.vertices[v].at.re() - apex);
+            let (p, q) = if forward { (p, q) } else { (q, p) };
+            vector += p.cross(q);
+            samples.push(p);
+            if let Some(piece) = edge.piece {
+                let thirds = [0.25, 0.5, 0.75].map(|s| piece.at(T::from(s)).re() - apex);
+                let turned = if forward { thirds } else { [thirds[2], thirds[1], thirds[0]] };
+                let way = [p, turned[0], turned[1], turned[2], q];
+                vector -= p.cross(q);
+                way.windows(2).for_each(|w| vector += w[0].cross(w[1]));
+                samples.extend(thirds);
+            }
+        }
+        let size = samples.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        let flat = vector
+            .normalized()
+            .is_some_and(|n| samples.iter().all(|s| s.dot(n).abs() <= 1e-7 * size));
+        if flat {
+            return Some(false);
+        }
+        (loops.len() == 1 && loops[0].len() == 4).then_some(true)
+    }
+
+    /// The patches of the third lines at corners.
+    fn patches(&self, out: &mut Assembly<T>, seams: &BTreeMap<PointId, PointId>) -> Vec<SolidFace> {
+        let mut faces = Vec::new();
+        let mut done = BTreeSet::new();
+        for (&p, c) in &self.corners {
+            let third = self.neighbours(p).into_iter().find(|n| !c.ends.contains(n));
+            let Some(q) = third.filter(|q| done.insert(pair(p, *q))) else { continue };
+            // The face beside `out_end` runs the line outwards, so the patch runs it back there.
+            let Some(&out_end) = seams.get(&p) else { continue };
+            let side = usize::from(c.ends[1] == out_end);
+            let arc = [0, 1].map(|s| out.vertex(c.ids[s], c.tangents[s]));
+            let near = out.edge(arc, Some((c.curve, c.piece)));
+            // Along the arc away from `out_end`, out along the other line, back to the first.
+            let mut cycle = vec![(near, side == 0)];
+            let [a, b] = [arc[side], arc[1 - side]];
+            let (far_a, far_b, far) = match self.corners.get(&q) {
+                None => {
+                    let apex = out.vertex(q, self.place.of(q));
+                    (apex, apex, None)
+                }
+                Some(other) => {
+                    let beside = |end: PointId| {
+                        other.ends.iter().position(|&e| self.same_face([end, p, q, e]))
+                    };
+                    let (Some(x), Some(y)) = (beside(c.ends[side]), beside(c.ends[1 - side]))
+                    else {
+                        continue;
+                    };
+                    let [va, vb] = [x, y].map(|s| out.vertex(other.ids[s], other.tangents[s]));
+                    let ends = [0, 1].map(|s| out.vertex(other.ids[s], other.tangents[s]));
+                    let e = out.edge(ends, Some((other.curve, other.piece)));
+                    // From the far end of b to that of a.
+                    (va, vb, Some((e, y == 0)))
+                }
+            };
+            let mut run = |from: usize, to: usize| {
+                let e = out.edge([from, to], None);
+                (e, out.edges[e].ends[0] == from)
+            };
+            cycle.push(run(b, far_b));
+            cycle.extend(far);
+            cycle.push(run(far_a, a));
+            faces.push(SolidFace { id: None, ruled: true, loops: vec![cycle] });
+        }
+        faces
+    }
+
+    /// Whether a face runs through these points one after the other, either way.
+    fn same_face(&self, way: [PointId; 4]) -> bool {
+        self.object.faces.values().flat_map(|f| f.loops()).any(|cycle| {
+            let n = cycle.len();
+            (0..n).any(|k| {
+                (0..4).all(|i| cycle[(k + i) % n] == way[i])
+                    || (0..4).all(|i| cycle[(k + i) % n] == way[3 - i])
+            })
+        })
+    }
+}
+
+/// A hash of small numbers: what they are multiplied by mixes their low bits into the high ones
+/// (Knuth, The Art of Computer Programming, volume 3, section 6.4).
+#[derive(Clone, Copy, Default)]
+struct Mixed(u64);
+
+impl std::hash::Hasher for Mixed {
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|b| self.write_u64(u64::from(*b)));
+    }
+
+    fn write_u32(&mut self, n: u32) {
+        self.write_u64(u64::from(n));
+    }
+
+    fn write_u8(&mut self, n: u8) {
+        self.write_u64(u64::from(n));
+    }
+
+    fn write_usize(&mut self, n: usize) {
+        self.write_u64(n as u64);
+    }
+
+    fn write_u64(&mut self, n: u64) {
+        self.0 = (self.0.rotate_left(23) ^ n).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+}
+
+type Quick = std::hash::BuildHasherDefault<Mixed>;
+
+/// Vertices and edges, each made once.
+struct Assembly<T> {
+    vertices: Vec<Vertex<T>>,
+    // Looked up, never run through, so that their order does not show.
+    number: HashMap<PointId, usize, Quick>,
+    edges: Vec<SolidEdge<T>>,
+    known: HashMap<(usize, usize, bool), usize, Quick>,
+}
+
+impl<T: Real> Assembly<T> {
+    fn vertex(&mut self, id: PointId, at: Vec3<T>) -> usize {
+        *self.number.entry(id).or_insert_with(|| {
+            self.vertices.push(Vertex { id, at });
+            self.vertices.len() - 1
+        })
+    }
+
+    fn edge(&mut self, ends: [usize; 2], bent: Option<(usize, Piece<T>)>) -> usize {
+        let key = (ends[0].min(ends[1]), ends[0].max(ends[1]), bent.is_some());
+        *self.known.entry(key).or_insert_with(|| {
+            let (curve, piece) = bent.unzip();
+            self.edges.push(SolidEdge { ends, piece, curve });
+            self.edges.len() - 1
+        })
+    }
+}
+
+impl<T: Real> Solid<T> {
+    /// The curve of an edge in the direction it is run.
+    pub(crate) fn piece(&self, (e, forward): (usize, bool)) -> Piece<T> {
+        let edge = &self.edges[e];
+        let [p, q] = edge.ends.map(|v| self.vertices[v].at);
+        let piece = edge.piece.unwrap_or_else(|| Piece::straight(p, q));
+        if forward { piece } else { piece.reversed() }
+    }
+
+    /// Length of an edge.
+    pub fn length(&self, edge: usize) -> T {
+        let e = &self.edges[edge];
+        match e.piece {
+            Some(piece) => piece.length(),
+            None => self.vertices[e.ends[0]].at.distance(self.vertices[e.ends[1]].at),
+        }
+    }
+
+    /// Points along an edge: its ends, and of a curve also `chords - 1` between them.
+    pub fn polyline(&self, edge: usize, chords: usize) -> Vec<Vec3<T>> {
+        let e = &self.edges[edge];
+        let n = if e.piece.is_some() { chords.max(1) } else { 1 };
+        let piece = self.piece((edge, true));
+        let inner = (1..n).map(|k| piece.at(T::from(k as f64 / n as f64)));
+        let [p, q] = e.ends.map(|v| self.vertices[v].at);
+        std::iter::once(p).chain(inner).chain([q]).collect()
+    }
+
+    /// Area, volume, centroid, inertia.
+    pub fn mass(&self) -> Mass<T> {
+        let n = self.vertices.len().max(1) as f64;
+        let centre = self.vertices.iter().fold(Vec3::<f64>::zero(), |s, v| s + v.at.re()) / n;
+        let mut sums = Sums::new(Vec3::lifted(centre));
+        for face in &self.faces {
+            if face.ruled {
+                self.ruled_sums(face, &mut sums);
+                continue;
+            }
+            let edges: Vec<_> = (face.loops.iter().flatten())
+                .map(|&(e, forward)| {
+                    let edge = &self.edges[e];
+                    let [p, q] = edge.ends.map(|v| self.vertices[v].at);
+                    let (p, q) = if forward { (p, q) } else { (q, p) };
+                    (p, q, edge.piece.map(|_| self.piece((e, forward))))
+                })
+                .collect();
+            sums.plane(&edges);
+        }
+        sums.finish(self.flat)
+    }
+
+    fn ruled_sums(&self, face: &SolidFace, sums: &mut Sums<T>) {
+        let cycle = &face.loops[0];
+        let near = self.piece(cycle[0]);
+        match cycle[..] {
+            [_, _, far, _] => {
+                // Run against its direction in the cycle, it starts where the first edge starts.
+                let far = self.piece(far).reversed();
+                sums.ruled(&near, &|s| (far.at(s), far.velocity(s)));
+            }
+            [_, out, _] => {
+                let apex = self.vertices[self.edges[out.0].ends[usize::from(out.1)]].at;
+                sums.ruled(&near, &|_| (apex, Vec3::zero()));
+            }
+            _ => {}
+        }
+    }
+
+    /// Chords per edge: as curves ask, else as `usual` says; both ends of a patch agree.
+    fn chords(&self, usual: &dyn Fn(&Piece<T>) -> usize) -> Vec<usize> {
+        let mut chords: Vec<usize> = (self.edges.iter())
+            .map(|e| match (e.piece, e.curve.and_then(|c| self.steps.get(&c))) {
+                (None, _) => 1,
+                (Some(_), Some(&steps)) => steps.clamp(1, 720) as usize,
+                (Some(piece), None) => usual(&piece),
+            })
+            .collect();
+        loop {
+            let mut changed = false;
+            for face in self.faces.iter().filter(|f| f.ruled && f.loops[0].len() == 4) {
+                for [a, b] in [[0, 2], [1, 3]].map(|p| p.map(|k: usize| face.loops[0][k].0)) {
+                    let most = chords[a].max(chords[b]);
+                    changed |= chords[a] != chords[b];
+                    (chords[a], chords[b]) = (most, most);
+                }
+            }
+            if !changed {
+                return chords;
+            }
+        }
+    }
+
+    /// A mesh of triangles and quads within `tolerance` of curves; faces are its patches.
+    pub fn mesh(&self, tolerance: f64) -> Mesh<T> {
+        self.mesh_of(self.chords(&|piece| piece.chords(tolerance)))
+    }
+
+    /// The same with a chord for each 5° of a round curve and 20 for each cubic, as in 1983, so that
+    /// there are as many triangles whatever the sizes are.
+    pub fn faceted(&self) -> Mesh<T> {
+        let by_angle = |piece: &Piece<T>| match piece {
+            Piece::Conic { sweep, .. } => {
+                let n = (sweep.re().abs().to_degrees() / 5.0 - 1e-9).ceil();
+                if n.is_finite() { (n as usize).clamp(1, 720) } else { 1 }
+            }
+            Piece::Cubic(_) => 20,
+        };
+        self.mesh_of(self.chords(&by_angle))
+    }
+
+    fn mesh_of(&self, chords: Vec<usize>) -> Mesh<T> {
+        let mut places: Vec<Vec3<T>> = self.vertices.iter().map(|v| v.at).collect();
+        let mut inner: Vec<Vec<u32>> = Vec::new();
+        for (e, &n) in chords.iter().enumerate() {
+            let piece = self.piece((e, true));
+            let own = (1..n).map(|k| {
+                places.push(piece.at(T::from(k as f64 / n as f64)));
+                places.len() as u32 - 1
+            });
+            inner.push(own.collect());
+        }
+        let run = |(e, forward): (usize, bool)| -> Vec<u32> {
+            let [a, b] = self.edges[e].ends.map(|v| v as u32);
+            let mut way: Vec<u32> =
+                [a].into_iter().chain(inner[e].iter().copied()).chain([b]).collect();
+            if !forward {
+                way.reverse();
+            }
+            way
+        };
+        let mut topology = TopologyBuilder::new();
+        let mut parts: Vec<(String, Vec<[u32; 4]>)> = Vec::new();
+        for (k, face) in self.faces.iter().enumerate() {
+            let name = face.id.map_or_else(|| format!("patch {}", k + 1), |f| format!("face {f}"));
+            parts.push((name, self.facets(face, &run, &mut places)));
+        }
+        // Both fit: the counts are those of the builder itself.
+        let _ = topology.add_vertices(places.len());
+        for (name, facets) in parts {
+            let _ = topology.add_faces(PatchInfo::new(name), facets);
+        }
+        let empty = || Mesh::new(TopologyBuilder::new().build().into(), vec![]);
+        match Mesh::new(topology.build().into(), places).or_else(|_| empty()) {
+            Ok(mesh) => mesh,
+            Err(_) => unreachable!("an empty mesh fits its topology"),
+        }
+    }
+
+    fn facets(
+        &self,
+        face: &SolidFace,
+        run: &dyn Fn((usize, bool)) -> Vec<u32>,
+        places: &mut Vec<Vec3<T>>,
+    ) -> Vec<[u32; 4]> {
+        if face.ruled {
+            let cycle = &face.loops[0];
+            let near = run(cycle[0]);
+            return match cycle[..] {
+                [_, right, far, left] => {
+                    let mut far = run(far);
+                    far.reverse();
+                    let (mut left, right) = (run(left), run(right));
+                    left.reverse();
+                    self.grid([&near, &far, &left, &right], places)
+                }
+                [_, out, _] => {
+                    let apex = self.edges[out.0].ends[usize::from(out.1)] as u32;
+                    near.windows(2).map(|w| [w[0], w[1], apex, apex]).collect()
+                }
+                _ => vec![],
+            };
+        }
+        let loops: Vec<Vec<usize>> = (face.loops.iter())
+            .map(|cycle| {
+                let way = cycle.iter().flat_map(|&h| {
+                    let mut way = run(h);
+                    way.pop();
+                    way
+                });
+                way.map(|v| v as usize).collect()
+            })
+            .collect();
+        let flat = |v: usize| places[v].re();
+        let mut normal = Vec3::zero();
+        for cycle in &loops {
+            let first = flat(cycle[0]);
+            for k in 0..cycle.len() {
+                let (p, q) = (flat(cycle[k]), flat(cycle[(k + 1) % cycle.len()]));
+                normal += (p - first).cross(q - first);
+            }
+        }
+        let used: Vec<usize> = loops.iter().flatten().copied().collect();
+        let points: Vec<Vec3> = used.iter().map(|&v| flat(v)).collect();
+        // A vertex that two cycles share has the first of its places in both, so that it stays one.
+        let mut first: HashMap<usize, usize, Quick> = HashMap::default();
+        for (k, &v) in used.iter().enumerate() {
+            first.entry(v).or_insert(k);
+        }
+        let loops: Vec<Vec<usize>> =
+            loops.iter().map(|c| c.iter().map(|v| first[v]).collect()).collect();
+        triangulate(&points, &loops, normal)
+            .into_iter()
+            .map(|t| t.map(|k| used[k] as u32))
+            .map(|[a, b, c]| [a, b, c, c])
+            .collect()
+    }
+
+    /// Quads between two runs of equal length; `left` and `right` lead from near to far.
+    fn grid(
+        &self,
+        [near, far, left, right]: [&Vec<u32>; 4],
+        places: &mut Vec<Vec3<T>>,
+    ) -> Vec<[u32; 4]> {
+        let (n, m) = (near.len(), left.len());
+        if far.len() != n || right.len() != m {
+            return vec![];
+        }
+        let mut rows = vec![near.clone()];
+        for j in 1..m - 1 {
+            let t = T::from(j as f64 / (m - 1) as f64);
+            let mut row = vec![left[j]];
+            for i in 1..n - 1 {
+                places.push(places[near[i] as usize].lerp(places[far[i] as usize], t));
+                row.push(places.len() as u32 - 1);
+            }
+            row.push(right[j]);
+            rows.push(row);
+        }
+        rows.push(far.clone());
+        let mut quads = Vec::new();
+        for w in rows.windows(2) {
+            for i in 0..n - 1 {
+                quads.push([w[0][i], w[0][i + 1], w[1][i + 1], w[1][i]]);
+            }
+        }
+        quads
+    }
+}

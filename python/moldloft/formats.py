@@ -1,0 +1,177 @@
+"""The table of formats: what a model is written as.
+
+The rows are those of the Rust crate ``export``, and those of the formats that Python writes:
+:data:`PYTHON_ROWS`, each with the function that makes its file.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from moldloft import _core
+from moldloft.errors import Error
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from moldloft.blocks import Blocks
+    from moldloft.models import Model
+
+__all__ = ["PYTHON_ROWS", "Format", "format_named", "formats"]
+
+
+@dataclass(frozen=True)
+class Format:
+    """A row of the table."""
+
+    name: str
+    """Its name in commands and calls."""
+    about: str
+    """A line about it."""
+    suffix: str = ""
+    """The end of its files' names; the name where it is empty."""
+    other_suffix: str = ""
+    """Another end that its files are known by, which does not tell the format."""
+    aliases: tuple[str, ...] = ()
+    """Other names that mean it."""
+    holds: str = "panels"
+    """``panels``, ``panels, lines, points``, ``grids``, ``surfaces``, ``volumes``, ``drawing``,
+    ``model`` or ``table``."""
+    symmetry: str = ""
+    """The planes of symmetry that a file can name: ``y``; ``y, xy``; or ``x, y, xy``."""
+    lids: bool = False
+    """Lids are written only when they are asked for."""
+    immersed: bool = False
+    """The immersed part alone can be written."""
+    text: bool = False
+    """The main file is text."""
+    of_grids: bool = False
+    """Grids of points, without a model, can be written."""
+    writer: str = ""
+    """For rows of Python: ``module:function``, which makes the bytes of the file from the model, or
+    for ``volumes`` from its :class:`moldloft.blocks.Blocks`, and the stem of its name."""
+
+    def file_name(self, stem: str) -> str:
+        """The name of a model's main file."""
+        return f"{stem}.{self.suffix or self.name}"
+
+    @property
+    def panel_code(self) -> bool:
+        """Whether a panel code reads the files."""
+        return self.immersed
+
+    @property
+    def volume(self) -> bool:
+        """Whether the files hold the cells of solids."""
+        return self.holds == "volumes"
+
+    def encode(self, source: Model | Blocks, stem: str) -> bytes:
+        """The bytes that a row of Python makes."""
+        module, _, function = self.writer.partition(":")
+        data: bytes = getattr(import_module(module), function)(source, stem)
+        return data
+
+
+PYTHON_ROWS = (
+    Format(
+        "cgns",
+        "CGNS structured surface zones with interfaces (needs h5py)",
+        holds="grids",
+        symmetry="x, y, xy",
+        of_grids=True,
+        writer="moldloft.cgns:write",
+    ),
+    Format(
+        "volume-cgns",
+        "the cells of solids as CGNS zones (needs h5py)",
+        suffix="volume.cgns",
+        holds="volumes",
+        symmetry="x, y, xy",
+        writer="moldloft.volume_cgns:write",
+    ),
+    Format(
+        "blockmesh",
+        "the blocks of solids as OpenFOAM's blockMeshDict",
+        suffix="blockMeshDict",
+        holds="volumes",
+        symmetry="x, y, xy",
+        text=True,
+        writer="moldloft.blockmesh:encode",
+    ),
+    Format(
+        "offsets",
+        "stations, waterlines and half-breadths (.csv)",
+        suffix="csv",
+        aliases=("csv",),
+        holds="table",
+        text=True,
+        writer="moldloft.offsets:encode",
+    ),
+)
+"""The formats that are written in Python."""
+
+
+@cache
+def formats() -> dict[str, Format]:
+    """The rows by name, in the order in which help lists them.
+
+    >>> formats()["nemoh"].file_name("hull")
+    'hull.mar'
+    """
+    rows = [Format(**{**row, "aliases": tuple(row["aliases"])}) for row in _core.formats()]
+    return {row.name: row for row in [*rows, *PYTHON_ROWS]}
+
+
+def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
+    """The row of that name or alias.
+
+    Parameters
+    ----------
+    name
+        In small letters or large.
+    among
+        Only one of these; by default any.
+
+    Examples
+    --------
+    >>> format_named("Plot3D").name
+    'p3d'
+    """
+    rows: Sequence[Format] = list(formats().values() if among is None else among)
+    wanted = name.lower()
+    for row in rows:
+        if wanted == row.name or wanted in row.aliases:
+            return row
+    ends = [f"`{row.name}`" for row in rows if wanted in (row.suffix, row.other_suffix) and wanted]
+    if ends:
+        files = f"files that end in `.{wanted}` may be of several formats"
+        raise Error(f"{files}; say which: {' or '.join(ends)}")
+    raise Error(f"there is no format `{name}`; there are: {', '.join(row.name for row in rows)}")
+
+
+def markdown() -> str:
+    """The table of the docs.
+
+    >>> print(markdown().splitlines()[0])
+    | name | file | what | holds | symmetry | options |
+    """
+    lines = [
+        "| name | file | what | holds | symmetry | options |",
+        "| " + " | ".join(["---"] * 6) + " |",
+    ]
+    for row in formats().values():
+        names = ", ".join(f"`{name}`" for name in (row.name, *row.aliases))
+        options = [word for word in ("lids", "immersed") if getattr(row, word)]
+        if row.holds == "surfaces":
+            options.append("tolerance")
+        planes = row.symmetry or "–"
+        cells = [names, f"`.{row.suffix or row.name}`", row.about, row.holds, planes]
+        lines.append("| " + " | ".join([*cells, ", ".join(options) or "–"]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(markdown(), end="")
