@@ -97,7 +97,7 @@ pub use curve::data::{
 };
 pub use curve::fit::{
     Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
-    parameters_with,
+    parameters_across, parameters_with,
 };
 pub use curve::job::{End, Job};
 pub use curve::jumps::Jumps;

@@ -2,7 +2,7 @@
 
 use crate::error::check_finite;
 use crate::optimum::problem::{self, Bounds, Problem};
-use crate::{FairError, Norm, Space, SparseRows};
+use crate::{FairError, Motion, Norm, Space, SparseRows};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::KnotVector;
 
@@ -98,6 +98,37 @@ pub fn parameters_with<T: Real>(
         at[n - 1] = T::one();
     }
     Ok(at)
+}
+
+/// The least share of a chord that its projection must be for stations to count.
+const SHALLOW: f64 = 0.2;
+
+/// The same where points move along a direction only: chords are measured across it, so that
+/// offsets at stations have these for parameters, unless a curve is too steep for that.
+///
+/// # Errors
+/// As [`parameters`].
+pub fn parameters_across<T: Real>(
+    points: &[Vec3<T>],
+    spacing: Spacing,
+    closed: bool,
+    motion: Motion,
+) -> Result<Vec<T>, FairError> {
+    let (Motion::Along(d), Spacing::Chord | Spacing::Centripetal) = (motion, spacing) else {
+        return parameters_with(points, spacing, closed);
+    };
+    let flat = |p: &Vec3<T>| {
+        let along = p.x * d.x + p.y * d.y + p.z * d.z;
+        *p - Vec3::new(along * d.x, along * d.y, along * d.z)
+    };
+    let projected: Vec<Vec3<T>> = points.iter().map(flat).collect();
+    let n = points.len();
+    let steps = if closed { n } else { n.saturating_sub(1) };
+    let shallow = (0..steps).all(|k| {
+        let step = |all: &[Vec3<T>]| (all[(k + 1) % n].re() - all[k].re()).norm();
+        step(&projected) >= SHALLOW * step(points) && step(&projected) > 0.0
+    });
+    parameters_with(if shallow { &projected } else { points }, spacing, closed)
 }
 
 /// The spline through all points: clamped knots that are means of `degree` parameters (de Boor

@@ -280,7 +280,9 @@ impl<T: Real> Build<T> for FairCurve<T> {
         if intent.role == super::Role::Fit && !intent.faithful && alone && !index {
             let curve = intent.near(&points).map_err(about)?;
             let [first, .., last] = self.points.as_slice() else {
-                return Err(Fault::new("too-few-items", "a curve needs points").in_field(Self::POINTS));
+                return Err(
+                    Fault::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
+                );
             };
             // A free end leaves its point, and a closed curve has no ends.
             let kept = !intent.closed && (intent.end.kept() > 0 || self.tolerance.re() == 0.0);

@@ -12,7 +12,7 @@ use crate::curve::condition::{end_jet, joined};
 use crate::{
     Bound, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions, Layout,
     Limit, Measure, Motion, OptimumOptions, Space, Spacing, fair_data_with,
-    interpolate_with_corners, knot_removal, optimum_with, parameters_with, replay_with,
+    interpolate_with_corners, knot_removal, optimum_with, parameters_across, replay_with,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
@@ -240,7 +240,7 @@ impl<T: Real> Intent<T> {
         if points.len() < least {
             return Err(FairError::TooFew { expected: least, actual: points.len() });
         }
-        let at = parameters_with(points, self.spacing, self.closed)?;
+        let at = parameters_across(points, self.spacing, self.closed, self.motion)?;
         let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
         let data = Data {
             points: plain,

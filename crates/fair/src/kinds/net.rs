@@ -4,7 +4,7 @@ use super::shapes::{self, Ended};
 use super::{ACCURACY, Places, fault, measure};
 use crate::{
     End, FairError, Layout, Limit, Motion, Network, NetworkCurve, Space, Spacing,
-    interpolate_with_corners, parameters_with,
+    interpolate_with_corners, parameters_across,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
@@ -174,6 +174,15 @@ impl<T: Real> Build<T> for FairNet<T> {
         let spaced = super::spacing(&self.spacing, Self::SPACING)?;
         let goal = super::goal(&self.goal, Self::GOAL)?;
         let index = matches!(spaced, Spacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
+        let motion = match &self.along {
+            None => Motion::Ball,
+            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
+            Some(_) => {
+                return Err(Fault::new("zero-direction", "the direction has no length")
+                    .expected("a direction such as {0, 1, 0}")
+                    .in_field(Self::ALONG));
+            }
+        };
         let (mut strands, mut ats) = (Vec::new(), Vec::new());
         for (k, (own, closed)) in joined.curves.iter().enumerate() {
             let space = match (closed, own.len()) {
@@ -196,11 +205,11 @@ impl<T: Real> Build<T> for FairNet<T> {
             let at = if index {
                 None
             } else {
-                let at = match parameters_with(&list, spaced, *closed) {
+                let at = match parameters_across(&list, spaced, *closed, motion) {
                     Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
                         if matches!(spaced, Spacing::Along(_)) =>
                     {
-                        parameters_with(&list, Spacing::Chord, *closed)
+                        parameters_across(&list, Spacing::Chord, *closed, motion)
                     }
                     other => other,
                 };
@@ -217,15 +226,6 @@ impl<T: Real> Build<T> for FairNet<T> {
                 at: plain,
             });
         }
-        let motion = match &self.along {
-            None => Motion::Ball,
-            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
-            Some(_) => {
-                return Err(Fault::new("zero-direction", "the direction has no length")
-                    .expected("a direction such as {0, 1, 0}")
-                    .in_field(Self::ALONG));
-            }
-        };
         let measure = measure(&self.measure, Self::MEASURE)?;
         let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
         let kept = joined.kept(&self.keep)?;
@@ -261,8 +261,9 @@ impl<T: Real> Build<T> for FairNet<T> {
             let sharp =
                 interpolate_with_corners(degree, &points, Spacing::Uniform, *closed, &marks)
                     .map_err(about)?;
-            let curve = shapes::curve(&sharp.fit.space, &sharp.points)
-                .map_err(|e| Fault::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES))?;
+            let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
+                Fault::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
+            })?;
             Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
         };
         let curves: Result<Vec<_>, Fault> = joined.curves.iter().enumerate().map(curve).collect();

@@ -84,6 +84,15 @@ pub(crate) struct Found {
     pub weight: f64,
 }
 
+impl Found {
+    /// The original itself; nothing is left to gain where nothing may move.
+    pub fn unmoved(points: &[Vec3<f64>], value: f64, still: bool) -> Self {
+        let certificate = Certificate { value, gap: if still { 0.0 } else { value } };
+        let optimum = Optimum { points: points.to_vec(), certificate, iterations: 0, active: 0 };
+        Self { optimum, share: 0.0, used: 0.0, least: value, weight: 0.0 }
+    }
+}
+
 impl<E, S> Path<'_, E, S>
 where
     E: Fn(&[Vec3<f64>]) -> f64,

@@ -294,7 +294,8 @@ fn uneven_stations_and_waterlines() {
         let run = |data: &[Vec3<f64>], index: bool, goal: Goal| {
             let curve = |own: Vec<usize>| {
                 let list: Vec<_> = own.iter().map(|&i| data[i]).collect();
-                let at = parameters(&list, Spacing::Chord, false).unwrap();
+                let motion = Motion::Along(Vec3::of(0.0, 1.0, 0.0));
+                let at = parameters_across(&list, Spacing::Chord, false, motion).unwrap();
                 NetworkCurve {
                     space: Space::floating(3, own.len()).unwrap(),
                     points: own,

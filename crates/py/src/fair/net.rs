@@ -6,7 +6,7 @@ use super::{Look, certificate, fair_error, floats, measure, refused, space, vect
 use crate::arrays;
 use moldloft_fair::{
     Condition, End, FairError, Limit, Network, NetworkCurve, NetworkMode, NetworkReport, PatchNet,
-    Seam, Space, Spacing, parameters,
+    Seam, Space, Spacing, parameters_across,
 };
 use moldloft_num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -217,6 +217,7 @@ impl Web {
         let word: String = get(&options, "motion")?;
         let motion = motion(&word, get(&options, "direction")?)?;
         let limit = Limit::new(motion, get(&options, "tolerance")?).map_err(fair_error)?;
+        let motion = limit.motion;
         let mut strands = Vec::new();
         let word: String = get(&options, "spacing")?;
         let spaced = spacing(&word, get(&options, "spacing_direction")?)?;
@@ -234,15 +235,18 @@ impl Web {
                     Spacing::Uniform => None,
                     spaced => {
                         let list: Vec<Vec3> = own.iter().map(|&i| self.points[i]).collect();
-                        let at = parameters(&list, spaced, *closed).or_else(|error| match error {
-                            // Sections run across the stations.
-                            FairError::TurnsAlong { .. } | FairError::Coincident { .. }
-                                if matches!(spaced, Spacing::Along(_)) =>
-                            {
-                                parameters(&list, Spacing::Chord, *closed)
-                            }
-                            error => Err(error),
-                        });
+                        let at =
+                            parameters_across(&list, spaced, *closed, motion).or_else(|error| {
+                                match error {
+                                    // Sections run across the stations.
+                                    FairError::TurnsAlong { .. } | FairError::Coincident { .. }
+                                        if matches!(spaced, Spacing::Along(_)) =>
+                                    {
+                                        parameters_across(&list, Spacing::Chord, *closed, motion)
+                                    }
+                                    error => Err(error),
+                                }
+                            });
                         Some(at.map_err(|e| refused(format!("curve {}: {e}", k + 1)))?)
                     }
                 },

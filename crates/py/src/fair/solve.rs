@@ -5,7 +5,7 @@ use super::{Spline, certificate, fair_error, measure, refused};
 use moldloft_fair::{
     Bound as Bounded, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions,
     Layout, Limit, Mode, Motion, Numbers, OptimumOptions, Report, Rule, Space, Step, Stops,
-    data_report, knot_removal, merged, parameters, report, shape,
+    data_report, knot_removal, merged, parameters_across, report, shape,
 };
 use moldloft_num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -204,6 +204,7 @@ pub fn data<'py>(
     let degree: usize = get(options, "degree")?;
     let breaks: Vec<usize> = get(options, "breaks")?;
     let one = merged(&points, &radii, closed).map_err(fair_error)?;
+    let limit = Limit::new(motion, one.radii.clone()).map_err(fair_error)?;
     let at = match get::<Option<Vec<f64>>>(options, "at")? {
         Some(all) if one.points.len() < points.len() => {
             let first = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(0);
@@ -213,12 +214,12 @@ pub fn data<'py>(
         None => {
             let word: String = get(options, "spacing")?;
             let spaced = spacing(&word, get(options, "spacing_direction")?)?;
-            parameters(&one.points, spaced, closed).map_err(fair_error)?
+            parameters_across(&one.points, spaced, closed, limit.motion).map_err(fair_error)?
         }
     };
     let breaks: Vec<usize> = breaks.iter().filter_map(|&b| one.of.get(b).copied()).collect();
     let data = Data {
-        limit: Limit::new(motion, one.radii.clone()).map_err(fair_error)?,
+        limit,
         layout: Layout::new(degree, &at, &breaks, closed).map_err(fair_error)?,
         ends: [end(&ends.0)?, end(&ends.1)?],
         points: one.points.clone(),
