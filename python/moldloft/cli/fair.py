@@ -48,8 +48,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--as",
         dest="role",
         choices=["control", "points", "fit"],
-        help="points are data on the curve (the default), are moved themselves, or are control "
-        "points, whose index is their parameter: the rule of the report of 1991",
+        help="points are data on the curve (the default of the optimum), are moved themselves, or "
+        "are control points, whose index is their parameter: the rule of the report of 1991",
     )
     parser.add_argument(
         "--closed", action="store_true", help="the last point joins the first; of surfaces along u"
@@ -488,7 +488,8 @@ class _Points(_Source):
             self.said.append("the last point repeats the first and is not counted twice")
             points = points[:-1]
             self.closing = True
-        role = options.role or "fit"
+        data = options.mode == "optimum" and options.bound in (None, "data")
+        role = options.role or ("fit" if data else "control")
         chosen = _curve_options(options, len(points), role)
         try:
             result = fair(points, options.tol, as_=role, **chosen)
@@ -761,6 +762,9 @@ class _Object(_Source):
             chosen["breaks"] = made.breaks
         if made.role == "fit" and not made.breaks:
             chosen["spacing"] = "uniform"
+        if (options.role or made.role) == "fit" and options.mode == "optimum":
+            # The object itself is what the tolerance is about, between its points too.
+            chosen["bound"] = options.bound or "curve"
         return fair(made.points, options.tol, as_=options.role or made.role, **chosen)
 
     def facts(self) -> dict[str, Any]:

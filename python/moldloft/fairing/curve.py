@@ -323,7 +323,7 @@ def fair_curve(
     points: ArrayLike | Spline,
     tol: ArrayLike | None,
     *,
-    as_: str = "fit",
+    as_: str | None = None,
     closed: bool = False,
     degree: int = 3,
     measure: str | None = None,
@@ -342,6 +342,7 @@ def fair_curve(
     goal: Any = "near",
     release: Sequence[int] | str = (),
     bends: bool = False,
+    original: ArrayLike | None = None,
     count: int | None = None,
     knots: ArrayLike | None = None,
     weights: ArrayLike | None = None,
@@ -365,8 +366,9 @@ def fair_curve(
     as_
         What points are: ``"fit"``, data on the curve, which stays within the tolerance of each;
         ``"points"``, moved themselves, each within the tolerance; ``"control"``, the control points
-        of a uniform spline, whose parameter is the index: the rule of the report of 1991. A spline
-        is its own.
+        of a uniform spline, whose parameter is the index: the rule of the report of 1991. By
+        default data for the optimum, control points for the other modes, which are the report's.
+        A spline is its own.
     closed
         Whether the last point is followed by the first, which is not repeated.
     degree
@@ -421,13 +423,15 @@ def fair_curve(
     goal
         Which of the curves within the tolerances. ``"near"``: the fairest whose squared residuals
         are at most four fifths of what noise has that fills the tolerances evenly, and the data's
-        own curve where little is to be gained: exact data stay, and so does what was faired
-        before. ``"fairest"``: the least of the measure. ``("budget", share)``: the first with a
-        share of your own. ``("nearest", share)``: the nearest to the data whose measure exceeds
-        the least by at most this share.
+        own curve where there is little to gain: exact data stay. ``"fairest"``: the least of the
+        measure. ``("budget", share)``: the first with a share of your own. ``("nearest", share)``:
+        the nearest to the data whose measure exceeds the least by at most this share.
     release
         Points, from 0, that are wrong and may be left; ``"auto"``: the wrong digits among
         :attr:`Fairing.findings`. Nothing is released by itself.
+    original
+        The points as they were read, when ``points`` were faired already: tolerances are counted
+        from these, so that fairing a result again is fairing the original.
     bends
         Whether third derivatives may buy smoothness with inflections that the curve of least
         bending does not have.
@@ -456,6 +460,13 @@ def fair_curve(
     FairingError
         With :attr:`~moldloft.errors.FairingError.index`, the point at fault.
     """
+    if as_ is None:
+        as_ = "fit" if mode == "optimum" and bound in (None, "data") else "control"
+    if original is not None:
+        reference, _ = points_of(original)
+        if isinstance(points, Spline) or len(reference) != len(points_of(points)[0]):
+            raise FairingError("the original has as many points as there are points")
+        points = original
     if as_ not in ROLES:
         raise FairingError(f"points are `control`, `points` or `fit`, not `{as_}`")
     started = time.perf_counter()
@@ -563,9 +574,7 @@ def _goal(given: Any) -> tuple[str, float]:
     word, share = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
     known = {"near": BUDGET, "budget": BUDGET, "fairest": 0.0, "nearest": 0.1}
     if word not in known:
-        raise FairingError(
-            f"there is no goal `{word}`; there are: near, fairest, budget, nearest"
-        )
+        raise FairingError(f"there is no goal `{word}`; there are: near, fairest, budget, nearest")
     return str(word), known[word] if share is None else float(share)
 
 
@@ -586,6 +595,18 @@ def _chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: 
     return sorted({_index(k, count) for k in given})
 
 
+def _released(
+    limits: list[float], release: list[int], found: list[Finding], data: Floats
+) -> list[float]:
+    """Tolerances with room for wrong points to go to their place."""
+    out = list(limits)
+    for k in release:
+        error = next((float(np.linalg.norm(f.vector)) for f in found if f.index == k), None)
+        size = float(np.ptp(data, axis=0).max())
+        out[k] = out[k] + 2.0 * error if error is not None else size
+    return out
+
+
 def _data_measure(measure: str | None, degree: int) -> str:
     return measure or ("variation" if degree >= 3 else "bending")
 
@@ -598,9 +619,7 @@ def _fair_data(
     n = len(data)
     least = 2 * asked.degree + 2 if asked.closed else asked.degree + 2
     if n < least:
-        raise FairingError(
-            f"expected at least {least} points for degree {asked.degree}, found {n}"
-        )
+        raise FairingError(f"expected at least {least} points for degree {asked.degree}, found {n}")
     found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
     breaks = _chosen(asked.breaks, found, "corner", n)
     release = _chosen(asked.release, found, "outlier", n)
@@ -608,10 +627,7 @@ def _fair_data(
     notes = []
     for k in asked.fixed:
         limits[_index(k, n)] = 0.0
-    for k in release:
-        error = next((np.linalg.norm(f.vector) for f in found if f.index == k), None)
-        size = float(np.ptp(data, axis=0).max())
-        limits[k] = limits[k] + 2.0 * float(error) if error is not None else size
+    limits = _released(limits, release, found, data)
     if asked.closed and tol is None:
         raise FairingError("a closed curve without a tolerance shrinks to a point")
     word, way = direction(asked.motion)
@@ -731,6 +747,8 @@ def _fair_points(
     n = len(data)
     found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
     breaks = _chosen(asked.breaks, found, "corner", n)
+    release = _chosen(asked.release, found, "outlier", n)
+    limits = _released(radii(tol, n), release, found, data)
     still = [_index(k, n) for k in asked.fixed]
     for k, word in enumerate(_ends(asked.ends if asked.ends is not None else "free", asked.closed)):
         if word != "free":
@@ -740,7 +758,7 @@ def _fair_points(
     made = network(
         data,
         [own],
-        tol,
+        limits if tol is not None else None,
         degree=asked.degree,
         measure=measure,
         breaks=breaks,
@@ -776,8 +794,8 @@ def _fair_points(
         steps=0,
         stopped=None,
         active=None,
-        findings=tuple(f for f in found if f.index not in breaks),
-        corrected=tuple(f for f in found if f.index in breaks),
+        findings=tuple(f for f in found if f.index not in {*breaks, *release}),
+        corrected=tuple(f for f in found if f.index in {*breaks, *release}),
         jump_lengths_before=np.linalg.norm(first.jumps()[1], axis=1) if n else none,
         jump_lengths_after=np.linalg.norm(second.jumps()[1], axis=1) if n else none,
         notes=(),

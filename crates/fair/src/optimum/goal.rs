@@ -19,7 +19,7 @@ pub enum Goal {
     Budget(f64),
     /// The same, as far as it is worth a move: data whose own curve measures less than one and a
     /// half times as much do not move at all, and from three times on they move all the way.
-    /// Exact data stay, and so does what was faired before.
+    /// Exact data stay.
     Near(f64),
     /// The one nearest to the data (in the sum of the same squares) whose measure exceeds the least
     /// by at most this share. Data that are as fair as that do not move.

@@ -124,8 +124,8 @@ fn the_curve_keeps_its_ends_and_its_tolerance() {
     };
     let through = line(0.0, "tangent");
     let near = |of: &CurveRef<f64>, p: Vec3<f64>| {
-        (0..=20_000)
-            .map(|k| (of.jet(f64::from(k) / 20_000.0, Order::Zero)[0] - p).norm())
+        (0..=4000)
+            .map(|k| (of.jet(f64::from(k) / 4000.0, Order::Zero)[0] - p).norm())
             .fold(f64::INFINITY, f64::min)
     };
     for p in &points {
@@ -134,7 +134,8 @@ fn the_curve_keeps_its_ends_and_its_tolerance() {
     for ends in ["free", "position", "tangent", "curvature"] {
         let faired = line(1e-2, ends);
         for p in &points {
-            assert!(near(&faired, *p) <= 1e-2 * (1.0 + 1e-9));
+            // Samples are up to 1.25e-4 from the nearest place.
+            assert!(near(&faired, *p) <= 1e-2 * (1.0 + 1e-3));
         }
         let kept = ["position", "tangent", "curvature"].iter().position(|e| *e == ends);
         for order in 0..3 {
