@@ -205,7 +205,7 @@ class Blocks:
         for block in self.blocks:
             if block.name == name:
                 return block
-        raise KeyError(f"there is no block `{name}`; there are: {', '.join(self)}")
+        raise KeyError(f"unknown block `{name}`; expected one of: {', '.join(self)}")
 
     def __iter__(self) -> Iterator[str]:
         return iter([block.name for block in self.blocks])
@@ -241,7 +241,7 @@ class Blocks:
 
         row = _ROWS.get(format)
         if row is None:
-            raise Error(f"there is no volume format `{format}`; there are: {', '.join(FORMATS)}")
+            raise Error(f"unknown volume format `{format}`; expected one of: {', '.join(FORMATS)}")
         if row.writer:
             return [Output(path.name, row.encode(self, path.stem))]
         return [Output(name, data) for name, data in self._core.write(row.name, path.name)]

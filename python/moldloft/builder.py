@@ -505,7 +505,9 @@ class Builder:
 
 def _check_name(name: str) -> None:
     if not _NAME.match(name):
-        raise ValueError(f"{name!r} is no name: expected a letter, then letters, digits and _")
+        raise ValueError(
+            f"{name!r} is not a valid name: expected a letter, then letters, digits and _"
+        )
 
 
 @dataclass(frozen=True)
@@ -559,7 +561,7 @@ class ModelFunction:
         for name in values:
             if name not in self._params:
                 known = ", ".join(self._params)
-                raise TypeError(f"there is no parameter `{name}`; there are {known}")
+                raise TypeError(f"unknown parameter `{name}`; expected one of: {known}")
         return {name: float(value) for name, value in values.items()}
 
     def text(self, values: Mapping[str, float]) -> str:

@@ -95,7 +95,7 @@ def zones(model: Model) -> list[Zone]:
     lost = [patch.name for k, patch in enumerate(mesh.patches) if k not in have]
     if lost or not blocks:
         names = "`, `".join(lost)
-        what = f"no structured grid in patch `{names}`" if lost else "there is no structured grid"
+        what = f"no structured grid in patch `{names}`" if lost else "no structured grid"
         raise Error(f"cannot write cgns: {what}")
     out: list[Zone] = []
     taken: set[str] = set()

@@ -148,8 +148,8 @@ def format_named(name: str, among: Iterable[Format] | None = None) -> Format:
     ends = [f"`{row.name}`" for row in rows if wanted in (row.suffix, row.other_suffix) and wanted]
     if ends:
         files = f"files that end in `.{wanted}` may be of several formats"
-        raise Error(f"{files}; say which: {' or '.join(ends)}")
-    raise Error(f"there is no format `{name}`; there are: {', '.join(row.name for row in rows)}")
+        raise Error(f"{files}; say which format: {' or '.join(ends)}")
+    raise Error(f"unknown format `{name}`; expected one of: {', '.join(row.name for row in rows)}")
 
 
 def markdown() -> str:

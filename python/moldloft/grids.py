@@ -110,7 +110,7 @@ def read_plot3d(
     """The blocks of a Plot3D grid file, whatever its variant.
 
     Text, plain binary and Fortran records, single and double precision, one block and several, two
-    and three coordinates, blanking and both byte orders are told apart by what fits the length of
+    and three coordinates, blanking and both byte orders are detected from the length of
     the file to the byte.
 
     Parameters
@@ -354,7 +354,7 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
     Raises
     ------
     FileError
-        With the line that is no point.
+        With the line that is not a point.
     """
     try:
         return _core.read_points(_read(path))[0]
@@ -365,7 +365,7 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
 def read_aerofoil(path: str | Path) -> Aerofoil:
     """An aerofoil section from a coordinate file in Selig's or Lednicer's listing.
 
-    The two are told apart by the numbers of points that the latter begins with.
+    The two are distinguished by the numbers of points that the latter begins with.
 
     Raises
     ------

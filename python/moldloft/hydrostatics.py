@@ -23,7 +23,7 @@ __all__ = ["HydrostaticTable", "Hydrostatics", "RightingCurve"]
 
 @dataclass(frozen=True)
 class Hydrostatics:
-    """The figures of a body afloat; lengths in the model's unit, angles in radians.
+    """The hydrostatics of a body; lengths in the model's unit, angles in radians.
 
     Figures that have no meaning, such as those of the waterplane of a body that is all under
     water, are ``None``. Centres (``lcb`` to ``vcb``, ``lcf``, ``tcf``) are in the body's own axes;
@@ -109,7 +109,7 @@ class Hydrostatics:
     """The same at its highest x."""
     freeboard: float | None = None
     """Height of the lowest open edge over the water, such as the sheer of a hull without deck;
-    negative where it is under: then the body floods and the other figures are in doubt."""
+    negative where it is below: the other figures are then unreliable."""
     weight: float | None = None
     """Displacement times gravity."""
     tpc: float | None = None
@@ -178,7 +178,7 @@ class _Rows:
 
         if name not in _NUMBERS:
             known = ", ".join(_NUMBERS)
-            raise Error(f"there is no figure `{name}`; there are: {known}")
+            raise Error(f"unknown figure `{name}`; expected one of: {known}")
         values = [getattr(row, name) for row in self.rows]
         return np.array([math.nan if v is None else v for v in values], dtype=np.float64)
 
@@ -288,7 +288,7 @@ class RightingCurve(_Rows):
         order = np.argsort(self.heels)
         heels, arms = self.heels[order], self.gz[order]
         if not heels[0] - 1e-12 <= low <= high <= heels[-1] + 1e-12:
-            raise Error("the area is asked beyond the heels of the curve")
+            raise Error("the area is requested beyond the heels of the curve")
         inner = heels[(heels > low) & (heels < high)]
         x = np.concatenate([[low], inner, [high]])
         y = np.interp(x, heels, arms)
@@ -329,7 +329,7 @@ def _save(figure: Any, path: str | os.PathLike[str]) -> Path:
     kind = path.suffix.lstrip(".").lower()
     known = figure.canvas.get_supported_filetypes()
     if kind not in known:
-        raise Error(f"no plot ends in `.{kind}`; there are: {', '.join(sorted(known))}")
+        raise Error(f"no plot ends in `.{kind}`; expected one of: {', '.join(sorted(known))}")
     drawn = io.BytesIO()
     # Without a date the same figures give the same file.
     metadata = {"Date": None} if kind == "svg" else None

@@ -29,7 +29,7 @@ def __getattr__(name: str) -> Kind:
 
         near = get_close_matches(name, _names(), 1)
         hint = f"; did you mean {near[0]}?" if near else ""
-        raise AttributeError(f"there is no kind {name}{hint}")
+        raise AttributeError(f"unknown kind {name}{hint}")
     return Kind(name)
 
 

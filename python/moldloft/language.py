@@ -33,7 +33,7 @@ def format_text(name: str, text: bytes) -> str:
     Raises
     ------
     ModelError
-        When it is no program.
+        When it is not a program.
 
     Examples
     --------

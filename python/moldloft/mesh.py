@@ -105,7 +105,7 @@ class Mesh:
         from moldloft.errors import UnknownNameError
 
         known = ", ".join(patch.name for patch in self.patches)
-        raise UnknownNameError(f"there is no patch `{name}`; there are: {known or 'none'}")
+        raise UnknownNameError(f"unknown patch `{name}`; expected one of: {known or 'none'}")
 
     def quality(self) -> dict[str, dict[str, Any]]:
         """How well shaped the panels are, by patch: see :attr:`Patch.quality`.

@@ -65,7 +65,7 @@ def load(
         functions work. A :class:`moldloft.implicit.Field` or :class:`moldloft.implicit.Set` is
         called without arguments: ``field f = scan();``.
     strict
-        Whether errors raise. Without it they are told by :attr:`Model.diagnostics` only, and
+        Whether errors raise. Without it they are in :attr:`Model.diagnostics` only, and
         what does not depend on a failed object lives on.
 
     Raises
@@ -152,7 +152,9 @@ def _add_functions(
 ) -> None:
     for name, function in (functions or {}).items():
         if not name.isidentifier() or not name.isascii():
-            raise ValueError(f"{name!r} is no name: expected a letter, then letters, digits and _")
+            raise ValueError(
+                f"{name!r} is not a valid name: expected a letter, then letters, digits and _"
+            )
         core = getattr(function, "_core", None)
         if isinstance(core, (_core.Field, _core.Set)):
             model._document.add_shape(name, core)
@@ -190,7 +192,7 @@ class Model:
     >>> m["beem"]
     Traceback (most recent call last):
       ...
-    moldloft.errors.UnknownNameError: there is no parameter or object `beem`; did you mean `beam`?
+    moldloft.errors.UnknownNameError: unknown parameter or object `beem`; did you mean `beam`?
     """
 
     def __init__(self, document: _core.Document) -> None:
@@ -299,7 +301,7 @@ class Model:
         return files
 
     def refine(self, times: int) -> None:
-        """Halve the intervals of all sizes that the program declares by ``refined`` so often.
+        """Set the refinement level: each level halves the spacing of sizes declared by ``refined``.
 
         Coarse grid points recur in fine grids, so that the grids of 0, 1, 2, ... are nested.
         """
@@ -339,7 +341,7 @@ class Model:
             return variables[name]
         near = self._document.similar(name)
         hint = f"; did you mean `{near}`?" if near else ""
-        raise UnknownNameError(f"there is no parameter or object `{name}`{hint}")
+        raise UnknownNameError(f"unknown parameter or object `{name}`{hint}")
 
     # -- changing --------------------------------------------------------------------------
 
@@ -382,7 +384,7 @@ class Model:
         return _wrapped(self._document.eval(expression))
 
     def mesh(self, *, tags: str | Sequence[str] = ()) -> Mesh:
-        """Panels of all shown surfaces, as the model stands now; remembered until it changes.
+        """Panels of all shown surfaces, for the current model; remembered until it changes.
 
         Parameters
         ----------
@@ -400,7 +402,7 @@ class Model:
         return self._document.junctions()
 
     def blocks(self) -> Blocks:
-        """Hexahedra of all shown solids, as the model stands now.
+        """Hexahedra of all shown solids, for the current model.
 
         Raises
         ------
@@ -472,8 +474,8 @@ class Model:
         ... RuledSurf port(ab, eg); RuledSurf starboard(cd, fh, orientation = 1);
         ... RuledSurf bow(ac, ef, orientation = 1); RuledSurf stern(bd, gh);
         ... ''')
-        >>> afloat = m.hydrostatics(draft=0.5, by=["beam"])
-        >>> round(afloat.volume, 12), round(afloat.derivatives["volume"]["beam"], 12)
+        >>> hydro = m.hydrostatics(draft=0.5, by=["beam"])
+        >>> round(hydro.volume, 12), round(hydro.derivatives["volume"]["beam"], 12)
         (6.0, 3.0)
         """
         if level is not None and draft is not None:

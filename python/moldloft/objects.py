@@ -181,7 +181,7 @@ class Object:
         Raises
         ------
         ModelError
-            When the object is no curve or surface, the shape is not ``(…, 3)``, or a number is
+            When the object is not a curve or surface, the shape is not ``(…, 3)``, or a number is
             not finite.
 
         Examples

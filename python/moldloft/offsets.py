@@ -112,7 +112,7 @@ def read(path: str | os.PathLike[str]) -> Offsets:
     FileError
         When the file cannot be read.
     Error
-        When it is no table of offsets; the message names the line.
+        When it is not a table of offsets; the message names the line.
     """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")

@@ -160,7 +160,7 @@ class Sketch:
             reason = (error.strerror or str(error)).lower()
             raise FileError(f"cannot read `{path}`: {reason}") from error
         except UnicodeDecodeError as error:
-            raise FileError(f"cannot read `{path}`: it is no text in UTF-8") from error
+            raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
         sketch = cls(path.parent)
         if text.lstrip().startswith(("[", "{")):
             sketch.run(f'INPUT "{path.name}"', strict=strict)
@@ -355,7 +355,7 @@ class Sketch:
                 if value is None:
                     raise UnknownNameError(f"`{known}` has no value")
                 return value
-        raise UnknownNameError(f"there is no dimension or variable `{name}`")
+        raise UnknownNameError(f"unknown dimension or variable `{name}`")
 
     def __setitem__(self, name: str, value: float | str) -> None:
         given = f'"{value}"' if isinstance(value, str) else repr(float(value))

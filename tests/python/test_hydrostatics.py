@@ -194,7 +194,7 @@ def test_tables_as_csv_and_plot(barge, tmp_path):
     assert curve.plot(tmp_path / "gz.png").read_bytes().startswith(b"\x89PNG")
     with pytest.raises(moldloft.Error, match="no plot ends in"):
         curve.plot(tmp_path / "gz.dwg")
-    with pytest.raises(moldloft.Error, match="there is no figure"):
+    with pytest.raises(moldloft.Error, match="unknown figure"):
         table.csv(["gmx"])
 
 

@@ -301,7 +301,7 @@ def test_folded_blocks_are_refused(tmp_path):
     with pytest.raises(moldloft.Error, match="`box` has cells without positive volume"):
         model.blocks().write(tmp_path / "blockMeshDict")
     assert not list(tmp_path.iterdir())
-    with pytest.raises(moldloft.Error, match="there is no volume format `step`"):
+    with pytest.raises(moldloft.Error, match="unknown volume format `step`"):
         model.blocks().write(tmp_path / "box.step")
 
 

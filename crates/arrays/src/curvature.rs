@@ -4,19 +4,19 @@ use crate::grids::jets;
 use crate::value::{GridArg, Points, farray, numbers, vectors};
 use moldloft_grid::SurfaceGrid;
 use moldloft_num::{Real, SurfJet, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 
 fn root<T: Real>(square: T) -> T {
     if square.re() > 0.0 { square.sqrt() } else { T::zero() }
 }
 
-fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), Fault> {
+fn enough<T>(points: &[T], least: usize, field: FieldId) -> Result<(), CallError> {
     if points.len() >= least {
         return Ok(());
     }
-    Err(Fault::new(
+    Err(CallError::new(
         "too-few-items",
-        format!("{} points do not tell how a curve bends", points.len()),
+        format!("{} points do not determine a curvature", points.len()),
     )
     .expected(format!("at least {least} points"))
     .found(points.len().to_string())
@@ -43,7 +43,7 @@ pub struct Curvatures<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Curvatures<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
         enough(&points, 3, Self::CURVE)?;
         let mut all = Vec::with_capacity(points.len());
@@ -51,8 +51,9 @@ impl<T: Scalar> Build<T> for Curvatures<T> {
             let (a, b, c) = (w[1] - w[0], w[2] - w[1], w[2] - w[0]);
             let product = a.norm_sq() * b.norm_sq() * c.norm_sq();
             if product.re() == 0.0 {
-                let message = format!("points {}, {} and {} are no circle", k + 1, k + 2, k + 3);
-                return Err(Fault::new("coincident-points", message)
+                let message =
+                    format!("points {}, {} and {} do not define a circle", k + 1, k + 2, k + 3);
+                return Err(CallError::new("coincident-points", message)
                     .expected("three different points")
                     .in_item(k + 1)
                     .in_field(Self::CURVE));
@@ -84,7 +85,7 @@ pub struct Torsions<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Torsions<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
         enough(&points, 4, Self::CURVE)?;
         // The binormals of two neighbouring triangles turn by torsion times the step between them.
@@ -130,7 +131,7 @@ fn at_points<T: Real>(
     grid: &SurfaceGrid<T>,
     field: FieldId,
     f: impl Fn(&SurfJet<T>) -> Option<Vec3<T>>,
-) -> Result<Vec<Vec3<T>>, Fault> {
+) -> Result<Vec<Vec3<T>>, CallError> {
     let (m, n) = (grid.m, grid.n);
     let all: Vec<Option<Vec3<T>>> = jets(grid, field)?.iter().map(f).collect();
     let mut known = Vec::with_capacity(m * n);
@@ -150,7 +151,7 @@ fn at_points<T: Real>(
             })
         });
         known.push(value.ok_or_else(|| {
-            Fault::new("no-direction", format!("there is no normal at point [{},{}]", i + 1, j + 1))
+            CallError::new("no-direction", format!("no normal at point [{},{}]", i + 1, j + 1))
                 .expected("a surface with a tangent plane at every inner point")
                 .in_field(field)
         })?);
@@ -181,7 +182,7 @@ pub struct Gauss<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Gauss<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let k = |jet: &SurfJet<T>| {
             let (_, [e, f, g, l, m, n]) = forms(jet)?;
             Some(Vec3::new((l * n - m * m) / (e * g - f * f), T::zero(), T::zero()))
@@ -208,7 +209,7 @@ pub struct Mean<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Mean<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let h = |jet: &SurfJet<T>| {
             let (_, [e, f, g, l, m, n]) = forms(jet)?;
             let h = (e * n - f * m * 2.0 + g * l) / ((e * g - f * f) * 2.0);
@@ -235,7 +236,7 @@ pub struct Normals<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Normals<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let all = at_points(&self.s.0, Self::S, |jet| forms(jet).map(|(normal, _)| normal))?;
         let unit = |v: Vec3<T>| v.normalized().unwrap_or(v);
         let all = all.into_iter().map(unit).collect();

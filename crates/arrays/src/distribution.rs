@@ -2,7 +2,7 @@
 
 use crate::value::{Farray, farray};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Scalar, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Scalar, Value};
 use moldloft_spline::distribution::{self, DistributionError};
 
 /// The longest row.
@@ -18,8 +18,8 @@ pub struct Arguments {
 }
 
 /// The fault of a distribution made of these arguments.
-pub fn fault(error: DistributionError, of: Arguments) -> Fault {
-    let fault = Fault::new("no-distribution", error.to_string());
+pub fn fault(error: DistributionError, of: Arguments) -> CallError {
+    let fault = CallError::new("no-distribution", error.to_string());
     match error {
         DistributionError::TooFew { expected, actual } => {
             fault.expected(format!("at least {expected} numbers")).found(actual.to_string())
@@ -31,7 +31,7 @@ pub fn fault(error: DistributionError, of: Arguments) -> Fault {
         DistributionError::Spacing { spacing } => fault
             .expected("a positive spacing")
             .found(spacing.to_string())
-            .help("spacings are lengths: positive whatever the direction")
+            .help("a spacing is a length: positive in either direction")
             .in_field(of.spacings),
         DistributionError::TwoSided { .. } => fault
             .help("d_tanh, d_tanhx and geometric2 take a spacing at both ends")
@@ -41,7 +41,7 @@ pub fn fault(error: DistributionError, of: Arguments) -> Fault {
             fault
                 .expected(format!("spacings nearer to the mean, {mean}"))
                 .found(format!("{a} and {b}"))
-                .help("ask for another number of points: count_for(length, ds1, ds2, growth)")
+                .help("use another number of points: count_for(length, ds1, ds2, growth)")
                 .in_field(of.spacings)
         }
     }
@@ -50,7 +50,7 @@ pub fn fault(error: DistributionError, of: Arguments) -> Fault {
 fn row<T: Real>(
     row: Result<Vec<T>, DistributionError>,
     [limits, spacings]: [FieldId; 2],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     row.map(farray).map_err(|error| fault(error, Arguments { limits, spacings }))
 }
 
@@ -62,13 +62,13 @@ pub struct Uniform<T: Real> {
     start: T,
     /// Last number.
     end: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Uniform<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         row(
             distribution::uniform(self.start, self.end, self.n as usize),
             [Self::START, Self::START],
@@ -85,13 +85,13 @@ pub struct Cosine<T: Real> {
     start: T,
     /// Last number.
     end: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Cosine<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         row(distribution::cosine(self.start, self.end, self.n as usize), [Self::START, Self::START])
     }
 }
@@ -114,13 +114,13 @@ pub struct Geometric<T: Real> {
     end: T,
     /// First step, a positive length.
     ds1: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Geometric<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         row(
             distribution::geometric(self.start, self.end, self.ds1, self.n as usize),
             [Self::START, Self::DS1],
@@ -149,13 +149,13 @@ pub struct Geometric2<T: Real> {
     ds1: T,
     /// Last step, a positive length.
     ds2: T,
-    /// How many numbers, at least 4.
+    /// Number of values, at least 4.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for Geometric2<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::geometric2(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -184,13 +184,13 @@ pub struct DSinh<T: Real> {
     /// Slope at the end, per index; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for DSinh<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::d_sinh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -219,13 +219,13 @@ pub struct DTanh<T: Real> {
     /// Slope at the end, per index; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for DTanh<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::d_tanh(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -254,13 +254,13 @@ pub struct DTanhX<T: Real> {
     /// Last step; 0 leaves it free.
     #[field(min = 0)]
     ds2: T,
-    /// How many numbers, at least 4.
+    /// Number of values, at least 4.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for DTanhX<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { start, end, ds1, ds2, n } = self;
         row(distribution::d_tanhx(start, end, ds1, ds2, n as usize), [Self::START, Self::DS1])
     }
@@ -277,13 +277,13 @@ impl<T: Real> Build<T> for DTanhX<T> {
 pub struct Redist<T: Scalar> {
     /// The row.
     given: Farray<T>,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Scalar> Build<T> for Redist<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let given = self.given.row().map_err(|fault| fault.in_field(Self::GIVEN))?;
         distribution::redist(&given, self.n as usize)
             .map(farray)

@@ -3,16 +3,16 @@
 use crate::value::{Farray, Numbers, vectors};
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
 use moldloft_registry::{
-    ArrayShape, Build, Context, CurveRef, Fault, FieldId, Kind, Scalar, SurfaceRef, Value,
+    ArrayShape, Build, CallError, Context, CurveRef, FieldId, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::arclen;
 
 /// The fault of a parameter outside [0, 1], in field `field`.
-fn inside<T: Real>(parameters: &[T], field: FieldId) -> Result<(), Fault> {
+fn inside<T: Real>(parameters: &[T], field: FieldId) -> Result<(), CallError> {
     let outside = |t: &T| !(0.0..=1.0).contains(&t.re());
     let Some(k) = parameters.iter().position(outside) else { return Ok(()) };
     let found = parameters[k].re();
-    Err(Fault::new("out-of-range", format!("parameter {} is {found}", k + 1))
+    Err(CallError::new("out-of-range", format!("parameter {} is {found}", k + 1))
         .expected("parameters from 0 to 1")
         .found(found.to_string())
         .in_item(k)
@@ -32,7 +32,7 @@ fn positions<T: Real>(curve: &CurveRef<T>, parameters: &[T]) -> Vec<Vec3<T>> {
 
 /// The points of a curve at given parameters: C(s[1]), C(s[2]), ...
 ///
-/// Parameters lie in [0, 1]; at 0 and 1 the points are the curve's ends to the bit.
+/// Parameters are in [0, 1]; at 0 and 1 the points are the curve's ends to the bit.
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -49,7 +49,7 @@ pub struct Distc<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Distc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let parameters = self.parameters.row().map_err(|fault| fault.in_field(Self::PARAMETERS))?;
         inside(&parameters, Self::PARAMETERS)?;
         let points = positions(&self.curve, &parameters);
@@ -60,7 +60,7 @@ impl<T: Scalar> Build<T> for Distc<T> {
 /// The points of a surface at given parameters: S(u[i], v[j]) for rows u[m] and v[n], or
 /// S(u[i,j], v[i,j]) for parameters that are arrays [m,n] themselves.
 ///
-/// Parameters lie in [0, 1].
+/// Parameters are in [0, 1].
 #[derive(Kind)]
 #[kind(
     class = Vectors,
@@ -79,7 +79,7 @@ pub struct Dists<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Dists<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, u, v } = self;
         inside(&u.items, Self::U)?;
         inside(&v.items, Self::V)?;
@@ -109,7 +109,7 @@ impl<T: Scalar> Build<T> for Dists<T> {
                 };
                 Ok(vectors(a, points))
             }
-            (a, b) => Err(Fault::new("shapes-differ", format!("shapes differ: {a} and {b}"))
+            (a, b) => Err(CallError::new("shapes-differ", format!("shapes differ: {a} and {b}"))
                 .expected("two rows, or two arrays of equal shape")
                 .found(format!("u is {a}, v is {b}"))
                 .in_field(Self::V)),
@@ -135,7 +135,7 @@ pub struct Evalc<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Evalc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = positions(&self.curve, self.u.items());
         Ok(self.u.vectors(points))
     }
@@ -164,7 +164,7 @@ fn order(k: usize) -> Order {
 }
 
 impl<T: Scalar> Build<T> for Derivc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, u, k } = self;
         let all = u.items().iter().map(|&t| curve.jet(t, order(k))[k]).collect();
         Ok(u.vectors(all))
@@ -173,7 +173,7 @@ impl<T: Scalar> Build<T> for Derivc<T> {
 
 /// The curvature of a curve, |C' x C''| / |C'|^3, at a parameter or at those of an farray.
 ///
-/// Not signed; where the curve stands still it is refused.
+/// Not signed; a zero tangent is an error.
 #[derive(Kind)]
 #[kind(
     class = Any,
@@ -189,16 +189,16 @@ pub struct Curvc<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Curvc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, u } = self;
         let mut all = Vec::with_capacity(u.items().len());
         for (k, &t) in u.items().iter().enumerate() {
             let [_, d, dd] = curve.jet(t, Order::Second);
             let (square, bend) = (d.norm_sq(), d.cross(dd));
             if square.re() == 0.0 {
-                let message = format!("the curve stands still at u = {}", t.re());
-                return Err(Fault::new("no-direction", message)
-                    .expected("a curve that moves on")
+                let message = format!("zero tangent at u = {}", t.re());
+                return Err(CallError::new("no-direction", message)
+                    .expected("a curve with a non-zero tangent")
                     .in_item(k)
                     .in_field(Self::U));
             }
@@ -231,7 +231,7 @@ pub struct Evals<T: Scalar> {
 }
 
 /// Equal shapes, or one pair.
-fn paired<T: Real>(u: &Numbers<T>, v: &Numbers<T>, field: FieldId) -> Result<(), Fault> {
+fn paired<T: Real>(u: &Numbers<T>, v: &Numbers<T>, field: FieldId) -> Result<(), CallError> {
     let shape = |a: &Numbers<T>| match a {
         Numbers::One(_) => "a number".to_string(),
         Numbers::Many(a) => format!("an farray {}", a.shape),
@@ -240,7 +240,7 @@ fn paired<T: Real>(u: &Numbers<T>, v: &Numbers<T>, field: FieldId) -> Result<(),
     if a == b {
         return Ok(());
     }
-    Err(Fault::new("shapes-differ", format!("shapes differ: u is {a}, v is {b}"))
+    Err(CallError::new("shapes-differ", format!("shapes differ: u is {a}, v is {b}"))
         .expected("two numbers, or two farrays of equal shape")
         .found(format!("{a} and {b}"))
         .help("for all pairs of two rows there is dists(surface, u, v)")
@@ -248,7 +248,7 @@ fn paired<T: Real>(u: &Numbers<T>, v: &Numbers<T>, field: FieldId) -> Result<(),
 }
 
 impl<T: Scalar> Build<T> for Evals<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, u, v } = self;
         paired(&u, &v, Self::V)?;
         let pairs = u.items().iter().zip(v.items());
@@ -274,21 +274,21 @@ pub struct Derivs<T: Scalar> {
     u: Numbers<T>,
     /// Parameter v, or an farray.
     v: Numbers<T>,
-    /// How many times by u.
+    /// Order of the derivative by u.
     #[field(default = 1, min = 0, max = 2)]
     ku: usize,
-    /// How many times by v.
+    /// Order of the derivative by v.
     #[field(default = 0, min = 0, max = 2)]
     kv: usize,
 }
 
 impl<T: Scalar> Build<T> for Derivs<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, u, v, ku, kv } = self;
         paired(&u, &v, Self::V)?;
         if ku + kv > 2 {
-            let message = format!("there is no derivative of order {}", ku + kv);
-            return Err(Fault::new("out-of-range", message)
+            let message = format!("no derivative of order {}", ku + kv);
+            return Err(CallError::new("out-of-range", message)
                 .expected("ku + kv of 2 at most")
                 .found((ku + kv).to_string())
                 .in_field(Self::KV));
@@ -333,7 +333,7 @@ pub struct Lengthc<T: Real> {
 }
 
 impl<T: Real> Build<T> for Lengthc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(whole_length(&self.curve))
     }
 }
@@ -353,7 +353,7 @@ pub struct Length<T: Real> {
 }
 
 impl<T: Real> Build<T> for Length<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(whole_length(&self.curve))
     }
 }

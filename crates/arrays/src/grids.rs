@@ -8,15 +8,15 @@ use moldloft_grid::{
 };
 use moldloft_num::{Order, Real, Surface, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
+    ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::{End, Ends, GridSpline};
 use std::sync::Arc;
 
 /// The fault of a grid, about field 0.
-pub fn fault(error: GridError, field: FieldId) -> Fault {
+pub fn fault(error: GridError, field: FieldId) -> CallError {
     let message = error.to_string();
-    let with = |id: &'static str| Fault::new(id, message.clone());
+    let with = |id: &'static str| CallError::new(id, message.clone());
     match error {
         GridError::TooFew { expected, actual: [m, n] } => with("too-few-items")
             .expected(format!("at least {expected} points each way"))
@@ -37,15 +37,15 @@ pub fn fault(error: GridError, field: FieldId) -> Fault {
             .expected(format!("[{a},{b}]"))
             .found(format!("[{m},{n}]"))
             .in_item(face - 1),
-        GridError::Folded { count, .. } => with("folded-grid")
-            .expected("cells that are not turned over")
-            .found(format!("{count} folded cells")),
+        GridError::Folded { count, .. } => {
+            with("folded-grid").expected("unfolded cells").found(format!("{count} folded cells"))
+        }
         GridError::Diverged { .. } => with("diverged")
-            .expected("a grid that settles")
-            .help("over-relax less (omega), or ask for less at the walls"),
+            .expected("a converging iteration")
+            .help("reduce omega, or relax the spacing and angle at the walls"),
         GridError::Cancelled => return with("cancelled"),
         GridError::Heights { value, .. } => {
-            with("not-monotone").expected("heights that ascend from 0").found(value.to_string())
+            with("not-monotone").expected("heights that increase from 0").found(value.to_string())
         }
         GridError::NoNormal { .. } => {
             with("no-direction").expected("a surface with a normal at every point")
@@ -54,8 +54,8 @@ pub fn fault(error: GridError, field: FieldId) -> Fault {
     .in_field(field)
 }
 
-fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> Fault {
-    Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
+fn unknown(word: &str, what: &str, expected: String, field: FieldId) -> CallError {
+    CallError::new("unknown-word", format!("unknown {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
         .in_field(field)
@@ -88,7 +88,7 @@ pub struct Tfi<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Tfi<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let blend = match &*self.kind {
             "arc" => Blend::Arc,
             "linear" => Blend::Linear,
@@ -104,7 +104,7 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                 GridArg::from_value(&self.s).map_err(|fault| fault.in_field(Self::S))?;
             return transfinite(&grid, blend).map(surface).map_err(|error| fault(error, Self::S));
         };
-        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(Self::S);
+        let place = |k: usize| move |fault: CallError| fault.in_item(k).in_field(Self::S);
         match items.len() {
             4 => {
                 let mut edges: [Vec<Vec3<T>>; 4] = Default::default();
@@ -115,7 +115,7 @@ impl<T: Scalar> Build<T> for Tfi<T> {
                     if edges[a].len() != edges[b].len() {
                         let (m, n) = (edges[a].len(), edges[b].len());
                         let message = format!("opposite edges have {m} and {n} points");
-                        return Err(Fault::new("shapes-differ", message)
+                        return Err(CallError::new("shapes-differ", message)
                             .expected(format!("{m} points"))
                             .found(format!("{n} points"))
                             .in_item(b)
@@ -139,8 +139,8 @@ impl<T: Scalar> Build<T> for Tfi<T> {
     }
 }
 
-fn fault_of_count(n: usize, field: FieldId) -> Fault {
-    Fault::new("wrong-shape", format!("nothing is bounded by {n} edges or faces"))
+fn fault_of_count(n: usize, field: FieldId) -> CallError {
+    CallError::new("wrong-shape", format!("{n} edges or faces do not bound a grid"))
         .expected("a surface, a list of four curves or a list of six surfaces")
         .found(format!("a list of {n}"))
         .in_field(field)
@@ -200,7 +200,7 @@ pub struct EllipticGrid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for EllipticGrid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let method = match &*self.method {
             "laplace" => Method::Laplace,
             "middlecoff" => Method::Middlecoff,
@@ -215,7 +215,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             "allow" => true,
             word => {
                 let expected = "\"refuse\" or \"allow\"".to_string();
-                return Err(unknown(word, "answer to folded cells", expected, Self::FOLDED));
+                return Err(unknown(word, "treatment of folded cells", expected, Self::FOLDED));
             }
         };
         let walls = match (method, &self.walls, self.spacing) {
@@ -224,7 +224,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             }
             (Method::Sorenson, ..) => {
                 let field = if self.walls.is_none() { Self::WALLS } else { Self::SPACING };
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "missing-argument",
                     "\"sorenson\" needs walls and a spacing",
                 )
@@ -233,10 +233,13 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
             }
             (_, None, None) => Vec::new(),
             _ => {
-                return Err(Fault::new("unused-argument", "walls are for the method \"sorenson\"")
-                    .expected("\"sorenson\"")
-                    .found(format!("\"{}\"", self.method))
-                    .in_field(Self::METHOD));
+                return Err(CallError::new(
+                    "unused-argument",
+                    "walls are for the method \"sorenson\"",
+                )
+                .expected("\"sorenson\"")
+                .found(format!("\"{}\"", self.method))
+                .in_field(Self::METHOD));
             }
         };
         let grid = self.s.0;
@@ -276,7 +279,7 @@ impl<T: Scalar> Build<T> for EllipticGrid<T> {
     }
 }
 
-fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, Fault> {
+fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, CallError> {
     let mut walls = Vec::new();
     for word in words.split([' ', ',']).filter(|word| !word.is_empty()) {
         let Some((_, edge)) = EDGES.iter().find(|(name, _)| *name == word) else {
@@ -286,7 +289,7 @@ fn walls<T: Scalar>(words: &str, spacing: T, angle: T) -> Result<Vec<Wall<T>>, F
         walls.push(Wall { edge: *edge, spacing: vec![spacing], angle });
     }
     if spacing.re() <= 0.0 {
-        return Err(Fault::new("out-of-range", "the spacing off a wall is a positive length")
+        return Err(CallError::new("out-of-range", "the spacing off a wall is a positive length")
             .expected("a positive number")
             .found(spacing.re().to_string())
             .in_field(EllipticGrid::<T>::SPACING));
@@ -320,7 +323,7 @@ fn plane<T: Real>(grid: &SurfaceGrid<T>) -> bool {
 }
 
 /// The spline surface through the points, even in the indices.
-fn through<T: Real>(grid: &SurfaceGrid<T>, field: FieldId) -> Result<GridSpline<T>, Fault> {
+fn through<T: Real>(grid: &SurfaceGrid<T>, field: FieldId) -> Result<GridSpline<T>, CallError> {
     let knots = |n: usize| (0..n).map(|k| T::from(k as f64 / (n - 1) as f64)).collect();
     let ends = Ends::Open(End::NotAKnot, End::NotAKnot);
     GridSpline::bicubic(knots(grid.m), knots(grid.n), grid.points().collect(), ends)
@@ -328,7 +331,10 @@ fn through<T: Real>(grid: &SurfaceGrid<T>, field: FieldId) -> Result<GridSpline<
 }
 
 /// The parameters of the points of a surface nearest to those of a grid, which must lie on it.
-fn on_surface<T: Scalar>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[Vec<T>; 2], Fault> {
+fn on_surface<T: Scalar>(
+    grid: &SurfaceGrid<T>,
+    on: &SurfaceRef<T>,
+) -> Result<[Vec<T>; 2], CallError> {
     let points: Vec<Vec3<T>> = grid.points().collect();
     let (uv, off) = crate::locate::nearest_parameters(on, &points);
     let size = grid.size();
@@ -336,10 +342,10 @@ fn on_surface<T: Scalar>(grid: &SurfaceGrid<T>, on: &SurfaceRef<T>) -> Result<[V
     if off[worst] > 1e-6 * size {
         let (i, j) = (worst / grid.n + 1, worst % grid.n + 1);
         let message = format!("point [{i},{j}] of the grid is {} off the surface", off[worst]);
-        return Err(Fault::new("off-surface", message)
-            .expected("a grid whose points lie on the surface")
+        return Err(CallError::new("off-surface", message)
+            .expected("a grid with all points on the surface")
             .found(format!("a distance of {}", off[worst]))
-            .help("project(s, surface) brings them there")
+            .help("project(s, surface) moves them onto it")
             .in_field(EllipticGrid::<T>::ON));
     }
     Ok([uv.iter().map(|p| p[0]).collect(), uv.iter().map(|p| p[1]).collect()])
@@ -368,7 +374,7 @@ pub struct HyperbolicGrid<T: Scalar> {
     s: Value<T>,
     /// The distances of the layers, the first 0; kept on plane surfaces, less where they are convex.
     heights: crate::value::Farray<T>,
-    /// What happens at edges.
+    /// Conditions at the edges.
     #[field(default = "")]
     sides: Arc<str>,
     /// Smoothing: 0 for none, 1 for as much as keeps most concave surfaces from folding.
@@ -379,7 +385,7 @@ pub struct HyperbolicGrid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let heights = self.heights.row().map_err(|fault| fault.in_field(Self::HEIGHTS))?;
         let is_curve =
             matches!(&self.s, Value::Vectors(a) if matches!(a.shape, ArrayShape::Row(_)));
@@ -412,7 +418,7 @@ impl<T: Scalar> Build<T> for HyperbolicGrid<T> {
     }
 }
 
-fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], Fault> {
+fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], CallError> {
     let mut sides = [Side::Free; 4];
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let words: Vec<&str> = part.split_whitespace().collect();
@@ -442,7 +448,7 @@ fn sides(text: &str, is_curve: bool, field: FieldId) -> Result<[Side; 4], Fault>
     Ok(sides)
 }
 
-fn metric(word: &str, field: FieldId) -> Result<Metric, Fault> {
+fn metric(word: &str, field: FieldId) -> Result<Metric, CallError> {
     let known = Metric::ALL.iter().find(|metric| metric.word() == word);
     known.copied().ok_or_else(|| {
         let words: Vec<String> = Metric::ALL.iter().map(|m| format!("\"{}\"", m.word())).collect();
@@ -450,7 +456,7 @@ fn metric(word: &str, field: FieldId) -> Result<Metric, Fault> {
     })
 }
 
-/// How well shaped the cells of a grid [m,n] are: numbers [m-1,n-1].
+/// The quality of the cells of a grid [m,n]: numbers [m-1,n-1].
 ///
 /// "sj": scaled Jacobian, the least sine of a corner angle, 1 at best, negative where a corner is
 /// turned over; "skew": equiangle skewness, 0 at best; "aspect" and "edge_ratio": 1 at best;
@@ -468,13 +474,13 @@ fn metric(word: &str, field: FieldId) -> Result<Metric, Fault> {
 pub struct QualityOf<T: Scalar> {
     /// The grid.
     s: GridArg<T>,
-    /// What is measured.
+    /// The metric.
     #[field(default = "sj")]
     metric: Arc<str>,
 }
 
 impl<T: Scalar> Build<T> for QualityOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let metric = metric(&self.metric, Self::METRIC)?;
         let grid = self.s.0;
         if grid.m.min(grid.n) < 2 {
@@ -503,7 +509,7 @@ pub struct Folds<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Folds<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(T::from(folded_cells(&self.s.0).len() as f64)))
     }
 }
@@ -524,7 +530,7 @@ pub struct Report<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Report<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         use std::fmt::Write;
         let grid = self.s.0.re();
         if grid.m.min(grid.n) < 2 {
@@ -559,7 +565,7 @@ impl<T: Scalar> Build<T> for Report<T> {
 pub fn jets<T: Real>(
     grid: &SurfaceGrid<T>,
     field: FieldId,
-) -> Result<Vec<moldloft_num::SurfJet<T>>, Fault> {
+) -> Result<Vec<moldloft_num::SurfJet<T>>, CallError> {
     if grid.m.min(grid.n) < 3 {
         return Err(fault(GridError::TooFew { expected: 3, actual: [grid.m, grid.n] }, field));
     }

@@ -7,7 +7,7 @@ use moldloft_locate::{
 };
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, FromValue, Kind, Scalar, SurfaceRef, Value,
 };
 
 fn dots<T: Real>(v: Vec3<T>, a: Vec3<f64>) -> T {
@@ -101,7 +101,7 @@ pub struct Closest<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Closest<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { p, curve } = self;
         let plain = PlainCurve(&*curve);
         let search = NearestCurve::new(&plain);
@@ -139,7 +139,7 @@ pub struct Project<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Project<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { o, surface, dir } = self;
         let (shape, points) = match &o {
             Shaped::One(p) => (None, vec![*p]),
@@ -151,9 +151,9 @@ impl<T: Scalar> Build<T> for Project<T> {
                 uv.into_iter().map(|[u, v]| surface.jet(u, v, Order::Zero).p).collect()
             }
             Value::Text(word) => {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "unknown-word",
-                    format!("there is no direction \"{word}\""),
+                    format!("unknown direction \"{word}\""),
                 )
                 .expected("\"closest\", or a vector")
                 .found(format!("\"{word}\""))
@@ -175,10 +175,10 @@ fn along<T: Scalar>(
     surface: &SurfaceRef<T>,
     points: &[Vec3<T>],
     d: Vec3<T>,
-) -> Result<Vec<Vec3<T>>, Fault> {
+) -> Result<Vec<Vec3<T>>, CallError> {
     if d.re().norm() == 0.0 {
-        return Err(Fault::new("no-direction", "the direction is zero")
-            .expected("a vector other than zero")
+        return Err(CallError::new("no-direction", "the direction is zero")
+            .expected("a non-zero vector")
             .in_field(Project::<T>::DIR));
     }
     let plain = PlainSurface(&**surface);
@@ -186,7 +186,7 @@ fn along<T: Scalar>(
     for (k, p) in points.iter().enumerate() {
         let found = roots::line_surface(&plain, p.re(), d.re(), None).map_err(|report| {
             let message = format!("the line through point {} misses the surface", k + 1);
-            Fault::new("no-solution", message)
+            CallError::new("no-solution", message)
                 .expected("a line that meets the surface")
                 .found(format!("a gap of {}", report.residual))
                 .help("\"closest\" finds a point for every one")
@@ -211,18 +211,18 @@ fn along<T: Scalar>(
     Ok(moved)
 }
 
-fn none(what: &str, residual: f64, field: FieldId) -> Fault {
-    Fault::new("no-solution", format!("{what} do not meet"))
+fn none(what: &str, residual: f64, field: FieldId) -> CallError {
+    CallError::new("no-solution", format!("{what} do not meet"))
         .expected("shapes that meet")
         .found(format!("a gap of {residual}"))
         .in_field(field)
 }
 
-fn nothing<const N: usize>(roots: &Roots<N>, what: &str, field: FieldId) -> Fault {
+fn nothing<const N: usize>(roots: &Roots<N>, what: &str, field: FieldId) -> CallError {
     none(what, roots.closest.map_or(f64::INFINITY, |(_, residual)| residual), field)
 }
 
-/// Where two shapes with parameters meet: of two curves, or a curve and a surface, the points, in
+/// The intersection of two shapes with parameters: of two curves, or a curve and a surface, the points, in
 /// the order of the first curve's parameter; of two surfaces a branch of their intersection, as a
 /// curve of points: the longest, or another by its number.
 ///
@@ -241,20 +241,22 @@ pub struct Intersect<T: Scalar> {
     a: Value<T>,
     /// A curve or a surface.
     b: Value<T>,
-    /// Which branch, the longest first; of anything but two surfaces there is one.
+    /// The number of the branch, longest first; shapes other than two surfaces have one.
     #[field(default = 1, min = 1)]
     branch: usize,
 }
 
 impl<T: Scalar> Build<T> for Intersect<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (count, found) = meetings(&self.a, &self.b, Some(self.branch - 1), [Self::A, Self::B])?;
         match found.into_iter().next() {
             Some(points) => Ok(crate::value::curve(points)),
-            None => Err(Fault::new("no-solution", format!("there is no branch {}", self.branch))
-                .expected(format!("a branch from 1 to {count}"))
-                .found(self.branch.to_string())
-                .in_field(Self::BRANCH)),
+            None => {
+                Err(CallError::new("no-solution", format!("there is no branch {}", self.branch))
+                    .expected(format!("a branch from 1 to {count}"))
+                    .found(self.branch.to_string())
+                    .in_field(Self::BRANCH))
+            }
         }
     }
 }
@@ -281,7 +283,7 @@ pub struct Intersections<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Intersections<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (_, found) = meetings(&self.a, &self.b, None, [Self::A, Self::B])?;
         Ok(Value::list(found.into_iter().map(crate::value::curve)))
     }
@@ -293,7 +295,7 @@ fn meetings<T: Real>(
     b: &Value<T>,
     only: Option<usize>,
     fields: [FieldId; 2],
-) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
+) -> Result<(usize, Vec<Vec<Vec3<T>>>), CallError> {
     let points = match (a, b) {
         (Value::Curve(a), Value::Curve(b)) => curves(a, b, fields[1])?,
         (Value::Curve(a), Value::Surface(b)) | (Value::Surface(b), Value::Curve(a)) => {
@@ -303,15 +305,15 @@ fn meetings<T: Real>(
         (a, b) => {
             let second = usize::from(matches!(a, Value::Curve(_) | Value::Surface(_)));
             let other = [a, b][second];
-            let found = other.class().a();
-            let fault = Fault::new(
+            let found = other.class().with_article();
+            let fault = CallError::new(
                 "wrong-class",
                 format!("expected a pcurve or a psurface, found {found}"),
             )
             .expected("a curve or a surface with parameters")
             .found(found);
             return Err(match other {
-                Value::Vectors(_) => fault.help("makecc(c) or makecs(s) makes one of points"),
+                Value::Vectors(_) => fault.help("makecc(c) or makecs(s) interpolates points"),
                 _ => fault,
             }
             .in_field(fields[second]));
@@ -324,7 +326,7 @@ fn curves<T: Real>(
     a: &CurveRef<T>,
     b: &CurveRef<T>,
     field: FieldId,
-) -> Result<Vec<Vec3<T>>, Fault> {
+) -> Result<Vec<Vec3<T>>, CallError> {
     let found = roots::all_curve_curve(&PlainCurve(&**a), &PlainCurve(&**b));
     let size = a.end(0.0).re().distance(a.end(1.0).re()).max(f64::MIN_POSITIVE);
     let meets: Vec<_> = found.roots.iter().filter(|r| r.residual <= 1e-9 * size).collect();
@@ -360,7 +362,7 @@ fn curve_surface<T: Real>(
     curve: &CurveRef<T>,
     surface: &SurfaceRef<T>,
     field: FieldId,
-) -> Result<Vec<Vec3<T>>, Fault> {
+) -> Result<Vec<Vec3<T>>, CallError> {
     let found = roots::all_curve_surface(&PlainCurve(&**curve), &PlainSurface(&**surface));
     if found.roots.is_empty() {
         return Err(nothing(&found, "the curve and the surface", field));
@@ -389,7 +391,7 @@ fn surfaces<T: Real>(
     b: &SurfaceRef<T>,
     only: Option<usize>,
     field: FieldId,
-) -> Result<(usize, Vec<Vec<Vec3<T>>>), Fault> {
+) -> Result<(usize, Vec<Vec<Vec3<T>>>), CallError> {
     let (p, q) = (PlainSurface(&**a), PlainSurface(&**b));
     let mut branches = Crossing::with_surface(&p, &q).branches().branches;
     let length = |branch: &Branch| -> f64 {

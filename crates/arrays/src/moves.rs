@@ -2,12 +2,12 @@
 
 use crate::value::{Points, Shaped, vectors};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 
-fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, Fault> {
+fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     v.normalized().ok_or_else(|| {
-        Fault::new("no-direction", "the vector has no direction: it is zero")
-            .expected("a vector other than zero")
+        CallError::new("no-direction", "the vector has no direction: it is zero")
+            .expected("a non-zero vector")
             .in_field(field)
     })
 }
@@ -21,14 +21,14 @@ fn direction<T: Real>(v: Vec3<T>, field: FieldId) -> Result<Vec3<T>, Fault> {
     example = "vector p = translate({1, 0, 0}, {0, 2, 0}); assert p.y == 2;"
 )]
 pub struct Translate<T: Scalar> {
-    /// What is moved.
+    /// The field or set to move.
     o: Shaped<T>,
     /// By how much.
     v: Vec3<T>,
 }
 
 impl<T: Scalar> Build<T> for Translate<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(self.o.mapped(|p| p + self.v))
     }
 }
@@ -43,14 +43,14 @@ impl<T: Scalar> Build<T> for Translate<T> {
     example = "vector p = scale({1, 2, 3}, {1, 1, 2}); assert p.z == 6;"
 )]
 pub struct Scale<T: Scalar> {
-    /// What is scaled, about the origin.
+    /// The points to scale, about the origin.
     o: Shaped<T>,
     /// The three factors, or one.
     by: Value<T>,
 }
 
 impl<T: Scalar> Build<T> for Scale<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let by = match &self.by {
             Value::Number(x) => Vec3::new(*x, *x, *x),
             other => <Vec3<T> as moldloft_registry::FromValue<T>>::from_value(other)
@@ -69,7 +69,7 @@ impl<T: Scalar> Build<T> for Scale<T> {
     example = "vector p = mirror({1, 2, 3}, {0, 0, 0}, {0, 1, 0}); assert p.y == -2;"
 )]
 pub struct Mirror<T: Scalar> {
-    /// What is mirrored.
+    /// The field or set to mirror.
     o: Shaped<T>,
     /// A point of the plane.
     p: Vec3<T>,
@@ -78,7 +78,7 @@ pub struct Mirror<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Mirror<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { o, p, n } = self;
         let square = direction(n, Self::N).map(|_| n.norm_sq())?;
         // 2 (r - p) . n / n^2 without a root: planes of whole normals mirror exactly.
@@ -99,7 +99,7 @@ impl<T: Scalar> Build<T> for Mirror<T> {
                assert |q - {1, 1, 0}| < 1e-15;"
 )]
 pub struct Rotate<T: Scalar> {
-    /// What is turned.
+    /// The field or set to turn.
     o: Shaped<T>,
     /// A point of the axis, if an angle is the fourth argument; else the direction of the axis.
     p: Vec3<T>,
@@ -111,7 +111,7 @@ pub struct Rotate<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Rotate<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (p, axis, angle, field) = match (&self.axis, self.angle) {
             (Value::Number(angle), None) => (Vec3::zero(), self.p, *angle, Self::P),
             (axis, Some(angle)) => {
@@ -119,7 +119,7 @@ impl<T: Scalar> Build<T> for Rotate<T> {
                 (self.p, axis.map_err(|fault| fault.in_field(Self::AXIS))?, angle, Self::AXIS)
             }
             (_, None) => {
-                return Err(Fault::new("missing-argument", "the angle is missing")
+                return Err(CallError::new("missing-argument", "the angle is missing")
                     .expected("rotate(o, axis, angle) or rotate(o, p, axis, angle)")
                     .in_field(Self::ANGLE));
             }
@@ -155,13 +155,13 @@ pub struct Revolve<T: Scalar> {
     /// Last angle.
     #[field(angle)]
     a1: T,
-    /// How many lines.
+    /// Number of lines.
     #[field(min = 2, max = 1e6)]
     n: usize,
 }
 
 impl<T: Scalar> Build<T> for Revolve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (points, n) = (self.curve.0, self.n);
         let angles: Vec<[T; 2]> = (0..n)
             .map(|j| {
@@ -180,10 +180,10 @@ impl<T: Scalar> Build<T> for Revolve<T> {
 }
 
 /// Unit tangents of a curve of points: those of the circle through a point and its neighbours.
-fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>, Fault> {
+fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>, CallError> {
     let n = points.len();
     if n < 2 {
-        return Err(Fault::new("too-few-items", "one point has no tangent")
+        return Err(CallError::new("too-few-items", "one point has no tangent")
             .expected("at least two points")
             .found(n.to_string())
             .in_field(field));
@@ -193,8 +193,8 @@ fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>,
         let d = points[k] - points[k - 1];
         if d.norm_sq().re() == 0.0 {
             let message = format!("points {k} and {} coincide", k + 1);
-            return Err(Fault::new("coincident-points", message)
-                .expected("neighbours at different places")
+            return Err(CallError::new("coincident-points", message)
+                .expected("distinct neighbouring points")
                 .in_item(k)
                 .in_field(field));
         }
@@ -215,7 +215,7 @@ fn tangents<T: Real>(points: &[Vec3<T>], field: FieldId) -> Result<Vec<Vec3<T>>,
             k => inner(k),
         };
         all.push(raw.normalized().ok_or_else(|| {
-            Fault::new("no-direction", format!("the curve turns back at point {}", k + 1))
+            CallError::new("no-direction", format!("the curve turns back at point {}", k + 1))
                 .in_item(k)
                 .in_field(field)
         })?);
@@ -240,7 +240,7 @@ pub struct Tangents<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Tangents<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let all = tangents(&self.curve.0, Self::CURVE)?;
         Ok(vectors(ArrayShape::Row(all.len()), all))
     }
@@ -268,7 +268,7 @@ pub struct FrameOf<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for FrameOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
         let tangents = tangents(&points, Self::CURVE)?;
         let t = tangents[0];

@@ -2,10 +2,10 @@
 
 use crate::value::{Farray, Items, Points, Shaped, Vectors, farray};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Context, Fault, FieldId, Kind, Scalar, Value};
+use moldloft_registry::{ArrayShape, Build, CallError, Context, FieldId, Kind, Scalar, Value};
 
-fn empty(field: FieldId) -> Fault {
-    Fault::new("empty", "an empty array has no such element")
+fn empty(field: FieldId) -> CallError {
+    CallError::new("empty", "an empty array has no such element")
         .expected("at least one element")
         .in_field(field)
 }
@@ -28,7 +28,7 @@ pub struct Prod<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Prod<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(self.a.items.into_iter().fold(T::one(), |x, y| x * y)))
     }
 }
@@ -37,7 +37,7 @@ fn position<T: Real>(
     row: &[T],
     field: FieldId,
     better: impl Fn(f64, f64) -> bool,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     if row.is_empty() {
         return Err(empty(field));
     }
@@ -54,7 +54,7 @@ pub struct Argmin<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Argmin<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         position(&self.a.row().map_err(|fault| fault.in_field(Self::A))?, Self::A, |x, y| x < y)
     }
 }
@@ -68,7 +68,7 @@ pub struct Argmax<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Argmax<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         position(&self.a.row().map_err(|fault| fault.in_field(Self::A))?, Self::A, |x, y| x > y)
     }
 }
@@ -91,11 +91,11 @@ pub struct Dot<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Dot<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (a, b) = (self.a, self.b);
         if a.shape != b.shape {
             let message = format!("shapes differ: {} and {}", a.shape, b.shape);
-            return Err(Fault::new("shapes-differ", message)
+            return Err(CallError::new("shapes-differ", message)
                 .expected("equal shapes")
                 .found(format!("{} and {}", a.shape, b.shape))
                 .in_field(Self::B));
@@ -114,7 +114,7 @@ pub struct Norm<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Norm<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let square = match &self.a {
             Value::Vector(v) => v.norm_sq(),
             other => match <Items<T> as moldloft_registry::FromValue<T>>::from_value(other)
@@ -144,7 +144,7 @@ pub struct Len<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Len<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(steps(&self.curve.0).fold(T::zero(), |sum, s| sum + s)))
     }
 }
@@ -163,7 +163,7 @@ pub struct Cumlen<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Cumlen<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
         if points.is_empty() {
             return Err(empty(Self::CURVE));
@@ -193,7 +193,7 @@ pub struct Centroid<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Centroid<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Vectors { shape, items } = self.o;
         if items.is_empty() {
             return Err(empty(Self::O));
@@ -236,7 +236,7 @@ fn corner<T: Real>(
     o: Shaped<T>,
     field: FieldId,
     pick: impl Fn(T, T) -> T,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let points = match o {
         Shaped::One(p) => vec![p],
         Shaped::Many(a) => a.items,
@@ -259,7 +259,7 @@ pub struct BboxMin<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for BboxMin<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         corner(self.o, Self::O, T::min)
     }
 }
@@ -278,7 +278,7 @@ pub struct BboxMax<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for BboxMax<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         corner(self.o, Self::O, T::max)
     }
 }

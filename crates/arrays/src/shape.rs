@@ -3,7 +3,7 @@
 use crate::value::{Items, Points, farray, vectors};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, Context, Fault, FieldId, FromValue, Kind, Scalar, Value,
+    ArrayShape, Build, CallError, Context, FieldId, FromValue, Kind, Scalar, Value,
 };
 
 /// The same array with its elements in the opposite order; of a surface or grid of numbers along the
@@ -18,17 +18,17 @@ use moldloft_registry::{
 pub struct Reverse<T: Scalar> {
     /// The array.
     a: Items<T>,
-    /// Which index of a grid runs backwards: 1 or 2.
+    /// The index of a grid to reverse: 1 or 2.
     #[field(default = 1, min = 1, max = 2)]
     index: usize,
 }
 
 impl<T: Scalar> Build<T> for Reverse<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let shape = self.a.shape();
         match (shape, self.index) {
             (ArrayShape::Row(n), 1) => Ok(self.a.picked(shape, |k| n - 1 - k)),
-            (ArrayShape::Row(_), _) => Err(Fault::new("out-of-range", "a row has one index")
+            (ArrayShape::Row(_), _) => Err(CallError::new("out-of-range", "a row has one index")
                 .expected("index 1")
                 .found("2")
                 .in_field(Self::INDEX)),
@@ -54,12 +54,12 @@ pub struct Swap<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Swap<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         match self.s.shape() {
             ArrayShape::Grid(m, n) => {
                 Ok(self.s.picked(ArrayShape::Grid(n, m), |k| k % m * n + k / m))
             }
-            shape => Err(Fault::new("wrong-shape", format!("expected [m,n], found {shape}"))
+            shape => Err(CallError::new("wrong-shape", format!("expected [m,n], found {shape}"))
                 .expected("a surface or a grid of numbers")
                 .found(shape.to_string())
                 .in_field(Self::S)),
@@ -90,18 +90,20 @@ pub struct Join<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Join<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        let place = |k: usize| move |fault: Fault| fault.in_item(k).in_field(Self::PARTS);
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        let place = |k: usize| move |fault: CallError| fault.in_item(k).in_field(Self::PARTS);
         if matches!(self.parts[0], Value::Numbers(_)) {
             let mut all: Vec<T> = Vec::new();
             for (k, part) in self.parts.iter().enumerate() {
                 let Items::Numbers(row) = Items::from_value(part).map_err(place(k))? else {
-                    let message =
-                        format!("expected an farray like the first, found {}", part.class().a());
+                    let message = format!(
+                        "expected an farray like the first, found {}",
+                        part.class().with_article()
+                    );
                     return Err(place(k)(
-                        Fault::new("wrong-class", message)
+                        CallError::new("wrong-class", message)
                             .expected("an farray")
-                            .found(part.class().a()),
+                            .found(part.class().with_article()),
                     ));
                 };
                 let row = row.row().map_err(place(k))?;
@@ -125,10 +127,10 @@ impl<T: Scalar> Build<T> for Join<T> {
     }
 }
 
-fn row_of<T: Real>(a: &Items<T>, field: FieldId) -> Result<usize, Fault> {
+fn row_of<T: Real>(a: &Items<T>, field: FieldId) -> Result<usize, CallError> {
     match a.shape() {
         ArrayShape::Row(n) => Ok(n),
-        shape => Err(Fault::new("wrong-shape", format!("expected a row [n], found {shape}"))
+        shape => Err(CallError::new("wrong-shape", format!("expected a row [n], found {shape}"))
             .expected("an farray [n] or a curve [n]")
             .found(shape.to_string())
             .in_field(field)),
@@ -146,13 +148,13 @@ fn row_of<T: Real>(a: &Items<T>, field: FieldId) -> Result<usize, Fault> {
 pub struct SpreadI<T: Scalar> {
     /// The row, of numbers or vectors.
     a: Items<T>,
-    /// How often: the second extent.
+    /// The number of columns: the second extent.
     #[field(min = 1, max = 1e6)]
     n: usize,
 }
 
 impl<T: Scalar> Build<T> for SpreadI<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (m, n) = (row_of(&self.a, Self::A)?, self.n);
         grid(m, n, Self::N)?;
         Ok(self.a.picked(ArrayShape::Grid(m, n), |k| k / n))
@@ -170,13 +172,13 @@ impl<T: Scalar> Build<T> for SpreadI<T> {
 pub struct SpreadJ<T: Scalar> {
     /// The row, of numbers or vectors.
     a: Items<T>,
-    /// How often: the first extent.
+    /// The number of rows: the first extent.
     #[field(min = 1, max = 1e6)]
     m: usize,
 }
 
 impl<T: Scalar> Build<T> for SpreadJ<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (n, m) = (row_of(&self.a, Self::A)?, self.m);
         grid(m, n, Self::M)?;
         Ok(self.a.picked(ArrayShape::Grid(m, n), |k| k % n))
@@ -184,12 +186,12 @@ impl<T: Scalar> Build<T> for SpreadJ<T> {
 }
 
 /// Refuses grids too large to hold.
-fn grid(m: usize, n: usize, field: FieldId) -> Result<(), Fault> {
+fn grid(m: usize, n: usize, field: FieldId) -> Result<(), CallError> {
     const MOST: usize = 50_000_000;
     if m.saturating_mul(n) <= MOST {
         return Ok(());
     }
-    Err(Fault::new("too-large", format!("a grid [{m},{n}] is too large"))
+    Err(CallError::new("too-large", format!("a grid [{m},{n}] is too large"))
         .expected(format!("at most {MOST} elements"))
         .found(format!("{}", m as f64 * n as f64))
         .in_field(field))
@@ -210,7 +212,7 @@ pub struct List<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for List<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(farray(self.numbers))
     }
 }
@@ -230,7 +232,7 @@ pub struct PointsOf<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for PointsOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(vectors(ArrayShape::Row(self.points.len()), self.points))
     }
 }
@@ -251,17 +253,17 @@ pub struct Stack<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Stack<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (mut all, mut n) = (Vec::new(), None);
         let m = self.curves.len();
         for (k, part) in self.curves.iter().enumerate() {
-            let place = |fault: Fault| fault.in_item(k).in_field(Self::CURVES);
+            let place = |fault: CallError| fault.in_item(k).in_field(Self::CURVES);
             let Points(row) = Points::from_value(part).map_err(place)?;
             let expected = *n.get_or_insert(row.len());
             if row.len() != expected {
                 let message = format!("curve {} has {} points", k + 1, row.len());
                 return Err(place(
-                    Fault::new("shapes-differ", message)
+                    CallError::new("shapes-differ", message)
                         .expected(format!("{expected} points, as the first curve has"))
                         .found(format!("{} points", row.len())),
                 ));
@@ -272,13 +274,13 @@ impl<T: Scalar> Build<T> for Stack<T> {
     }
 }
 
-fn extents<T: Scalar>(a: &Value<T>, field: FieldId) -> Result<ArrayShape, Fault> {
+fn extents<T: Scalar>(a: &Value<T>, field: FieldId) -> Result<ArrayShape, CallError> {
     match a {
         Value::Numbers(a) => Ok(a.shape),
         Value::Vectors(a) => Ok(a.shape),
         other => {
-            let found = other.class().a();
-            Err(Fault::new("wrong-class", format!("expected an array, found {found}"))
+            let found = other.class().with_article();
+            Err(CallError::new("wrong-class", format!("expected an array, found {found}"))
                 .expected("an farray, a curve or a surface")
                 .found(found)
                 .in_field(field))
@@ -295,7 +297,7 @@ pub struct D1<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for D1<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (ArrayShape::Row(n) | ArrayShape::Grid(n, _)) = extents(&self.a, Self::A)?;
         Ok(Value::Number(T::from(n as f64)))
     }
@@ -315,10 +317,10 @@ pub struct D2<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for D2<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         match extents(&self.a, Self::A)? {
             ArrayShape::Grid(_, n) => Ok(Value::Number(T::from(n as f64))),
-            shape => Err(Fault::new("wrong-shape", format!("a row {shape} has one extent"))
+            shape => Err(CallError::new("wrong-shape", format!("a row {shape} has one extent"))
                 .expected("a surface or a grid of numbers")
                 .found(shape.to_string())
                 .in_field(Self::A)),

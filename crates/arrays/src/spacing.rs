@@ -3,7 +3,7 @@
 use crate::distribution::{Arguments, MOST_NUMBERS, fault};
 use crate::value::{Numbers, Vectors};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Scalar, Value};
+use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Scalar, Value};
 use moldloft_spline::distribution::{count_for, first_for, growth};
 
 /// The fewest numbers with which `d_tanhx(0, length, ds1, ds2, n)` grows by at most the factor
@@ -35,14 +35,14 @@ pub struct CountFor<T: Real> {
 }
 
 impl<T: Real> Build<T> for CountFor<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [length, a, b, most] = [self.length, self.ds1, self.ds2, self.growth].map(T::re);
         let of = Arguments { limits: Self::LENGTH, spacings: Self::DS1 };
         let n = count_for(length, a, b, most, MOST_NUMBERS as usize);
         let n = n.map_err(|error| fault(error, of))?;
         n.map(|n| Value::Number(T::from(n as f64))).ok_or_else(|| {
-            let message = format!("no number of points divides {length} so evenly");
-            Fault::new("no-distribution", message)
+            let message = format!("no number of points divides {length} with that growth");
+            CallError::new("no-distribution", message)
                 .expected(format!("a growth that steps from {a} to {b} allow"))
                 .found(format!("a growth of {most}"))
                 .help("allow more growth, or bring the two spacings nearer to each other")
@@ -68,13 +68,13 @@ pub struct FirstFor<T: Real> {
     /// Ratio of a step to the one before it; below 1 for steps that shrink.
     #[field(min = 1e-6, max = 1e6)]
     growth: T,
-    /// How many numbers.
+    /// Number of values.
     #[field(min = 2, max = MOST_NUMBERS)]
     n: u32,
 }
 
 impl<T: Real> Build<T> for FirstFor<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(first_for(self.length, self.growth, self.n as usize)))
     }
 }
@@ -84,7 +84,7 @@ pub struct Steps<T>(Vec<T>);
 
 impl<T: Scalar> FromValue<T> for Steps<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let steps: Vec<T> = match value {
             Value::Numbers(_) => match Numbers::from_value(value)? {
                 Numbers::Many(a) => a.row()?.windows(2).map(|w| (w[1] - w[0]).abs()).collect(),
@@ -94,22 +94,22 @@ impl<T: Scalar> FromValue<T> for Steps<T> {
                 let Vectors { shape, items } = Vectors::from_value(value)?;
                 if !matches!(shape, moldloft_registry::ArrayShape::Row(_)) {
                     let message = format!("expected one row, found a surface {shape}");
-                    return Err(Fault::new("wrong-shape", message)
+                    return Err(CallError::new("wrong-shape", message)
                         .expected("an farray [n] or a curve [n]")
                         .help("take one of its lines: s[1,] or s[,1]"));
                 }
                 items.windows(2).map(|w| w[0].distance(w[1])).collect()
             }
             other => {
-                let found = other.class().a();
+                let found = other.class().with_article();
                 let message = format!("expected a row of numbers or of points, found {found}");
-                return Err(Fault::new("wrong-class", message)
+                return Err(CallError::new("wrong-class", message)
                     .expected("an farray or a curve")
                     .found(found));
             }
         };
         if steps.is_empty() {
-            return Err(Fault::new("too-few-items", "one element has no steps")
+            return Err(CallError::new("too-few-items", "one element has no spacing")
                 .expected("at least two elements"));
         }
         Ok(Self(steps))
@@ -132,7 +132,7 @@ pub struct FirstCell<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for FirstCell<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(self.row.0[0]))
     }
 }
@@ -153,7 +153,7 @@ pub struct LastCell<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for LastCell<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(self.row.0[self.row.0.len() - 1]))
     }
 }
@@ -172,7 +172,7 @@ pub struct Growth<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Growth<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Number(growth(&self.row.0)))
     }
 }

@@ -3,43 +3,44 @@
 use crate::value::{Net, Points};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, Kind, Scalar, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::{
-    ByArclen, End, Ends, GridSpline, InterpolatingSpline, InterpolationError, KnotLaw,
+    ByArclen, End, Ends, GridSpline, InterpolatingSpline, InterpolationError, Parametrization,
     PiecewiseCubic, curvature_breaks,
 };
 use std::sync::Arc;
 
 /// The fault of a spline through the points of an argument, with the end conditions of another; `of` says
 /// what a point is there.
-pub fn fault(error: InterpolationError, of: &str, [points, ends]: [FieldId; 2]) -> Fault {
+pub fn fault(error: InterpolationError, of: &str, [points, ends]: [FieldId; 2]) -> CallError {
     match error {
         InterpolationError::Coincident { first, second } => {
             let (a, b) = (first + 1, second + 1);
-            Fault::new("coincident-points", format!("{of}s {a} and {b} coincide"))
-                .expected("neighbours at different places")
+            CallError::new("coincident-points", format!("{of}s {a} and {b} coincide"))
+                .expected("distinct neighbouring points")
                 .found(format!("no distance between {of}s {a} and {b}"))
-                .help(format!("leave {of} {b} out, or take the basis \"index\""))
+                .help(format!("remove {of} {b}, or use the basis \"index\""))
                 .in_item(second)
                 .in_field(points)
         }
-        InterpolationError::TooFew { expected, actual } => {
-            Fault::new("too-few-items", format!("a spline needs {expected} {of}s, found {actual}"))
-                .expected(format!("at least {expected} {of}s"))
-                .found(actual.to_string())
-                .in_field(points)
-        }
+        InterpolationError::TooFew { expected, actual } => CallError::new(
+            "too-few-items",
+            format!("a spline needs {expected} {of}s, found {actual}"),
+        )
+        .expected(format!("at least {expected} {of}s"))
+        .found(actual.to_string())
+        .in_field(points),
         InterpolationError::NotFinite { index } => {
-            Fault::new("not-finite", error.to_string()).in_item(index).in_field(points)
+            CallError::new("not-finite", error.to_string()).in_item(index).in_field(points)
         }
-        InterpolationError::NotClosed { gap } => Fault::new("not-closed", error.to_string())
+        InterpolationError::NotClosed { gap } => CallError::new("not-closed", error.to_string())
             .expected(format!("the first {of} again as the last"))
             .found(format!("a gap of {gap}"))
             .help(format!("repeat the first {of} at the end"))
             .in_field(ends),
         InterpolationError::Type { .. } | InterpolationError::Knots { .. } => {
-            Fault::new("no-spline", error.to_string())
+            CallError::new("no-spline", error.to_string())
         }
     }
 }
@@ -59,14 +60,14 @@ enum Name {
     Periodic,
 }
 
-fn unknown(word: &str, field: FieldId, what: &str, expected: &str) -> Fault {
-    Fault::new("unknown-word", format!("there is no {what} \"{word}\""))
+fn unknown(word: &str, field: FieldId, what: &str, expected: &str) -> CallError {
+    CallError::new("unknown-word", format!("unknown {what} \"{word}\""))
         .expected(expected)
         .found(format!("\"{word}\""))
         .in_field(field)
 }
 
-fn name(word: &str, field: FieldId) -> Result<Name, Fault> {
+fn name(word: &str, field: FieldId) -> Result<Name, CallError> {
     Ok(match word {
         "natural" => Name::Natural,
         "quadratic" => Name::Quadratic,
@@ -79,7 +80,7 @@ fn name(word: &str, field: FieldId) -> Result<Name, Fault> {
 }
 
 /// The conditions at both ends.
-fn names(text: &str, field: FieldId) -> Result<[Name; 2], Fault> {
+fn names(text: &str, field: FieldId) -> Result<[Name; 2], CallError> {
     let words: Vec<&str> = text.split(',').map(str::trim).collect();
     let pair = match words[..] {
         [one] => [name(one, field)?; 2],
@@ -87,7 +88,7 @@ fn names(text: &str, field: FieldId) -> Result<[Name; 2], Fault> {
         _ => return Err(unknown(text, field, "pair of end conditions", ENDS)),
     };
     if (pair[0] == Name::Periodic) != (pair[1] == Name::Periodic) {
-        return Err(Fault::new("unknown-word", "a spline is periodic at both ends or at none")
+        return Err(CallError::new("unknown-word", "a spline is periodic at both ends or at none")
             .expected("\"periodic\" alone")
             .found(format!("\"{text}\""))
             .in_field(field));
@@ -101,7 +102,7 @@ fn condition<T>(name: Name, slope: Vec3<T>) -> End<T> {
         Name::Specified => End::Clamped(slope),
         Name::NotAKnot => End::NotAKnot,
         Name::Bessel => End::Bessel,
-        // Periodic splines are told apart before.
+        // Periodic splines are distinguished before.
         Name::Quadratic | Name::Periodic => End::Quadratic,
     }
 }
@@ -109,20 +110,20 @@ fn condition<T>(name: Name, slope: Vec3<T>) -> End<T> {
 /// What the parameter of a spline is.
 #[derive(Clone, Copy, PartialEq)]
 struct Basis {
-    law: KnotLaw,
+    law: Parametrization,
     by_arclen: bool,
     breaks: bool,
 }
 
-fn basis(word: &str, field: FieldId) -> Result<Basis, Fault> {
+fn basis(word: &str, field: FieldId) -> Result<Basis, CallError> {
     let plain = |law| Basis { law, by_arclen: false, breaks: false };
     Ok(match word.replace(' ', "").as_str() {
-        "arc" | "chord" => plain(KnotLaw::Chord),
-        "index" => plain(KnotLaw::Index),
-        "centripetal" => plain(KnotLaw::Centripetal),
-        "arclen" => Basis { by_arclen: true, ..plain(KnotLaw::Chord) },
-        "arclen+breaks" => Basis { by_arclen: true, breaks: true, ..plain(KnotLaw::Chord) },
-        "arc+breaks" | "chord+breaks" => Basis { breaks: true, ..plain(KnotLaw::Chord) },
+        "arc" | "chord" => plain(Parametrization::Chord),
+        "index" => plain(Parametrization::Index),
+        "centripetal" => plain(Parametrization::Centripetal),
+        "arclen" => Basis { by_arclen: true, ..plain(Parametrization::Chord) },
+        "arclen+breaks" => Basis { by_arclen: true, breaks: true, ..plain(Parametrization::Chord) },
+        "arc+breaks" | "chord+breaks" => Basis { breaks: true, ..plain(Parametrization::Chord) },
         _ => {
             let expected = "\"arc\" (chords), \"index\", \"centripetal\", \"arclen\", \
                             \"arclen+breaks\" or \"arc+breaks\"";
@@ -170,7 +171,7 @@ pub struct Makecc<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Makecc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
         let ends = names(&self.ends, Self::ENDS)?;
         let basis = basis(&self.basis, Self::BASIS)?;
@@ -179,7 +180,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
             let (which, field) = (["start", "end"][k], [Self::T1, Self::T2][k]);
             match (*end == Name::Specified, tangent) {
                 (true, None) => {
-                    return Err(Fault::new(
+                    return Err(CallError::new(
                         "missing-argument",
                         format!("the tangent at the {which} is specified, but not given"),
                     )
@@ -189,7 +190,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
                     .in_field(field));
                 }
                 (false, Some(_)) => {
-                    return Err(Fault::new(
+                    return Err(CallError::new(
                         "unused-argument",
                         format!("a tangent is given, but the {which} is not \"specified\""),
                     )
@@ -230,7 +231,7 @@ impl<T: Scalar> Build<T> for Makecc<T> {
             )));
         }
         let curve = ByArclen::of(parts).ok_or_else(|| {
-            Fault::new("coincident-points", "the curve has no length").in_field(Self::CURVE)
+            CallError::new("coincident-points", "the curve has no length").in_field(Self::CURVE)
         })?;
         Ok(Value::Curve(CurveRef::new(curve, 0)))
     }
@@ -243,7 +244,7 @@ fn inner(outer: Name) -> Name {
 
 /// dC/dt at an end from the asked tangent.
 fn slope<T: Real>(
-    law: KnotLaw,
+    law: Parametrization,
     points: &[Vec3<T>],
     knots: &[T],
     at: usize,
@@ -254,11 +255,11 @@ fn slope<T: Real>(
     let (a, b) = if at == 0 { (0, 1) } else { (n - 2, n - 1) };
     let gap = knots[b] - knots[a];
     // dr/dt = dr/ds ds/dt, with ds/dt from the chord of the end interval.
-    let step = if law == KnotLaw::Index { T::one() } else { points[a].distance(points[b]) };
+    let step = if law == Parametrization::Index { T::one() } else { points[a].distance(points[b]) };
     tangent * (step / gap)
 }
 
-fn shifted(error: InterpolationError, by: usize, fields: [FieldId; 2]) -> Fault {
+fn shifted(error: InterpolationError, by: usize, fields: [FieldId; 2]) -> CallError {
     let error = match error {
         InterpolationError::Coincident { first, second } => {
             InterpolationError::Coincident { first: first + by, second: second + by }
@@ -277,7 +278,7 @@ fn splits<T: Scalar>(
     basis: Basis,
     periodic: bool,
     given: Option<Vec<usize>>,
-) -> Result<Vec<usize>, Fault> {
+) -> Result<Vec<usize>, CallError> {
     let n = points.len();
     if n < 2 {
         return Err(fault(
@@ -289,9 +290,12 @@ fn splits<T: Scalar>(
     let mut all = vec![0];
     match given {
         Some(_) if !basis.breaks => {
-            return Err(Fault::new("unused-argument", "breaks are given, but the basis has none")
-                .expected("the basis \"arclen+breaks\" or \"arc+breaks\"")
-                .in_field(Makecc::<T>::BREAKS));
+            return Err(CallError::new(
+                "unused-argument",
+                "breaks are given, but the basis has none",
+            )
+            .expected("the basis \"arclen+breaks\" or \"arc+breaks\"")
+            .in_field(Makecc::<T>::BREAKS));
         }
         Some(given) => {
             for (k, index) in given.into_iter().enumerate() {
@@ -299,7 +303,7 @@ fn splits<T: Scalar>(
                 // Index 1 is the start.
                 if index < last + 2 || index >= n {
                     let message = format!("point {index} cannot be a break");
-                    return Err(Fault::new("out-of-range", message)
+                    return Err(CallError::new("out-of-range", message)
                         .expected(format!("ascending indices from 2 to {}", n - 1))
                         .found(index.to_string())
                         .in_item(k)
@@ -315,7 +319,7 @@ fn splits<T: Scalar>(
         None => {}
     }
     if periodic && all.len() > 1 {
-        return Err(Fault::new("no-spline", "a periodic spline has no breaks")
+        return Err(CallError::new("no-spline", "a periodic spline has no breaks")
             .expected("open ends, such as \"quadratic\"")
             .found(format!("a break at point {}", all[1] + 1))
             .in_field(Makecc::<T>::ENDS));
@@ -326,11 +330,11 @@ fn splits<T: Scalar>(
 
 /// The parts as one curve, their parameters in proportion to the knots of all points.
 fn joined<T: Scalar>(
-    law: KnotLaw,
+    law: Parametrization,
     points: &[Vec3<T>],
     splits: &[usize],
     parts: &[PiecewiseCubic<T>],
-) -> Result<PiecewiseCubic<T>, Fault> {
+) -> Result<PiecewiseCubic<T>, CallError> {
     let knots = law
         .knots(points)
         .map_err(|error| shifted(error, 0, [Makecc::<T>::CURVE, Makecc::<T>::ENDS]))?;
@@ -363,7 +367,7 @@ pub struct Makelc<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Makelc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let points = self.curve.0;
         let law = basis(&self.basis, Self::BASIS)?.law;
         let knots =
@@ -382,7 +386,7 @@ fn knots_of<T: Scalar>(
     net: &Net<T>,
     word: &str,
     [points, field]: [FieldId; 2],
-) -> Result<[Vec<T>; 2], Fault> {
+) -> Result<[Vec<T>; 2], CallError> {
     let basis = basis(word, field)?;
     if basis.by_arclen || basis.breaks {
         return Err(unknown(
@@ -402,7 +406,7 @@ fn knots_of<T: Scalar>(
     Ok([knots(0)?, knots(1)?])
 }
 
-fn surface_fault(error: InterpolationError, axis: usize, points: FieldId) -> Fault {
+fn surface_fault(error: InterpolationError, axis: usize, points: FieldId) -> CallError {
     let line = ["line s[i,]", "line s[,j]"][axis];
     fault(error, line, [points, points])
 }
@@ -436,9 +440,9 @@ pub struct Makecs<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Makecs<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [u, v] = knots_of(&self.surface, &self.basis, [Self::SURFACE, Self::BASIS])?;
-        let ends = |word: &str, field: FieldId| -> Result<Ends<T>, Fault> {
+        let ends = |word: &str, field: FieldId| -> Result<Ends<T>, CallError> {
             let pair = names(word, field)?;
             if pair.contains(&Name::Specified) {
                 let fault = unknown(word, field, "end condition of a surface", ENDS);
@@ -481,7 +485,7 @@ pub struct Makels<T: Scalar> {
 }
 
 impl<T: Scalar> Build<T> for Makels<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [u, v] = knots_of(&self.surface, &self.basis, [Self::SURFACE, Self::BASIS])?;
         let surface = GridSpline::bilinear(u, v, self.surface.points);
         let surface = surface.map_err(|error| surface_fault(error, 0, Self::SURFACE))?;
@@ -490,8 +494,8 @@ impl<T: Scalar> Build<T> for Makels<T> {
 }
 
 /// The same fault about another field.
-pub fn moved(fault: Fault, field: FieldId) -> Fault {
-    let mut other = Fault::new(fault.id, fault.message.clone());
+pub fn moved(fault: CallError, field: FieldId) -> CallError {
+    let mut other = CallError::new(fault.id, fault.message.clone());
     if let Some(expected) = &fault.expected {
         other = other.expected(expected.clone());
     }

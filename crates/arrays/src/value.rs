@@ -3,7 +3,7 @@
 use moldloft_grid::SurfaceGrid;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Array, ArrayShape, Class, Fault, FromValue, Scalar, Value, Vectors as Planes,
+    Array, ArrayShape, CallError, Class, FromValue, Scalar, Value, Vectors as Planes,
 };
 use std::sync::Arc;
 
@@ -35,8 +35,8 @@ pub enum Numbers<T> {
     Many(Farray<T>),
 }
 
-fn not_finite(index: usize) -> Fault {
-    Fault::new("not-finite", format!("element {} is not finite", index + 1))
+fn not_finite(index: usize) -> CallError {
+    CallError::new("not-finite", format!("element {} is not finite", index + 1))
         .expected("finite numbers")
         .in_item(index)
 }
@@ -49,17 +49,17 @@ pub fn type_name<T: Real>(value: &Value<T>) -> &'static str {
         Value::Vectors(_) => "a curve",
         Value::Curve(_) => "a parametric curve (pcurve)",
         Value::Surface(_) => "a parametric surface (psurface)",
-        other => other.class().a(),
+        other => other.class().with_article(),
     }
 }
 
-fn wrong<T: Real, R>(expected: &'static str, value: &Value<T>) -> Result<R, Fault> {
+fn wrong<T: Real, R>(expected: &'static str, value: &Value<T>) -> Result<R, CallError> {
     let found = type_name(value);
-    let fault = Fault::new("wrong-class", format!("expected {expected}, found {found}"))
+    let fault = CallError::new("wrong-class", format!("expected {expected}, found {found}"))
         .expected(expected)
         .found(found);
     Err(match value {
-        Value::Unset => Fault::new("missing-argument", format!("{expected} is missing")),
+        Value::Unset => CallError::new("missing-argument", format!("{expected} is missing")),
         // Arrays of points and shapes with parameters are easily taken for each other.
         Value::Curve(_) => fault.help("take points of it first: distc(curve, uniform(0, 1, 50))"),
         Value::Surface(_) => fault
@@ -71,7 +71,7 @@ fn wrong<T: Real, R>(expected: &'static str, value: &Value<T>) -> Result<R, Faul
 impl<T: Scalar> FromValue<T> for Farray<T> {
     const CLASS: Class = Class::Number;
     const MANY: bool = true;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let (shape, items) = match value {
             Value::Numbers(a) => (a.shape, a.items.clone()),
             other => {
@@ -88,11 +88,11 @@ impl<T: Scalar> FromValue<T> for Farray<T> {
 
 impl<T> Farray<T> {
     /// The numbers of a row; a grid is refused.
-    pub fn row(self) -> Result<Vec<T>, Fault> {
+    pub fn row(self) -> Result<Vec<T>, CallError> {
         match self.shape {
             ArrayShape::Row(_) => Ok(self.items),
             shape => {
-                Err(Fault::new("wrong-shape", format!("expected an farray [n], found {shape}"))
+                Err(CallError::new("wrong-shape", format!("expected an farray [n], found {shape}"))
                     .expected("one row of numbers")
                     .found(shape.to_string())
                     .help("take one of its rows: a[1,]"))
@@ -103,7 +103,7 @@ impl<T> Farray<T> {
 
 impl<T: Scalar> FromValue<T> for Vectors<T> {
     const CLASS: Class = Class::Vectors;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let (shape, items) = match value {
             Value::Vectors(a) => (a.shape, a.points()),
             Value::List(items) => {
@@ -124,14 +124,14 @@ impl<T: Scalar> FromValue<T> for Vectors<T> {
 
 impl<T: Scalar> FromValue<T> for Points<T> {
     const CLASS: Class = Class::Vectors;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         if !matches!(value, Value::Vectors(_) | Value::List(_)) {
             return wrong("a curve", value);
         }
         let Vectors { shape, items } = Vectors::from_value(value)?;
         match shape {
             ArrayShape::Row(_) => Ok(Self(items)),
-            _ => Err(Fault::new("wrong-shape", format!("expected a curve [n], found {shape}"))
+            _ => Err(CallError::new("wrong-shape", format!("expected a curve [n], found {shape}"))
                 .expected("a curve [n]")
                 .found(format!("a surface {shape}"))
                 .help("take one of its lines: s[1,] or s[,1]")),
@@ -141,32 +141,35 @@ impl<T: Scalar> FromValue<T> for Points<T> {
 
 impl<T: Scalar> FromValue<T> for Net<T> {
     const CLASS: Class = Class::Vectors;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         if !matches!(value, Value::Vectors(_) | Value::List(_)) {
             return wrong("a surface", value);
         }
         let Vectors { shape, items } = Vectors::from_value(value)?;
         match shape {
             ArrayShape::Grid(m, n) => Ok(Self { m, n, points: items }),
-            _ => Err(Fault::new("wrong-shape", format!("expected a surface [m,n], found {shape}"))
-                .expected("a surface [m,n]")
-                .found(format!("a curve {shape}"))),
+            _ => Err(CallError::new(
+                "wrong-shape",
+                format!("expected a surface [m,n], found {shape}"),
+            )
+            .expected("a surface [m,n]")
+            .found(format!("a curve {shape}"))),
         }
     }
 }
 
 impl<T: Scalar> FromValue<T> for Numbers<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Number(_) => Ok(Self::One(T::from_value(value)?)),
             Value::Numbers(_) | Value::List(_) | Value::Vector(_) => {
                 Ok(Self::Many(Farray::from_value(value)?))
             }
             other => {
-                let found = other.class().a();
+                let found = other.class().with_article();
                 let message = format!("expected a number or an farray, found {found}");
-                Err(Fault::new("wrong-class", message)
+                Err(CallError::new("wrong-class", message)
                     .expected("a number or an farray")
                     .found(found))
             }
@@ -223,14 +226,14 @@ pub enum Shaped<T> {
 
 impl<T: Scalar> FromValue<T> for Shaped<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Vector(_) | Value::Point(_) => Ok(Self::One(FromValue::from_value(value)?)),
             Value::Vectors(_) | Value::List(_) => Ok(Self::Many(FromValue::from_value(value)?)),
             other => {
-                let found = other.class().a();
+                let found = other.class().with_article();
                 let message = format!("expected a vector, a curve or a surface, found {found}");
-                let fault = Fault::new("wrong-class", message)
+                let fault = CallError::new("wrong-class", message)
                     .expected("a vector, a curve [n] or a surface [m,n]")
                     .found(found);
                 Err(match other {
@@ -264,14 +267,14 @@ pub enum Items<T> {
 
 impl<T: Scalar> FromValue<T> for Items<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Numbers(_) => Ok(Self::Numbers(FromValue::from_value(value)?)),
             Value::Vectors(_) => Ok(Self::Vectors(FromValue::from_value(value)?)),
             other => {
-                let found = other.class().a();
+                let found = other.class().with_article();
                 let message = format!("expected an array, found {found}");
-                Err(Fault::new("wrong-class", message)
+                Err(CallError::new("wrong-class", message)
                     .expected("an farray, a curve or a surface")
                     .found(found))
             }
@@ -303,12 +306,12 @@ pub struct GridArg<T>(pub SurfaceGrid<T>);
 
 impl<T: Scalar> FromValue<T> for GridArg<T> {
     const CLASS: Class = Class::Vectors;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Vectors(a) => match a.shape {
                 ArrayShape::Grid(m, n) => Ok(Self(SurfaceGrid::new(m, n, a.planes.clone()))),
                 shape => {
-                    Err(Fault::new("wrong-shape", format!("expected a surface, found {shape}"))
+                    Err(CallError::new("wrong-shape", format!("expected a surface, found {shape}"))
                         .expected("a surface [m,n]")
                         .found(format!("a curve {shape}")))
                 }

@@ -49,9 +49,9 @@ pub struct DiagnosticData {
     pub found: Option<String>,
     /// Background.
     pub notes: Vec<String>,
-    /// Ways to mend it.
+    /// Ways to fix it.
     pub help: Vec<String>,
-    /// A change of the text that mends it.
+    /// A change of the text that fixes it.
     pub edit: Option<EditData>,
     /// The object it is about.
     pub object: Option<String>,

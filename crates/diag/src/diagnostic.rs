@@ -42,7 +42,7 @@ pub struct Label {
     pub text: String,
 }
 
-/// A change of the source text that would mend the fault.
+/// A change of the source text that would remove the fault.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Edit {
     /// What to replace; empty to insert.
@@ -72,9 +72,9 @@ pub struct Body {
     pub found: Option<String>,
     /// Background: the path of parents, residuals, the last guess.
     pub notes: Vec<String>,
-    /// How to mend it.
+    /// The remedy.
     pub help: Vec<String>,
-    /// A change of the text that mends it.
+    /// A change of the text that fixes it.
     pub edit: Option<Edit>,
     /// The named object it is about.
     pub object: Option<String>,
@@ -185,14 +185,14 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a way to mend it.
+    /// Adds a remedy.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.0.help.push(text.into());
         self
     }
 
-    /// Adds a way to mend it, if there is one.
+    /// Adds a way to fix it, if there is one.
     #[must_use]
     pub fn maybe_help(self, text: Option<impl Into<String>>) -> Self {
         match text {
@@ -209,7 +209,7 @@ impl Diagnostic {
         self.maybe_help(near)
     }
 
-    /// Sets the change of the text that mends it.
+    /// Sets the change of the text that fixes it.
     #[must_use]
     pub fn edit(
         mut self,

@@ -1,7 +1,7 @@
 //! Source spans and diagnostics as data.
 //!
 //! Everything a user can do wrong ends up as a [`Diagnostic`]: a stable kebab-case id, a severity, a message that
-//! stands alone, the places it talks about, what was expected and what was found, and how to mend it. The terminal,
+//! stands alone, the places it talks about, what was expected and what was found, and how to fix it. The terminal,
 //! Python and the viewer show the same object; [`render`] prints it, [`Diagnostic::to_data`] resolves its places to
 //! lines and columns for everything else.
 //!
@@ -10,14 +10,14 @@
 //!
 //! let mut sources = Sources::new();
 //! let file = sources.add("boat.sdl", "AbsPoint P(1, 2, 3);\nBCurve C({Q}, degree = 2);\n");
-//! let diagnostic = Diagnostic::error("unknown-name", "there is no object called `Q`")
+//! let diagnostic = Diagnostic::error("unknown-name", "no object called `Q`")
 //!     .at(Span::new(file, 31, 32))
 //!     .expected("the name of a point")
 //!     .found("`Q`")
 //!     .help("a name with a similar spelling exists: `P`");
 //! assert_eq!(
 //!     render(&diagnostic, &sources),
-//!     "error[unknown-name]: there is no object called `Q`
+//!     "error[unknown-name]: no object called `Q`
 //!  --> boat.sdl:2:11
 //! 2 | BCurve C({Q}, degree = 2);
 //!   |           ^ expected the name of a point, found `Q`

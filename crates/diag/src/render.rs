@@ -239,11 +239,10 @@ note: expected equal shapes
         let at = lines[2].chars().position(|c| c == '@').unwrap();
         assert_eq!(lines[3].chars().nth(at), Some('^'));
 
-        let bare =
-            Diagnostic::error("no-file", "there is no such file").object("hull").help("look again");
+        let bare = Diagnostic::error("no-file", "no such file").object("hull").help("look again");
         assert_eq!(
             render(&bare, &sources),
-            "error[no-file]: there is no such file\nnote: this is about `hull`\nhelp: look again\n"
+            "error[no-file]: no such file\nnote: this is about `hull`\nhelp: look again\n"
         );
         let past = Diagnostic::error("odd", "past the end").at(Span::new(file, 99_999, 100_000));
         assert!(render(&past, &sources).contains("long.sdl:1:10002"));

@@ -81,7 +81,7 @@ impl Document {
         document
     }
 
-    /// A model from a text; the ending of `name` tells a model file (`.ms2`) from a program, and
+    /// A model from a text; the ending of `name` distinguishes a model file (`.ms2`) from a program;
     /// without one the first word does.
     pub fn from_text(registry: Registry, world: Box<dyn World>, name: &str, text: &str) -> Self {
         let mut document = Self::empty(registry, world);
@@ -198,7 +198,7 @@ impl Document {
         report: bool,
     ) -> Applied {
         let mut found = Vec::new();
-        evaluation.graph.obey(self.cancelled.clone());
+        evaluation.graph.set_cancel_flag(self.cancelled.clone());
         evaluation.graph.keep_in(self.kept.clone());
         let inputs = Inputs {
             overrides: &self.overrides,
@@ -232,7 +232,7 @@ impl Document {
         applied
     }
 
-    /// The diagnostics of failed objects; what they block is told with them, once.
+    /// The diagnostics of failed objects; what they block is reported with them, once.
     pub(crate) fn failures<T: Scalar>(&self, evaluation: &Evaluation<T>) -> Vec<Diagnostic> {
         if evaluation.graph.failed() == 0 {
             return Vec::new();
@@ -366,7 +366,7 @@ impl Document {
         Ok(remarks.iter().map(|remark| self.told(remark)).collect())
     }
 
-    fn told(&self, remark: &moldloft_panel::Remark) -> Diagnostic {
+    fn told(&self, remark: &moldloft_panel::PanelNote) -> Diagnostic {
         let mut diagnostic =
             Diagnostic::warning(remark.id(), remark.to_string()).help(remark.help());
         let object =
@@ -417,14 +417,14 @@ impl Document {
         self.run()
     }
 
-    /// Halves the intervals of all numbers that the program declares by `refined` so often, and
+    /// Sets the refinement level: each level halves the spacing of sizes declared by `refined`, and
     /// runs it.
     ///
     /// # Errors
     /// When that is more than [`moldloft_lang::MOST_REFINED`] times.
     pub fn refine(&mut self, times: u32) -> Result<Applied, Diagnostic> {
         if times > moldloft_lang::MOST_REFINED {
-            return Err(Diagnostic::error("out-of-range", "this is too fine")
+            return Err(Diagnostic::error("out-of-range", "the refinement is too fine")
                 .expected(format!("a whole number from 0 to {}", moldloft_lang::MOST_REFINED))
                 .found(times.to_string()));
         }
@@ -512,7 +512,7 @@ impl Document {
             return Ok(panelled.clone());
         }
         let unplaced =
-            |f: moldloft_registry::Fault| moldloft_lang::source::fault_location::unplaced(&f);
+            |f: moldloft_registry::CallError| moldloft_lang::source::fault_location::unplaced(&f);
         let before = self.panelled.as_ref().map(|(_, p)| p.clone());
         let before = before.as_ref().map(|p| &p.panelling);
         let mut panelling =

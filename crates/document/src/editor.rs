@@ -330,13 +330,15 @@ impl Document {
     /// # Errors
     /// Why it cannot: nothing to rename there, declared elsewhere, no name, or taken.
     pub fn renamed(&self, offset: u32, new: &str) -> Result<Vec<Span>, String> {
-        let mention = self.mention_at(offset).ok_or("there is no name here")?;
-        let m = self.main_module().ok_or("there is no program")?;
+        let mention = self.mention_at(offset).ok_or("no name at this position")?;
+        let m = self.main_module().ok_or("no program")?;
         let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let head = new.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
         let free = || sdl::parse(format!("float {new};"), FileId(0)).1.is_empty();
         if !head || !new.chars().all(word) || !free() {
-            return Err(format!("`{new}` is no name: a letter, then letters, digits and _"));
+            return Err(format!(
+                "`{new}` is not a valid name: a letter, then letters, digits and _"
+            ));
         }
         let all = mentions(m);
         let same = |o: &&Mention| o.symbol == mention.symbol && o.local_to == mention.local_to;
@@ -353,7 +355,7 @@ impl Document {
             })
         });
         if taken || self.registry().get(new).is_some() || BUILTINS.iter().any(|b| b.name == new) {
-            return Err(format!("`{new}` means something already"));
+            return Err(format!("`{new}` is already in use"));
         }
         Ok(self.references(offset))
     }
@@ -625,6 +627,6 @@ fn shown(value: &Value<f64>) -> String {
             format!("{first}\n\n{}, {}, {}", bounds(0), bounds(1), bounds(2))
         }
         Value::Text(text) => format!("\"{text}\""),
-        other => other.class().a().to_string(),
+        other => other.class().with_article().to_string(),
     }
 }

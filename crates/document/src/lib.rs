@@ -25,6 +25,7 @@ mod document;
 mod editor;
 mod measures;
 mod rename;
+pub mod searches;
 mod set;
 mod solve;
 

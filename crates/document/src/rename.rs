@@ -18,7 +18,7 @@ impl Document {
         }
         let (stmt, span) = self.sole_statement(name)?;
         let graph = self.graph();
-        // A component or the call of a subroutine has a name, but is no object.
+        // A component or the call of a subroutine has a name, but is not an object.
         let object = graph.find(name).and_then(|key| graph.get(key));
         if let Some(object) = object.filter(|o| !o.children.is_empty()) {
             let names: Vec<_> = object.children.iter().filter_map(|&c| graph.get(c)).collect();
@@ -70,7 +70,7 @@ impl Document {
         // A reserved word cannot be declared.
         let declared = || sdl::parse(format!("float {new};"), FileId(0)).1.is_empty();
         if !head || !new.chars().all(word) || !declared() {
-            return Err(Diagnostic::error("not-a-name", format!("`{new}` is no name"))
+            return Err(Diagnostic::error("not-a-name", format!("`{new}` is not a valid name"))
                 .expected("a letter, then letters, digits and _, and no reserved word"));
         }
         let m = self.modules.get(0);
@@ -156,7 +156,7 @@ impl Document {
         let reserved = ["rem", "beginmodel", "endmodel"].contains(&&*new.to_ascii_lowercase());
         if reserved || !new.starts_with(|c: char| c.is_ascii_alphabetic()) || !new.chars().all(word)
         {
-            return Err(Diagnostic::error("not-a-name", format!("`{new}` is no name"))
+            return Err(Diagnostic::error("not-a-name", format!("`{new}` is not a valid name"))
                 .at(line.name)
                 .expected("a letter, then letters, digits, _, - and ."));
         }
@@ -188,7 +188,7 @@ impl Document {
             }
             _ => None,
         };
-        Diagnostic::error("unknown-name", format!("there is no object `{name}`"))
+        Diagnostic::error("unknown-name", format!("unknown object `{name}`"))
             .maybe_help(near.map(|n| format!("did you mean `{n}`?")))
     }
 
@@ -220,7 +220,7 @@ impl Document {
             if let Some(found) = self.instance_statement(name) {
                 return Ok(found);
             }
-            return Err(Diagnostic::error("unknown-name", format!("there is no object `{name}`"))
+            return Err(Diagnostic::error("unknown-name", format!("unknown object `{name}`"))
                 .maybe_help(graph.nearest_name(name).map(|n| format!("did you mean `{n}`?"))));
         };
         let elsewhere = |why: &str| {

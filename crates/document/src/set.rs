@@ -91,7 +91,7 @@ impl Document {
             let stem = name.split('.').next().unwrap_or(name);
             return Err(Diagnostic::error(
                 "unknown-name",
-                format!("there is nothing called `{name}` to set"),
+                format!("no parameter or number named `{name}`"),
             )
             .expected("a parameter, or a number of an object such as P21.y")
             .suggest(stem, params.chain(objects)));
@@ -109,7 +109,7 @@ impl Document {
         if path.change(&mut args, |_| value).is_none() {
             return Err(Diagnostic::error("not-a-number", format!("`{name}` is not a number"))
                 .help(
-                    "only numbers can be set; edit the text to change what an object is built on",
+                    "only numbers can be set; edit the text to change the parents of an object",
                 ));
         }
         if let Some(sketch) = self.plain.env.sketches.iter().find(|s| {
@@ -171,14 +171,14 @@ impl Document {
                     .collect();
                 let diagnostic = Diagnostic::error(
                     "not-a-literal",
-                    format!("`{name}` is computed and cannot be set by itself"),
+                    format!("`{name}` is given by an expression and cannot be set"),
                 )
                 .at(span)
-                .expected("a number written as such");
+                .expected("a literal number");
                 if params.is_empty() {
                     diagnostic.help("edit the expression")
                 } else {
-                    diagnostic.help(format!("set what it is computed from: {}", params.join(", ")))
+                    diagnostic.help(format!("set its parameters: {}", params.join(", ")))
                 }
             }
             program::NotLiteral::Shared { span } => Diagnostic::error(

@@ -51,7 +51,7 @@ const SMALL_STEP: f64 = 1e-10;
 /// Where rounding hides any progress, a step smaller than this will do.
 const ROUNDED_STEP: f64 = 1e-7;
 
-/// A step is halved at most so often.
+/// A step is halved at most that many times.
 const HALVINGS: usize = 24;
 
 /// Pivots below this share of the largest are zero.
@@ -275,10 +275,10 @@ impl Document {
                 found.push(
                     Diagnostic::error(
                         "unsolved",
-                        format!("`{}` depends on `{name}`, which is found later", report.name),
+                        format!("`{}` depends on `{name}`, which is solved later", report.name),
                     )
                     .at(report.span)
-                    .expected("conditions of its own unknowns and those of sets before")
+                    .expected("conditions on its own unknowns and those of earlier sets")
                     .help("put both into one solve set, or change their order")
                     .object(&*report.name),
                 );
@@ -334,26 +334,26 @@ impl Solved {
                 "its conditions do not determine the unknowns".to_string(),
                 match self.without_effect() {
                     Some(name) => format!("no condition depends on `{name}`"),
-                    None => "two conditions may say the same, or nothing changes at the start: \
+                    None => "two conditions may be equivalent, or insensitive at the start: \
                              begin elsewhere"
                         .to_string(),
                 },
             ),
             SolveStatus::OutOfRange => (
-                "there is no solution within the ranges".to_string(),
-                "widen a range, or begin elsewhere".to_string(),
+                "no solution within the ranges".to_string(),
+                "widen a range, or choose another start".to_string(),
             ),
             SolveStatus::Stuck => (
                 "the search comes no nearer to a solution".to_string(),
-                "there may be none; or begin nearer to it".to_string(),
+                "there may be none; otherwise start nearer to it".to_string(),
             ),
             SolveStatus::TooManySteps => (
                 format!("{} steps do not lead to a solution", self.iterations),
-                "begin nearer to it, or allow more `steps`".to_string(),
+                "start nearer to it, or allow more `steps`".to_string(),
             ),
             SolveStatus::NoModel => (
                 "its conditions have no values at the start".to_string(),
-                "begin with values for which the model can be built".to_string(),
+                "start with values for which the model can be built".to_string(),
             ),
         };
         Some(

@@ -138,7 +138,7 @@ fn encoded<T: ?Sized>(
     main: &str,
 ) -> Result<Vec<NamedFile>, Vec<Diagnostic>> {
     let Some(encode) = encoder else {
-        let message = format!("{} is no format of {what}", format.name);
+        let message = format!("{} is not a format of {what}", format.name);
         return Err(vec![Diagnostic::error("unknown-format", message)]);
     };
     let files = encode(value, &FileName(main)).map_err(Failure::from);
@@ -266,7 +266,7 @@ impl Export<'_> {
 pub(crate) fn lines_and_points(document: &Document) -> LinesAndPoints {
     let mut found = LinesAndPoints::default();
     for object in document.graph().objects().filter(|o| o.head.shown()) {
-        if let Some(Value::Mesh(body)) = object.value() {
+        if let Some(Value::Body(body)) = object.value() {
             let name = object.name.to_string();
             found.wires.extend(body.wires.iter().map(|w| (name.clone(), w.clone())));
             found.dots.extend(body.dots.iter().map(|p| (name.clone(), *p)));

@@ -6,7 +6,7 @@ use moldloft_document::{Document, Section};
 use moldloft_io::drawing::{self, View};
 use moldloft_io::vtk::NamedFile;
 use moldloft_num::Vec3;
-use moldloft_panel::{Polyline, Sectioned};
+use moldloft_panel::{Contour, ContourCutter};
 use moldloft_registry::{Family, Value};
 
 /// The lines drawing: body plan, waterlines and buttocks, a sheet each.
@@ -60,7 +60,7 @@ fn contour_of(axis: usize, value: f64, lines: Vec<Vec<Vec3>>) -> drawing::Contou
 }
 
 /// The points of a line, the first again at the end of a closed one.
-pub(crate) fn points(line: &Polyline) -> Vec<Vec3> {
+pub(crate) fn points(line: &Contour) -> Vec<Vec3> {
     let again = line.points.first().filter(|_| line.closed);
     line.points.iter().chain(again).copied().collect()
 }
@@ -70,7 +70,7 @@ fn cuts(document: &Document, axis: usize, values: &[f64]) -> Vec<drawing::Contou
     let mut lines = vec![Vec::new(); values.len()];
     for object in document.graph().objects().filter(|o| o.head.shown()) {
         let Some(Value::Surface(surface)) = object.value() else { continue };
-        let sectioned = Sectioned::new(surface, &object.head);
+        let sectioned = ContourCutter::new(surface, &object.head);
         for (lines, &value) in lines.iter_mut().zip(values) {
             lines.extend(sectioned.section(&Family::coordinate(axis), value).iter().map(points));
         }

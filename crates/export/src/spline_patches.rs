@@ -72,7 +72,7 @@ pub fn spline_patches(
         let object = graph.find(name).and_then(|key| graph.get(key));
         let value = object.and_then(|object| object.value());
         let (Some(block), Some(Value::Surface(surface))) = (&patch.block, value) else {
-            return cannot(&format!("`{name}` is no surface of u and v"));
+            return cannot(&format!("`{name}` is not a surface of u and v"));
         };
         let fit = Fit { name, surface: &**surface, size, allowed };
         for mut part in fit.whole()? {
@@ -188,7 +188,7 @@ impl Fit<'_> {
             .help("ask for less with a larger tolerance")
             .into());
         }
-        // A knuckle that is no knot: halve the patch, so that the knuckle becomes an edge.
+        // A knuckle that is not a knot: halve the patch, so that the knuckle becomes an edge.
         let halves = [0, 1].map(|axis| {
             let [low, high] = part[axis];
             let middle = (low + high) / 2.0;
@@ -280,7 +280,7 @@ impl Fit<'_> {
         let (us, vs) = (tests(m), tests(n));
         let given = self.at(part, &us, &vs);
         let off = patch.grid(&us, &vs).into_iter().zip(given).map(|(a, b)| (a - b).norm());
-        // A distance that is no number is the worst there is.
+        // A distance that is not a number is the worst there is.
         patch.deviation =
             off.fold(0.0, |most, x| if x.is_nan() { f64::INFINITY } else { x.max(most) });
         patch

@@ -13,7 +13,7 @@
 //!   of data points.
 //! - [`Job`]: a curve to be faired, with what must be kept: [`Limit`] (balls, boxes, one direction,
 //!   one plane; per control point), `marks` (intended breaks), [`End`]s, weights.
-//! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] tells corners and wrong digits apart,
+//! - [`Jumps`]: how unfair each knot is, exactly; [`findings`] separates corners and wrong digits,
 //!   [`with_findings`] takes them into account.
 //! - [`knot_removal()`]: the faithful way, knots removed and re-inserted one by one, the worst first, with a
 //!   log ([`replay`]) and the reason of the end ([`Stopped`]); [`sweeps`] and [`multilevel()`] for bulk
@@ -71,7 +71,7 @@
 //! it turns left seen against +z. A measure of squares is given as the sum, not half of it.
 //! Indices of control points count from 0 here and from 1 in messages and in the language.
 //!
-//! Invariants: no control point leaves its limit by a bit; points that stand still and points that
+//! Invariants: no control point leaves its limit by a bit; points that stay fixed and points that
 //! no local step touched keep their bits; results do not depend on threads, earlier results or
 //! time; this crate performs no input or output.
 //!

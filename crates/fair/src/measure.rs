@@ -1,10 +1,10 @@
-//! What there is to be little of: measures of unfairness as sparse rows over control points.
+//! Measures of unfairness as sparse rows over control points.
 
 use crate::curve::jumps::Jumps;
 use crate::{FairError, Space, SparseRows};
 use moldloft_num::Vec3;
 
-/// What a fair curve has little of.
+/// A measure of unfairness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Sum of squared second differences, sum `|d[i-1] - 2 d[i] + d[i+1]|^2` on uniform knots: for

@@ -123,12 +123,12 @@ impl fmt::Display for FieldError {
                 write!(f, "the exponent of a field is a whole number from 0 to 1000, found {value}")
             }
             Self::Lambda { value } => {
-                write!(f, "the weight of a blend lies between 0 and 1, found {value}")
+                write!(f, "the weight of a blend must be between 0 and 1, found {value}")
             }
             Self::RailsMeet { place } => write!(f, "the rails meet near {}", Corners(place)),
             Self::RailInside { body, place } => write!(
                 f,
-                "the rail lies inside body {body} near {}, where the blend would be inside out",
+                "the rail is inside body {body} near {}, where the blend would be inside out",
                 Corners(place)
             ),
             Self::RailSingular { body, place } => {
@@ -149,7 +149,7 @@ impl fmt::Display for FieldError {
             }
             Self::ThinBox { axis, side, step, .. } => write!(
                 f,
-                "the box is {side:.3e} thick along {}, less than its cells of {step:.3e}: what is in it would get lost",
+                "the box is {side:.3e} thick along {}, less than its cells of {step:.3e}: its contents would be missed",
                 ["x", "y", "z"][*axis]
             ),
             Self::NotClosed { edges } => {
@@ -158,7 +158,9 @@ impl fmt::Display for FieldError {
             Self::ManyFaces { most } => {
                 write!(f, "the faces cross each other so much that their set has over {most} parts")
             }
-            Self::RoundSides => write!(f, "round sides touch each other and cannot be told apart"),
+            Self::RoundSides => {
+                write!(f, "round sides touch each other and cannot be distinguished")
+            }
             Self::Cancelled => write!(f, "cancelled"),
             Self::NoValue { at } => {
                 write!(f, "the field has no finite value at ({}, {}, {})", at.x, at.y, at.z)

@@ -5,7 +5,7 @@ use crate::{Edge, SurfaceGrid, Wall};
 use moldloft_num::{Real, Vec3};
 
 /// -r' . r'' / |r'|^2 at each point of a row, by central differences; zero at its ends and where it
-/// stands still.
+/// stays fixed.
 fn along<T: Real>(points: &[Vec3<T>]) -> Vec<T> {
     let mut all = vec![T::zero(); points.len()];
     for (k, w) in points.windows(3).enumerate() {

@@ -102,7 +102,7 @@ impl fmt::Display for GridError {
                 )
             }
             Self::FaceSizes { face, expected: [a, b], actual: [m, n] } => {
-                write!(f, "face {face} is [{m},{n}] where the others ask for [{a},{b}]")
+                write!(f, "face {face} is [{m},{n}] where the others require [{a},{b}]")
             }
             Self::Folded { count, at: [i, j], layer } => {
                 write!(f, "{count} cells are folded, the first at [{i},{j}]")?;
@@ -113,7 +113,7 @@ impl fmt::Display for GridError {
             Self::Heights { at, value } => {
                 write!(f, "heights ascend from 0, but height {at} is {value}")
             }
-            Self::NoNormal { at: [i, j] } => write!(f, "there is no normal at point [{i},{j}]"),
+            Self::NoNormal { at: [i, j] } => write!(f, "no normal at point [{i},{j}]"),
         }
     }
 }

@@ -64,7 +64,7 @@ impl World for FileWorld {
         if from.is_some() && !self.roots.iter().any(|root| found.starts_with(root)) {
             let help = "a model reads files in its own folder and in the folders given by \
                         `--library`";
-            return Err(refused("it lies outside the model's folders", Some(help.into())));
+            return Err(refused("it is outside the model's folders", Some(help.into())));
         }
         if found.is_dir() {
             return Err(refused("it is a folder", None));
@@ -83,7 +83,7 @@ impl World for FileWorld {
 
 fn failed(path: &str, error: &std::io::Error) -> ReadError {
     let (reason, help) = match error.kind() {
-        ErrorKind::NotFound => ("there is no such file".into(), near(path)),
+        ErrorKind::NotFound => ("no such file".into(), near(path)),
         ErrorKind::PermissionDenied => ("permission denied".into(), None),
         _ => (error.to_string(), None),
     };

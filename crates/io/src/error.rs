@@ -1,3 +1,5 @@
+//! Errors of readers and writers: what is wrong with the data, and where in the file.
+
 use moldloft_mesh::{Blocks, Mesh, MeshError};
 use std::fmt;
 
@@ -89,7 +91,7 @@ impl fmt::Display for WriteError {
                 write!(f, "{count} {what} are more than the format can count")
             }
             Self::NoGrid { patches } if patches.is_empty() => {
-                write!(f, "there is no structured grid to write")
+                write!(f, "no structured grid to write")
             }
             Self::NoGrid { patches } => {
                 write!(f, "no structured grid in patch `{}`", patches.join("`, `"))

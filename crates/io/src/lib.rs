@@ -12,6 +12,7 @@
 //! | STL | [`stl::write`] (binary) | [`stl::read`] (binary and text) |
 //! | 3MF | [`threemf::write`] | – |
 //! | Wavefront OBJ | [`obj::write`] | [`obj::read`] |
+//! | OFF | [`off::write`] | – |
 //! | VTK XML | [`vtk::polydata`], [`vtk::structured_files`], [`vtk::block_files`], [`vtk::unstructured`], [`vtk::grid_files`] | – |
 //! | Plot3D, all variants | [`plot3d::write`], [`plot3d::write_mesh`], [`plot3d::write_blocks`] | [`plot3d::read`] |
 //! | points in text | [`points::write`], [`points::write_csv`] | [`points::read`] |
@@ -43,6 +44,7 @@ pub mod hams;
 pub mod hydrostar;
 pub mod nemoh;
 pub mod obj;
+pub mod off;
 pub mod plot3d;
 pub mod ply;
 pub mod points;

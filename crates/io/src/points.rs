@@ -39,7 +39,7 @@ pub struct PointTable {
 /// counts before them become one run.
 ///
 /// # Errors
-/// A line with another number of columns, an empty cell, a word that is no number, or numbers that
+/// A line with another number of columns, an empty cell, a word that is not a number, or numbers that
 /// are not finite; no points at all.
 ///
 /// # Example

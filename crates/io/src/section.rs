@@ -30,7 +30,7 @@ pub struct Section {
     pub listing: Listing,
 }
 
-/// The section of an aerofoil file, in Selig's or Lednicer's listing, which it tells apart by the
+/// The section of an aerofoil file, in Selig's or Lednicer's listing, distinguished by the
 /// numbers of points that the latter begins with.
 ///
 /// # Errors
@@ -73,7 +73,7 @@ pub fn read_aerofoil(bytes: &[u8]) -> Result<Section, ReadError> {
     if nose == 0 || nose + 1 == points.len() {
         return error(
             last,
-            "points from the trailing edge round the nose and back".into(),
+            "points from the trailing edge around the nose and back".into(),
             "the nose at an end of the list".into(),
         );
     }

@@ -151,7 +151,7 @@ pub fn write_grids(
     for (number, block) in blocks.iter().enumerate() {
         let [m, n, k] = block.size;
         if k != 1 || m < 2 || n < 2 {
-            return Err(cannot("grids other than surfaces of two lines and more each way"));
+            return Err(cannot("grids with fewer than two points along an index"));
         }
         let first = u32::try_from(positions.len())
             .ok()

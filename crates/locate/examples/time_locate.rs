@@ -1,7 +1,8 @@
 //! Times nearest points and intersections on the 20 x 20 bicubic surface of the comparisons:
 //! `cargo run --release -p moldloft-locate --example time_locate [near|anywhere|plane|surface]`.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common.rs"]
+#[allow(dead_code, unused_imports)]
 mod common;
 
 use common::{Random, bumpy};

@@ -5,7 +5,7 @@ use crate::cells::{Cells, Flat, LEAF, Piece};
 use crate::nearest::{
     Sought, apart, nearest_in_curve, nearest_in_surface, on_crease, surface_foot,
 };
-use crate::report::{Solution, Status};
+use crate::report::{LocateStatus, Solution};
 use crate::tree::CurveTree;
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
@@ -29,14 +29,14 @@ pub struct Nearest<const N: usize> {
     pub distance: f64,
     /// `Ok`, `EdgeClamped` at an end or edge, `Multiple` where others are equally near, `Tangent`
     /// where the distance is stationary to second order, `Diverged` for a point that is not finite.
-    pub status: Status,
+    pub status: LocateStatus,
 }
 
 impl<const N: usize> Nearest<N> {
     /// The answer for a point that is not finite.
     fn lost() -> Self {
         let xyz = Vec3::of(f64::NAN, f64::NAN, f64::NAN);
-        Self { at: [f64::NAN; N], xyz, distance: f64::NAN, status: Status::Diverged }
+        Self { at: [f64::NAN; N], xyz, distance: f64::NAN, status: LocateStatus::Diverged }
     }
 }
 
@@ -238,7 +238,7 @@ impl NearestSurface {
             && foot.xyz.distance(p) <= best + 1e-12 * tree.size
         {
             let distance = foot.xyz.distance(p);
-            return Nearest { at: foot.at, xyz: foot.xyz, distance, status: Status::Ok };
+            return Nearest { at: foot.at, xyz: foot.xyz, distance, status: LocateStatus::Ok };
         }
         // The least on the border of a box is a foot only where no neighbour has a nearer one.
         let nearer = |a: &(Foot, Vec3)| {
@@ -276,7 +276,7 @@ impl NearestSurface {
         let chosen = before.filter(|(f, x)| !f.border && apart(*x, xyz)).count();
         let chosen = chosen.min(places.len() - 1);
         let status = if places.len() > 1 {
-            Status::Multiple { count: places.len(), chosen, next }
+            LocateStatus::Multiple { count: places.len(), chosen, next }
         } else {
             alone(&foot, exhausted)
         };
@@ -295,13 +295,13 @@ impl NearestSurface {
 }
 
 /// The status of a foot that no other is as near as.
-fn alone(foot: &Foot, exhausted: bool) -> Status {
+fn alone(foot: &Foot, exhausted: bool) -> LocateStatus {
     if foot.flat || exhausted {
-        Status::Tangent
+        LocateStatus::Tangent
     } else if foot.edge {
-        Status::EdgeClamped
+        LocateStatus::EdgeClamped
     } else {
-        Status::Ok
+        LocateStatus::Ok
     }
 }
 

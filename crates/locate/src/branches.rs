@@ -20,10 +20,10 @@
 
 use crate::cells::{Cells, Flat, Fork, LEAF, Polynomials, forks};
 use crate::implicit::solve;
-use crate::march::{Branch, Crossing, Other, Station, TANGENT, Unknowns};
+use crate::march::{Branch, Crossing, Other, TANGENT, TracePoint, Unknowns};
 use crate::newton::OUTSIDE;
 use crate::pieces::{Patch, meet};
-use crate::plates::{Pairs, Plates, Sight, Trails, Visitor};
+use crate::slab_tree::{Pairs, Plates, Sight, Trails, Visitor};
 use crate::tree::Boxes;
 use moldloft_num::{Box3, Field, Order, Plane, Surface, Vec3, slope_scale};
 use smallvec::SmallVec;
@@ -43,7 +43,7 @@ const BINS: usize = 48;
 /// A touch is a gap of less than this share of the size.
 const TOUCH: f64 = 1e-9;
 
-/// Planes of cells at a smaller angle than this have no line in common that tells anything.
+/// Planes of cells at a smaller angle than this have no reliable line in common.
 const LEAST_SINE: f64 = 0.02;
 
 /// Steps towards a touch.
@@ -697,7 +697,7 @@ struct Chord {
 }
 
 impl Chord {
-    fn new(a: &Station, b: &Station, branch: u32, number: usize) -> Self {
+    fn new(a: &TracePoint, b: &TracePoint, branch: u32, number: usize) -> Self {
         let way = b.x - a.x;
         let bow = 0.125 * way.norm() * a.tangent.distance(b.tangent);
         Self { from: a.x, way, inverse: 1.0 / way.norm_sq(), bow, branch, number }

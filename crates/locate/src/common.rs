@@ -5,9 +5,9 @@
 //! until they are so flat that Newton's method from the middle finds the one point there can be.
 
 use crate::march::Other;
-use crate::newton::{Range, Walk, newton};
+use crate::newton::{NewtonResult, Range, newton};
 use crate::pieces::{Patch, meet};
-use crate::report::{Report, Roots, Solution};
+use crate::report::{LocateReport, Roots, Solution};
 use crate::roots::{FLAT, Search, TANGENT, from_all, taken};
 use crate::tree::SurfaceTree;
 use moldloft_num::{Order, Surface, Vec3, slope_scale};
@@ -84,7 +84,7 @@ impl<const N: usize> Three<'_, N> {
         self.surfaces().next().map_or_else(Vec3::zero, |s| s.jet(q[0], q[1], Order::Zero).p)
     }
 
-    fn walk(&self, start: [f64; N], size: f64) -> Walk<N> {
+    fn walk(&self, start: [f64; N], size: f64) -> NewtonResult<N> {
         newton(start, &[Range::PARAMETER; N], size, |q| self.residual(q))
     }
 
@@ -98,7 +98,7 @@ impl<const N: usize> Three<'_, N> {
         &self,
         start: Option<[f64; N]>,
         near: Option<Vec3>,
-    ) -> Result<Solution<N>, Report> {
+    ) -> Result<Solution<N>, LocateReport> {
         let trees: SmallVec<[SurfaceTree; 3]> = self.surfaces().map(SurfaceTree::new).collect();
         let size = trees.iter().map(|t| t.size).fold(f64::INFINITY, f64::min);
         if let Some(q) = start {

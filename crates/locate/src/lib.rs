@@ -5,7 +5,7 @@
 //! From a given start the solution is the one that a damped Newton iteration leads to; when that
 //! fails, or without a start, subdivision looks for all solutions and takes the nearest. Each
 //! answer depends on the shapes and the start only, never on earlier answers, and comes with a
-//! [`Report`]. Searches run in plain numbers ([`PlainCurve`], [`PlainSurface`] show shapes of any
+//! [`LocateReport`]. Searches run in plain numbers ([`PlainCurve`], [`PlainSurface`] show shapes of any
 //! scalar so); derivatives follow from the solution by the implicit function theorem
 //! ([`implicit`]).
 //!
@@ -26,16 +26,16 @@ mod nearest;
 mod newton;
 pub mod pieces;
 mod plain;
-mod plates;
+mod predictor;
 mod report;
 pub mod roots;
+mod slab_tree;
 mod tree;
-mod trend;
 
 pub use batch::{Nearest, NearestCurve, NearestSurface, by_place};
 pub use nearest::{nearest_in_curve, nearest_in_surface, nearest_on_curve, nearest_on_surface};
-pub use newton::{ACCURACY, LONGEST_STEP, MOST_STEPS, OUTSIDE, Range, Walk, newton};
+pub use newton::{ACCURACY, LONGEST_STEP, MOST_STEPS, NewtonResult, OUTSIDE, Range, newton};
 pub use plain::{PlainCurve, PlainSurface};
-pub use report::{Alternative, Parameters, Report, Root, Roots, Solution, Status};
+pub use report::{Alternative, LocateReport, LocateStatus, Parameters, Root, Roots, Solution};
 pub use roots::Level;
 pub use tree::{Boxes, CurveTree, Node, SurfaceTree};

@@ -3,17 +3,17 @@
 //! A point of the intersection has the unknowns (u, v) on the first surface and, on a second
 //! surface, (p, r). A step goes along the tangent n1 x n2 and is corrected by Newton's method in
 //! the plane across it. Branches end at the edges of the surfaces, or come back to their start. An
-//! edge at which a surface is joined to its own opposite edge (the seam of a cylinder) is no end: the
+//! edge at which a surface is joined to its own opposite edge (the seam of a cylinder) is not an end: the
 //! branch goes on from the opposite edge, with two stations at one place there. So it does where a
 //! surface is creased along one of its joints and the branch turns by more than a step may.
 //!
-//! How all branches are found is told in [`crate::branches`].
+//! The search for all branches is in [`crate::branches`].
 
 use crate::cells::{Lanes, Polynomials};
 use crate::implicit::solve;
 use crate::newton::{OUTSIDE, Range, newton};
 use crate::pieces::size_of;
-use crate::trend::outlook;
+use crate::predictor::predict;
 use moldloft_num::{Box3, Field, Order, Plane, SurfJet, Surface, Vec3, slope_scale};
 
 /// Unknowns of a point of an intersection: (u, v, p, r), the last two 0 for a plane.
@@ -47,7 +47,7 @@ pub struct Crossing<'a> {
 
 /// A point of an intersection.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station {
+pub struct TracePoint {
     /// The unknowns.
     pub q: Unknowns,
     /// Their derivatives by the length along the branch.
@@ -80,7 +80,7 @@ pub enum End {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
     /// Points along it; of a closed one the last is the first again.
-    pub stations: Vec<Station>,
+    pub stations: Vec<TracePoint>,
     /// Why it ends, at its two ends.
     pub ends: [End; 2],
 }
@@ -144,12 +144,12 @@ const LAST_STEP: f64 = 1e-7;
 /// At a crease the surface, and with it the branch, turns by an angle of at least this cosine.
 const CREASE: f64 = 0.9999;
 
-/// As near to a joint as tells its sides apart.
-const BESIDE: f64 = 1e-9;
+/// A distance from a joint that separates its sides.
+const SAME_POINT: f64 = 1e-9;
 
 /// A step may end this share of it away from where the last two stations lead: farther off is another
 /// branch, or a bend that asks for shorter steps.
-const ASTRAY: f64 = 0.05;
+const MAX_STEP_DEVIATION: f64 = 0.05;
 
 /// Steps of a walk as shares of the size: the first, the longest, the least.
 const STEPS: [f64; 3] = [1.0 / 48.0, 1.0 / 24.0, 1e-8];
@@ -273,7 +273,7 @@ impl<'a> Crossing<'a> {
 
     /// The point of the intersection in the plane through `x` across `d` with its tangent, from a
     /// guess that is good, as a rule.
-    pub fn station_across(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Station> {
+    pub fn station_across(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<TracePoint> {
         let q = self.steps(guess, x, d, Until::Close).map(|s| s.q);
         self.station(q.or_else(|| self.across(guess, x, d))?)
     }
@@ -315,7 +315,7 @@ impl<'a> Crossing<'a> {
     }
 
     /// The point with its tangent; `None` where the shapes are tangent.
-    pub fn station(&self, q: Unknowns) -> Option<Station> {
+    pub fn station(&self, q: Unknowns) -> Option<TracePoint> {
         let (j, k, _, b) = self.normals(q);
         self.station_of(q, &j, k.as_ref(), b)
     }
@@ -327,7 +327,7 @@ impl<'a> Crossing<'a> {
         j: &Tangents,
         k: Option<&Tangents>,
         normal: Vec3,
-    ) -> Option<Station> {
+    ) -> Option<TracePoint> {
         let m = j[1].cross(j[2]);
         let d = m.cross(normal);
         let length = d.norm();
@@ -345,7 +345,7 @@ impl<'a> Crossing<'a> {
             Some(k) => along(k)?,
             None => [0.0; 2],
         };
-        Some(Station { q, rate: [u, v, p, r], x: j[0], tangent })
+        Some(TracePoint { q, rate: [u, v, p, r], x: j[0], tangent })
     }
 
     /// Both shapes at a place near the point in the plane through `x` across `d`.
@@ -414,17 +414,17 @@ impl<'a> Crossing<'a> {
 
     /// A few plain Newton steps from a good guess towards the point in the plane through `x` across
     /// `d`; `None` when they do not settle at once.
-    pub(crate) fn settled(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<Station> {
+    pub(crate) fn settled(&self, guess: Unknowns, x: Vec3, d: Vec3) -> Option<TracePoint> {
         self.steps(guess, x, d, Until::There)
     }
 
-    fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, until: Until) -> Option<Station> {
+    fn steps(&self, guess: Unknowns, x: Vec3, d: Vec3, until: Until) -> Option<TracePoint> {
         struct Steps<'a>(&'a Crossing<'a>, Unknowns, [Vec3; 2], Until);
         impl pulp::WithSimd for Steps<'_> {
-            type Output = Option<Station>;
+            type Output = Option<TracePoint>;
 
             #[inline(always)]
-            fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Station> {
+            fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<TracePoint> {
                 let Self(crossing, guess, [x, d], until) = self;
                 crossing.steps_by(simd, guess, [x, d], until)
             }
@@ -441,7 +441,7 @@ impl<'a> Crossing<'a> {
         guess: Unknowns,
         [x, d]: [Vec3; 2],
         until: Until,
-    ) -> Option<Station> {
+    ) -> Option<TracePoint> {
         let mut q = guess;
         let goal = 1e-13 * self.size;
         let mut before = 0.0;
@@ -465,7 +465,7 @@ impl<'a> Crossing<'a> {
             before = way;
             if last {
                 let [u, v, ..] = std::array::from_fn::<f64, 4, _>(|k| next[k] - q[k]);
-                return Some(Station {
+                return Some(TracePoint {
                     x: view.j[0] + view.j[1] * u + view.j[2] * v,
                     ..station(next)?
                 });
@@ -480,13 +480,13 @@ impl<'a> Crossing<'a> {
     }
 
     /// One way from a station until an edge, the start, or a place of contact.
-    fn walk(&self, start: Station, sign: f64) -> (Vec<Station>, End) {
-        struct Walk<'a>(&'a Crossing<'a>, Station, f64);
+    fn walk(&self, start: TracePoint, sign: f64) -> (Vec<TracePoint>, End) {
+        struct Walk<'a>(&'a Crossing<'a>, TracePoint, f64);
         impl pulp::WithSimd for Walk<'_> {
-            type Output = (Vec<Station>, End);
+            type Output = (Vec<TracePoint>, End);
 
             #[inline(always)]
-            fn with_simd<S: pulp::Simd>(self, simd: S) -> (Vec<Station>, End) {
+            fn with_simd<S: pulp::Simd>(self, simd: S) -> (Vec<TracePoint>, End) {
                 let Self(crossing, start, sign) = self;
                 crossing.walk_by(simd, start, sign)
             }
@@ -495,7 +495,12 @@ impl<'a> Crossing<'a> {
     }
 
     #[inline(always)]
-    fn walk_by<S: pulp::Simd>(&self, simd: S, start: Station, sign: f64) -> (Vec<Station>, End) {
+    fn walk_by<S: pulp::Simd>(
+        &self,
+        simd: S,
+        start: TracePoint,
+        sign: f64,
+    ) -> (Vec<TracePoint>, End) {
         let n = self.unknowns();
         let mut all = vec![start];
         let [first, longest, least] = STEPS.map(|share| share * self.size);
@@ -516,10 +521,10 @@ impl<'a> Crossing<'a> {
                 (q, last.x + tangent * step)
             };
             let x = last.x + tangent * step;
-            let near = if since > 0 { ASTRAY * step } else { 1.5 * step };
-            // A better guess, but not what tells whether it goes astray: its steps would be others.
+            let near = if since > 0 { MAX_STEP_DEVIATION * step } else { 1.5 * step };
+            // A better guess, but not what reports whether it goes astray: its steps would be others.
             let guess = match &all[..] {
-                [.., a, b, c] if since > 1 => outlook([a, b, c], step, sign),
+                [.., a, b, c] if since > 1 => predict([a, b, c], step, sign),
                 _ => guess,
             };
             let next = self
@@ -632,7 +637,7 @@ impl<'a> Crossing<'a> {
             };
             j[1].cross(j[2]).normalized().unwrap_or_default()
         };
-        normal(-BESIDE).dot(normal(BESIDE)) < CREASE
+        normal(-SAME_POINT).dot(normal(SAME_POINT)) < CREASE
     }
 
     /// The place on the way to `ahead` at which a surface is creased, so that the branch turns there:
@@ -640,9 +645,9 @@ impl<'a> Crossing<'a> {
     fn crease(
         &self,
         lines: &[(usize, f64)],
-        from: &Station,
+        from: &TracePoint,
         ahead: Unknowns,
-    ) -> Option<[Station; 2]> {
+    ) -> Option<[TracePoint; 2]> {
         let share = |&(k, x): &(usize, f64)| (x - from.q[k]) / (ahead[k] - from.q[k]);
         let mut on_way: Vec<&(usize, f64)> =
             lines.iter().filter(|(k, x)| (from.q[*k] - x) * (ahead[*k] - x) < 0.0).collect();
@@ -660,8 +665,8 @@ impl<'a> Crossing<'a> {
             let x = self.first.jet(at[0], at[1], Order::Zero).p;
             let side = |by: f64| {
                 let mut q = at;
-                q[k] += by * BESIDE * (ahead[k] - from.q[k]).signum();
-                Some(Station { q: at, x, ..self.station(q)? })
+                q[k] += by * SAME_POINT * (ahead[k] - from.q[k]).signum();
+                Some(TracePoint { q: at, x, ..self.station(q)? })
             };
             let (before, after) = (side(-1.0)?, side(1.0)?);
             let turned = before.tangent.dot(after.tangent) < CREASE;
@@ -672,7 +677,7 @@ impl<'a> Crossing<'a> {
     }
 
     /// Where a branch that comes to an edge goes on, if the edge is a seam.
-    fn beyond_seam(&self, at: &Station, end: End) -> Option<Station> {
+    fn beyond_seam(&self, at: &TracePoint, end: End) -> Option<TracePoint> {
         let End::Edge { unknown, value } = end else { return None };
         if !self.closed[unknown] {
             return None;
@@ -687,15 +692,15 @@ impl<'a> Crossing<'a> {
         (near && station.tangent.dot(at.tangent) > -0.5).then_some(station)
     }
 
-    fn same_place(&self, a: &Station, b: &Station) -> bool {
+    fn same_place(&self, a: &TracePoint, b: &TracePoint) -> bool {
         let same = (0..4).all(|k| (a.q[k] - b.q[k]).abs() < 1e-6);
         same && a.x.distance(b.x) <= 1e-7 * self.size
     }
 
     /// The first edge between two stations, the second of which is outside.
-    fn edge_between(&self, a: &Station, b: &Station) -> Option<(Station, End)> {
+    fn edge_between(&self, a: &TracePoint, b: &TracePoint) -> Option<(TracePoint, End)> {
         let n = self.unknowns();
-        let mut best: Option<(f64, Station, End)> = None;
+        let mut best: Option<(f64, TracePoint, End)> = None;
         for unknown in 0..n {
             for value in [0.0, 1.0] {
                 let (p, q) = (a.q[unknown], b.q[unknown]);
@@ -771,7 +776,7 @@ impl<'a> Crossing<'a> {
 
     /// The branch's own point across from `x`, between two neighbouring stations; `None` when it is
     /// not there.
-    pub(crate) fn between(&self, a: &Station, b: &Station, x: Vec3) -> Option<Vec3> {
+    pub(crate) fn between(&self, a: &TracePoint, b: &TracePoint, x: Vec3) -> Option<Vec3> {
         let chord = b.x - a.x;
         let share = (x - a.x).dot(chord) / chord.norm_sq();
         if !(-0.05..=1.05).contains(&share) {
@@ -785,7 +790,7 @@ impl<'a> Crossing<'a> {
 
 /// The place a step on from two stations: their cubic by the length, carried on. Also in space.
 #[inline(always)]
-fn onward(a: &Station, b: &Station, step: f64, sign: f64) -> (Unknowns, Vec3) {
+fn onward(a: &TracePoint, b: &TracePoint, step: f64, sign: f64) -> (Unknowns, Vec3) {
     // A chord of turn w is shorter than its arc by w^2 / 24, the way along a tangent by w^2 / 6.
     let (chord, turn) = (a.x.distance(b.x), a.tangent.distance(b.tangent));
     let arc = chord * (1.0 + turn * turn / 24.0);
@@ -805,7 +810,7 @@ fn onward(a: &Station, b: &Station, step: f64, sign: f64) -> (Unknowns, Vec3) {
 
 /// True when the cubic of two stations inside goes over an edge and back between them.
 #[inline(always)]
-fn strays(a: &Station, b: &Station, sign: f64, unknowns: usize) -> bool {
+fn strays(a: &TracePoint, b: &TracePoint, sign: f64, unknowns: usize) -> bool {
     let run = sign * a.x.distance(b.x);
     (0..unknowns).any(|k| {
         [(0.0, 1.0), (1.0, -1.0)].iter().any(|(edge, inward)| {

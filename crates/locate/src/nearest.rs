@@ -2,7 +2,7 @@
 
 use crate::newton::{ACCURACY, LONGEST_STEP, MOST_STEPS};
 use crate::pieces::{Feet, Patch, distance_sq, size_of};
-use crate::report::{Alternative, Report, Solution, Status};
+use crate::report::{Alternative, LocateReport, LocateStatus, Solution};
 use crate::tree::{CurveTree, SurfaceTree};
 use moldloft_num::{Box3, Curve, Order, Surface, Vec3};
 use smallvec::SmallVec;
@@ -22,7 +22,7 @@ const FARTHEST: f64 = 1e60;
 /// surface are equally near.
 const MOST_LOOKS: [u32; 2] = [4_000, 20_000];
 
-/// The most feet that are told apart.
+/// The most feet that are distinguished.
 const MOST_FEET: usize = 256;
 
 /// The point to which the nearest one is sought.
@@ -236,7 +236,7 @@ pub(crate) fn surface_foot(
 const CREASE_WITHIN: f64 = 1e-4;
 const CREASE: f64 = 0.9999;
 
-/// The least distance from `p` along a crease near `near`, of which no joint tells: where a spline's
+/// The least distance from `p` along a crease near `near`, that is not at a joint: where a spline's
 /// knots move with the other parameter. Descent comes to no end there, for the distance has a kink
 /// across the crease. `None` where there is no crease, or none with such a place.
 ///
@@ -340,15 +340,15 @@ fn creased(surface: &dyn Surface<f64>, p: Vec3, feet: Vec<Foot<2>>, size: f64) -
 }
 
 /// The status of a foot: the nearest point of a shape exists always.
-fn judged<const N: usize>(foot: &Foot<N>) -> Status {
+fn judged<const N: usize>(foot: &Foot<N>) -> LocateStatus {
     if !foot.converged {
-        Status::Diverged
+        LocateStatus::Diverged
     } else if foot.held.iter().any(|h| *h) {
-        Status::EdgeClamped
+        LocateStatus::EdgeClamped
     } else if foot.flat {
-        Status::Tangent
+        LocateStatus::Tangent
     } else {
-        Status::Ok
+        LocateStatus::Ok
     }
 }
 
@@ -357,13 +357,13 @@ fn solution<const N: usize>(start: &[f64], feet: Vec<Foot<N>>) -> Solution<N> {
     let mut status = judged(foot);
     if feet.len() > 1 {
         let next = feet[1..].iter().map(|f| f.xyz.distance(foot.xyz)).fold(f64::INFINITY, f64::min);
-        status = Status::Multiple { count: feet.len(), chosen: 0, next };
+        status = LocateStatus::Multiple { count: feet.len(), chosen: 0, next };
     }
     let alternatives = feet[1..]
         .iter()
         .map(|f| Alternative { parameters: f.at.iter().copied().collect(), xyz: f.xyz })
         .collect();
-    let report = Report {
+    let report = LocateReport {
         status,
         residual: foot.residual,
         iterations: foot.iterations,
@@ -407,9 +407,9 @@ fn nearest_of<const N: usize>(mut feet: Vec<Foot<N>>, p: Vec3, size: f64) -> Vec
 /// The point of a curve nearest to `p`.
 ///
 /// From a `start` it is the foot that descent from there leads to, a local minimum; when the
-/// descent fails, the nearest point of all, reported as [`Status::Fallback`]. Without a start it is
+/// descent fails, the nearest point of all, reported as [`LocateStatus::Fallback`]. Without a start it is
 /// the nearest point of all; equally near ones (to 1e-9 of the size) are reported as
-/// [`Status::Multiple`]. Ends count: [`Status::EdgeClamped`].
+/// [`LocateStatus::Multiple`]. Ends count: [`LocateStatus::EdgeClamped`].
 pub fn nearest_on_curve(curve: &dyn Curve<f64>, p: Vec3, start: Option<f64>) -> Solution<1> {
     if let Some(t) = start {
         let ends = [curve.jet(0.0, Order::Zero)[0], curve.jet(0.5, Order::Zero)[0]];
@@ -424,7 +424,7 @@ pub fn nearest_on_curve(curve: &dyn Curve<f64>, p: Vec3, start: Option<f64>) -> 
     let tree = CurveTree::new(curve);
     let mut found = nearest_in_curve(curve, &tree, p, start);
     if start.is_some() && found.report.status.is_solution() {
-        found.report.status = Status::Fallback;
+        found.report.status = LocateStatus::Fallback;
     }
     found
 }
@@ -502,7 +502,7 @@ pub fn nearest_on_surface(
     let tree = SurfaceTree::new(surface);
     let mut found = nearest_in_surface(surface, &tree, p, start);
     if start.is_some() && found.report.status.is_solution() {
-        found.report.status = Status::Fallback;
+        found.report.status = LocateStatus::Fallback;
     }
     found
 }

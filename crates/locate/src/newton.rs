@@ -16,7 +16,7 @@ pub const ACCURACY: f64 = 1e-12;
 
 /// What an iteration came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Walk<const N: usize> {
+pub struct NewtonResult<const N: usize> {
     /// The last unknowns.
     pub at: [f64; N],
     /// Length of the residual there.
@@ -57,14 +57,14 @@ pub fn newton<const N: usize>(
     ranges: &[Range; N],
     size: f64,
     mut f: impl FnMut([f64; N]) -> ([f64; N], [[f64; N]; N]),
-) -> Walk<N> {
+) -> NewtonResult<N> {
     let norm = |r: &[f64; N]| r.iter().map(|x| x * x).sum::<f64>().sqrt();
     let mut x = start;
     let (mut r, mut j) = f(x);
     let mut residual = norm(&r);
     let goal = ACCURACY * size;
     let mut walk =
-        Walk { at: x, residual, iterations: 0, found: residual <= goal, singular: false };
+        NewtonResult { at: x, residual, iterations: 0, found: residual <= goal, singular: false };
     let mut polished = false;
     while walk.iterations < MOST_STEPS && residual.is_finite() {
         let Some(mut step) = solve(&j, r) else {

@@ -1,3 +1,5 @@
+//! Shapes of any scalar seen through their real parts, so that searches choose alike for all scalars.
+
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
 
 /// A curve of any scalar seen through its real parts. Searches run on these, so that discrete

@@ -1,3 +1,5 @@
+//! Solutions of searches and reports about how they were found, or why there is none.
+
 use moldloft_num::Vec3;
 use smallvec::SmallVec;
 use std::fmt;
@@ -7,7 +9,7 @@ pub type Parameters = SmallVec<[f64; 4]>;
 
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Status {
+pub enum LocateStatus {
     /// Found from the start that was given, or the only solution there is.
     Ok,
     /// The iteration from the start failed; the solution is the one nearest to the start, in
@@ -32,30 +34,30 @@ pub enum Status {
     Diverged,
 }
 
-impl Status {
+impl LocateStatus {
     /// The word for it in the language and in Python.
     pub fn word(self) -> &'static str {
         match self {
-            Status::Ok => "ok",
-            Status::Fallback => "fallback",
-            Status::EdgeClamped => "edge-clamped",
-            Status::Tangent => "tangent",
-            Status::NoSolution => "no-solution",
-            Status::Multiple { .. } => "multiple",
-            Status::Diverged => "diverged",
+            LocateStatus::Ok => "ok",
+            LocateStatus::Fallback => "fallback",
+            LocateStatus::EdgeClamped => "edge-clamped",
+            LocateStatus::Tangent => "tangent",
+            LocateStatus::NoSolution => "no-solution",
+            LocateStatus::Multiple { .. } => "multiple",
+            LocateStatus::Diverged => "diverged",
         }
     }
 
     /// True when there is a solution.
     pub fn is_solution(self) -> bool {
-        !matches!(self, Status::NoSolution | Status::Diverged)
+        !matches!(self, LocateStatus::NoSolution | LocateStatus::Diverged)
     }
 }
 
-impl fmt::Display for Status {
+impl fmt::Display for LocateStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Status::Multiple { count, chosen, .. } => {
+            LocateStatus::Multiple { count, chosen, .. } => {
                 write!(f, "multiple({count}, {} taken)", chosen + 1)
             }
             other => f.write_str(other.word()),
@@ -74,9 +76,9 @@ pub struct Alternative {
 
 /// How a solution was found, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct LocateReport {
     /// How the search ended.
-    pub status: Status,
+    pub status: LocateStatus,
     /// What is left of the equations, in the unit of length.
     pub residual: f64,
     /// Steps of the iteration that led to the solution.
@@ -95,7 +97,7 @@ pub struct Solution<const N: usize> {
     /// The parameters.
     pub at: [f64; N],
     /// How they were found.
-    pub report: Report,
+    pub report: LocateReport,
 }
 
 /// A root as a search without a start finds it.
@@ -135,7 +137,7 @@ impl<const N: usize> Roots<N> {
         (0..distances.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)))
     }
 
-    /// The solution that takes root `chosen`; `given` tells that there was a start, from which the
+    /// The solution that takes root `chosen`; `given` states that there was a start, from which the
     /// iteration had failed.
     pub fn choose(&self, chosen: usize, start: &[f64], given: bool) -> Solution<N> {
         let root = &self.roots[chosen];
@@ -143,15 +145,15 @@ impl<const N: usize> Roots<N> {
         let next =
             others.clone().map(|(_, r)| r.xyz.distance(root.xyz)).fold(f64::INFINITY, f64::min);
         let status = match (self.roots.len(), given, root.tangent) {
-            (_, _, true) => Status::Tangent,
-            (_, true, _) => Status::Fallback,
-            (1, ..) => Status::Ok,
-            (count, ..) => Status::Multiple { count, chosen, next },
+            (_, _, true) => LocateStatus::Tangent,
+            (_, true, _) => LocateStatus::Fallback,
+            (1, ..) => LocateStatus::Ok,
+            (count, ..) => LocateStatus::Multiple { count, chosen, next },
         };
         let alternatives = others
             .map(|(_, r)| Alternative { parameters: r.at.iter().copied().collect(), xyz: r.xyz })
             .collect();
-        let report = Report {
+        let report = LocateReport {
             status,
             residual: root.residual,
             iterations: root.iterations,
@@ -163,13 +165,13 @@ impl<const N: usize> Roots<N> {
     }
 
     /// The report that there is no root.
-    pub fn none(&self, start: &[f64]) -> Report {
+    pub fn none(&self, start: &[f64]) -> LocateReport {
         let (last, residual) = match self.closest {
             Some((at, residual)) => (at.iter().copied().collect(), residual),
             None => (start.iter().copied().collect(), f64::INFINITY),
         };
-        Report {
-            status: Status::NoSolution,
+        LocateReport {
+            status: LocateStatus::NoSolution,
             residual,
             iterations: 0,
             start: start.iter().copied().collect(),

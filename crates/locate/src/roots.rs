@@ -6,9 +6,9 @@
 //! pieces are exact (see [`crate::pieces`]) every transversal root is found. Where the search
 //! meets its limit, as it does where shapes coincide, [`Roots::complete`] is false.
 
-use crate::newton::{OUTSIDE, Range, Walk, newton};
+use crate::newton::{NewtonResult, OUTSIDE, Range, newton};
 use crate::pieces::{CurvePiece, Patch, meet, size_of};
-use crate::report::{Report, Root, Roots, Solution, Status};
+use crate::report::{LocateReport, LocateStatus, Root, Roots, Solution};
 use crate::tree::{CurveTree, SurfaceTree};
 use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Surface, Vec3};
 
@@ -104,15 +104,15 @@ fn size_of_surface(surface: &dyn Surface<f64>) -> f64 {
 
 /// A walk from a start that was given, as a solution; `None` when it found nothing.
 pub(crate) fn taken<const N: usize>(
-    walk: &Walk<N>,
+    walk: &NewtonResult<N>,
     start: &[f64],
     sine: f64,
 ) -> Option<Solution<N>> {
     if !walk.found {
         return None;
     }
-    let status = if sine < TANGENT { Status::Tangent } else { Status::Ok };
-    let report = Report {
+    let status = if sine < TANGENT { LocateStatus::Tangent } else { LocateStatus::Ok };
+    let report = LocateReport {
         status,
         residual: walk.residual,
         iterations: walk.iterations,
@@ -128,7 +128,7 @@ pub(crate) fn from_all<const N: usize>(
     all: Roots<N>,
     start: Option<&[f64]>,
     choose: impl Fn(&Roots<N>) -> Option<usize>,
-) -> Result<Solution<N>, Report> {
+) -> Result<Solution<N>, LocateReport> {
     let from: Vec<f64> = start.map_or_else(|| vec![0.5; N], <[f64]>::to_vec);
     match choose(&all) {
         Some(k) => Ok(all.choose(k, &from, start.is_some())),
@@ -145,7 +145,7 @@ pub fn curve_level(
     curve: &dyn Curve<f64>,
     level: &Level<'_>,
     start: Option<f64>,
-) -> Result<Solution<1>, Report> {
+) -> Result<Solution<1>, LocateReport> {
     if let Some(t) = start {
         let size = size_of_curve(curve);
         let walk = newton([t], &[Range::PARAMETER], size, |[t]| {
@@ -245,7 +245,7 @@ impl<const N: usize> Search<N> {
     /// Takes the result of an iteration that began in the cell, if it ended in or near it.
     pub fn offer(
         &mut self,
-        walk: &Walk<N>,
+        walk: &NewtonResult<N>,
         cell: [[f64; 2]; N],
         facts: impl Fn([f64; N]) -> (Vec3, bool),
     ) {
@@ -324,7 +324,7 @@ pub fn curve_surface(
     curve: &dyn Curve<f64>,
     surface: &dyn Surface<f64>,
     start: Option<[f64; 3]>,
-) -> Result<Solution<3>, Report> {
+) -> Result<Solution<3>, LocateReport> {
     if let Some(q) = start {
         let size = size_of_curve(curve).max(size_of_surface(surface));
         let f = |q| curve_on_surface(curve, surface, q);
@@ -443,7 +443,7 @@ pub fn curve_curve(
     a: &dyn Curve<f64>,
     b: &dyn Curve<f64>,
     start: Option<[f64; 2]>,
-) -> Result<Solution<2>, Report> {
+) -> Result<Solution<2>, LocateReport> {
     let gap = |[t, s]: [f64; 2]| a.jet(t, Order::Zero)[0].distance(b.jet(s, Order::Zero)[0]);
     if let Some(q) = start {
         let size = size_of_curve(a).max(size_of_curve(b));
@@ -562,7 +562,7 @@ pub fn line_surface(
     p: Vec3,
     d: Vec3,
     start: Option<[f64; 2]>,
-) -> Result<Solution<3>, Report> {
+) -> Result<Solution<3>, LocateReport> {
     let speed = d.norm();
     let residual = |[u, v, s]: [f64; 3]| {
         let j = surface.jet(u, v, Order::First);

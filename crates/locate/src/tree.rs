@@ -1,3 +1,5 @@
+//! Trees of boxes over the pieces of curves and surfaces, for searches with bounds.
+
 use crate::pieces::{CurvePiece, Patch, curve_pieces, meet, patches, size_of};
 use moldloft_num::{Box3, Curve, Surface, Vec3};
 

@@ -28,7 +28,8 @@ pub fn read(input: &mut impl BufRead) -> io::Result<Option<Value>> {
         if let Some((name, value)) = line.split_once(':')
             && name.eq_ignore_ascii_case("content-length")
         {
-            let n: usize = value.trim().parse().map_err(|_| broken("the length is no number"))?;
+            let n: usize =
+                value.trim().parse().map_err(|_| broken("the length is not a number"))?;
             if n > LONGEST {
                 return Err(broken("the message is too long"));
             }

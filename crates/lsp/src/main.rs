@@ -4,7 +4,7 @@
 //!
 //! Every open text is a [`moldloft_document::Document`] that is run at each change, without writing any
 //! file, on a thread of its own; all answers come from there. A change stops the run under way, and one
-//! that does not come to an end soon is stopped and told.
+//! that does not come to an end soon is stopped and reported.
 
 mod frames;
 mod position;

@@ -23,10 +23,10 @@ const REQUEST_FAILED: i64 = -32803;
 /// Code for what the text was changed under.
 const CONTENT_MODIFIED: i64 = -32801;
 
-/// How long a program may run before it is stopped, so that an endless loop is told soon.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// How long a program may run before it is stopped, so that an endless loop is reported soon.
+const STOP_TIMEOUT: Duration = Duration::from_secs(2);
 /// How long a run may take to notice that it was stopped; then it is left to itself.
-const GRACE: Duration = Duration::from_secs(1);
+const EXIT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Whether more messages are awaited.
 pub enum Next {
@@ -53,7 +53,7 @@ pub struct Ran {
 struct Open {
     text: String,
     version: Value,
-    /// Other texts that diagnostics of this one were told for.
+    /// Other texts that diagnostics of this one were reported for.
     told: Vec<String>,
     state: State,
     /// Requests that wait for the end of the run: id, method, parameters.
@@ -75,7 +75,7 @@ struct Running {
     serial: u64,
     cancel: Arc<AtomicBool>,
     since: Instant,
-    /// When it was told to stop.
+    /// When it was asked to stop.
     stopped: Option<Instant>,
     /// True when the text was changed since.
     outdated: bool,
@@ -89,7 +89,7 @@ impl Running {
 
     /// When something is to be done about it.
     fn deadline(&self) -> Instant {
-        self.stopped.map_or(self.since + PATIENCE, |stopped| stopped + GRACE)
+        self.stopped.map_or(self.since + STOP_TIMEOUT, |stopped| stopped + EXIT_TIMEOUT)
     }
 }
 
@@ -104,7 +104,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// A server that is told the ends of its runs by these events.
+    /// A server that receives the ends of its runs by these events.
     pub fn new(events: Sender<Event>) -> Self {
         Self { open: BTreeMap::new(), shut_down: false, events, runs: 0, refused: Vec::new() }
     }
@@ -141,7 +141,7 @@ impl Server {
         running.min()
     }
 
-    /// Stops what has run too long, and goes on without what does not stop.
+    /// Cancels runs over the time limit and abandons those that do not stop.
     pub fn tick(&mut self) -> Vec<Value> {
         let now = Instant::now();
         let mut late = Vec::new();
@@ -231,7 +231,7 @@ impl Server {
                 None => Box::new(opened(&uri, &text, cancel)),
             });
             let document = catch_unwind(run).ok();
-            // After the end of the server nobody listens; that is no fault.
+            // After the end of the server nobody listens; that is not a fault.
             let _ = events.send(Event::Ran(Ran { uri, serial, document }));
         });
         if begun.is_err() {
@@ -396,7 +396,7 @@ impl Server {
         }
         let uri = params["textDocument"]["uri"].as_str().unwrap_or("").to_string();
         if !method.starts_with("textDocument/") {
-            return Err((METHOD_NOT_FOUND, format!("there is no method `{method}`")));
+            return Err((METHOD_NOT_FOUND, format!("unknown method `{method}`")));
         }
         let Some(open) = self.open.get_mut(&uri) else {
             return Err((REQUEST_FAILED, format!("`{uri}` is not open")));
@@ -416,7 +416,7 @@ impl Server {
         let State::Ready(document, _) = &mut open.state else {
             return match needs_run(method) {
                 true => Err((REQUEST_FAILED, stopped_text())),
-                false => Err((METHOD_NOT_FOUND, format!("there is no method `{method}`"))),
+                false => Err((METHOD_NOT_FOUND, format!("unknown method `{method}`"))),
             };
         };
         let at = offset(text, &params["position"]);
@@ -467,7 +467,7 @@ impl Server {
                     let here = found.into_iter().find(|s| s.touches(at));
                     Ok(here.map_or(Value::Null, |span| range(text, span)))
                 }
-                None => Err((REQUEST_FAILED, "there is no name here".into())),
+                None => Err((REQUEST_FAILED, "no name at this position".into())),
             },
             "textDocument/rename" => {
                 let new = params["newName"].as_str().unwrap_or("");
@@ -489,7 +489,7 @@ impl Server {
                 });
                 Ok(symbols.collect())
             }
-            _ => Err((METHOD_NOT_FOUND, format!("there is no method `{method}`"))),
+            _ => Err((METHOD_NOT_FOUND, format!("unknown method `{method}`"))),
         }
     }
 }
@@ -518,12 +518,12 @@ fn answered(id: &Value, answer: Result<Value, (i64, String)>) -> Value {
     }
 }
 
-/// What is told of a run that took too long.
+/// What is reported for a run that took too long.
 fn stopped_text() -> String {
     format!(
-        "the program was stopped after {} s, so that the editor goes on\n\
+        "the program was stopped after {} s, to keep the editor responsive\n\
          look for a loop whose condition always holds; `moldloft run` gives it more time",
-        PATIENCE.as_secs()
+        STOP_TIMEOUT.as_secs()
     )
 }
 
@@ -553,7 +553,7 @@ fn published(uri: &str, version: &Value, all: &[Value]) -> Value {
     json!({"jsonrpc": "2.0", "method": "textDocument/publishDiagnostics", "params": params})
 }
 
-/// The text of a diagnostic: what is wrong, what was expected, how to mend it.
+/// The text of a diagnostic: what is wrong, what was expected, how to fix it.
 fn message(data: &DiagnosticData) -> String {
     let mut text = data.message.clone();
     for (word, said) in [("expected", &data.expected), ("found", &data.found)] {

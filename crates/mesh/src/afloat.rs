@@ -125,7 +125,7 @@ pub struct Afloat<T> {
     /// waterline; from GM where a centre of gravity is given, else from BM.
     pub mtc: Option<T>,
     /// Transverse and longitudinal metacentric height at this attitude, when a centre of gravity is
-    /// given: the slope of the righting arm for small turns of the afloat body.
+    /// given: the slope of the righting arm for small turns of the floating body.
     pub gm: Option<[T; 2]>,
     /// Righting arm: how far buoyancy acts to the sunken side of gravity, level across the body.
     pub gz: Option<T>,

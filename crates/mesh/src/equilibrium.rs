@@ -24,7 +24,7 @@ pub struct Loading<T> {
 pub enum Status {
     /// The residual is rounding.
     Converged,
-    /// The best attitude found is no equilibrium.
+    /// The best attitude found is not an equilibrium.
     NotConverged,
 }
 

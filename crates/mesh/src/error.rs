@@ -1,3 +1,5 @@
+//! Errors of data that make no mesh.
+
 use std::fmt;
 
 /// What is wrong with the data offered as a mesh.

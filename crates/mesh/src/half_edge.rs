@@ -82,26 +82,3 @@ impl Topology {
             .collect()
     }
 }
-
-/// Sets joined pair by pair; the root of a set is its lowest member.
-pub(crate) struct Joined(Vec<u32>);
-
-impl Joined {
-    pub fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    pub fn root(&mut self, mut k: u32) -> u32 {
-        while self.0[k as usize] != k {
-            let up = self.0[self.0[k as usize] as usize];
-            self.0[k as usize] = up;
-            k = up;
-        }
-        k
-    }
-
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}

@@ -1,3 +1,6 @@
+//! Hydrostatics of the part of a mesh below the water: displacement, centres, waterplane, stability, coefficients.
+//! Panels that the water cuts are cut exactly.
+
 use crate::clip::below;
 use crate::half_edge::{edges, half_edges};
 use crate::panel::length;

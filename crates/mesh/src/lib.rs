@@ -58,7 +58,7 @@ pub use measure::{Measures, measure, measure_patch};
 pub use mesh::Mesh;
 pub use panel::Panel;
 pub use planar::planar_triangles;
-pub use quality::{PatchQuality, Spread, WorstPanel, qualities, quality};
+pub use quality::{PatchQuality, Statistics, WorstPanel, qualities, quality};
 pub use report::{OpenLoop, TopologyReport};
 pub use section::{Polyline, section, section_where};
 pub use topology::{Block, Patch, PatchInfo, Tag, Topology, TopologyBuilder, is_triangle};

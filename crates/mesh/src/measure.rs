@@ -1,3 +1,5 @@
+//! Area, volume and centres of meshes and their patches.
+
 use crate::sum::chunked_sum;
 use crate::{Mesh, Panel};
 use moldloft_num::{Real, Vec3};

@@ -1,3 +1,5 @@
+//! A mesh: a topology with the positions of its vertices, of any scalar.
+
 use crate::{Block, MeshError, Panel, Patch, PatchInfo, Topology, TopologyBuilder};
 use moldloft_num::{Box3, Real, Vec3};
 use std::sync::Arc;

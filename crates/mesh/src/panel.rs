@@ -1,3 +1,5 @@
+//! One panel as a bilinear patch or a triangle: centre, area, volume of its cone, quadrature.
+
 use moldloft_num::{Real, Vec3};
 
 /// The corners of one panel: the bilinear patch between four points, or a plane triangle.

@@ -1,3 +1,5 @@
+//! Quality of the panels of a patch: aspect ratio, skewness, warp and jumps of area, with the worst panel named.
+
 use crate::half_edge::{edges, half_edges};
 use crate::panel::length;
 use crate::{Mesh, Panel};
@@ -5,7 +7,7 @@ use moldloft_num::Vec3;
 
 /// Lowest, highest and mean value of a measure over the panels of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct Statistics {
     /// Lowest.
     pub min: f64,
     /// Highest.
@@ -31,23 +33,23 @@ pub struct PatchQuality {
     /// Triangles.
     pub triangles: usize,
     /// Panel size, the square root of the area.
-    pub size: Spread,
+    pub size: Statistics,
     /// Aspect ratio, 1 or more. Quads: the longer over the shorter of the two lines that join the
     /// middles of opposite sides (Robinson 1987, "CRE method of element testing", Eng. Comput.
     /// 4:113). Triangles: the longest side over its height, scaled to 1 for equal sides.
-    pub aspect: Spread,
+    pub aspect: Statistics,
     /// Equiangular skewness, 0 (best) to 1: the largest of (a - e) / (180 - e) and (e - a) / e over
     /// the corner angles a, with e = 90 degrees for quads and 60 for triangles (Ansys Fluent User's
     /// Guide, "Mesh Quality").
-    pub skew: Spread,
+    pub skew: Statistics,
     /// Warp: the distance of the corners from the plane parallel to both diagonals half-way between
     /// them, over the panel size. 0 for plane panels.
-    pub warp: Spread,
+    pub warp: Statistics,
     /// Smallest angle between two sides of a panel, in radians.
-    pub angle: Spread,
+    pub angle: Statistics,
     /// How many times as large as a neighbour a panel is, or a neighbour as it, whichever is more: 1
     /// or more. Neighbours across the edges of patches count; panels without area do not.
-    pub jump: Spread,
+    pub jump: Statistics,
     /// The panels of greatest aspect, skew, warp and jump; `None` for a patch of panels without area.
     pub worst: Option<[WorstPanel; 4]>,
     /// The panel of smallest angle.
@@ -114,17 +116,17 @@ fn of_patch(mesh: &Mesh, patch: usize, jumps: &[f64]) -> Option<PatchQuality> {
         }
         blunt.take(-angles(&panel).fold(f64::INFINITY, f64::min), here);
     }
-    let angle = blunt.spread();
+    let angle = blunt.statistics();
     let worst: Vec<WorstPanel> = shape.iter().filter_map(|tally| tally.worst).collect();
     (!faces.is_empty()).then(|| PatchQuality {
         quads,
         triangles,
-        size: size.spread(),
-        aspect: shape[0].spread(),
-        skew: shape[1].spread(),
-        warp: shape[2].spread(),
-        angle: Spread { min: 0.0 - angle.max, max: 0.0 - angle.min, mean: 0.0 - angle.mean },
-        jump: shape[3].spread(),
+        size: size.statistics(),
+        aspect: shape[0].statistics(),
+        skew: shape[1].statistics(),
+        warp: shape[2].statistics(),
+        angle: Statistics { min: 0.0 - angle.max, max: 0.0 - angle.min, mean: 0.0 - angle.mean },
+        jump: shape[3].statistics(),
         worst: worst.try_into().ok(),
         sharpest: blunt.worst,
         without_area,
@@ -156,11 +158,11 @@ impl Tally {
     }
 
     /// The spread; all zero when nothing was taken.
-    fn spread(&self) -> Spread {
+    fn statistics(&self) -> Statistics {
         if self.count == 0 {
-            return Spread { min: 0.0, max: 0.0, mean: 0.0 };
+            return Statistics { min: 0.0, max: 0.0, mean: 0.0 };
         }
-        Spread { min: self.min, max: self.max, mean: self.sum / self.count as f64 }
+        Statistics { min: self.min, max: self.max, mean: self.sum / self.count as f64 }
     }
 }
 

@@ -1,6 +1,9 @@
-use crate::half_edge::{HalfEdge, Joined, edges, half_edges};
+//! What the sides of faces say of a mesh: closed or open and where, manifold, oriented, outward.
+
+use crate::half_edge::{HalfEdge, edges, half_edges};
 use crate::sum::chunked_sum;
 use crate::{Mesh, Topology};
+use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Real, Vec3};
 
 /// What was found by matching the sides of all faces by vertex number.
@@ -75,8 +78,8 @@ fn report<T: Real>(mesh: &Mesh<T>) -> TopologyReport {
     let faces = topology.faces();
     let sorted = half_edges(topology);
 
-    let mut parts = Joined::new(faces.len());
-    let mut fans = Joined::new(4 * faces.len());
+    let mut parts = UnionFind::new(faces.len());
+    let mut fans = UnionFind::new(4 * faces.len());
     let (mut edge_count, mut branching_edges, mut misoriented_edges) = (0, 0, 0);
     let mut open = Vec::new();
     for edge in edges(&sorted) {
@@ -103,7 +106,7 @@ fn report<T: Real>(mesh: &Mesh<T>) -> TopologyReport {
     open.sort_unstable_by_key(|e| e.corner);
 
     let (vertices, pinched_vertices) = count_fans(topology, &mut fans);
-    let components = (0..faces.len() as u32).filter(|&f| parts.root(f) == f).count();
+    let components = (0..faces.len() as u32).filter(|&f| parts.find(f) == f).count();
     let closed = open.is_empty() && !faces.is_empty();
     let manifold = branching_edges == 0 && pinched_vertices == 0;
     let oriented = misoriented_edges == 0 && branching_edges == 0;
@@ -134,14 +137,14 @@ fn report<T: Real>(mesh: &Mesh<T>) -> TopologyReport {
 }
 
 /// Counts used vertices, and those of them whose corners lie in more than one fan.
-fn count_fans(topology: &Topology, fans: &mut Joined) -> (usize, usize) {
+fn count_fans(topology: &Topology, fans: &mut UnionFind) -> (usize, usize) {
     const UNSEEN: u32 = u32::MAX;
     const PINCHED: u32 = u32::MAX - 1;
     let mut fan_of = vec![UNSEEN; topology.vertex_count()];
     for (f, &face) in topology.faces().iter().enumerate() {
         let corners = if crate::is_triangle(face) { 3 } else { 4 };
         for k in 0..corners {
-            let root = fans.root((4 * f + k) as u32);
+            let root = fans.find((4 * f + k) as u32);
             let fan = &mut fan_of[face[k] as usize];
             if *fan == UNSEEN {
                 *fan = root;
@@ -155,14 +158,14 @@ fn count_fans(topology: &Topology, fans: &mut Joined) -> (usize, usize) {
 }
 
 /// The volume each part encloses, measured about the centre of the mesh, by lowest face.
-fn part_volumes<T: Real>(mesh: &Mesh<T>, parts: &mut Joined) -> Vec<f64> {
+fn part_volumes<T: Real>(mesh: &Mesh<T>, parts: &mut UnionFind) -> Vec<f64> {
     let origin = mesh.bounds().centre();
     let positions: Vec<Vec3> = mesh.positions().iter().map(|p| p.re() - origin).collect();
     let mut volumes = vec![0.0; mesh.faces().len()];
     for (f, &face) in mesh.faces().iter().enumerate() {
-        volumes[parts.root(f as u32) as usize] += crate::Panel::of(face, &positions).cone_volume();
+        volumes[parts.find(f as u32) as usize] += crate::Panel::of(face, &positions).cone_volume();
     }
-    (0..volumes.len() as u32).filter(|&f| parts.root(f) == f).map(|f| volumes[f as usize]).collect()
+    (0..volumes.len() as u32).filter(|&f| parts.find(f) == f).map(|f| volumes[f as usize]).collect()
 }
 
 /// Chains open edges, following each face's direction where possible.

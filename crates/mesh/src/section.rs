@@ -1,3 +1,5 @@
+//! Sections of meshes by planes and other level surfaces, chained into polylines.
+
 use crate::half_edge::{edges, half_edges};
 use crate::{Mesh, is_triangle};
 use moldloft_num::{Plane, Vec3, find_root};

@@ -1,3 +1,5 @@
+//! Meshes of some of the patches of another.
+
 use crate::{Block, Mesh, MeshError, PatchInfo, TopologyBuilder};
 use moldloft_num::Real;
 

@@ -1,3 +1,6 @@
+//! Vertices by number, the faces between them and the patches that these belong to. Positions play no part: what is
+//! joined shares a number.
+
 use crate::MeshError;
 use moldloft_num::Vec3;
 use std::ops::Range;

@@ -1,9 +1,13 @@
+//! The graph of named objects: declared, matched with the run before, evaluated rank by rank where something changed.
+//!
+//! An evaluation whose result is bitwise equal to the one before ends the wave there.
+
 use crate::memo::Memo;
 use crate::object::{Failure, Object, State};
 use indexmap::IndexMap;
 use moldloft_diag::nearest;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Class, Context, Fault, FieldId, Head, Kept, Row, Scalar, Value};
+use moldloft_registry::{Attributes, CallError, Class, Context, FieldId, Kept, Row, Scalar, Value};
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap, HashSet};
@@ -84,7 +88,7 @@ pub struct Declaration<'a, T: Scalar> {
     /// The arguments in the order of the row's fields, checked.
     pub args: Vec<Value<T>>,
     /// How it is drawn and divided.
-    pub head: Head,
+    pub head: Attributes,
     /// Where it was declared, in the producer's own numbering.
     pub origin: u32,
 }
@@ -148,8 +152,8 @@ impl<T: Scalar> Graph<T> {
         self.context.clone()
     }
 
-    /// Says what ends long evaluations when it is set to true.
-    pub fn obey(&mut self, cancel: Arc<AtomicBool>) {
+    /// Sets the flag that cancels long evaluations.
+    pub fn set_cancel_flag(&mut self, cancel: Arc<AtomicBool>) {
         self.context.cancel = cancel;
     }
 
@@ -374,8 +378,8 @@ impl<T: Scalar> Graph<T> {
         if let Some([bead, point]) = object.row.sweep {
             let named = |field: FieldId| match object.args[field.position()] {
                 Value::Object(key) => Ok(key),
-                _ => Err(Fault::new("constant-point", "a sweep needs names")
-                    .expected("a bead and what follows it, by their names in the model")
+                _ => Err(CallError::new("constant-point", "a sweep needs names")
+                    .expected("a bead and an object that depends on it, by name")
                     .found("something without a name")
                     .in_field(field)),
             };
@@ -385,7 +389,7 @@ impl<T: Scalar> Graph<T> {
             });
             match locus {
                 Ok(locus) => args[point.position()] = Value::Locus(locus),
-                Err(fault) => return State::Failed(Failure::Fault(fault)),
+                Err(fault) => return State::Failed(Failure::CallError(fault)),
             }
         }
         let call = || T::call(&object.row, &args, &self.context);
@@ -393,27 +397,28 @@ impl<T: Scalar> Graph<T> {
         let called = std::panic::catch_unwind(std::panic::AssertUnwindSafe(call));
         let value = match called {
             Ok(Ok(value)) => value,
-            Ok(Err(fault)) => return State::Failed(Failure::Fault(fault)),
+            Ok(Err(fault)) => return State::Failed(Failure::CallError(fault)),
             Err(_) => {
                 let message = format!("{} failed unexpectedly", object.row.name);
-                let fault = Fault::new("internal-error", message)
+                let fault = CallError::new("internal-error", message)
                     .help("this is a fault of the program, not of the model: please report it");
-                return State::Failed(Failure::Fault(fault));
+                return State::Failed(Failure::CallError(fault));
             }
         };
         if !value.is_finite() {
-            let fault = Fault::new("not-finite", "the result is not a finite number")
+            let fault = CallError::new("not-finite", "the result is not a finite number")
                 .expected("finite coordinates")
                 .found("NaN or infinity")
                 .help("look for a division by zero or a number far too large in its data");
-            return State::Failed(Failure::Fault(fault));
+            return State::Failed(Failure::CallError(fault));
         }
         if value.depth() > DEEPEST_NESTING {
-            let fault = Fault::new("nested-too-deep", "too many shapes are built on one another")
-                .expected(format!("at most {DEEPEST_NESTING} levels of curves and surfaces"))
-                .found(format!("{} levels", value.depth()))
-                .help("build on an earlier shape instead");
-            return State::Failed(Failure::Fault(fault));
+            let fault =
+                CallError::new("nested-too-deep", "too many shapes are built on one another")
+                    .expected(format!("at most {DEEPEST_NESTING} levels of curves and surfaces"))
+                    .found(format!("{} levels", value.depth()))
+                    .help("build on an earlier shape instead");
+            return State::Failed(Failure::CallError(fault));
         }
         State::Ok(value.named(key))
     }
@@ -424,7 +429,7 @@ impl<T: Scalar> Graph<T> {
             Value::Object(key) => match &self.object(*key).state {
                 State::Ok(value) => Ok(value.clone()),
                 State::Failed(Failure::Blocked { by }) => Err(*by),
-                State::Failed(Failure::Fault(_)) | State::New => Err(*key),
+                State::Failed(Failure::CallError(_)) | State::New => Err(*key),
             },
             Value::List(items) => {
                 let items: Result<Vec<_>, _> = items.iter().map(|v| self.resolved(v)).collect();
@@ -559,9 +564,9 @@ impl<T: Scalar> Run<'_, T> {
     /// Declares an object. What the previous run declared alike keeps its shape.
     ///
     /// # Errors
-    /// A [`Fault`] when this run has declared the name before, or when the object would depend on
+    /// A [`CallError`] when this run has declared the name before, or when the object would depend on
     /// itself.
-    pub fn declare(&mut self, declaration: Declaration<'_, T>) -> Result<Key, Fault> {
+    pub fn declare(&mut self, declaration: Declaration<'_, T>) -> Result<Key, CallError> {
         let Declaration { name, row, args, head, origin } = declaration;
         let clock = self.graph.clock;
         let order = self.graph.declared;
@@ -570,7 +575,7 @@ impl<T: Scalar> Run<'_, T> {
         };
         let object = self.graph.object_mut(key);
         if object.declared_at == clock {
-            return Err(Fault::new("duplicate-name", format!("`{name}` is declared twice"))
+            return Err(CallError::new("duplicate-name", format!("`{name}` is declared twice"))
                 .help("give one of them another name"));
         }
         if !Arc::ptr_eq(&object.row, row) && object.row.name != row.name {
@@ -586,7 +591,7 @@ impl<T: Scalar> Run<'_, T> {
                 }
                 return Ok(self.insert(name, row, args, head, origin));
             }
-            return Err(Fault::new("duplicate-name", format!("`{name}` exists already")));
+            return Err(CallError::new("duplicate-name", format!("`{name}` exists already")));
         }
         object.declared_at = clock;
         object.origin = origin;
@@ -620,7 +625,7 @@ impl<T: Scalar> Run<'_, T> {
         // What was cancelled was never found out.
         let cancelled = matches!(
             &self.graph.object(key).state,
-            State::Failed(Failure::Fault(fault)) if fault.id == "cancelled"
+            State::Failed(Failure::CallError(fault)) if fault.id == "cancelled"
         );
         if !same || !same_row || cancelled {
             self.graph.object_mut(key).row = row.clone();
@@ -632,8 +637,8 @@ impl<T: Scalar> Run<'_, T> {
     /// Gives an object of the model new arguments, in an edit.
     ///
     /// # Errors
-    /// A [`Fault`] when it would depend on itself.
-    pub fn set_args(&mut self, key: Key, args: Vec<Value<T>>) -> Result<(), Fault> {
+    /// A [`CallError`] when it would depend on itself.
+    pub fn set_args(&mut self, key: Key, args: Vec<Value<T>>) -> Result<(), CallError> {
         let old = &self.graph.object(key).args;
         if old.len() == args.len() && old.iter().zip(&args).all(|(a, b)| a.same(b)) {
             return Ok(());
@@ -649,7 +654,7 @@ impl<T: Scalar> Run<'_, T> {
         name: &str,
         row: &Arc<Row>,
         args: Vec<Value<T>>,
-        head: Head,
+        head: Attributes,
         origin: u32,
     ) -> Key {
         let graph = &mut *self.graph;
@@ -673,7 +678,7 @@ impl<T: Scalar> Run<'_, T> {
         key
     }
 
-    fn check_cycle(&self, key: Key, args: &[Value<T>]) -> Result<(), Fault> {
+    fn check_cycle(&self, key: Key, args: &[Value<T>]) -> Result<(), CallError> {
         // In a run, parents are declared before their children: no cycle can arise.
         if self.extent == Extent::Whole {
             return Ok(());
@@ -701,7 +706,7 @@ impl<T: Scalar> Run<'_, T> {
             at = path_to[&at];
         }
         path.push(name(key));
-        Err(Fault::new("cycle", format!("`{}` would depend on itself", name(key)))
+        Err(CallError::new("cycle", format!("`{}` would depend on itself", name(key)))
             .found(path.join(" -> "))
             .help("an object may only be built on objects that are not built on it"))
     }
@@ -724,7 +729,7 @@ impl<T: Scalar> Run<'_, T> {
     /// The reason why it has none.
     pub fn force(&mut self, key: Key) -> Result<Value<T>, Failure> {
         self.graph.force(key);
-        // What is asked afterwards, in an edit, is no part of the program.
+        // What is asked afterwards, in an edit, is not a part of the program.
         if self.extent == Extent::Whole {
             self.graph.object_mut(key).read_by_program = true;
             self.graph.any_read = true;
@@ -740,7 +745,7 @@ impl<T: Scalar> Run<'_, T> {
     ///
     /// # Errors
     /// What the row's body reports.
-    pub fn call(&mut self, row: &Arc<Row>, args: Vec<Value<T>>) -> Result<Value<T>, Fault> {
+    pub fn call(&mut self, row: &Arc<Row>, args: Vec<Value<T>>) -> Result<Value<T>, CallError> {
         let graph = &mut *self.graph;
         graph.memo.call(row, args, graph.clock, &graph.context)
     }
@@ -758,8 +763,8 @@ impl<T: Scalar> Run<'_, T> {
     /// Removes an object that nothing depends on.
     ///
     /// # Errors
-    /// A [`Fault`] that names the dependents.
-    pub fn remove(&mut self, key: Key) -> Result<(), Fault> {
+    /// A [`CallError`] that names the dependents.
+    pub fn remove(&mut self, key: Key) -> Result<(), CallError> {
         let object = self.graph.object(key);
         if object.children.is_empty() {
             self.graph.remove(&[key]);
@@ -776,7 +781,7 @@ impl<T: Scalar> Run<'_, T> {
             names.push(format!("{} more", object.children.len() - names.len()));
         }
         let names = names.join(", ");
-        Err(Fault::new("has-dependents", format!("`{}` cannot be deleted", object.name))
+        Err(CallError::new("has-dependents", format!("`{}` cannot be deleted", object.name))
             .found(format!("{names} built on it"))
             .help("delete or rebuild those first"))
     }
@@ -784,10 +789,10 @@ impl<T: Scalar> Run<'_, T> {
     /// Renames an object; what refers to it goes on doing so.
     ///
     /// # Errors
-    /// A [`Fault`] when the name is taken.
-    pub fn rename(&mut self, key: Key, name: &str) -> Result<(), Fault> {
+    /// A [`CallError`] when the name is taken.
+    pub fn rename(&mut self, key: Key, name: &str) -> Result<(), CallError> {
         if self.graph.names.contains_key(name) {
-            return Err(Fault::new("duplicate-name", format!("`{name}` exists already"))
+            return Err(CallError::new("duplicate-name", format!("`{name}` exists already"))
                 .help("choose another name"));
         }
         self.graph.last_change = self.graph.clock;

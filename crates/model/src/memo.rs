@@ -1,5 +1,7 @@
+//! The memory of anonymous calls: `f(...)` with the same arguments is computed once in a run, and kept for the next.
+
 use moldloft_num::Vec3;
-use moldloft_registry::{Context, Fault, Row, Scalar, Value};
+use moldloft_registry::{CallError, Context, Row, Scalar, Value};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -32,7 +34,7 @@ impl<T: Scalar> Memo<T> {
         args: Vec<Value<T>>,
         clock: u64,
         context: &Context,
-    ) -> Result<Value<T>, Fault> {
+    ) -> Result<Value<T>, CallError> {
         let bucket = self.calls.entry(fingerprint(row, &args)).or_default();
         let same = |r: &&mut Remembered<T>| {
             Arc::ptr_eq(&r.row, row) && r.args.iter().zip(&args).all(|(a, b)| a.same(b))

@@ -1,5 +1,7 @@
+//! Named objects: a call of a row, its parents and children, and what became of its evaluation.
+
 use moldloft_num::trace::Key;
-use moldloft_registry::{Fault, Head, Row, Scalar, Value};
+use moldloft_registry::{Attributes, CallError, Row, Scalar, Value};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -7,7 +9,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
     /// Its own data make no such thing.
-    Fault(Fault),
+    CallError(CallError),
     /// Something that it depends on failed.
     Blocked {
         /// The object at the root of the trouble.
@@ -67,7 +69,7 @@ pub struct Object<T: Scalar> {
     /// The arguments, in the order of the row's fields; parents as [`Value::Object`].
     pub args: Vec<Value<T>>,
     /// How it is drawn and divided.
-    pub head: Head,
+    pub head: Attributes,
     /// Where it was declared, in the producer's numbering.
     pub origin: u32,
     /// What it depends on directly, in order of mention.
@@ -97,7 +99,7 @@ impl<T: Scalar> Object<T> {
         key: Key,
         name: Arc<str>,
         row: Arc<Row>,
-        head: Head,
+        head: Attributes,
         origin: u32,
         order: u32,
         clock: u64,
@@ -126,9 +128,9 @@ impl<T: Scalar> Object<T> {
     }
 
     /// Its own fault, if its data make no such thing.
-    pub fn fault(&self) -> Option<&Fault> {
+    pub fn fault(&self) -> Option<&CallError> {
         match &self.state {
-            State::Failed(Failure::Fault(fault)) => Some(fault),
+            State::Failed(Failure::CallError(fault)) => Some(fault),
             _ => None,
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::Graph;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Context, CurveRef, Fault, LocusRef, Point, Row, Scalar, Sweep, Value};
+use moldloft_registry::{CallError, Context, CurveRef, LocusRef, Point, Row, Scalar, Sweep, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -12,9 +12,9 @@ impl<T: Scalar> Graph<T> {
     ///
     /// # Errors
     /// `constant-point` when the one does not depend on the other.
-    pub(crate) fn locus(&self, bead: Key, follower: Key) -> Result<LocusRef<T>, Fault> {
+    pub(crate) fn locus(&self, bead: Key, follower: Key) -> Result<LocusRef<T>, CallError> {
         let unrelated = || {
-            Fault::new("constant-point", "what is swept does not depend on the bead")
+            CallError::new("constant-point", "the swept object does not depend on the bead")
                 .expected("an object that moves when the bead does")
                 .found("one that stays")
                 .help("build it on the bead")
@@ -35,11 +35,14 @@ impl<T: Scalar> Graph<T> {
         for key in between {
             let object = self.object(key);
             if object.row.sweep.is_some() {
-                return Err(Fault::new("nested-sweep", "what is swept depends on a sweep itself")
-                    .expected("an object that depends on no ProcCurve or ProcSurf")
-                    .found("one that does")
-                    .help("sweep the object that the other sweep follows")
-                    .related(Some(key), "sweeps itself"));
+                return Err(CallError::new(
+                    "nested-sweep",
+                    "the swept object depends on another sweep",
+                )
+                .expected("an object that depends on no ProcCurve or ProcSurf")
+                .found("one that does")
+                .help("sweep the object that the other sweep follows")
+                .related(Some(key), "sweeps itself"));
             }
             let moves = |key: Key| key == bead || inside.contains(&key);
             let args = object.args.iter().map(|arg| self.resolved_but(arg, &moves));
@@ -89,7 +92,7 @@ fn filled<T: Scalar>(arg: &Value<T>, values: &HashMap<Key, Value<T>>) -> Value<T
 }
 
 impl<T: Scalar> Sweep<T> for Swept<T> {
-    fn at(&self, t: T) -> Result<Value<T>, Fault> {
+    fn at(&self, t: T) -> Result<Value<T>, CallError> {
         let bead = Value::Point(Box::new(Point::on_curve(self.curve.clone(), t)));
         let mut values = HashMap::from([(self.bead, bead.named(self.bead))]);
         let mut last = Value::Unset;
@@ -99,11 +102,11 @@ impl<T: Scalar> Sweep<T> for Swept<T> {
             // As for any object: a kind that panics must not take the model with it.
             let called = std::panic::catch_unwind(std::panic::AssertUnwindSafe(call));
             let value = called.unwrap_or_else(|_| {
-                Err(Fault::new("internal-error", format!("{} failed unexpectedly", row.name)))
+                Err(CallError::new("internal-error", format!("{} failed unexpectedly", row.name)))
             });
             let value = value.map_err(|fault| fault.related(Some(*key), "has no value there"))?;
             if !value.is_finite() {
-                return Err(Fault::new("not-finite", "the result is not a finite number")
+                return Err(CallError::new("not-finite", "the result is not a finite number")
                     .related(Some(*key), "has no finite value there"));
             }
             last = value.named(*key);

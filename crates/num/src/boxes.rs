@@ -1,3 +1,5 @@
+//! Axis-aligned boxes, as bounds of points.
+
 use crate::Vec3;
 
 /// An axis-aligned box; empty until a point is put in.

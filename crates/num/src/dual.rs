@@ -1,3 +1,5 @@
+//! Dual numbers: a value with its exact first derivatives in several directions.
+
 use crate::real::{Real, real_by_chain};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 

@@ -1,3 +1,5 @@
+//! Planes, axes and right-handed orthonormal frames.
+
 use crate::{Real, Vec3};
 
 /// A plane: the points X with n . (X - p) = 0. The unit normal points to its positive side.

@@ -15,10 +15,10 @@ mod boxes;
 mod dual;
 mod frame;
 mod jet;
-mod law;
 mod linear;
 mod quadrature;
 mod real;
+mod reparametrization;
 mod roots;
 mod shape;
 mod solid;
@@ -30,10 +30,13 @@ pub use boxes::Box3;
 pub use dual::{Dual, Dual4};
 pub use frame::{Axis, Frame, Plane};
 pub use jet::{Bi1, Bi2, Jet, Tri1, Uni1, Uni2, lift_curve, lift_surface};
-pub use law::{Composed, Law, LawJet, inv_law, inv_law_in, lift_law};
 pub use linear::{Banded, SingularMatrix, solve_dense};
 pub use quadrature::{gauss_legendre, gauss_points, integrate};
 pub use real::Real;
+pub use reparametrization::{
+    Composed, Reparametrization, ReparametrizationJet, inv_reparametrization,
+    inv_reparametrization_in, lift_reparametrization,
+};
 pub use roots::{NoRoot, find_root};
 pub use shape::{
     Curve, CurveFormula, CurveJet, Field, Order, SurfJet, Surface, SurfaceFormula, line_crossings,

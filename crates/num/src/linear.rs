@@ -1,3 +1,6 @@
+//! Linear systems: dense by elimination with partial pivoting, and banded ones. A singular matrix is an error, never
+//! a plausible solution.
+
 use crate::{Real, Vec3};
 
 /// The matrix of a linear system is singular to working precision.

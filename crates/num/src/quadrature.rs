@@ -1,3 +1,5 @@
+//! Gauss-Legendre quadrature: the 8-point rule, and its adaptive use to an accuracy.
+
 use crate::Real;
 
 /// Nodes and weights on [-1, 1] of the Gauss-Legendre rule with 8 points, exact for polynomials
@@ -41,7 +43,7 @@ const DEEP: i32 = 12;
 /// intervals are halved until two levels agree. The choice of intervals follows the real parts, so
 /// a dual number integrates over the same ones.
 ///
-/// A kink of `f` that nobody told of is closed in upon: otherwise the derivatives of the integral
+/// A kink of `f` that is not declared is closed in upon: otherwise the derivatives of the integral
 /// would be wrong by the width of its interval.
 pub fn integrate<T: Real>(a: T, b: T, accuracy: f64, mut f: impl FnMut(T) -> T) -> T {
     let mut stack = vec![(a, b, gauss_legendre(a, b, &mut f), 0)];

@@ -1,3 +1,6 @@
+//! The scalar that all geometry is generic over. Transcendental functions are those of `libm`, so that the bits are
+//! the same on every platform.
+
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 

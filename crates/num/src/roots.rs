@@ -1,3 +1,5 @@
+//! The root of a function of one variable in a bracket.
+
 /// Why no root was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoRoot {

@@ -1,5 +1,8 @@
+//! The traits of curves, surfaces and implicit fields: what evaluates, its derivatives by the shape parameters (jets),
+//! its breaks and its evaluation on grids. `grid` gives what `jet` gives point by point.
+
 use crate::jet::{Jet, lift_curve, lift_surface};
-use crate::law::Law;
+use crate::reparametrization::Reparametrization;
 use crate::trace::{Edges, Key, Trace};
 use crate::{Real, Vec3, find_root};
 use std::sync::Arc;
@@ -77,7 +80,7 @@ pub trait Curve<T: Real>: Send + Sync {
 
     /// The law by which its natural parameter was redistributed; `None` when it was not. Images of
     /// curves pass on their original's.
-    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         None
     }
 }

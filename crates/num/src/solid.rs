@@ -1,3 +1,5 @@
+//! Solids X(u, v, w): positions, first derivatives, and solids given by one formula over jets.
+
 use crate::jet::Jet;
 use crate::trace::Faces;
 use crate::{Real, Tri1, Vec3};

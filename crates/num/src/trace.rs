@@ -40,9 +40,9 @@ pub struct Mark<T> {
 pub struct Piece<T> {
     /// What it is part of.
     pub root: Root,
-    /// Where it begins.
+    /// Start.
     pub from: Mark<T>,
-    /// Where it ends.
+    /// End.
     pub to: Mark<T>,
     /// The share of the alias's own parameter range at which this piece ends (the last: 1).
     pub until: T,
@@ -249,13 +249,13 @@ pub enum Face<T> {
 /// How the points between the layers of a solid are made of theirs: solids whose layers meet and
 /// that follow the same law meet in between, too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Law {
+pub enum LayerLaw {
     /// B-splines of this degree across the layers.
     Blend(usize),
     /// An interpolating spline with ends of this number.
     Spline(usize),
     /// The first layer moved along a curve object, without a name along nothing known; the number
-    /// tells how.
+    /// states how.
     Along(Option<Key>, u8),
 }
 
@@ -265,7 +265,7 @@ pub struct Layers<T> {
     /// The surface objects with their edges, in order of w.
     pub surfaces: Vec<(Option<Key>, Edges<T>)>,
     /// What is made of them.
-    pub law: Law,
+    pub law: LayerLaw,
 }
 
 /// What the six faces of a solid run along: u = 0, u = 1, v = 0, v = 1, w = 0, w = 1; the parameters

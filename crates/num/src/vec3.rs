@@ -1,3 +1,5 @@
+//! Vectors of three and of two components over any scalar.
+
 use crate::Real;
 use std::ops::{Add, AddAssign, Div, Index, Mul, Neg, Sub, SubAssign};
 

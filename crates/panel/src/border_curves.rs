@@ -7,12 +7,12 @@
 use moldloft_model::Object;
 use moldloft_num::trace::{Edge, Edges, Trace};
 use moldloft_num::{CurveJet, Order, Real, SurfJet, Surface};
-use moldloft_registry::{CurveRef, Hem, Hemmed, Scalar, SurfaceRef, Value};
+use moldloft_registry::{BorderCurve, CurveRef, Scalar, SurfaceRef, TriangulatedBorder, Value};
 use std::sync::Arc;
 
 /// A hem among the drafts.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct HemCounts {
+pub(crate) struct BorderCounts {
     /// Which of its sheet's.
     pub index: u32,
     /// Divisions that are stated.
@@ -22,16 +22,16 @@ pub(crate) struct HemCounts {
 }
 
 /// The border of an object that has one.
-pub(crate) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn Hemmed<T>>> {
+pub(crate) fn border<T: Scalar>(object: &Object<T>) -> Option<&Arc<dyn TriangulatedBorder<T>>> {
     match object.value()? {
-        Value::Mesh(facets) => Some(&facets.border.as_ref()?.0),
+        Value::Body(facets) => Some(&facets.border.as_ref()?.0),
         _ => None,
     }
 }
 
 /// A hem as a patch; `None` for a curve that no neighbour can name.
-pub(crate) fn line<T: Real>(hem: &Hem<T>) -> Option<SurfaceRef<T>> {
-    let curve = &hem.curve;
+pub(crate) fn line<T: Real>(border_curve: &BorderCurve<T>) -> Option<SurfaceRef<T>> {
+    let curve = &border_curve.curve;
     let known = !curve.pieces().is_empty() || matches!(curve.trace(), Trace::Point(_));
     known.then(|| SurfaceRef::new(Line(curve.clone()), curve.depth))
 }

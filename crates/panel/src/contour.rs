@@ -2,12 +2,12 @@
 
 use moldloft_mesh::{Mesh, PatchInfo, TopologyBuilder, section_where};
 use moldloft_num::{Vec3, find_root};
-use moldloft_registry::{Facets, Family, Head, SurfaceRef};
+use moldloft_registry::{Attributes, Family, SurfaceRef, TriangleBody};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One line of a section: points on the surface and in the plane, to rounding.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Polyline {
+pub struct Contour {
     /// Points in order along the line.
     pub points: Vec<Vec3>,
     /// Their parameters (u, v) on the surface; none on the triangles of a body.
@@ -18,7 +18,7 @@ pub struct Polyline {
 
 /// The grid on which a surface is searched for sections: a line that stays inside one cell is not
 /// seen.
-pub struct Sectioned<'s> {
+pub struct ContourCutter<'s> {
     surface: &'s SurfaceRef<f64>,
     us: Vec<f64>,
     vs: Vec<f64>,
@@ -28,9 +28,9 @@ pub struct Sectioned<'s> {
 /// An edge of the search grid: from (i, j) along u or along v.
 type GridEdge = (usize, usize, bool);
 
-impl<'s> Sectioned<'s> {
+impl<'s> ContourCutter<'s> {
     /// Tabulates `surface` at least four times as fine as its panels, 32 steps at least.
-    pub fn new(surface: &'s SurfaceRef<f64>, head: &Head) -> Self {
+    pub fn new(surface: &'s SurfaceRef<f64>, head: &Attributes) -> Self {
         let steps = |k: usize| {
             let n = head.own_divisions()[k].saturating_mul(head.subdivisions[k]).saturating_mul(4);
             let n = n.clamp(32, 512);
@@ -44,7 +44,7 @@ impl<'s> Sectioned<'s> {
 
     /// The lines in which the member `value` of a family cuts the surface, those that begin at an
     /// edge first, each from the edge point of lowest grid index.
-    pub fn section(&self, family: &Family<f64>, value: f64) -> Vec<Polyline> {
+    pub fn section(&self, family: &Family<f64>, value: f64) -> Vec<Contour> {
         let nv = self.vs.len();
         let heights: Vec<f64> = self.points.iter().map(|&p| family.height(value, p)).collect();
         // At a pole on the section all heights are rounding: they must have one sign.
@@ -117,7 +117,7 @@ impl<'s> Sectioned<'s> {
         crossings: &BTreeMap<GridEdge, [f64; 2]>,
         links: BTreeMap<GridEdge, Vec<GridEdge>>,
         epsilon: f64,
-    ) -> Vec<Polyline> {
+    ) -> Vec<Contour> {
         let mut seen = BTreeSet::new();
         let mut lines = Vec::new();
         let ends = links.iter().filter(|(_, l)| l.len() == 1).map(|(&e, _)| e);
@@ -145,7 +145,7 @@ impl<'s> Sectioned<'s> {
             points.retain(|_| at_point.next() == Some(&true));
             uv.retain(|_| at_place.next() == Some(&true));
             if points.len() > 1 {
-                lines.push(Polyline { points, uv, closed });
+                lines.push(Contour { points, uv, closed });
             }
         }
         lines
@@ -153,7 +153,7 @@ impl<'s> Sectioned<'s> {
 }
 
 /// The lines in which the member `value` of a family cuts the triangles of a body.
-pub fn body_section(body: &Facets<f64>, family: &Family<f64>, value: f64) -> Vec<Polyline> {
+pub fn body_section(body: &TriangleBody<f64>, family: &Family<f64>, value: f64) -> Vec<Contour> {
     let mut builder = TopologyBuilder::new();
     let faces = body.triangles.iter().map(|&[a, b, c]| [a, b, c, c]);
     let built = builder
@@ -162,11 +162,8 @@ pub fn body_section(body: &Facets<f64>, family: &Family<f64>, value: f64) -> Vec
     let mesh = built.and_then(|_| Mesh::new(builder.build().into(), body.points.clone()));
     let Ok(mesh) = mesh else { return Vec::new() };
     let lines = section_where(&mesh, |p| family.height(value, p), |p| family.holds(value, p));
-    let line = |l: moldloft_mesh::Polyline| Polyline {
-        points: l.points,
-        uv: Vec::new(),
-        closed: l.closed,
-    };
+    let line =
+        |l: moldloft_mesh::Polyline| Contour { points: l.points, uv: Vec::new(), closed: l.closed };
     lines.into_iter().map(line).collect()
 }
 

@@ -4,7 +4,7 @@
 //! Links make counts equal, sums make a count the sum of others; some counts are stated. What is
 //! stated spreads along links and through sums as intervals; what stays free gets its wish, its
 //! share of a known sum, or the usual count. Contradictions never stop the rest: the chain is cut
-//! between the statements, or the sum is left out, and both are told.
+//! between the statements, or the sum is left out, and both are reported.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -13,7 +13,7 @@ const MOST: u32 = 1_000_000;
 
 /// How often a sum is looked at before it counts as one that has no end (a chain in a ring whose
 /// count would be larger than itself).
-const PATIENCE: u32 = 2000;
+const MAX_ROUNDS: u32 = 2000;
 
 /// How many sums are looked at for one step of a repair.
 const REACH: usize = 20_000;
@@ -34,7 +34,7 @@ pub(crate) struct Sum {
 
 /// The counts, what they must fulfil and what is wished of them.
 #[derive(Debug, Default)]
-pub(crate) struct Divider {
+pub(crate) struct CountProblem {
     /// By node.
     pub stated: Vec<Option<u32>>,
     pub wished: Vec<Option<u32>>,
@@ -55,7 +55,7 @@ pub(crate) enum Conflict {
 
 /// The counts by node, and the contradictions among the statements.
 #[derive(Debug)]
-pub(crate) struct Divided {
+pub(crate) struct CountSolution {
     pub counts: Vec<u32>,
     pub conflicts: Vec<Conflict>,
 }
@@ -96,7 +96,7 @@ const NONE: usize = usize::MAX;
 
 /// Nodes whose counts are equal.
 #[derive(Clone, Copy, Debug)]
-struct Class {
+struct CountClass {
     low: u32,
     high: u32,
     wish: Option<u32>,
@@ -104,10 +104,10 @@ struct Class {
     stated: bool,
 }
 
-struct Solver<'d> {
+struct CountSolver<'d> {
     sums: &'d [Sum],
     class_of: Vec<usize>,
-    classes: Vec<Class>,
+    classes: Vec<CountClass>,
     /// The sums that a class takes part in.
     in_sums: Vec<Vec<usize>>,
     broken: Vec<bool>,
@@ -119,7 +119,7 @@ struct Solver<'d> {
     conflicts: Vec<Conflict>,
 }
 
-impl Divider {
+impl CountProblem {
     /// Adds a count to be found.
     pub fn node(&mut self, stated: Option<u32>, usual: Option<u32>) -> Node {
         self.stated.push(stated);
@@ -129,10 +129,10 @@ impl Divider {
     }
 
     /// The counts. Takes time linear in nodes, links and sums but for chains in rings.
-    pub fn solve(&self) -> Divided {
+    pub fn solve(&self) -> CountSolution {
         let mut conflicts = Vec::new();
         let (class_of, count) = self.classes(&mut conflicts);
-        let free = Class { low: 1, high: MOST, wish: None, usual: None, stated: false };
+        let free = CountClass { low: 1, high: MOST, wish: None, usual: None, stated: false };
         let mut classes = vec![free; count];
         for (node, &class) in class_of.iter().enumerate() {
             let class = &mut classes[class];
@@ -151,7 +151,7 @@ impl Divider {
         }
         in_sums.iter_mut().for_each(Vec::dedup);
         let sums = self.sums.len();
-        let mut solver = Solver {
+        let mut solver = CountSolver {
             sums: &self.sums,
             class_of,
             classes,
@@ -163,11 +163,11 @@ impl Divider {
             to_share: (0..sums).collect(),
             conflicts,
         };
-        solver.spread();
+        solver.propagate();
         solver.choose();
         solver.repair();
         let counts = solver.class_of.iter().map(|&c| solver.classes[c].low).collect();
-        Divided { counts, conflicts: solver.conflicts }
+        CountSolution { counts, conflicts: solver.conflicts }
     }
 
     /// The class of each node and how many there are. Where statements in one chain differ, each
@@ -224,7 +224,7 @@ impl Divider {
                 }
             }
             members.sort_unstable();
-            let mut told = BTreeSet::new();
+            let mut reported = BTreeSet::new();
             for &node in &members {
                 let value = self.stated[origin[node]];
                 let place = values.binary_search(&value.unwrap_or(0)).unwrap_or(0);
@@ -232,7 +232,7 @@ impl Divider {
                 for &next in links.of(node) {
                     if next > node && self.stated[origin[next]] != value {
                         let (a, b) = (origin[node], origin[next]);
-                        if told.insert((a.min(b), a.max(b))) {
+                        if reported.insert((a.min(b), a.max(b))) {
                             conflicts.push(Conflict::Chain(path(&before, node, next)));
                         }
                     }
@@ -259,8 +259,8 @@ fn path(before: &[usize], a: Node, b: Node) -> Vec<Node> {
     nodes
 }
 
-impl Solver<'_> {
-    fn class(&self, node: Node) -> &Class {
+impl CountSolver<'_> {
+    fn class(&self, node: Node) -> &CountClass {
         &self.classes[self.class_of[node]]
     }
 
@@ -284,21 +284,21 @@ impl Solver<'_> {
     }
 
     fn assign(&mut self, class: usize, count: u32) {
-        let Class { low, high, .. } = self.classes[class];
+        let CountClass { low, high, .. } = self.classes[class];
         let count = count.clamp(low, high);
         self.narrow(class, count, count);
-        self.spread();
+        self.propagate();
     }
 
     /// Narrows the intervals until all sums agree with them.
-    fn spread(&mut self) {
+    fn propagate(&mut self) {
         while let Some(sum) = self.queue.pop_front() {
             self.queued[sum] = false;
             self.visits[sum] += 1;
             if self.broken[sum] {
                 continue;
             }
-            if self.visits[sum] > PATIENCE || !self.weigh(sum) {
+            if self.visits[sum] > MAX_ROUNDS || !self.weigh(sum) {
                 self.broken[sum] = true;
                 self.conflicts.push(Conflict::Sum(sum));
             } else {
@@ -363,7 +363,7 @@ impl Solver<'_> {
         // Wholes first: their parts share what they get.
         for parts_too in [false, true] {
             for class in 0..self.classes.len() {
-                let Class { low, high, usual, .. } = self.classes[class];
+                let CountClass { low, high, usual, .. } = self.classes[class];
                 if low == high || (is_part[class] && !parts_too) {
                     continue;
                 }
@@ -373,7 +373,7 @@ impl Solver<'_> {
         }
     }
 
-    /// Mends sums that did not come out because free counts were chosen one by one: a step of one
+    /// Repairs sums that did not come out because free counts were chosen one by one: a step of one
     /// is passed on from sum to sum, along counts that are not stated, to where it changes nothing
     /// else. (Counts of patches are a flow through them, and this its augmenting path: Ford and
     /// Fulkerson 1956.)
@@ -432,7 +432,7 @@ impl Solver<'_> {
             for node in nodes {
                 let class = self.class_of[node];
                 let weight = self.weight(sum, class);
-                let Class { low, stated, .. } = self.classes[class];
+                let CountClass { low, stated, .. } = self.classes[class];
                 if class == came_by || stated || weight.abs() != 1 {
                     continue;
                 }
@@ -541,8 +541,8 @@ mod tests {
         stated: &[Option<u32>],
         links: &[(Node, Node)],
         sums: &[(Node, &[Node])],
-    ) -> Divider {
-        let mut d = Divider::default();
+    ) -> CountProblem {
+        let mut d = CountProblem::default();
         stated.iter().for_each(|&n| {
             let _ = d.node(n, Some(8));
         });
@@ -627,7 +627,7 @@ mod tests {
     #[test]
     fn long_chains_take_linear_time() {
         let n = 200_000;
-        let mut d = Divider::default();
+        let mut d = CountProblem::default();
         (0..n).for_each(|k| {
             let _ = d.node((k == 0).then_some(3), Some(8));
         });
@@ -637,7 +637,7 @@ mod tests {
         let cut = d.solve();
         assert!(matches!(&cut.conflicts[..], [Conflict::Chain(path)] if path.len() == n));
         // All alone, all sums.
-        let mut d = Divider::default();
+        let mut d = CountProblem::default();
         (0..n).for_each(|_| {
             let _ = d.node(None, Some(8));
         });

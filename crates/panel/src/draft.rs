@@ -1,6 +1,6 @@
 //! What takes part in a panelling: shown surfaces, hidden originals of images, borders of sheets.
 
-use crate::border_curves::{self, HemCounts};
+use crate::border_curves::{self, BorderCounts};
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::{Edges, Key};
 use moldloft_registry::{Scalar, SurfaceRef, Value};
@@ -43,7 +43,7 @@ pub fn divisions<T: Scalar>(graph: &Graph<T>, object: &Object<T>) -> [u32; 2] {
 pub(crate) struct Draft<'g> {
     pub object: &'g Object<f64>,
     pub surface: SurfaceRef<f64>,
-    pub hem: Option<HemCounts>,
+    pub border_curve: Option<BorderCounts>,
     pub edges: Edges<f64>,
     /// The draft of which it is the image, and the number of the map.
     pub image: Option<(usize, u32)>,
@@ -55,23 +55,23 @@ pub(crate) struct Draft<'g> {
 impl Draft<'_> {
     /// The divisions that are stated along u and v.
     pub fn stated(&self) -> [Option<u32>; 2] {
-        match self.hem {
-            Some(hem) => [hem.stated, None],
+        match self.border_curve {
+            Some(border_curve) => [border_curve.stated, None],
             None => self.object.head.stated_divisions(),
         }
     }
 
     /// The divisions when nothing else determines them.
     pub fn usual(&self) -> [u32; 2] {
-        match self.hem {
-            Some(hem) => [hem.usual, 1],
+        match self.border_curve {
+            Some(border_curve) => [border_curve.usual, 1],
             None => self.object.head.own_divisions(),
         }
     }
 
-    /// What tells it from all others, in any graph.
+    /// Its identity, in any graph.
     pub fn identity(&self) -> (Arc<str>, Option<u32>) {
-        (self.object.name.clone(), self.hem.map(|h| h.index))
+        (self.object.name.clone(), self.border_curve.map(|h| h.index))
     }
 }
 
@@ -82,7 +82,7 @@ pub(crate) fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
     let draft = |object, meshed| {
         let surface = surface_of(object)?.clone();
         let (edges, reversed) = (surface.edges(), reversed(graph, object));
-        Some(Draft { object, surface, hem: None, edges, image: None, meshed, reversed })
+        Some(Draft { object, surface, border_curve: None, edges, image: None, meshed, reversed })
     };
     let mut by_key = HashMap::new();
     for object in graph.objects().filter(|o| o.head.shown()) {
@@ -112,14 +112,18 @@ pub(crate) fn drafts(graph: &Graph<f64>) -> Vec<Draft<'_>> {
     }
     for object in graph.objects().filter(|o| o.head.shown()) {
         let Some(border) = border_curves::border(object) else { continue };
-        for (index, hem) in border.hems().iter().enumerate() {
-            let Some(surface) = border_curves::line(hem) else { continue };
-            let counts = HemCounts { index: index as u32, stated: hem.stated, usual: hem.usual };
+        for (index, border_curve) in border.curves().iter().enumerate() {
+            let Some(surface) = border_curves::line(border_curve) else { continue };
+            let counts = BorderCounts {
+                index: index as u32,
+                stated: border_curve.stated,
+                usual: border_curve.usual,
+            };
             drafts.push(Draft {
                 object,
                 edges: surface.edges(),
                 surface,
-                hem: Some(counts),
+                border_curve: Some(counts),
                 image: None,
                 meshed: false,
                 reversed: false,

@@ -39,7 +39,7 @@ pub(crate) enum EdgePlan {
 }
 
 /// What a scalar needs to know of a model to place divisions.
-pub(crate) trait Places<T: Real> {
+pub(crate) trait PatchLookup<T: Real> {
     /// How the edges of a draft are divided.
     fn plans(&self, draft: u32) -> &[EdgePlan; 4];
     /// The edges of a draft.
@@ -51,7 +51,11 @@ pub(crate) trait Places<T: Real> {
 }
 
 /// The parameters of the divisions of edge `k` of a draft, from 0 to 1.
-pub(crate) fn along_edge<T: Real>(k: usize, draft: u32, places: &impl Places<T>) -> Option<Vec<T>> {
+pub(crate) fn along_edge<T: Real>(
+    k: usize,
+    draft: u32,
+    places: &impl PatchLookup<T>,
+) -> Option<Vec<T>> {
     let mut out = Vec::new();
     let run = |out: &mut Vec<T>, from: T, to: T, count: u32, shares: &Shares| {
         let step = to - from;
@@ -98,7 +102,7 @@ pub(crate) fn along_edge<T: Real>(k: usize, draft: u32, places: &impl Places<T>)
     Some(out)
 }
 
-fn parameter<T: Real>(source: MarkSource, places: &impl Places<T>) -> Option<T> {
+fn parameter<T: Real>(source: MarkSource, places: &impl PatchLookup<T>) -> Option<T> {
     match source {
         MarkSource::Bead(key) | MarkSource::Magnet(key, _) => {
             on_its_root(places.point(key)?, source)

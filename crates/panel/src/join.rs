@@ -1,8 +1,8 @@
 //! Which vertices are one: those at the same place of a root, at the same point object, at the same
 //! division of a stretch, and images of such. Never because they look close.
 
-use crate::roots::{PlaceId, StretchId};
-use crate::topology::{Frame, Rim, Skeleton};
+use crate::roots::{IntervalId, RootPlaceId};
+use crate::topology::{EdgeRun, PanelTopology, PatchTopology};
 use moldloft_num::trace::Key;
 use moldloft_num::union_find::UnionFind;
 use std::collections::HashMap;
@@ -13,10 +13,10 @@ pub(crate) struct Grids {
 }
 
 impl Grids {
-    pub fn new(skeleton: &Skeleton) -> Self {
+    pub fn new(structure: &PanelTopology) -> Self {
         let mut first = vec![0];
         let mut count = 0;
-        for frame in &skeleton.frames {
+        for frame in &structure.patches {
             count += ((frame.divisions[0] + 1) * (frame.divisions[1] + 1)) as u32;
             first.push(count);
         }
@@ -38,7 +38,7 @@ impl Grids {
     }
 
     /// The vertices of edge 0..4 (v = 0, u = 1, v = 1, u = 0) in increasing parameter.
-    pub fn edge(&self, frame: &Frame, patch: usize, k: usize) -> Vec<u32> {
+    pub fn edge(&self, frame: &PatchTopology, patch: usize, k: usize) -> Vec<u32> {
         let [nu, nv] = frame.divisions;
         let at = |i: usize, j: usize| self.first[patch] + (i * (nv + 1) + j) as u32;
         match k {
@@ -50,37 +50,37 @@ impl Grids {
     }
 
     /// The vertices of all four edges; corners come twice.
-    pub fn boundary(&self, frame: &Frame, patch: usize) -> Vec<u32> {
+    pub fn boundary(&self, frame: &PatchTopology, patch: usize) -> Vec<u32> {
         (0..4).flat_map(|k| self.edge(frame, patch, k)).collect()
     }
 }
 
 pub(crate) struct Joiner<'s> {
-    skeleton: &'s Skeleton,
+    structure: &'s PanelTopology,
     pub grids: Grids,
     pub joined: UnionFind,
     /// A vertex at each place.
     places: Vec<Option<u32>>,
     points: HashMap<Key, u32>,
     /// The vertices of a stretch with so many divisions, in the direction of its root.
-    stretches: HashMap<(StretchId, u32), Vec<u32>>,
+    intervals: HashMap<(IntervalId, u32), Vec<u32>>,
     images: HashMap<(u32, u32), u32>,
 }
 
 impl<'s> Joiner<'s> {
-    pub fn new(skeleton: &'s Skeleton) -> Self {
-        let grids = Grids::new(skeleton);
+    pub fn new(structure: &'s PanelTopology) -> Self {
+        let grids = Grids::new(structure);
         let joined = UnionFind::new(grids.count() as usize);
         let mut joiner = Self {
-            skeleton,
+            structure,
             grids,
             joined,
-            places: vec![None; skeleton.points.len()],
+            places: vec![None; structure.points.len()],
             points: HashMap::new(),
-            stretches: HashMap::new(),
+            intervals: HashMap::new(),
             images: HashMap::new(),
         };
-        for patch in 0..skeleton.frames.len() {
+        for patch in 0..structure.patches.len() {
             joiner.join_edges(patch);
         }
         joiner
@@ -91,13 +91,13 @@ impl<'s> Joiner<'s> {
         self.joined.join(known, vertex);
     }
 
-    fn at_place(&mut self, vertex: u32, place: PlaceId) {
+    fn at_place(&mut self, vertex: u32, place: RootPlaceId) {
         match self.places[place as usize] {
             Some(known) => self.joined.join(known, vertex),
             None => {
                 self.places[place as usize] = Some(vertex);
-                let skeleton = self.skeleton;
-                for &point in &skeleton.points[place as usize] {
+                let structure = self.structure;
+                for &point in &structure.points[place as usize] {
                     self.at_point(vertex, point);
                 }
             }
@@ -105,8 +105,8 @@ impl<'s> Joiner<'s> {
     }
 
     fn join_edges(&mut self, patch: usize) {
-        let skeleton = self.skeleton;
-        let frame = &skeleton.frames[patch];
+        let structure = self.structure;
+        let frame = &structure.patches[patch];
         let edges: [Vec<u32>; 4] = std::array::from_fn(|k| self.grids.edge(frame, patch, k));
         let [nu, nv] = frame.divisions;
         let corners = [edges[0][0], edges[0][nu], edges[2][nu], edges[3][nv]];
@@ -115,25 +115,25 @@ impl<'s> Joiner<'s> {
                 self.at_point(vertex, point);
             }
         }
-        for (rim, vertices) in frame.rims.iter().zip(&edges) {
-            match rim {
-                Rim::Along(spans) => {
+        for (run, vertices) in frame.runs.iter().zip(&edges) {
+            match run {
+                EdgeRun::Along(spans) => {
                     let mut at = 0;
                     for (span, count) in spans {
                         let end = at + *count as usize;
                         self.at_place(vertices[at], span.ends[0]);
                         self.at_place(vertices[end], span.ends[1]);
-                        if let Some(stretch) = span.stretch {
-                            self.along_stretch(stretch, &vertices[at..=end], span.backwards);
+                        if let Some(interval) = span.interval {
+                            self.along_interval(interval, &vertices[at..=end], span.backwards);
                         }
                         at = end;
                     }
                 }
-                Rim::Loose([from, to]) => {
+                EdgeRun::Loose([from, to]) => {
                     self.at_place(vertices[0], *from);
                     self.at_place(vertices[vertices.len() - 1], *to);
                 }
-                Rim::Same(other) => {
+                EdgeRun::Same(other) => {
                     let others = &edges[usize::from(*other)];
                     if others.len() == vertices.len() {
                         for (&a, &b) in vertices.iter().zip(others) {
@@ -141,7 +141,7 @@ impl<'s> Joiner<'s> {
                         }
                     }
                 }
-                Rim::Pole(point) => {
+                EdgeRun::Pole(point) => {
                     for &vertex in &vertices[1..] {
                         self.joined.join(vertices[0], vertex);
                     }
@@ -153,13 +153,13 @@ impl<'s> Joiner<'s> {
         }
     }
 
-    fn along_stretch(&mut self, stretch: StretchId, vertices: &[u32], backwards: bool) {
+    fn along_interval(&mut self, interval: IntervalId, vertices: &[u32], backwards: bool) {
         let n = vertices.len() - 1;
         let mut inside: Vec<u32> = vertices[1..n].to_vec();
         if backwards {
             inside.reverse();
         }
-        let known = self.stretches.entry((stretch, n as u32)).or_insert_with(|| inside.clone());
+        let known = self.intervals.entry((interval, n as u32)).or_insert_with(|| inside.clone());
         for (&a, &b) in known.iter().zip(&inside) {
             self.joined.join(a, b);
         }
@@ -168,10 +168,10 @@ impl<'s> Joiner<'s> {
     /// Images of joined vertices under the same map are joined; a vertex that is its own image, as
     /// `fixed` says of (patch, vertex of the boundary), is joined to the original.
     pub fn join_images(&mut self, fixed: impl Fn(usize, usize) -> bool) {
-        let skeleton = self.skeleton;
-        for (patch, frame) in skeleton.frames.iter().enumerate() {
+        let structure = self.structure;
+        for (patch, frame) in structure.patches.iter().enumerate() {
             let Some((original, map)) = frame.image else { continue };
-            if skeleton.frames[original].divisions != frame.divisions {
+            if structure.patches[original].divisions != frame.divisions {
                 continue;
             }
             let (first, shift) = (self.grids.first(patch), self.grids.first(original));

@@ -2,9 +2,9 @@
 
 use crate::draft::indices;
 use crate::join::Joiner;
-use crate::notes::Remark;
-use crate::orientation::{Facing, RimEdge};
-use crate::topology::Skeleton;
+use crate::notes::PanelNote;
+use crate::orientation::{FreeEdge, Orientation};
+use crate::topology::PanelTopology;
 use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_num::Vec3;
 use std::collections::HashMap;
@@ -17,7 +17,7 @@ const JOIN_ACCURACY: f64 = 1e-9;
 /// What follows from a skeleton alone, but for the vertices that are their own images and the side
 /// that panels face.
 #[derive(Debug)]
-pub(crate) struct Joint {
+pub(crate) struct JoinedPatches {
     pub topology: Arc<Topology>,
     /// The vertex of each point of each patch; those that only patches without panels have come
     /// after the topology's.
@@ -26,28 +26,28 @@ pub(crate) struct Joint {
     /// For each patch, which points of its boundary are their own images.
     pub fixed: Vec<Vec<bool>>,
     /// Panel edges with one panel: patch and the places of both ends in its grid.
-    pub rim: Vec<RimEdge>,
-    pub facing: Facing,
+    pub free_edges: Vec<FreeEdge>,
+    pub orientation: Orientation,
     /// For each patch, whether its panels run against its natural normal.
     pub turned: Vec<bool>,
 }
 
-impl Joint {
+impl JoinedPatches {
     /// Joins the vertices, numbers them and turns the panels.
     pub fn new(
-        skeleton: &Skeleton,
+        structure: &PanelTopology,
         points: &[Arc<Vec<Vec3>>],
         fixed: Vec<Vec<bool>>,
     ) -> Result<Self, MeshError> {
-        let mut joiner = Joiner::new(skeleton);
+        let mut joiner = Joiner::new(structure);
         joiner.join_images(|patch, at| fixed[patch].get(at) == Some(&true));
         let Joiner { grids, mut joined, .. } = joiner;
         let mut number = vec![u32::MAX; grids.count() as usize];
         let mut count = 0u32;
         let mut used = 0;
-        let mut vertices = vec![Vec::new(); skeleton.frames.len()];
+        let mut vertices = vec![Vec::new(); structure.patches.len()];
         for meshed in [true, false] {
-            for (patch, frame) in skeleton.frames.iter().enumerate() {
+            for (patch, frame) in structure.patches.iter().enumerate() {
                 if frame.meshed != meshed {
                     continue;
                 }
@@ -65,15 +65,15 @@ impl Joint {
                 used = count;
             }
         }
-        let rim = rim(skeleton, &vertices);
+        let free_edges = free_edges(structure, &vertices);
         let topology = Arc::default();
-        let facing = Facing::new(skeleton, &vertices, &rim);
-        let turned = facing.turned(skeleton, points, &rim);
-        let mut joint = Self { topology, vertices, count, fixed, rim, facing, turned };
+        let orientation = Orientation::new(structure, &vertices, &free_edges);
+        let turned = orientation.turned(structure, points, &free_edges);
+        let mut made = Self { topology, vertices, count, fixed, free_edges, orientation, turned };
         let mut builder = TopologyBuilder::new();
         builder.add_vertices(used as usize)?;
-        for (patch, frame) in skeleton.frames.iter().enumerate() {
-            let vertices = &joint.vertices[patch];
+        for (patch, frame) in structure.patches.iter().enumerate() {
+            let vertices = &made.vertices[patch];
             if !frame.meshed {
                 continue;
             }
@@ -85,22 +85,27 @@ impl Joint {
                 colour: Some((frame.colour & 15) as u8),
                 kind: frame.kind.to_string(),
             };
-            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), joint.turned[patch])?;
+            builder.add_block(info, nu + 1, nv + 1, vertices.clone(), made.turned[patch])?;
         }
-        joint.topology = builder.build().into();
-        Ok(joint)
+        made.topology = builder.build().into();
+        Ok(made)
     }
 
-    pub fn facing(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>]) -> Vec<bool> {
-        self.facing.turned(skeleton, points, &self.rim)
+    pub fn orientation(&self, structure: &PanelTopology, points: &[Arc<Vec<Vec3>>]) -> Vec<bool> {
+        self.orientation.turned(structure, points, &self.free_edges)
     }
 
     /// The pairs of patches whose shared vertices are not in one place.
-    pub fn apart(&self, skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<Remark> {
+    pub fn apart(
+        &self,
+        structure: &PanelTopology,
+        points: &[Arc<Vec<Vec3>>],
+        size: f64,
+    ) -> Vec<PanelNote> {
         const NONE: u32 = u32::MAX;
         let mut owner: Vec<(u32, Vec3)> = vec![(NONE, Vec3::zero()); self.count as usize];
         let mut worst: HashMap<(u32, u32), (f64, Vec3)> = HashMap::new();
-        for (patch, frame) in skeleton.frames.iter().enumerate() {
+        for (patch, frame) in structure.patches.iter().enumerate() {
             for k in (0..4).flat_map(|k| indices(frame.divisions, k)) {
                 let p = points[patch][k];
                 let slot = &mut owner[self.vertices[patch][k] as usize];
@@ -118,21 +123,21 @@ impl Joint {
         }
         let mut worst: Vec<_> = worst.into_iter().collect();
         worst.sort_by_key(|(pair, _)| *pair);
-        let name = |patch: u32| skeleton.frames[patch as usize].name.to_string();
+        let name = |patch: u32| structure.patches[patch as usize].name.to_string();
         worst
             .into_iter()
             .map(|((a, b), (distance, at))| {
                 let patches = [name(a), name(b)];
-                Remark::Apart { patches, distance, at }
+                PanelNote::Apart { patches, distance, at }
             })
             .collect()
     }
 }
 
 /// The panel edges at the rims of patches that have one panel, in the order of their vertices.
-fn rim(skeleton: &Skeleton, vertices: &[Vec<u32>]) -> Vec<RimEdge> {
-    let mut all: Vec<((u32, u32), RimEdge)> = Vec::new();
-    for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+fn free_edges(structure: &PanelTopology, vertices: &[Vec<u32>]) -> Vec<FreeEdge> {
+    let mut all: Vec<((u32, u32), FreeEdge)> = Vec::new();
+    for (patch, frame) in structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
         for k in 0..4 {
             let mut before: Option<usize> = None;
             for at in indices(frame.divisions, k) {

@@ -25,9 +25,9 @@ mod t_junctions;
 mod topology;
 mod triangle_bodies;
 
-pub use blocks::{BlockRemark, Blocking, MOST_CELLS, grid as solid_grid};
-pub use contour::{Polyline, Sectioned, body_section};
+pub use blocks::{BlockNote, Blocking, MOST_CELLS, grid as solid_grid};
+pub use contour::{Contour, ContourCutter, body_section};
 pub use draft::divisions;
-pub use notes::{ChainStep, Remark};
+pub use notes::{ChainStep, PanelNote};
 pub use panelling::{MOST_PANELS, Panelling, too_many_panels};
 pub use topology::Nominal;

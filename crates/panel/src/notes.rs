@@ -15,7 +15,7 @@ pub struct ChainStep {
 
 /// Something about the joins that the user may want to know.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Remark {
+pub enum PanelNote {
     /// Two stated counts belong to one chain of patches but differ, so that panels do not join
     /// somewhere on the way.
     Divisions {
@@ -45,7 +45,7 @@ pub enum Remark {
         /// Where.
         at: Vec3,
     },
-    /// The corner of a patch lies in the middle of an edge of another and is no vertex of it, or at
+    /// The corner of a patch lies in the middle of an edge of another and is not a vertex of it, or at
     /// a vertex of it that is another one.
     Junction {
         /// The patch, and the edge's patch.
@@ -67,63 +67,63 @@ pub enum Remark {
         /// The divisions of the curves that its border runs along.
         divisions: Vec<usize>,
     },
-    /// As many more contradictions as are not told one by one.
+    /// Number of further contradictions.
     More(usize),
 }
 
-impl Remark {
+impl PanelNote {
     /// A stable word for its kind.
     pub fn id(&self) -> &'static str {
         match self {
-            Remark::Divisions { .. } | Remark::Pieces { .. } | Remark::More(_) => {
+            PanelNote::Divisions { .. } | PanelNote::Pieces { .. } | PanelNote::More(_) => {
                 "divisions-contradict"
             }
-            Remark::Apart { .. } => "edges-apart",
-            Remark::Junction { .. } => "corner-not-joined",
-            Remark::Border { .. } => "border-not-joined",
+            PanelNote::Apart { .. } => "edges-apart",
+            PanelNote::Junction { .. } => "corner-not-joined",
+            PanelNote::Border { .. } => "border-not-joined",
         }
     }
 
-    /// How to mend it.
+    /// The remedy.
     pub fn help(&self) -> &'static str {
         match self {
-            Remark::Divisions { .. } => {
+            PanelNote::Divisions { .. } => {
                 "state the count once and leave it out (or write 0) elsewhere on the chain"
             }
-            Remark::Pieces { .. } => {
+            PanelNote::Pieces { .. } => {
                 "leave out (or write 0 for) the count of the patch or of one of the pieces"
             }
-            Remark::Apart { .. } => {
+            PanelNote::Apart { .. } => {
                 "let both surfaces use the same curve, or a snake of one as the edge of the other"
             }
-            Remark::Junction { twin: false, .. } => {
+            PanelNote::Junction { twin: false, .. } => {
                 "let the corner be a bead, ring or magnet on that edge, and the neighbours' edges run \
                  along parts of its curve"
             }
-            Remark::Junction { .. } => {
-                "build both patches on the same point and the same curves: places are not compared"
+            PanelNote::Junction { .. } => {
+                "build both patches on the same point and the same curves: patches are joined by shared objects, not by coordinates"
             }
-            Remark::Border { .. } => "give it, or its neighbours, more divisions",
-            Remark::More(_) => "mend those that are told first",
+            PanelNote::Border { .. } => "give it, or its neighbours, more divisions",
+            PanelNote::More(_) => "fix those that are reported first",
         }
     }
 
-    /// The object that it is told with.
+    /// The object that it is reported with.
     pub fn object(&self) -> Option<&str> {
         match self {
-            Remark::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
-            Remark::Pieces { patch, .. } | Remark::Border { patch, .. } => Some(patch),
-            Remark::Apart { patches, .. } => Some(&patches[1]),
-            Remark::Junction { patches, .. } => Some(&patches[0]),
-            Remark::More(_) => None,
+            PanelNote::Divisions { chain, .. } => chain.last().map(|step| step.patch.as_str()),
+            PanelNote::Pieces { patch, .. } | PanelNote::Border { patch, .. } => Some(patch),
+            PanelNote::Apart { patches, .. } => Some(&patches[1]),
+            PanelNote::Junction { patches, .. } => Some(&patches[0]),
+            PanelNote::More(_) => None,
         }
     }
 }
 
-impl std::fmt::Display for Remark {
+impl std::fmt::Display for PanelNote {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
-            Remark::Divisions { chain, divisions: [m, n] } => {
+            PanelNote::Divisions { chain, divisions: [m, n] } => {
                 let (Some(a), Some(b)) = (chain.first(), chain.last()) else { return Ok(()) };
                 write!(
                     f,
@@ -157,7 +157,7 @@ impl std::fmt::Display for Remark {
                 }
                 Ok(())
             }
-            Remark::Pieces { patch, along, divisions, pieces } => {
+            PanelNote::Pieces { patch, along, divisions, pieces } => {
                 write!(
                     f,
                     "`{patch}` has {divisions} divisions along {along}, but the pieces of its edge "
@@ -165,15 +165,15 @@ impl std::fmt::Display for Remark {
                 let list: Vec<String> = pieces.iter().map(|(p, n)| format!("{n} ({p})")).collect();
                 write!(f, "have {}", list.join(" + "))
             }
-            Remark::Apart { patches: [a, b], distance, at } => write!(
+            PanelNote::Apart { patches: [a, b], distance, at } => write!(
                 f,
-                "`{a}` and `{b}` share an edge but lie {distance:.3e} apart at ({}, {}, {})",
+                "`{a}` and `{b}` share an edge but are {distance:.3e} apart at ({}, {}, {})",
                 at.x, at.y, at.z
             ),
-            Remark::Junction { patches: [a, b], corner: [u, v], edge: (k, t), twin, at } => {
+            PanelNote::Junction { patches: [a, b], corner: [u, v], edge: (k, t), twin, at } => {
                 let edge = ["v = 0", "u = 1", "v = 1", "u = 0"][usize::from(*k) % 4];
                 let along = if k % 2 == 0 { 'u' } else { 'v' };
-                let how = if *twin { "meets" } else { "lies in the middle of" };
+                let how = if *twin { "meets" } else { "is in the middle of" };
                 write!(
                     f,
                     "the corner (u, v) = ({u}, {v}) of `{a}` {how} edge {edge} of `{b}` at {along} = \
@@ -181,7 +181,7 @@ impl std::fmt::Display for Remark {
                     at.x, at.y, at.z
                 )
             }
-            Remark::Border { patch, divisions } => {
+            PanelNote::Border { patch, divisions } => {
                 let counts: Vec<String> = divisions.iter().map(usize::to_string).collect();
                 write!(
                     f,
@@ -190,7 +190,7 @@ impl std::fmt::Display for Remark {
                     counts.join(" + ")
                 )
             }
-            Remark::More(n) => write!(f, "{n} more contradictions among divisions"),
+            PanelNote::More(n) => write!(f, "{n} more contradictions among divisions"),
         }
     }
 }

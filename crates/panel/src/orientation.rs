@@ -1,7 +1,7 @@
 //! Which way the panels of each patch face: neighbours alike, and bodies outward.
 
 use crate::draft::indices;
-use crate::topology::{Frame, Skeleton};
+use crate::topology::{PanelTopology, PatchTopology};
 use moldloft_num::Vec3;
 use moldloft_num::union_find::SignedUnionFind;
 use std::sync::Arc;
@@ -10,23 +10,23 @@ use std::sync::Arc;
 const NEARLY_FLAT: f64 = 0.05;
 
 /// A panel edge with one panel: the patch and the places of both ends in its grid.
-pub(crate) type RimEdge = (u32, u32, u32);
+pub(crate) type FreeEdge = (u32, u32, u32);
 
 /// How the patches of a mesh hang together.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Facing {
+pub(crate) struct Orientation {
     /// For each patch the first one of its body, and whether it is turned against that one.
     sides: Vec<(usize, bool)>,
     /// For the first patch of each body, whether it has no rim.
     closed: Vec<bool>,
 }
 
-impl Facing {
+impl Orientation {
     /// From the vertices of the patches, and the panel edges with one panel.
-    pub fn new(skeleton: &Skeleton, vertices: &[Vec<u32>], rim: &[RimEdge]) -> Self {
-        let mut bodies = SignedUnionFind::new(skeleton.frames.len());
+    pub fn new(structure: &PanelTopology, vertices: &[Vec<u32>], free_edges: &[FreeEdge]) -> Self {
+        let mut bodies = SignedUnionFind::new(structure.patches.len());
         let mut all: Vec<((u32, u32), usize, bool)> = Vec::new();
-        for (patch, frame) in skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+        for (patch, frame) in structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
             for k in 0..4 {
                 // A walk round the patch runs along its edges 0 and 1, and against 2 and 3.
                 let walk: Vec<u32> =
@@ -47,9 +47,9 @@ impl Facing {
             }
         }
         let sides: Vec<(usize, bool)> =
-            (0..skeleton.frames.len()).map(|p| bodies.find(p)).collect();
+            (0..structure.patches.len()).map(|p| bodies.find(p)).collect();
         let mut closed = vec![true; sides.len()];
-        for &(patch, _, _) in rim {
+        for &(patch, _, _) in free_edges {
             closed[sides[patch as usize].0] = false;
         }
         Self { sides, closed }
@@ -63,19 +63,19 @@ impl Facing {
     /// say.
     pub fn turned(
         &self,
-        skeleton: &Skeleton,
+        structure: &PanelTopology,
         points: &[Arc<Vec<Vec3>>],
-        rim: &[RimEdge],
+        free_edges: &[FreeEdge],
     ) -> Vec<bool> {
-        let frames = &skeleton.frames;
+        let patches = &structure.patches;
         let stated = |patch: usize| {
             let (first, against) = self.sides[patch];
-            frames[first].reversed != against
+            patches[first].reversed != against
         };
-        let centre = apex(points, rim);
+        let centre = apex(points, free_edges);
         // The open bodies count as one, in the last place.
-        let mut cones = vec![(0.0, 0.0); frames.len() + 1];
-        for (patch, frame) in frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+        let mut cones = vec![(0.0, 0.0); patches.len() + 1];
+        for (patch, frame) in patches.iter().enumerate().filter(|(_, f)| f.meshed) {
             let sum = &mut cones[self.body(patch)];
             let (volume, size) = cone(frame, &points[patch], centre);
             sum.0 += if stated(patch) { -volume } else { volume };
@@ -85,7 +85,7 @@ impl Facing {
             let (volume, size) = cones[self.body(patch)];
             volume < -NEARLY_FLAT * size
         };
-        (0..frames.len()).map(|patch| stated(patch) != inward(patch)).collect()
+        (0..patches.len()).map(|patch| stated(patch) != inward(patch)).collect()
     }
 
     fn body(&self, patch: usize) -> usize {
@@ -96,10 +96,10 @@ impl Facing {
 
 /// The middle of the rims; where all of them lie in coordinate planes, in which mirrors or the water
 /// close the bodies, a point of these planes: from there the closing parts have no cone.
-fn apex(points: &[Arc<Vec<Vec3>>], rim: &[RimEdge]) -> Vec3 {
+fn apex(points: &[Arc<Vec<Vec3>>], free_edges: &[FreeEdge]) -> Vec3 {
     let (mut centre, mut length) = (Vec3::<f64>::zero(), 0.0);
     let (mut used, mut closing) = ([false; 3], true);
-    for &(patch, a, b) in rim {
+    for &(patch, a, b) in free_edges {
         let [a, b] = [a, b].map(|k| points[patch as usize][k as usize]);
         let step = a.distance(b);
         centre += (a + b) * (0.5 * step);
@@ -119,7 +119,7 @@ fn apex(points: &[Arc<Vec<Vec3>>], rim: &[RimEdge]) -> Vec3 {
 }
 
 /// Six times the signed and the absolute volume of the cones from `centre` to the panels.
-fn cone(frame: &Frame, points: &[Vec3], centre: Vec3) -> (f64, f64) {
+fn cone(frame: &PatchTopology, points: &[Vec3], centre: Vec3) -> (f64, f64) {
     let [nu, nv] = frame.divisions;
     let at = |i: usize, j: usize| points[i * (nv + 1) + j] - centre;
     let (mut volume, mut size) = (0.0, 0.0);

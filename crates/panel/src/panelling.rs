@@ -1,6 +1,6 @@
 //! From surfaces to panels: patches from their own parameters and divisions, joined by identity.
 //!
-//! `surfaces -> drafts -> roots cut into stretches -> counts -> skeleton -> joined vertices -> panels`
+//! `surfaces -> drafts -> roots cut into intervals -> counts -> structure -> joined vertices -> panels`
 //!
 //! A patch of nu x nv divisions has a grid of vertices. Its edges run along stretches of roots (see
 //! `moldloft_num::trace` and [`crate::roots`]); counts flow from patch to patch along these
@@ -11,17 +11,17 @@
 
 use crate::draft::{drafts, indices};
 use crate::edges::{self, EdgePlan, along_edge};
-use crate::joined_patches::Joint;
-use crate::notes::Remark;
-use crate::patch_values::{Known, evaluated_all, names};
+use crate::joined_patches::JoinedPatches;
+use crate::notes::PanelNote;
+use crate::patch_values::{PatchValues, evaluated_all, names};
 use crate::roots::Roots;
-use crate::topology::{self, Counts, Frame, Nominal, Rim, Skeleton};
-use crate::triangle_bodies::{self, Body};
+use crate::topology::{self, Counts, EdgeRun, Nominal, PanelTopology, PatchTopology};
+use crate::triangle_bodies::{self, MeshedBody};
 use moldloft_mesh::{Mesh, Topology};
 use moldloft_model::{Graph, Object};
 use moldloft_num::trace::Key;
 use moldloft_num::{Box3, Real, Vec3};
-use moldloft_registry::{Fault, Scalar, SurfaceRef};
+use moldloft_registry::{CallError, Scalar, SurfaceRef};
 use std::cell::LazyCell;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -30,8 +30,8 @@ use std::sync::Arc;
 pub const MOST_PANELS: u64 = 20_000_000;
 
 /// The fault of `count` panels.
-pub fn too_many_panels(count: u64) -> Fault {
-    Fault::new("too-many-panels", format!("{count} panels are too many"))
+pub fn too_many_panels(count: u64) -> CallError {
+    CallError::new("too-many-panels", format!("{count} panels are too many"))
         .expected(format!("at most {MOST_PANELS}"))
         .found(count.to_string())
         .help("lower the divisions of the surfaces")
@@ -44,10 +44,10 @@ const IN_PLANE: f64 = 1e-12;
 /// Which vertices there are and who computes them; independent of the scalar.
 #[derive(Clone, Debug)]
 pub struct Panelling {
-    pub(crate) skeleton: Arc<Skeleton>,
-    pub(crate) joint: Arc<Joint>,
+    pub(crate) structure: Arc<PanelTopology>,
+    pub(crate) joined: Arc<JoinedPatches>,
     /// Bodies of triangles; their vertices come after all others.
-    bodies: Arc<Vec<Body>>,
+    bodies: Arc<Vec<MeshedBody>>,
     /// The joint's topology and that of the bodies.
     topology: Arc<Topology>,
     /// The points of each patch by itself, in the order of the skeleton, at the state that this was
@@ -58,7 +58,7 @@ pub struct Panelling {
     zeros: Vec<(u32, u8, u8)>,
     /// Point objects whose parameters divide edges, by their identity where this was made.
     pub(crate) names: Arc<HashMap<Key, Arc<str>>>,
-    remarks: Vec<Remark>,
+    remarks: Vec<PanelNote>,
     measured: bool,
     /// What the graph called its last change then.
     clock: u64,
@@ -68,8 +68,8 @@ impl Panelling {
     /// The panelling of all shown surfaces that have a value.
     ///
     /// # Errors
-    /// A [`Fault`] when there would be too many panels.
-    pub fn new(graph: &Graph<f64>) -> Result<Self, Fault> {
+    /// A [`CallError`] when there would be too many panels.
+    pub fn new(graph: &Graph<f64>) -> Result<Self, CallError> {
         Self::renewed(graph, None, None)
     }
 
@@ -78,80 +78,82 @@ impl Panelling {
     /// result is the same without it.
     ///
     /// # Errors
-    /// A [`Fault`] when there would be too many panels.
+    /// A [`CallError`] when there would be too many panels.
     pub fn renewed(
         graph: &Graph<f64>,
         nominal: Option<&Nominal>,
         before: Option<&Panelling>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, CallError> {
         let drafts = drafts(graph);
-        let made = topology::make(graph, Roots::new(graph, &drafts), &drafts, nominal);
-        let count = |frame: &Frame| frame.divisions[0] as u64 * frame.divisions[1] as u64;
+        let made = topology::solve(graph, Roots::new(graph, &drafts), &drafts, nominal);
+        let count = |frame: &PatchTopology| frame.divisions[0] as u64 * frame.divisions[1] as u64;
         let mut bodies = triangle_bodies::bodies(graph);
-        let total = made.skeleton.frames.iter().map(count).sum::<u64>()
-            + bodies.iter().map(Body::panels).sum::<u64>();
+        let total = made.structure.patches.iter().map(count).sum::<u64>()
+            + bodies.iter().map(MeshedBody::panels).sum::<u64>();
         if total > MOST_PANELS {
             return Err(too_many_panels(total));
         }
-        let before = before.filter(|b| *b.skeleton == made.skeleton);
-        let skeleton = before.map_or_else(|| Arc::new(made.skeleton), |b| b.skeleton.clone());
+        let before = before.filter(|b| *b.structure == made.structure);
+        let structure = before.map_or_else(|| Arc::new(made.structure), |b| b.structure.clone());
         let names = match before {
             Some(before) => before.names.clone(),
-            None => Arc::new(names(graph, &skeleton)),
+            None => Arc::new(names(graph, &structure)),
         };
         // Divisions that hang on marks of other objects move with these.
-        let hangs = |frame: &Frame| {
+        let hangs = |frame: &PatchTopology| {
             frame.plans.iter().any(|p| matches!(p, EdgePlan::Segments(_) | EdgePlan::Like(_)))
         };
         let kept = |patch: usize| {
             let before = before?;
             let unchanged = drafts[patch].object.changed_at <= before.clock;
-            (unchanged && !hangs(&skeleton.frames[patch])).then(|| before.raw[patch].clone())
+            (unchanged && !hangs(&structure.patches[patch])).then(|| before.raw[patch].clone())
         };
-        let evaluated = evaluated_all(&skeleton, &names, graph, kept);
+        let evaluated = evaluated_all(&structure, &names, graph, kept);
         // Every draft has a value in its own graph.
         let raw: Vec<_> = evaluated.into_iter().flatten().collect();
         let mut points = raw.clone();
         let size = points.iter().flat_map(|p| p.iter()).fold(Box3::EMPTY, |b, &p| b.including(p));
-        let zeros = zeros(&skeleton, &points, size.diagonal());
-        set_zeros(&skeleton, &zeros, &mut points);
-        let fixed = fixed(&skeleton, &points);
-        let joint = match before.filter(|b| b.joint.fixed == fixed) {
-            Some(before) if before.joint.turned == before.joint.facing(&skeleton, &points) => {
-                before.joint.clone()
+        let zeros = zeros(&structure, &points, size.diagonal());
+        set_zeros(&structure, &zeros, &mut points);
+        let fixed = fixed(&structure, &points);
+        let joined = match before.filter(|b| b.joined.fixed == fixed) {
+            Some(before)
+                if before.joined.turned == before.joined.orientation(&structure, &points) =>
+            {
+                before.joined.clone()
             }
             _ => {
-                let joint = Joint::new(&skeleton, &points, fixed);
-                Arc::new(joint.map_err(|e| Fault::new("too-many-panels", e.to_string()))?)
+                let joined = JoinedPatches::new(&structure, &points, fixed);
+                Arc::new(joined.map_err(|e| CallError::new("too-many-panels", e.to_string()))?)
             }
         };
         let mut remarks = made.remarks;
-        remarks.extend(joint.apart(&skeleton, &points, size.diagonal()));
+        remarks.extend(joined.apart(&structure, &points, size.diagonal()));
         {
-            let known = if bodies.iter().any(Body::has_border) {
-                Known::new(graph, &skeleton, &names)
+            let known = if bodies.iter().any(MeshedBody::has_border) {
+                PatchValues::new(graph, &structure, &names)
             } else {
-                Known::empty(graph, &skeleton, &names)
+                PatchValues::empty(graph, &structure, &names)
             };
             let clock = before.map_or(0, |b| b.clock);
             let unchanged = |object: &Object<f64>| object.changed_at <= clock;
             let earlier = before.map(|b| (b.bodies.as_slice(), &unchanged as _));
-            remarks.extend(triangle_bodies::sewn(&mut bodies, &known, &joint, earlier));
+            remarks.extend(triangle_bodies::sewn(&mut bodies, &known, &joined, earlier));
         }
         let whole = before.filter(|b| {
             let alike = b.bodies.len() == bodies.len()
                 && b.bodies.iter().zip(&bodies).all(|(a, b)| a.is_like(b));
-            alike && Arc::ptr_eq(&b.joint, &joint)
+            alike && Arc::ptr_eq(&b.joined, &joined)
         });
         let topology = match whole {
             Some(before) => before.topology.clone(),
-            None if bodies.is_empty() => joint.topology.clone(),
-            None => triangle_bodies::with_bodies(&joint.topology, &bodies)
-                .map_err(|e| Fault::new("too-many-panels", e.to_string()))?,
+            None if bodies.is_empty() => joined.topology.clone(),
+            None => triangle_bodies::with_bodies(&joined.topology, &bodies)
+                .map_err(|e| CallError::new("too-many-panels", e.to_string()))?,
         };
         Ok(Self {
-            skeleton,
-            joint,
+            structure,
+            joined,
             bodies: Arc::new(bodies),
             topology,
             raw,
@@ -170,7 +172,7 @@ impl Panelling {
     }
 
     /// What was noticed at the joins.
-    pub fn remarks(&self) -> &[Remark] {
+    pub fn remarks(&self) -> &[PanelNote] {
         &self.remarks
     }
 
@@ -181,14 +183,14 @@ impl Panelling {
 
     /// Its counts, for [`Self::like`].
     pub fn nominal(&self) -> Nominal {
-        let counts = self.skeleton.frames.iter().map(|frame| {
-            let edges = std::array::from_fn(|k| match &frame.rims[k] {
-                Rim::Along(spans) => {
-                    spans.iter().filter(|(s, _)| s.stretch.is_some()).map(|(_, n)| *n).collect()
+        let counts = self.structure.patches.iter().map(|frame| {
+            let edges = std::array::from_fn(|k| match &frame.runs[k] {
+                EdgeRun::Along(spans) => {
+                    spans.iter().filter(|(s, _)| s.interval.is_some()).map(|(_, n)| *n).collect()
                 }
                 _ => Vec::new(),
             });
-            ((frame.name.clone(), frame.hem), Counts { divisions: frame.divisions, edges })
+            ((frame.name.clone(), frame.border_curve), Counts { divisions: frame.divisions, edges })
         });
         Nominal(counts.collect())
     }
@@ -196,23 +198,24 @@ impl Panelling {
     /// The names of the patches' surfaces, in the order of the topology's patches; bodies of
     /// triangles come after them.
     pub fn surfaces(&self) -> impl Iterator<Item = &Arc<str>> {
-        self.skeleton.frames.iter().filter(|f| f.meshed).map(|f| &f.name)
+        self.structure.patches.iter().filter(|f| f.meshed).map(|f| &f.name)
     }
 
     /// The positions of all vertices, evaluated with the scalar of `graph`; `None` when a surface
     /// has no value there.
     pub fn positions<T: Scalar>(&self, graph: &Graph<T>) -> Option<Vec<Vec3<T>>> {
-        let points = evaluated_all(&self.skeleton, &self.names, graph, |_| None);
+        let points = evaluated_all(&self.structure, &self.names, graph, |_| None);
         let mut points = points.into_iter().collect::<Option<Vec<_>>>()?;
-        set_zeros(&self.skeleton, &self.zeros, &mut points);
+        set_zeros(&self.structure, &self.zeros, &mut points);
         Some(self.gathered(&points, &self.body_points(graph, &points)?))
     }
 
     /// Of each structured patch, in the order of the topology's: its surface, and (u, v) of each
     /// vertex of its block; `None` when a surface has no value.
     pub fn parameters(&self, graph: &Graph<f64>) -> Option<Vec<(SurfaceRef<f64>, Vec<[f64; 2]>)>> {
-        let known = Known::new(graph, &self.skeleton, &self.names);
-        let meshed = (0..self.skeleton.frames.len()).filter(|&k| self.skeleton.frames[k].meshed);
+        let known = PatchValues::new(graph, &self.structure, &self.names);
+        let meshed =
+            (0..self.structure.patches.len()).filter(|&k| self.structure.patches[k].meshed);
         meshed
             .map(|patch| {
                 let edge = |k: usize| along_edge(k, patch as u32, &known);
@@ -243,7 +246,7 @@ impl Panelling {
         if self.bodies.is_empty() {
             return Some(Vec::new());
         }
-        let known = LazyCell::new(|| Known::new(graph, &self.skeleton, &self.names));
+        let known = LazyCell::new(|| PatchValues::new(graph, &self.structure, &self.names));
         let mut points = Vec::new();
         for body in self.bodies.iter() {
             let facets = body.facets_in(graph, || &*known)?;
@@ -262,7 +265,7 @@ impl Panelling {
         let mut positions = vec![Vec3::zero(); self.topology().vertex_count()];
         let last = positions.len() - bodies.len();
         positions[last..].copy_from_slice(bodies);
-        let patches = self.skeleton.frames.iter().zip(points).zip(&self.joint.vertices);
+        let patches = self.structure.patches.iter().zip(points).zip(&self.joined.vertices);
         // Backwards, so that the first patch has the last word.
         for ((_, points), vertices) in patches.rev().filter(|((f, _), _)| f.meshed) {
             for (&vertex, &p) in vertices.iter().zip(points.iter()) {
@@ -274,10 +277,10 @@ impl Panelling {
 }
 
 /// The parts of patches that lie in a coordinate plane but for rounding.
-fn zeros(skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32, u8, u8)> {
+fn zeros(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32, u8, u8)> {
     let near = IN_PLANE * size;
     let mut found = Vec::new();
-    for (patch, (frame, points)) in skeleton.frames.iter().zip(points).enumerate() {
+    for (patch, (frame, points)) in structure.patches.iter().zip(points).enumerate() {
         for axis in 0..3u8 {
             let at = |k: usize| points[k][usize::from(axis)];
             let inside = |part| indices(frame.divisions, part).all(|k| at(k).abs() <= near);
@@ -294,12 +297,12 @@ fn zeros(skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>], size: f64) -> Vec<(u32,
 
 /// Makes the coordinates zero; their derivatives stay.
 fn set_zeros<T: Real>(
-    skeleton: &Skeleton,
+    structure: &PanelTopology,
     zeros: &[(u32, u8, u8)],
     points: &mut [Arc<Vec<Vec3<T>>>],
 ) {
     for &(patch, part, axis) in zeros {
-        let divisions = skeleton.frames[patch as usize].divisions;
+        let divisions = structure.patches[patch as usize].divisions;
         let points = &mut points[patch as usize];
         let zero = |k: usize| points[k][usize::from(axis)].re().to_bits() == 0;
         if indices(divisions, part).all(zero) {
@@ -316,15 +319,15 @@ fn set_zeros<T: Real>(
 }
 
 /// For each patch that is an image, which points of its boundary are those of its original.
-fn fixed(skeleton: &Skeleton, points: &[Arc<Vec<Vec3>>]) -> Vec<Vec<bool>> {
-    let of_patch = |(patch, frame): (usize, &Frame)| {
+fn fixed(structure: &PanelTopology, points: &[Arc<Vec<Vec3>>]) -> Vec<Vec<bool>> {
+    let of_patch = |(patch, frame): (usize, &PatchTopology)| {
         let Some((original, _)) = frame.image else { return Vec::new() };
-        if skeleton.frames[original].divisions != frame.divisions {
+        if structure.patches[original].divisions != frame.divisions {
             return Vec::new();
         }
         let boundary = (0..4).flat_map(|k| indices(frame.divisions, k));
         // -0 and 0 are one place.
         boundary.map(|k| points[patch][k] == points[original][k]).collect()
     };
-    skeleton.frames.iter().enumerate().map(of_patch).collect()
+    structure.patches.iter().enumerate().map(of_patch).collect()
 }

@@ -3,9 +3,9 @@
 
 use crate::border_curves;
 use crate::draft::surface_of;
-use crate::edges::{EdgePlan, Places, along_edge, evaluated};
+use crate::edges::{EdgePlan, PatchLookup, along_edge, evaluated};
 use crate::roots::{MarkSource, Stop};
-use crate::topology::{Frame, Skeleton};
+use crate::topology::{PanelTopology, PatchTopology};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
 use moldloft_num::trace::{Edges, Key};
@@ -20,12 +20,12 @@ const WORTH_A_THREAD: usize = 4096;
 /// The points of each patch by itself, evaluated with the scalar of `graph`; those that `kept` has
 /// are not evaluated again.
 pub(crate) fn evaluated_all<T: Scalar>(
-    skeleton: &Skeleton,
+    structure: &PanelTopology,
     names: &HashMap<Key, Arc<str>>,
     graph: &Graph<T>,
     kept: impl Fn(usize) -> Option<Arc<Vec<Vec3<T>>>> + Sync,
 ) -> Vec<Option<Arc<Vec<Vec3<T>>>>> {
-    let known = Known::new(graph, skeleton, names);
+    let known = PatchValues::new(graph, structure, names);
     let one = |patch: usize| {
         if let Some(points) = kept(patch) {
             return Some(points);
@@ -35,18 +35,18 @@ pub(crate) fn evaluated_all<T: Scalar>(
         let edges = [edge(0)?, edge(1)?, edge(2)?, edge(3)?];
         Some(Arc::new(evaluated(surface, &edges)))
     };
-    let count = skeleton.frames.len();
-    let points = |f: &Frame| (f.divisions[0] + 1) * (f.divisions[1] + 1);
-    if count < 2 || skeleton.frames.iter().map(points).sum::<usize>() < WORTH_A_THREAD {
+    let count = structure.patches.len();
+    let points = |f: &PatchTopology| (f.divisions[0] + 1) * (f.divisions[1] + 1);
+    if count < 2 || structure.patches.iter().map(points).sum::<usize>() < WORTH_A_THREAD {
         return (0..count).map(one).collect();
     }
     (0..count).into_par_iter().map(one).collect()
 }
 
 /// The names of the point objects that plans of edges refer to.
-pub(crate) fn names(graph: &Graph<f64>, skeleton: &Skeleton) -> HashMap<Key, Arc<str>> {
+pub(crate) fn names(graph: &Graph<f64>, structure: &PanelTopology) -> HashMap<Key, Arc<str>> {
     let mut names = HashMap::new();
-    for plan in skeleton.frames.iter().flat_map(|f| &f.plans) {
+    for plan in structure.patches.iter().flat_map(|f| &f.plans) {
         let EdgePlan::Segments(segments) = plan else { continue };
         for segment in segments {
             if let Stop::Inside(_, source) = segment.until
@@ -61,49 +61,50 @@ pub(crate) fn names(graph: &Graph<f64>, skeleton: &Skeleton) -> HashMap<Key, Arc
 }
 
 /// What a graph, of any scalar, says of the patches of a skeleton.
-pub(crate) struct Known<'a, T: Scalar> {
+pub(crate) struct PatchValues<'a, T: Scalar> {
     pub graph: &'a Graph<T>,
-    pub skeleton: &'a Skeleton,
+    pub structure: &'a PanelTopology,
     names: &'a HashMap<Key, Arc<str>>,
     keys: Vec<Option<Key>>,
     pub surfaces: Vec<Option<SurfaceRef<T>>>,
     edges: Vec<Option<Edges<T>>>,
 }
 
-impl<'a, T: Scalar> Known<'a, T> {
+impl<'a, T: Scalar> PatchValues<'a, T> {
     pub fn new(
         graph: &'a Graph<T>,
-        skeleton: &'a Skeleton,
+        structure: &'a PanelTopology,
         names: &'a HashMap<Key, Arc<str>>,
     ) -> Self {
-        let keys: Vec<Option<Key>> = skeleton.frames.iter().map(|f| graph.find(&f.name)).collect();
-        let surface = |(key, frame): (&Option<Key>, &Frame)| {
+        let keys: Vec<Option<Key>> =
+            structure.patches.iter().map(|f| graph.find(&f.name)).collect();
+        let surface = |(key, frame): (&Option<Key>, &PatchTopology)| {
             let object = graph.get((*key)?)?;
-            match frame.hem {
-                Some(hem) => {
-                    border_curves::line(border_curves::border(object)?.hems().get(hem as usize)?)
-                }
+            match frame.border_curve {
+                Some(border_curve) => border_curves::line(
+                    border_curves::border(object)?.curves().get(border_curve as usize)?,
+                ),
                 None => surface_of(object).cloned(),
             }
         };
-        let surfaces: Vec<_> = keys.iter().zip(&skeleton.frames).map(surface).collect();
+        let surfaces: Vec<_> = keys.iter().zip(&structure.patches).map(surface).collect();
         let edges = surfaces.iter().map(|s| Some(s.as_ref()?.edges())).collect();
-        Self { graph, skeleton, names, keys, surfaces, edges }
+        Self { graph, structure, names, keys, surfaces, edges }
     }
 
     /// What says nothing of any patch, for where nothing is asked.
     pub fn empty(
         graph: &'a Graph<T>,
-        skeleton: &'a Skeleton,
+        structure: &'a PanelTopology,
         names: &'a HashMap<Key, Arc<str>>,
     ) -> Self {
-        Self { graph, skeleton, names, keys: vec![], surfaces: vec![], edges: vec![] }
+        Self { graph, structure, names, keys: vec![], surfaces: vec![], edges: vec![] }
     }
 }
 
-impl<T: Scalar> Places<T> for Known<'_, T> {
+impl<T: Scalar> PatchLookup<T> for PatchValues<'_, T> {
     fn plans(&self, draft: u32) -> &[EdgePlan; 4] {
-        &self.skeleton.frames[draft as usize].plans
+        &self.structure.patches[draft as usize].plans
     }
 
     fn edges(&self, draft: u32) -> Option<&Edges<T>> {

@@ -29,7 +29,7 @@ pub(crate) enum MarkSource {
 
 /// A place on a root that some patch ends at.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct RootPlace {
     /// Lowest and highest parameter under which it is known.
     low: f64,
     high: f64,
@@ -38,7 +38,7 @@ pub(crate) struct Place {
     source: MarkSource,
 }
 
-impl Place {
+impl RootPlace {
     /// Its parameter on the root.
     pub fn parameter(&self) -> f64 {
         self.low
@@ -46,10 +46,10 @@ impl Place {
 }
 
 /// The number of a place among those of all roots.
-pub(crate) type PlaceId = u32;
+pub(crate) type RootPlaceId = u32;
 
 /// The stretch from a place to the next on its root has the number of the place.
-pub(crate) type StretchId = u32;
+pub(crate) type IntervalId = u32;
 
 /// The places of all roots in ascending order, root by root.
 #[derive(Debug, Default)]
@@ -57,19 +57,19 @@ pub(crate) struct Roots {
     ids: HashMap<Root, usize>,
     /// The first place of each root, and one past the last.
     start: Vec<u32>,
-    places: Vec<Place>,
+    places: Vec<RootPlace>,
     roots: Vec<Root>,
 }
 
 /// A part of an edge that is one stretch of a root, or a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Span {
+pub(crate) struct EdgeInterval {
     /// `None` for a piece without length.
-    pub stretch: Option<StretchId>,
+    pub interval: Option<IntervalId>,
     /// True when the edge runs against the root.
     pub backwards: bool,
     /// The places at its begin and end, in the direction of the edge.
-    pub ends: [PlaceId; 2],
+    pub ends: [RootPlaceId; 2],
     /// The edge's parameter at its end.
     pub until: Stop,
 }
@@ -83,7 +83,7 @@ pub(crate) enum Stop {
     Inside(u16, MarkSource),
 }
 
-struct Raw {
+struct RawMark {
     root: usize,
     t: f64,
     point: Option<Key>,
@@ -107,7 +107,7 @@ impl Roots {
                             end: end == 1,
                         };
                         let root = all.id(piece.root);
-                        raw.push(Raw { root, t: mark.t + 0.0, point: mark.point, source });
+                        raw.push(RawMark { root, t: mark.t + 0.0, point: mark.point, source });
                     }
                 }
             }
@@ -127,7 +127,7 @@ impl Roots {
 
     /// Corners and poles that are beads, rings or magnets mark the edges that they lie on, whether
     /// or not an edge ends there.
-    fn mark_points(&mut self, graph: &Graph<f64>, drafts: &[Draft], raw: &mut Vec<Raw>) {
+    fn mark_points(&mut self, graph: &Graph<f64>, drafts: &[Draft], raw: &mut Vec<RawMark>) {
         let poles = |draft: &Draft| -> SmallVec<[Key; 4]> {
             let edges = draft.edges.edges.iter();
             edges.filter_map(|e| if let Edge::Pole(p) = e { *p } else { None }).collect()
@@ -145,18 +145,18 @@ impl Roots {
                 for (root, t, source) in places_of(point, key) {
                     // A root that no patch runs along needs no marks.
                     if let Some(&root) = self.ids.get(&root) {
-                        raw.push(Raw { root, t: t + 0.0, point: Some(key), source });
+                        raw.push(RawMark { root, t: t + 0.0, point: Some(key), source });
                     }
                 }
             }
         }
     }
 
-    fn sort(&mut self, mut raw: Vec<Raw>) {
+    fn sort(&mut self, mut raw: Vec<RawMark>) {
         // Stable: among equal ones the first patch comes first.
         raw.sort_by(|a, b| a.root.cmp(&b.root).then(a.t.total_cmp(&b.t)));
         let mut root = None;
-        for Raw { root: at, t, point, source } in raw {
+        for RawMark { root: at, t, point, source } in raw {
             let same_root = root == Some(at);
             root = Some(at);
             while self.start.len() <= at {
@@ -171,7 +171,7 @@ impl Roots {
                 }
             }
             let points = point.into_iter().collect();
-            self.places.push(Place { low: t, high: t, points, source });
+            self.places.push(RootPlace { low: t, high: t, points, source });
         }
         self.start.push(self.places.len() as u32);
     }
@@ -182,23 +182,23 @@ impl Roots {
     }
 
     /// The places.
-    pub fn places(&self) -> &[Place] {
+    pub fn places(&self) -> &[RootPlace] {
         &self.places
     }
 
     /// The root that a stretch is part of.
-    pub fn root_of(&self, stretch: StretchId) -> Root {
-        self.roots[self.start.partition_point(|&s| s <= stretch) - 1]
+    pub fn root_of(&self, interval: IntervalId) -> Root {
+        self.roots[self.start.partition_point(|&s| s <= interval) - 1]
     }
 
-    fn find(&self, root: usize, t: f64) -> PlaceId {
+    fn find(&self, root: usize, t: f64) -> RootPlaceId {
         let (from, to) = (self.start[root] as usize, self.start[root + 1] as usize);
         let places = &self.places[from..to];
-        (from + places.partition_point(|p| p.high < t)) as PlaceId
+        (from + places.partition_point(|p| p.high < t)) as RootPlaceId
     }
 
     /// The stretches along the pieces of an edge.
-    pub fn spans(&self, pieces: &[Piece<f64>]) -> Vec<Span> {
+    pub fn spans(&self, pieces: &[Piece<f64>]) -> Vec<EdgeInterval> {
         let mut spans = Vec::with_capacity(pieces.len());
         for (p, piece) in pieces.iter().enumerate() {
             let root = self.ids[&piece.root];
@@ -207,7 +207,12 @@ impl Roots {
             let p = p as u16;
             if from == to {
                 let until = Stop::Piece(p);
-                spans.push(Span { stretch: None, backwards: false, ends: [from, to], until });
+                spans.push(EdgeInterval {
+                    interval: None,
+                    backwards: false,
+                    ends: [from, to],
+                    until,
+                });
                 continue;
             }
             let backwards = from > to;
@@ -219,8 +224,8 @@ impl Roots {
                 } else {
                     Stop::Inside(p, self.places[next as usize].source)
                 };
-                let stretch = Some(at.min(next));
-                spans.push(Span { stretch, backwards, ends: [at, next], until });
+                let interval = Some(at.min(next));
+                spans.push(EdgeInterval { interval, backwards, ends: [at, next], until });
                 at = next;
             }
         }

@@ -2,9 +2,9 @@
 
 use crate::draft::indices;
 use crate::edges::along_edge;
-use crate::notes::Remark;
+use crate::notes::PanelNote;
 use crate::panelling::Panelling;
-use crate::patch_values::Known;
+use crate::patch_values::PatchValues;
 use moldloft_model::Graph;
 use moldloft_num::{Order, Vec3};
 use std::collections::{HashMap, HashSet};
@@ -13,11 +13,11 @@ use std::collections::{HashMap, HashSet};
 /// same place, found by a projection or typed with few digits.
 const SAME_PLACE: f64 = 1e-7;
 
-/// The most that are told one by one.
-const MOST_TOLD: usize = 20;
+/// The most that are reported one by one.
+const MOST_REPORTED: usize = 20;
 
 /// An open panel edge at the rim of a patch.
-struct Side {
+struct OpenEdge {
     patch: usize,
     edge: u8,
     /// Parameters along the edge, and the vertices, at both ends.
@@ -32,7 +32,7 @@ impl Panelling {
     /// Corners of patches that lie on open edges of others and are not joined to them: in the
     /// middle of a panel's edge (a T-junction), or at another vertex in the same place. For
     /// checks: it takes longer than panelling itself.
-    pub fn junctions(&self, graph: &Graph<f64>) -> Vec<Remark> {
+    pub fn junctions(&self, graph: &Graph<f64>) -> Vec<PanelNote> {
         let sides = self.sides(graph);
         let size = sides
             .iter()
@@ -62,17 +62,17 @@ impl Panelling {
                 }
             }
         }
-        let known = Known::new(graph, &self.skeleton, &self.names);
+        let known = PatchValues::new(graph, &self.structure, &self.names);
         let mut open: HashSet<u32> = HashSet::new();
         sides.iter().for_each(|s| open.extend(s.vertices));
-        let mut told = HashSet::new();
+        let mut reported = HashSet::new();
         let mut remarks = Vec::new();
         let mut more = 0;
-        for (patch, frame) in self.skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+        for (patch, frame) in self.structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
             let [nu, nv] = frame.divisions;
             for corner in [[0, 0], [1, 0], [1, 1], [0, 1]] {
                 let at = usize::from(corner[0]) * nu * (nv + 1) + usize::from(corner[1]) * nv;
-                let (vertex, p) = (self.joint.vertices[patch][at], self.points[patch][at]);
+                let (vertex, p) = (self.joined.vertices[patch][at], self.points[patch][at]);
                 if !open.contains(&vertex) {
                     continue;
                 }
@@ -88,16 +88,17 @@ impl Panelling {
                         surface.jet(u, v, Order::Zero).p
                     };
                     let (t, distance) = nearest(&point, side.ts, p);
-                    if distance > SAME_PLACE * size || !told.insert((patch, corner, side.patch)) {
+                    if distance > SAME_PLACE * size || !reported.insert((patch, corner, side.patch))
+                    {
                         continue;
                     }
-                    if remarks.len() == MOST_TOLD {
+                    if remarks.len() == MOST_REPORTED {
                         more += 1;
                         continue;
                     }
                     let twin = side.ends.iter().any(|q| q.distance(p) <= SAME_PLACE * size);
-                    let name = |k: usize| self.skeleton.frames[k].name.to_string();
-                    remarks.push(Remark::Junction {
+                    let name = |k: usize| self.structure.patches[k].name.to_string();
+                    remarks.push(PanelNote::Junction {
                         patches: [name(patch), name(side.patch)],
                         corner,
                         edge: (side.edge, t),
@@ -108,17 +109,17 @@ impl Panelling {
             }
         }
         if more > 0 {
-            remarks.push(Remark::More(more));
+            remarks.push(PanelNote::More(more));
         }
         remarks
     }
 
     /// The open panel edges.
-    fn sides(&self, graph: &Graph<f64>) -> Vec<Side> {
-        let known = Known::new(graph, &self.skeleton, &self.names);
-        let open: HashSet<(u32, u32, u32)> = self.joint.rim.iter().copied().collect();
+    fn sides(&self, graph: &Graph<f64>) -> Vec<OpenEdge> {
+        let known = PatchValues::new(graph, &self.structure, &self.names);
+        let open: HashSet<(u32, u32, u32)> = self.joined.free_edges.iter().copied().collect();
         let mut sides = Vec::with_capacity(open.len());
-        for (patch, frame) in self.skeleton.frames.iter().enumerate().filter(|(_, f)| f.meshed) {
+        for (patch, frame) in self.structure.patches.iter().enumerate().filter(|(_, f)| f.meshed) {
             for k in 0..4u8 {
                 let Some(ts) = along_edge(usize::from(k), patch as u32, &known) else { continue };
                 let places: Vec<usize> = indices(frame.divisions, k).collect();
@@ -127,11 +128,11 @@ impl Panelling {
                         continue;
                     }
                     let [a, b] = [pair[0], pair[1]];
-                    sides.push(Side {
+                    sides.push(OpenEdge {
                         patch,
                         edge: k,
                         ts: [ts[m], ts[m + 1]],
-                        vertices: [a, b].map(|at| self.joint.vertices[patch][at]),
+                        vertices: [a, b].map(|at| self.joined.vertices[patch][at]),
                         ends: [a, b].map(|at| self.points[patch][at]),
                     });
                 }

@@ -1,11 +1,11 @@
 //! What of a model its panels' connectivity follows from: patches, the stretches that their edges
 //! run along, and the counts of divisions on these.
 
-use crate::counts::{Conflict, Divider, Links, Node, Sum};
+use crate::counts::{Conflict, CountProblem, Links, Node, Sum};
 use crate::draft::Draft;
 use crate::edges::{EdgePlan, Segment, Shares, reversed, shares_of};
-use crate::notes::{ChainStep, Remark};
-use crate::roots::{PlaceId, Roots, Span, Stop, StretchId};
+use crate::notes::{ChainStep, PanelNote};
+use crate::roots::{EdgeInterval, IntervalId, RootPlaceId, Roots, Stop};
 use moldloft_model::Graph;
 use moldloft_num::trace::{Edge, Key, Root};
 use moldloft_num::{Real, Vec3};
@@ -13,8 +13,8 @@ use moldloft_registry::Spacing;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
-/// The most contradictions that are told one by one.
-const MOST_TOLD: usize = 20;
+/// The most contradictions that are reported one by one.
+const MOST_REPORTED: usize = 20;
 
 /// Steps in which the length of an edge is measured, for sizes and shares.
 const LENGTH_STEPS: usize = 32;
@@ -24,11 +24,11 @@ const MOST_DIVISIONS: f64 = 1e6;
 
 /// What an edge of a patch runs along.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Rim {
+pub(crate) enum EdgeRun {
     /// These stretches, with the count on each.
-    Along(Vec<(Span, u32)>),
+    Along(Vec<(EdgeInterval, u32)>),
     /// Stretches whose counts do not add up to that of the patch: its two ends.
-    Loose([PlaceId; 2]),
+    Loose([RootPlaceId; 2]),
     /// The same line as edge 0..4 of the patch.
     Same(u8),
     /// One point.
@@ -37,14 +37,14 @@ pub(crate) enum Rim {
 
 /// A patch without its shape.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Frame {
+pub(crate) struct PatchTopology {
     pub key: Key,
     pub name: Arc<str>,
     pub kind: Arc<str>,
     pub colour: i32,
     pub tags: Vec<Arc<str>>,
     pub divisions: [usize; 2],
-    pub rims: [Rim; 4],
+    pub runs: [EdgeRun; 4],
     pub plans: [EdgePlan; 4],
     pub corners: [Option<Key>; 4],
     /// The patch of which it is the image, and the number of the map.
@@ -54,21 +54,21 @@ pub(crate) struct Frame {
     /// False for a hidden surface of which a shown one is the image, and for a hem.
     pub meshed: bool,
     /// For a hem, which of its sheet's.
-    pub hem: Option<u32>,
+    pub border_curve: Option<u32>,
 }
 
 /// All of it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Skeleton {
-    pub frames: Vec<Frame>,
+pub(crate) struct PanelTopology {
+    pub patches: Vec<PatchTopology>,
     /// The point objects at each place.
     pub points: Vec<Vec<Key>>,
 }
 
 /// The skeleton and what was found while it was made.
-pub(crate) struct Made {
-    pub skeleton: Skeleton,
-    pub remarks: Vec<Remark>,
+pub(crate) struct SolvedTopology {
+    pub structure: PanelTopology,
+    pub remarks: Vec<PanelNote>,
     /// True when some count follows from lengths, so that it may change with any parameter.
     pub measured: bool,
 }
@@ -80,7 +80,7 @@ fn side(patch: usize, direction: usize) -> Node {
 
 /// How stretches of so many divisions are divided: as the first patch says, which runs along them
 /// backwards or not.
-type Settled = HashMap<(StretchId, u32), (bool, Shares)>;
+type IntervalShares = HashMap<(IntervalId, u32), (bool, Shares)>;
 
 /// The counts of divisions of another state of a model, to be kept where they are free.
 #[derive(Clone, Debug, Default)]
@@ -92,12 +92,12 @@ pub(crate) struct Counts {
     pub edges: [Vec<u32>; 4],
 }
 
-struct Maker<'a, 'g> {
+struct TopologySolver<'a, 'g> {
     graph: &'g Graph<f64>,
     drafts: &'a [Draft<'g>],
     roots: Roots,
-    spans: Vec<[Option<Vec<Span>>; 4]>,
-    divider: Divider,
+    spans: Vec<[Option<Vec<EdgeInterval>>; 4]>,
+    divider: CountProblem,
     /// The patch and edge of each sum.
     summed: Vec<(usize, usize)>,
     /// For each link: true when the two run in opposite directions.
@@ -105,12 +105,12 @@ struct Maker<'a, 'g> {
     measured: bool,
 }
 
-pub(crate) fn make<'g>(
+pub(crate) fn solve<'g>(
     graph: &'g Graph<f64>,
     roots: Roots,
     drafts: &[Draft<'g>],
     nominal: Option<&Nominal>,
-) -> Made {
+) -> SolvedTopology {
     let spans: Vec<_> = drafts
         .iter()
         .map(|draft| {
@@ -120,12 +120,12 @@ pub(crate) fn make<'g>(
             })
         })
         .collect();
-    let mut maker = Maker {
+    let mut maker = TopologySolver {
         graph,
         drafts,
         roots,
         spans,
-        divider: Divider::default(),
+        divider: CountProblem::default(),
         summed: Vec::new(),
         turned: Vec::new(),
         measured: false,
@@ -136,14 +136,14 @@ pub(crate) fn make<'g>(
         None => maker.wish(),
     }
     let divided = maker.divider.solve();
-    let remarks = maker.told(&divided.conflicts, &divided.counts);
+    let remarks = maker.reported(&divided.conflicts, &divided.counts);
     let measured = maker.measured;
-    Made { skeleton: maker.finish(&divided.counts), remarks, measured }
+    SolvedTopology { structure: maker.finish(&divided.counts), remarks, measured }
 }
 
-impl Maker<'_, '_> {
-    fn stretch(&self, stretch: StretchId) -> Node {
-        2 * self.drafts.len() + stretch as usize
+impl TopologySolver<'_, '_> {
+    fn interval(&self, interval: IntervalId) -> Node {
+        2 * self.drafts.len() + interval as usize
     }
 
     /// Nodes, links and sums.
@@ -176,14 +176,14 @@ impl Maker<'_, '_> {
                     self.link(whole, side(patch, usize::from(other) % 2), false);
                 }
                 let Some(spans) = &self.spans[patch][k] else { continue };
-                let along: Vec<(StretchId, bool)> =
-                    spans.iter().filter_map(|s| Some((s.stretch?, s.backwards))).collect();
+                let along: Vec<(IntervalId, bool)> =
+                    spans.iter().filter_map(|s| Some((s.interval?, s.backwards))).collect();
                 match along[..] {
                     [] => {}
-                    [(stretch, backwards)] => self.link(whole, self.stretch(stretch), backwards),
+                    [(interval, backwards)] => self.link(whole, self.interval(interval), backwards),
                     _ => {
                         let weights = self.weights(patch, k);
-                        let nodes = along.iter().map(|s| self.stretch(s.0));
+                        let nodes = along.iter().map(|s| self.interval(s.0));
                         let parts = nodes.zip(weights).collect();
                         self.divider.sums.push(Sum { whole, parts });
                         self.summed.push((patch, k));
@@ -225,7 +225,7 @@ impl Maker<'_, '_> {
     fn weights(&self, patch: usize, k: usize) -> Vec<f64> {
         let stops = self.stops(patch, k);
         let spans = self.spans[patch][k].iter().flatten();
-        let within = stops.windows(2).zip(spans).filter(|(_, span)| span.stretch.is_some());
+        let within = stops.windows(2).zip(spans).filter(|(_, span)| span.interval.is_some());
         within.map(|(w, _)| self.length(patch, k, w[0], w[1])).collect()
     }
 
@@ -277,10 +277,10 @@ impl Maker<'_, '_> {
             }
             for k in 0..4 {
                 let spans = self.spans[patch][k].iter().flatten();
-                let along: Vec<StretchId> = spans.filter_map(|s| s.stretch).collect();
+                let along: Vec<IntervalId> = spans.filter_map(|s| s.interval).collect();
                 if along.len() == counts.edges[k].len() {
-                    for (stretch, &n) in along.into_iter().zip(&counts.edges[k]) {
-                        let node = self.stretch(stretch);
+                    for (interval, &n) in along.into_iter().zip(&counts.edges[k]) {
+                        let node = self.interval(interval);
                         self.divider.wished[node] = Some(n);
                     }
                 }
@@ -288,17 +288,17 @@ impl Maker<'_, '_> {
         }
     }
 
-    fn told(&self, conflicts: &[Conflict], counts: &[u32]) -> Vec<Remark> {
-        let mut remarks: Vec<Remark> = conflicts
+    fn reported(&self, conflicts: &[Conflict], counts: &[u32]) -> Vec<PanelNote> {
+        let mut remarks: Vec<PanelNote> = conflicts
             .iter()
-            .take(MOST_TOLD)
+            .take(MOST_REPORTED)
             .map(|conflict| match conflict {
                 Conflict::Chain(path) => self.chain(path),
                 Conflict::Sum(sum) => self.pieces(*sum, counts),
             })
             .collect();
-        if conflicts.len() > MOST_TOLD {
-            remarks.push(Remark::More(conflicts.len() - MOST_TOLD));
+        if conflicts.len() > MOST_REPORTED {
+            remarks.push(PanelNote::More(conflicts.len() - MOST_REPORTED));
         }
         remarks
     }
@@ -307,7 +307,7 @@ impl Maker<'_, '_> {
         if direction == 0 { 'u' } else { 'v' }
     }
 
-    fn chain(&self, path: &[Node]) -> Remark {
+    fn chain(&self, path: &[Node]) -> PanelNote {
         let patches = 2 * self.drafts.len();
         let mut chain: Vec<ChainStep> = Vec::new();
         for (at, &node) in path.iter().enumerate() {
@@ -315,7 +315,7 @@ impl Maker<'_, '_> {
                 continue;
             }
             let shares = match path.get(at + 1) {
-                Some(&next) if next >= patches => self.curve((next - patches) as StretchId),
+                Some(&next) if next >= patches => self.curve((next - patches) as IntervalId),
                 Some(_) => "being its image".into(),
                 None => String::new(),
             };
@@ -326,18 +326,18 @@ impl Maker<'_, '_> {
             });
         }
         let stated = |node: Option<&Node>| node.and_then(|&n| self.divider.stated[n]).unwrap_or(0);
-        Remark::Divisions { chain, divisions: [stated(path.first()), stated(path.last())] }
+        PanelNote::Divisions { chain, divisions: [stated(path.first()), stated(path.last())] }
     }
 
-    fn pieces(&self, sum: usize, counts: &[u32]) -> Remark {
+    fn pieces(&self, sum: usize, counts: &[u32]) -> PanelNote {
         let (patch, k) = self.summed[sum];
         let Sum { whole, parts } = &self.divider.sums[sum];
         let patches = 2 * self.drafts.len();
         let pieces = parts
             .iter()
-            .map(|&(node, _)| (self.curve((node - patches) as StretchId), counts[node]))
+            .map(|&(node, _)| (self.curve((node - patches) as IntervalId), counts[node]))
             .collect();
-        Remark::Pieces {
+        PanelNote::Pieces {
             patch: self.drafts[patch].object.name.to_string(),
             along: Self::letter(k % 2),
             divisions: counts[*whole],
@@ -346,9 +346,9 @@ impl Maker<'_, '_> {
     }
 
     /// The words for what a stretch is part of.
-    fn curve(&self, stretch: StretchId) -> String {
+    fn curve(&self, interval: IntervalId) -> String {
         let name = |key: Key| self.graph.get(key).map_or("", |o| &*o.name);
-        match self.roots.root_of(stretch) {
+        match self.roots.root_of(interval) {
             Root::Curve(key) => format!("`{}`", name(key)),
             Root::Segment(a, b) | Root::Governed(a, b, _) => {
                 format!("the line from `{}` to `{}`", name(a), name(b))
@@ -393,21 +393,21 @@ impl Maker<'_, '_> {
         spacing.into_iter().map(Option::unwrap_or_default).collect()
     }
 
-    fn finish(&self, counts: &[u32]) -> Skeleton {
+    fn finish(&self, counts: &[u32]) -> PanelTopology {
         let spacings = self.spacings();
-        let mut settled = Settled::new();
-        let mut frames = Vec::with_capacity(self.drafts.len());
+        let mut settled = IntervalShares::new();
+        let mut patches = Vec::with_capacity(self.drafts.len());
         for (patch, draft) in self.drafts.iter().enumerate() {
             let divisions = [0, 1].map(|d| counts[side(patch, d)]);
-            let mut rims: [Rim; 4] = std::array::from_fn(|_| Rim::Pole(None));
+            let mut runs: [EdgeRun; 4] = std::array::from_fn(|_| EdgeRun::Pole(None));
             let mut plans: [EdgePlan; 4] =
                 std::array::from_fn(|k| EdgePlan::Whole(divisions[k % 2], None));
             for k in 0..4 {
                 let n = divisions[k % 2];
                 let law = &spacings[side(patch, k % 2)];
-                (rims[k], plans[k]) = match &draft.edges.edges[k] {
-                    Edge::Pole(point) => (Rim::Pole(*point), EdgePlan::Whole(n, None)),
-                    Edge::SameAs(other) => (Rim::Same(*other), EdgePlan::As(*other)),
+                (runs[k], plans[k]) = match &draft.edges.edges[k] {
+                    Edge::Pole(point) => (EdgeRun::Pole(*point), EdgePlan::Whole(n, None)),
+                    Edge::SameAs(other) => (EdgeRun::Same(*other), EdgePlan::As(*other)),
                     _ => {
                         let spans = self.spans[patch][k].as_deref().unwrap_or_default();
                         self.edge(spans, n, law, counts, &mut settled)
@@ -419,11 +419,11 @@ impl Maker<'_, '_> {
                 if matches!(plans[k], EdgePlan::As(other) if usize::from(other) % 2 != k % 2) {
                     plans[k] = EdgePlan::Whole(divisions[k % 2], None);
                 }
-                if !matches!(rims[k], Rim::Pole(_)) {
+                if !matches!(runs[k], EdgeRun::Pole(_)) {
                     continue;
                 }
-                plans[k] = match rims[opposite] {
-                    Rim::Pole(_) | Rim::Same(_) => {
+                plans[k] = match runs[opposite] {
+                    EdgeRun::Pole(_) | EdgeRun::Same(_) => {
                         let n = divisions[k % 2];
                         EdgePlan::Whole(n, shares_of(&spacings[side(patch, k % 2)], 0, n, n))
                     }
@@ -436,64 +436,64 @@ impl Maker<'_, '_> {
             {
                 for k in 0..4 {
                     // Its vertices are the images of those of its original, wherever these lie.
-                    if matches!(&rims[k], Rim::Along(spans) if spans.len() == 1) {
+                    if matches!(&runs[k], EdgeRun::Along(spans) if spans.len() == 1) {
                         plans[k] = EdgePlan::Like(original as u32);
                     }
                 }
             }
-            frames.push(Frame {
+            patches.push(PatchTopology {
                 key: draft.object.key,
                 name: draft.object.name.clone(),
                 kind: draft.object.row.name.as_ref().into(),
                 colour: draft.object.head.colour,
                 tags: draft.object.head.panels.as_ref().map_or(Vec::new(), |p| p.tags.clone()),
                 divisions: divisions.map(|n| n as usize),
-                rims,
+                runs,
                 plans,
                 corners: draft.edges.corners,
                 image: draft.image,
                 reversed: draft.reversed,
                 meshed: draft.meshed,
-                hem: draft.hem.map(|h| h.index),
+                border_curve: draft.border_curve.map(|h| h.index),
             });
         }
         let points = self.roots.places().iter().map(|p| p.points.to_vec()).collect();
-        Skeleton { frames, points }
+        PanelTopology { patches, points }
     }
 
     fn edge(
         &self,
-        spans: &[Span],
+        spans: &[EdgeInterval],
         n: u32,
         law: &Spacing,
         counts: &[u32],
-        settled: &mut Settled,
-    ) -> (Rim, EdgePlan) {
-        let along = spans.iter().filter(|s| s.stretch.is_some()).count();
-        let count = |span: &Span| match span.stretch {
+        settled: &mut IntervalShares,
+    ) -> (EdgeRun, EdgePlan) {
+        let along = spans.iter().filter(|s| s.interval.is_some()).count();
+        let count = |span: &EdgeInterval| match span.interval {
             None => 0,
             // The only stretch has the patch's own count, even where a chain was cut.
             Some(_) if along == 1 => n,
-            Some(stretch) => counts[self.stretch(stretch)],
+            Some(interval) => counts[self.interval(interval)],
         };
         let (Some(first), Some(last)) = (spans.first(), spans.last()) else {
-            return (Rim::Pole(None), EdgePlan::Whole(n, None));
+            return (EdgeRun::Pole(None), EdgePlan::Whole(n, None));
         };
         if along == 0 {
             let point = self.roots.places()[first.ends[0] as usize].points.first().copied();
-            return (Rim::Pole(point), EdgePlan::Whole(n, None));
+            return (EdgeRun::Pole(point), EdgePlan::Whole(n, None));
         }
         if spans.iter().map(count).sum::<u32>() != n {
             let ends = [first.ends[0], last.ends[1]];
-            return (Rim::Loose(ends), EdgePlan::Whole(n, None));
+            return (EdgeRun::Loose(ends), EdgePlan::Whole(n, None));
         }
         let mut begin = 0;
         let mut segments = Vec::with_capacity(along);
         for span in spans {
-            let Some(stretch) = span.stretch else { continue };
+            let Some(interval) = span.interval else { continue };
             let count = count(span);
             let own = || (span.backwards, shares_of(law, begin, begin + count, n));
-            let (backwards, shares) = settled.entry((stretch, count)).or_insert_with(own);
+            let (backwards, shares) = settled.entry((interval, count)).or_insert_with(own);
             let same_way = *backwards == span.backwards;
             let shares = if same_way { shares.clone() } else { reversed(shares) };
             segments.push(Segment { until: span.until, count, shares });
@@ -503,7 +503,7 @@ impl Maker<'_, '_> {
             [only] => EdgePlan::Whole(n, only.shares.clone()),
             _ => EdgePlan::Segments(segments),
         };
-        (Rim::Along(spans.iter().map(|s| (*s, count(s))).collect()), plan)
+        (EdgeRun::Along(spans.iter().map(|s| (*s, count(s))).collect()), plan)
     }
 }
 

@@ -3,43 +3,43 @@
 
 use crate::border_curves::border;
 use crate::edges::along_edge;
-use crate::joined_patches::Joint;
-use crate::notes::Remark;
-use crate::patch_values::Known;
+use crate::joined_patches::JoinedPatches;
+use crate::notes::PanelNote;
+use crate::patch_values::PatchValues;
 use moldloft_mesh::{MeshError, PatchInfo, Tag, Topology, TopologyBuilder};
 use moldloft_model::{Graph, Object};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Facets, Scalar, Value};
+use moldloft_registry::{Scalar, TriangleBody, Value};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// A shown object that is a body.
 #[derive(Clone, Debug)]
-pub(crate) struct Body {
+pub(crate) struct MeshedBody {
     name: Arc<str>,
     kind: Arc<str>,
     colour: i32,
     tags: Vec<Arc<str>>,
     reversed: bool,
-    pub facets: Arc<Facets<f64>>,
+    pub facets: Arc<TriangleBody<f64>>,
     /// The parameters at which its border is divided, curve by curve; none when it has no border.
     divided: Vec<Vec<f64>>,
     /// The patch without panels that stands for each curve of its border, where there is one.
-    hems: Vec<Option<usize>>,
+    border_curves: Vec<Option<usize>>,
     /// Which of its vertices are those of each curve.
-    rims: Vec<Vec<u32>>,
+    border_vertices: Vec<Vec<u32>>,
     /// The number of each of its vertices in the mesh, and which are its own.
     vertices: Vec<u32>,
     own: Vec<u32>,
 }
 
 /// The shown bodies in the order of declaration, as they are by themselves.
-pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
+pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<MeshedBody> {
     let shown = graph.objects().filter(|o| o.head.shown());
     shown
         .filter_map(|object| {
-            let Some(Value::Mesh(facets)) = object.value() else { return None };
-            Some(Body {
+            let Some(Value::Body(facets)) = object.value() else { return None };
+            Some(MeshedBody {
                 name: object.name.clone(),
                 kind: object.row.name.as_ref().into(),
                 colour: object.head.colour,
@@ -47,8 +47,8 @@ pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
                 reversed: object.head.orientation == 1,
                 facets: facets.clone(),
                 divided: Vec::new(),
-                hems: Vec::new(),
-                rims: Vec::new(),
+                border_curves: Vec::new(),
+                border_vertices: Vec::new(),
                 vertices: Vec::new(),
                 own: Vec::new(),
             })
@@ -57,7 +57,10 @@ pub(crate) fn bodies(graph: &Graph<f64>) -> Vec<Body> {
 }
 
 /// A topology and the bodies after it.
-pub(crate) fn with_bodies(base: &Topology, bodies: &[Body]) -> Result<Arc<Topology>, MeshError> {
+pub(crate) fn with_bodies(
+    base: &Topology,
+    bodies: &[MeshedBody],
+) -> Result<Arc<Topology>, MeshError> {
     let mut builder = TopologyBuilder::extending(base.clone());
     for body in bodies {
         body.add(&mut builder)?;
@@ -69,19 +72,19 @@ pub(crate) fn with_bodies(base: &Topology, bodies: &[Body]) -> Result<Arc<Topolo
 /// vertices a number; `before` are those of an earlier state and what it calls unchanged. Returns what
 /// does not join.
 pub(crate) fn sewn(
-    bodies: &mut [Body],
-    known: &Known<f64>,
-    joint: &Joint,
-    before: Option<(&[Body], &dyn Fn(&Object<f64>) -> bool)>,
-) -> Vec<Remark> {
+    bodies: &mut [MeshedBody],
+    known: &PatchValues<f64>,
+    joined: &JoinedPatches,
+    before: Option<(&[MeshedBody], &dyn Fn(&Object<f64>) -> bool)>,
+) -> Vec<PanelNote> {
     let mut remarks = Vec::new();
-    let mut hems: HashMap<(Arc<str>, u32), usize> = HashMap::new();
-    for (patch, frame) in known.skeleton.frames.iter().enumerate() {
-        if let Some(hem) = frame.hem {
-            hems.insert((frame.name.clone(), hem), patch);
+    let mut border_curves: HashMap<(Arc<str>, u32), usize> = HashMap::new();
+    for (patch, frame) in known.structure.patches.iter().enumerate() {
+        if let Some(border_curve) = frame.border_curve {
+            border_curves.insert((frame.name.clone(), border_curve), patch);
         }
     }
-    let used = joint.topology.vertex_count() as u32;
+    let used = joined.topology.vertex_count() as u32;
     let mut next = used;
     // Vertices of borders that no panel has.
     let mut between: HashMap<u32, u32> = HashMap::new();
@@ -92,15 +95,15 @@ pub(crate) fn sewn(
             let twin = all.iter().find(|b| b.name == body.name)?;
             object.is_some_and(unchanged).then_some(twin)
         });
-        if let Some(divisions) = body.divide(object, &hems, known, same) {
-            remarks.push(Remark::Border { patch: body.name.to_string(), divisions });
+        if let Some(divisions) = body.divide(object, &border_curves, known, same) {
+            remarks.push(PanelNote::Border { patch: body.name.to_string(), divisions });
         }
         body.vertices = vec![u32::MAX; body.facets.points.len()];
-        let numbers = |patch: usize| joint.vertices[patch].iter().step_by(2).copied();
+        let numbers = |patch: usize| joined.vertices[patch].iter().step_by(2).copied();
         let mut pending = Vec::new();
-        for (rim, patch) in body.rims.iter().zip(&body.hems) {
+        for (curve_vertices, patch) in body.border_vertices.iter().zip(&body.border_curves) {
             let Some(patch) = *patch else { continue };
-            for (&vertex, number) in rim.iter().zip(numbers(patch)) {
+            for (&vertex, number) in curve_vertices.iter().zip(numbers(patch)) {
                 let slot = &mut body.vertices[vertex as usize];
                 let found =
                     if number < used { Some(number) } else { between.get(&number).copied() };
@@ -122,8 +125,8 @@ pub(crate) fn sewn(
         for (vertex, number) in pending {
             between.entry(number).or_insert(body.vertices[vertex as usize]);
         }
-        if !body.hems.is_empty() {
-            let edges = edges.get_or_insert_with(|| directed(joint.topology.faces()));
+        if !body.border_curves.is_empty() {
+            let edges = edges.get_or_insert_with(|| directed(joined.topology.faces()));
             body.face_like(edges);
             edges.extend(body.faces().flat_map(sides));
         }
@@ -140,9 +143,9 @@ fn directed(faces: &[[u32; 4]]) -> HashSet<(u32, u32)> {
     faces.iter().copied().flat_map(sides).collect()
 }
 
-impl Body {
+impl MeshedBody {
     /// True when it makes the same panels.
-    pub fn is_like(&self, o: &Body) -> bool {
+    pub fn is_like(&self, o: &MeshedBody) -> bool {
         let heads = (self.colour, &self.tags, self.reversed) == (o.colour, &o.tags, o.reversed);
         heads
             && (&self.name, &self.kind) == (&o.name, &o.kind)
@@ -166,30 +169,30 @@ impl Body {
     fn divide(
         &mut self,
         object: Option<&Object<f64>>,
-        hems: &HashMap<(Arc<str>, u32), usize>,
-        known: &Known<f64>,
-        same: Option<&Body>,
+        border_curves: &HashMap<(Arc<str>, u32), usize>,
+        known: &PatchValues<f64>,
+        same: Option<&MeshedBody>,
     ) -> Option<Vec<usize>> {
         let border = border(object?)?;
-        let count = border.hems().len() as u32;
+        let count = border.curves().len() as u32;
         let patches: Vec<_> =
-            (0..count).map(|k| hems.get(&(self.name.clone(), k)).copied()).collect();
-        let at = parameters(&patches, known, border.hems().iter().map(|h| h.usual))?;
+            (0..count).map(|k| border_curves.get(&(self.name.clone(), k)).copied()).collect();
+        let at = parameters(&patches, known, border.curves().iter().map(|h| h.usual))?;
         let alike = |a: &[Vec<f64>], b: &[Vec<f64>]| {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b)
         };
         let made = match same.filter(|b| alike(&b.divided, &at)) {
-            Some(before) => Some((before.facets.clone(), before.rims.clone())),
-            None => border.divided(&at).map(|(mut facets, rims)| {
+            Some(before) => Some((before.facets.clone(), before.border_vertices.clone())),
+            None => border.divided(&at).map(|(mut facets, border_vertices)| {
                 facets.border = self.facets.border.clone();
-                (Arc::new(facets), rims)
+                (Arc::new(facets), border_vertices)
             }),
         };
-        let Some((facets, rims)) = made else {
+        let Some((facets, border_vertices)) = made else {
             return Some(at.iter().map(|ts| ts.len() - 1).collect());
         };
-        (self.facets, self.rims) = (facets, rims);
-        (self.hems, self.divided) = (patches, at);
+        (self.facets, self.border_vertices) = (facets, border_vertices);
+        (self.border_curves, self.divided) = (patches, at);
         None
     }
 
@@ -248,15 +251,15 @@ impl Body {
     pub fn facets_in<'k, T: Scalar>(
         &self,
         graph: &Graph<T>,
-        known: impl FnOnce() -> &'k Known<'k, T>,
-    ) -> Option<Arc<Facets<T>>> {
+        known: impl FnOnce() -> &'k PatchValues<'k, T>,
+    ) -> Option<Arc<TriangleBody<T>>> {
         let object = graph.get(graph.find(&self.name)?)?;
-        let Some(Value::Mesh(facets)) = object.value() else { return None };
-        let facets = match border(object).filter(|_| !self.hems.is_empty()) {
+        let Some(Value::Body(facets)) = object.value() else { return None };
+        let facets = match border(object).filter(|_| !self.border_curves.is_empty()) {
             None => facets.clone(),
             Some(border) => {
-                let usual = border.hems().iter().map(|h| h.usual);
-                let at = parameters(&self.hems, known(), usual)?;
+                let usual = border.curves().iter().map(|h| h.usual);
+                let at = parameters(&self.border_curves, known(), usual)?;
                 Arc::new(border.divided(&at)?.0)
             }
         };
@@ -266,13 +269,13 @@ impl Body {
     /// The positions of its own vertices, from those of its facets and of the patches.
     pub fn own_points<T: Real>(
         &self,
-        facets: &Facets<T>,
+        facets: &TriangleBody<T>,
         patches: &[Arc<Vec<Vec3<T>>>],
     ) -> impl Iterator<Item = Vec3<T>> {
         let mut points = facets.points.clone();
-        for (rim, patch) in self.rims.iter().zip(&self.hems) {
+        for (curve_vertices, patch) in self.border_vertices.iter().zip(&self.border_curves) {
             let Some(patch) = *patch else { continue };
-            for (&vertex, &p) in rim.iter().zip(patches[patch].iter().step_by(2)) {
+            for (&vertex, &p) in curve_vertices.iter().zip(patches[patch].iter().step_by(2)) {
                 points[vertex as usize] = p;
             }
         }
@@ -283,7 +286,7 @@ impl Body {
 /// The parameters at which the curves of a border are divided; evenly where no patch says.
 fn parameters<T: Scalar>(
     patches: &[Option<usize>],
-    known: &Known<T>,
+    known: &PatchValues<T>,
     usual: impl Iterator<Item = u32>,
 ) -> Option<Vec<Vec<T>>> {
     let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();

@@ -1,3 +1,5 @@
+//! The camera: directions, projections and the fit of what is to be seen into the picture.
+
 use moldloft_num::{Box3, Vec3};
 
 /// From where the model is looked at; distance and aim follow from what is to be seen.

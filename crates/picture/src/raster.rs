@@ -1,3 +1,5 @@
+//! Triangles and lines into samples with depth.
+
 use crate::camera::Seen;
 use crate::palette::Gamma;
 

@@ -1,3 +1,5 @@
+//! The picture of a mesh and some lines as a PNG file. The same input gives the same bytes; no display is needed.
+
 use crate::camera::{Aimed, Camera, Seen};
 use crate::palette::{Gamma, patch_colour};
 use crate::raster::{Corner, Raster, Sides, length};

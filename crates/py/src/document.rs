@@ -6,10 +6,10 @@ use crate::diagnostics::Diagnostic;
 use crate::error::{model_error, plain_error, unknown_name};
 use crate::fair::Look;
 use crate::mesh::PyMesh;
-use crate::search::Searches;
 use crate::value::to_python;
 use crate::work::{interruptible, interruptible_shared};
 use moldloft_diag::Sources;
+use moldloft_document::searches::Searches;
 use moldloft_document::{AfloatOptions, Document, FloatAnswer, FloatRequest, Format, Immersion};
 use moldloft_export::{SplinePatch, WriteOptions, format_named, spline_patches};
 use moldloft_host::FileWorld;
@@ -42,7 +42,7 @@ pub struct PyDocument {
     /// True once the model may call Python: a run then needs Python's lock on another thread.
     calls_python: AtomicBool,
     /// Shapes prepared for searches.
-    searches: Mutex<Searches>,
+    searches: Arc<Searches>,
 }
 
 /// A B-spline patch: name, degrees, spans, control points, deviation.
@@ -54,7 +54,7 @@ impl PyDocument {
     fn new(document: Document) -> Self {
         let cancel = document.cancel_handle();
         let inner = Arc::new(Mutex::new(document));
-        Self { inner, cancel, calls_python: AtomicBool::new(false), searches: Mutex::default() }
+        Self { inner, cancel, calls_python: AtomicBool::new(false), searches: Arc::default() }
     }
 
     fn lock<'a>(&'a self, py: Python<'_>) -> MutexGuard<'a, Document> {
@@ -97,7 +97,7 @@ impl PyDocument {
         }
     }
 
-    pub(crate) fn searches(&self) -> &Mutex<Searches> {
+    pub(crate) fn searches(&self) -> &Arc<Searches> {
         &self.searches
     }
 
@@ -169,7 +169,7 @@ impl PyDocument {
         let format = match to {
             "sdl" => Format::Sdl,
             "ms2" => Format::ModelFile,
-            _ => return Err(plain_error(format!("there is no form `{to}` but sdl and ms2"))),
+            _ => return Err(plain_error(format!("unknown form `{to}`; expected sdl or ms2"))),
         };
         self.long_checked(py, move |document| document.convert(format))
     }
@@ -265,7 +265,7 @@ impl PyDocument {
         document.written().map(|(name, bytes)| (name.to_owned(), PyBytes::new(py, bytes))).collect()
     }
 
-    /// Halves the intervals of all numbers that the program declares by `refined` so often.
+    /// Halves the intervals of all numbers that the program declares by `refined` that many times.
     fn refine(&self, py: Python<'_>, times: u32) -> PyResult<()> {
         self.long_checked(py, move |d| d.refine(times).map(drop).map_err(|e| vec![e]))
     }
@@ -491,7 +491,7 @@ impl PyDocument {
         Ok(derivatives(py, &columns))
     }
 
-    /// The model afloat: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
+    /// Hydrostatics: rows of what is given (`level`, `draft`, `displacement`), its number, trim,
     /// heel, whether trim and heel are free; a dictionary for each.
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (rows, density, gravity, centre, sides, by))]
@@ -646,7 +646,7 @@ fn object_named<'d>(document: &'d Document, name: &str) -> PyResult<&'d Object<f
     let graph = document.graph();
     graph.find(name).and_then(|key| graph.get(key)).ok_or_else(|| {
         let near = similar(document, name).map(|n| format!("; did you mean `{n}`?"));
-        unknown_name(format!("there is no object `{name}`{}", near.unwrap_or_default()))
+        unknown_name(format!("unknown object `{name}`{}", near.unwrap_or_default()))
     })
 }
 
@@ -657,7 +657,7 @@ fn similar(document: &Document, name: &str) -> Option<String> {
 }
 
 pub(crate) fn wrong_class(name: &str, takes: &str, found: &Value<f64>) -> PyErr {
-    plain_error(format!("{takes}, but `{name}` is {}", found.class().a()))
+    plain_error(format!("{takes}, but `{name}` is {}", found.class().with_article()))
 }
 
 /// Even parameters along both sides of a grid.

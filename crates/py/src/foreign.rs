@@ -3,7 +3,7 @@
 use crate::work::visit_python;
 use moldloft_num::{Dual, Dual4, Real, Vec3};
 use moldloft_registry::{
-    Array, Body, Class, Context, Fault, Field, Foreign, Row, Unit, Value, Vectors,
+    Array, Body, CallError, Class, Context, Field, Foreign, Row, Unit, Value, Vectors,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -64,10 +64,10 @@ impl Shape {
 }
 
 impl Foreign for Shape {
-    fn call_plain(&self, _: &[Value<f64>], _: &Context) -> Result<Value<f64>, Fault> {
+    fn call_plain(&self, _: &[Value<f64>], _: &Context) -> Result<Value<f64>, CallError> {
         Ok(self.value())
     }
-    fn call_dual(&self, _: &[Value<Dual4>], _: &Context) -> Result<Value<Dual4>, Fault> {
+    fn call_dual(&self, _: &[Value<Dual4>], _: &Context) -> Result<Value<Dual4>, CallError> {
         Ok(self.value())
     }
 }
@@ -93,16 +93,16 @@ pub fn shape_row(name: &str, object: &Bound<'_, PyAny>) -> Option<Row> {
 }
 
 impl PythonFunction {
-    fn call<T: Number>(&self, args: &[Value<T>]) -> Result<Value<T>, Fault> {
+    fn call<T: Number>(&self, args: &[Value<T>]) -> Result<Value<T>, CallError> {
         let mut encoded = Vec::with_capacity(args.len());
         for (k, arg) in args.iter().enumerate() {
             encoded.push(encode(arg).ok_or_else(|| {
-                Fault::new(
+                CallError::new(
                     "wrong-class",
-                    format!("a Python function does not take {}", arg.class().a()),
+                    format!("a Python function does not take {}", arg.class().with_article()),
                 )
                 .expected("numbers, vectors, rows and grids of them, or texts")
-                .found(arg.class().a())
+                .found(arg.class().with_article())
                 .in_field(moldloft_registry::export::field_id(k))
             })?);
         }
@@ -110,14 +110,14 @@ impl PythonFunction {
             self.call_python(py, encoded).map_err(|e| {
                 let text = e.value(py).to_string();
                 let kind = e.get_type(py).name().map(|n| n.to_string()).unwrap_or_default();
-                Fault::new("function-failed", format!("{} raised {kind}: {text}", self.name))
+                CallError::new("function-failed", format!("{} raised {kind}: {text}", self.name))
             })
         });
         let (shape, numbers) = called.unwrap_or_else(|| {
-            Err(Fault::new("cancelled", "the interpreter of the Python function is ending"))
+            Err(CallError::new("cancelled", "the interpreter of the Python function is ending"))
         })?;
         decode(&shape, &numbers).ok_or_else(|| {
-            Fault::new(
+            CallError::new(
                 "wrong-result",
                 format!("{} returned an array of shape {shape:?}", self.name),
             )
@@ -146,10 +146,10 @@ impl PythonFunction {
 }
 
 impl Foreign for PythonFunction {
-    fn call_plain(&self, args: &[Value<f64>], _: &Context) -> Result<Value<f64>, Fault> {
+    fn call_plain(&self, args: &[Value<f64>], _: &Context) -> Result<Value<f64>, CallError> {
         self.call(args)
     }
-    fn call_dual(&self, args: &[Value<Dual4>], _: &Context) -> Result<Value<Dual4>, Fault> {
+    fn call_dual(&self, args: &[Value<Dual4>], _: &Context) -> Result<Value<Dual4>, CallError> {
         self.call(args)
     }
 }

@@ -94,7 +94,9 @@ pub fn write_plot3d<'py>(
         "records" => Laid::Unformatted,
         other => {
             let expected = "text, stream or records";
-            return Err(plain_error(format!("there is no layout `{other}`; there are {expected}")));
+            return Err(plain_error(format!(
+                "unknown layout `{other}`; expected one of: {expected}"
+            )));
         }
     };
     let mut blocks = grids(&blocks)?;

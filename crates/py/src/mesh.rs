@@ -3,7 +3,7 @@
 use crate::arrays;
 use moldloft_document::Panelled;
 use moldloft_mesh::{
-    Block, Closes, Mesh, PatchInfo, PatchQuality, Spread, TopologyBuilder, WorstPanel, closure,
+    Block, Closes, Mesh, PatchInfo, PatchQuality, Statistics, TopologyBuilder, WorstPanel, closure,
     measure, measure_patch, qualities,
 };
 use numpy::{PyArray2, PyArrayMethods};
@@ -179,7 +179,7 @@ impl PyMesh {
             ("jump", q.jump, worst[3]),
         ];
         for (name, spread, worst) in measures {
-            let Spread { min, max, mean } = spread;
+            let Statistics { min, max, mean } = spread;
             let one = PyDict::new(py);
             one.set_item("min", min)?;
             one.set_item("max", max)?;

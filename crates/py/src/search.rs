@@ -4,102 +4,27 @@ use crate::arrays;
 use crate::document::{PyDocument, wrong_class};
 use crate::error::plain_error;
 use crate::work::interruptible_shared;
-use moldloft_locate::branches::{Branches, CutSurface};
-use moldloft_locate::march::{Branch, Crossing, End};
-use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
-use moldloft_locate::{Level, Nearest, NearestCurve, NearestSurface, Roots, Status, by_place};
+use moldloft_document::searches::{CommonPoints, Meeting, NearestPoints, With};
+use moldloft_locate::branches::Branches;
+use moldloft_locate::march::{Branch, End};
+use moldloft_locate::{LocateStatus, Nearest};
 use moldloft_num::{Plane, Vec3};
-use moldloft_registry::{CurveRef, SurfaceRef, Value};
+use moldloft_registry::Value;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use rayon::prelude::*;
-use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-
-/// Points that a thread answers at a time.
-const CHUNK: usize = 256;
 
 /// More points than this are answered on another thread, so that Ctrl-C is heard.
 const LARGE: usize = 50_000;
 
-/// Prepared shapes that are kept.
-const KEPT: usize = 64;
-
-/// Shapes prepared for searches, by the name of their object; each with the shape it was made from.
-#[derive(Default)]
-pub struct Searches {
-    surfaces: HashMap<String, (SurfaceRef<f64>, Arc<NearestSurface>)>,
-    curves: HashMap<String, (CurveRef<f64>, Arc<NearestCurve>)>,
-    cuts: HashMap<String, (SurfaceRef<f64>, Arc<CutSurface>)>,
-}
-
-/// The prepared shape of an object: that of an earlier call, when the object is still the same.
-fn prepared<S: Clone + Sync, P: Send + Sync>(
-    py: Python<'_>,
-    searches: &Mutex<Searches>,
-    name: &str,
-    shape: &S,
-    of: fn(&mut Searches) -> &mut HashMap<String, (S, Arc<P>)>,
-    same: fn(&S, &S) -> bool,
-    prepare: impl FnOnce(&S) -> P + Send,
-) -> Arc<P> {
-    let lock = || searches.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((kept, prepared)) = of(&mut lock()).get(name)
-        && same(kept, shape)
-    {
-        return prepared.clone();
-    }
-    let made = Arc::new(py.detach(|| prepare(shape)));
-    let mut held = lock();
-    let map = of(&mut held);
-    if map.len() >= KEPT {
-        map.clear();
-    }
-    map.insert(name.to_owned(), (shape.clone(), made.clone()));
-    made
-}
-
-fn code(status: Status) -> u8 {
+fn code(status: LocateStatus) -> u8 {
     match status {
-        Status::Ok | Status::Fallback => 0,
-        Status::EdgeClamped => 1,
-        Status::Multiple { .. } => 2,
-        Status::Tangent => 3,
-        Status::NoSolution | Status::Diverged => 4,
+        LocateStatus::Ok | LocateStatus::Fallback => 0,
+        LocateStatus::EdgeClamped => 1,
+        LocateStatus::Multiple { .. } => 2,
+        LocateStatus::Tangent => 3,
+        LocateStatus::NoSolution | LocateStatus::Diverged => 4,
     }
-}
-
-/// Answers of many points, in their order.
-fn answered<const N: usize>(
-    py: Python<'_>,
-    cancel: &Arc<AtomicBool>,
-    points: Vec<Vec3>,
-    answer: impl Fn(Vec3) -> Nearest<N> + Send + Sync + 'static,
-) -> PyResult<Vec<Nearest<N>>> {
-    let (stop, large) = (cancel.clone(), points.len() > LARGE);
-    let all = move || -> Vec<Nearest<N>> {
-        let chunk = |points: &[Vec3]| -> Vec<Nearest<N>> {
-            if stop.load(Ordering::Relaxed) {
-                return Vec::new();
-            }
-            points.iter().map(|p| answer(*p)).collect()
-        };
-        if points.len() <= CHUNK {
-            return chunk(&points);
-        }
-        let order = by_place(&points);
-        let sorted: Vec<Vec3> = order.iter().map(|&k| points[k as usize]).collect();
-        let found: Vec<Nearest<N>> = sorted.par_chunks(CHUNK).flat_map_iter(chunk).collect();
-        let Some(&first) = found.first() else { return found };
-        let mut all = vec![first; points.len()];
-        for (k, answer) in order.into_iter().zip(found) {
-            all[k as usize] = answer;
-        }
-        all
-    };
-    if large { interruptible_shared(py, cancel, all) } else { Ok(py.detach(all)) }
 }
 
 type Answers<'py> = (
@@ -136,43 +61,18 @@ pub fn nearest<'py>(
 ) -> PyResult<Answers<'py>> {
     let numbers = points.as_slice()?;
     let points: Vec<Vec3> = numbers.chunks_exact(3).map(|p| Vec3::of(p[0], p[1], p[2])).collect();
-    let cancel = document.cancel_handle();
-    let searches = document.searches();
-    match document.value(py, name)? {
-        Value::Surface(surface) => {
-            let same = SurfaceRef::same;
-            let prepare = |s: &SurfaceRef<f64>| NearestSurface::new(&**s);
-            let found = prepared(py, searches, name, &surface, |s| &mut s.surfaces, same, prepare);
-            let answer = move |p: Vec3| found.nearest(&*surface, p);
-            arrays_of(py, &answered(py, cancel, points, answer)?)
-        }
-        Value::Curve(curve) => {
-            let same = CurveRef::same;
-            let prepare = |c: &CurveRef<f64>| NearestCurve::new(&**c);
-            let found = prepared(py, searches, name, &curve, |s| &mut s.curves, same, prepare);
-            let answer = move |p: Vec3| found.nearest(&*curve, p);
-            arrays_of(py, &answered(py, cancel, points, answer)?)
-        }
-        other => Err(wrong_class(name, "a curve or a surface has nearest points", &other)),
+    let (cancel, searches) = (document.cancel_handle(), document.searches().clone());
+    let value = document.value(py, name)?;
+    let refused = wrong_class(name, "a curve or a surface has nearest points", &value);
+    let (stop, large) = (cancel.clone(), points.len() > LARGE);
+    let key = name.to_owned();
+    let search = move || searches.nearest(&key, &value, &points, &stop);
+    let found = if large { interruptible_shared(py, cancel, search)? } else { py.detach(search) };
+    match found {
+        Some(NearestPoints::Surface(found)) => arrays_of(py, &found),
+        Some(NearestPoints::Curve(found)) => arrays_of(py, &found),
+        None => Err(refused),
     }
-}
-
-/// What something is intersected with.
-enum With {
-    Plane(Plane<f64>),
-    Curve(CurveRef<f64>),
-    Surface(SurfaceRef<f64>, Arc<CutSurface>),
-}
-
-fn cut(
-    py: Python<'_>,
-    document: &PyDocument,
-    name: &str,
-    surface: &SurfaceRef<f64>,
-) -> Arc<CutSurface> {
-    let prepare = |s: &SurfaceRef<f64>| CutSurface::new(&**s);
-    let searches = document.searches();
-    prepared(py, searches, name, surface, |s| &mut s.cuts, SurfaceRef::same, prepare)
 }
 
 /// The intersection of a curve or surface with an object of the same or another model.
@@ -186,7 +86,8 @@ pub fn intersect<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let with = match other.value(py, other_name)? {
         Value::Surface(surface) => {
-            let cut = cut(py, other, other_name, &surface);
+            let searches = other.searches();
+            let cut = py.detach(|| searches.cut(other_name, &surface));
             With::Surface(surface, cut)
         }
         Value::Curve(curve) => With::Curve(curve),
@@ -222,58 +123,17 @@ fn met<'py>(
     name: &str,
     with: With,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let value = document.value(py, name)?;
+    let refused = wrong_class(name, "a curve or a surface has intersections", &value);
+    let (searches, key) = (document.searches().clone(), name.to_owned());
+    let short = matches!(with, With::Plane(_));
+    let search = move || searches.intersection(&key, &value, &with);
     let cancel = document.cancel_handle();
-    match document.value(py, name)? {
-        Value::Surface(surface) => {
-            if let With::Curve(curve) = with {
-                let roots = move || all_curve_surface(&*curve, &*surface);
-                let roots = interruptible_shared(py, cancel, roots)?;
-                // Ours are u and v, theirs is t.
-                return points_dict(py, &roots, &[1, 2], &[0]);
-            }
-            let first = cut(py, document, name, &surface);
-            let (found, two) = match with {
-                With::Plane(plane) => {
-                    let search = || {
-                        let crossing = Crossing::with_plane(&*surface, plane);
-                        crossing.branches_in(&first, None)
-                    };
-                    (py.detach(search), false)
-                }
-                With::Surface(other, second) => {
-                    let search = move || {
-                        let crossing = Crossing::with_surface(&*surface, &*other);
-                        crossing.branches_in(&first, Some(&second))
-                    };
-                    (py.detach(search), true)
-                }
-                With::Curve(_) => unreachable!("curves were answered above"),
-            };
-            branches_dict(py, &found, two)
-        }
-        Value::Curve(curve) => match with {
-            With::Plane(plane) => {
-                let offset = plane.normal.dot(plane.point);
-                let level = Level::Plane { normal: plane.normal, offset };
-                let roots = py.detach(|| all_on_level(&*curve, &level));
-                points_dict(py, &roots, &[0], &[])
-            }
-            With::Curve(other) => {
-                let roots =
-                    interruptible_shared(py, cancel, move || all_curve_curve(&*curve, &*other))?;
-                let size = roots.roots.iter().map(|r| r.xyz.norm()).fold(1.0, f64::max);
-                // Where curves do not meet, the search gives the place where they come nearest.
-                let met = |r: &moldloft_locate::Root<2>| r.residual <= 1e-8 * size;
-                let kept = roots.roots.iter().copied().filter(met).collect();
-                points_dict(py, &Roots { roots: kept, ..roots }, &[0], &[1])
-            }
-            With::Surface(other, _) => {
-                let roots =
-                    interruptible_shared(py, cancel, move || all_curve_surface(&*curve, &*other))?;
-                points_dict(py, &roots, &[0], &[1, 2])
-            }
-        },
-        other => Err(wrong_class(name, "a curve or a surface has intersections", &other)),
+    let found = if short { py.detach(search) } else { interruptible_shared(py, cancel, search)? };
+    match found {
+        Some(Meeting::Points(points)) => points_dict(py, points),
+        Some(Meeting::Branches(found, two)) => branches_dict(py, &found, two),
+        None => Err(refused),
     }
 }
 
@@ -292,25 +152,15 @@ fn rows<'py>(
 }
 
 /// Isolated common points.
-fn points_dict<'py, const N: usize>(
-    py: Python<'py>,
-    roots: &Roots<N>,
-    ours: &[usize],
-    theirs: &[usize],
-) -> PyResult<Bound<'py, PyDict>> {
+fn points_dict(py: Python<'_>, points: CommonPoints) -> PyResult<Bound<'_, PyDict>> {
+    let CommonPoints { ours, theirs, widths, xyz, tangent, complete } = points;
     let dict = PyDict::new(py);
-    let part = |which: &[usize]| {
-        let row = |r: &moldloft_locate::Root<N>| which.iter().map(|&k| r.at[k]).collect();
-        rows(py, roots.roots.iter().map(row), which.len())
-    };
-    let xyz: Vec<Vec3> = roots.roots.iter().map(|r| r.xyz).collect();
-    let tangent: Vec<bool> = roots.roots.iter().map(|r| r.tangent).collect();
     dict.set_item("branches", PyList::empty(py))?;
     dict.set_item("points", points_array(py, &xyz))?;
-    dict.set_item("parameters", part(ours)?)?;
-    dict.set_item("other", part(theirs)?)?;
+    dict.set_item("parameters", rows(py, ours.into_iter(), widths[0])?)?;
+    dict.set_item("other", rows(py, theirs.into_iter(), widths[1])?)?;
     dict.set_item("tangent", PyArray1::from_vec(py, tangent))?;
-    dict.set_item("complete", roots.complete)?;
+    dict.set_item("complete", complete)?;
     dict.set_item("smallest", 0.0)?;
     Ok(dict)
 }

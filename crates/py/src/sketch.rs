@@ -42,7 +42,7 @@ impl Files for Disk {
         if bytes.len() as u64 > LARGEST {
             return Err("it is larger than 64 MiB".into());
         }
-        String::from_utf8(bytes).map_err(|_| "it is no text in UTF-8".into())
+        String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".into())
     }
 }
 
@@ -90,7 +90,7 @@ impl PySketch {
 }
 
 fn no_object(name: &str) -> PyErr {
-    unknown_name(format!("there is no object `{name}` in this sketch"))
+    unknown_name(format!("unknown object `{name}` in this sketch"))
 }
 
 fn answer(py: Python<'_>, reply: Reply) -> Answer<'_> {
@@ -244,7 +244,7 @@ impl PySketch {
         let gradient = self.long(py, move |s| s.gradient(&wanted, &by))?;
         let gradient = gradient.map_err(|missing| match missing.as_str() {
             "" => plain_error(format!("`{name}` has no faces yet, or misses dimensions")),
-            other => unknown_name(format!("there is no dimension or variable `{other}`")),
+            other => unknown_name(format!("unknown dimension or variable `{other}`")),
         })?;
         let vertices = gradient.points.first().map_or(0, Vec::len);
         let n = gradient.volume.len();
@@ -269,7 +269,7 @@ impl PySketch {
         let wanted = name.to_owned();
         let swept = self.long(py, move |s| s.sweep(&wanted, &by, &values))?;
         let swept = swept.map_err(|missing| {
-            unknown_name(format!("there is no dimension or variable `{missing}`"))
+            unknown_name(format!("unknown dimension or variable `{missing}`"))
         })?;
         let rows: Vec<Vec<f64>> = (swept.iter())
             .map(|s| match s.mass {

@@ -41,7 +41,7 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value<f64>) -> PyResult<Bound<'py
             let items: PyResult<Vec<_>> = items.iter().map(|item| to_python(py, item)).collect();
             PyList::new(py, items?)?.into_any()
         }
-        Value::Mesh(mesh) => {
+        Value::Body(mesh) => {
             let dict = pyo3::types::PyDict::new(py);
             let fill = |out: &mut [Vec3]| out.copy_from_slice(&mesh.points);
             dict.set_item("vertices", arrays::filled(py, [mesh.points.len(), 3], fill).0)?;

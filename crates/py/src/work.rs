@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
 /// How long a cancelled run may take to notice.
-const PATIENCE: Duration = Duration::from_secs(1);
+const STOP_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Stack of the working thread: that of the main thread on Linux.
 const STACK: usize = 8 << 20;
@@ -44,7 +44,7 @@ fn unseen(
 ) -> PyResult<()> {
     let (sender, receiver) = mpsc::channel();
     let run = move || {
-        // After an interrupt nobody receives; that is no fault.
+        // After an interrupt nobody receives; that is not a fault.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
     };
     std::thread::Builder::new().stack_size(STACK).spawn(run)?;
@@ -63,7 +63,7 @@ fn unseen(
             Err(_) => {
                 if let Err(interrupt) = py.check_signals() {
                     cancel.store(true, Ordering::Relaxed);
-                    let _ = receive(PATIENCE);
+                    let _ = receive(STOP_TIMEOUT);
                     return Err(interrupt);
                 }
             }

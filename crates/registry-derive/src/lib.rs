@@ -203,7 +203,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
                 fn build(
                     self,
                     context: &::moldloft_registry::Context,
-                ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::Fault> {
+                ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::CallError> {
                     Ok(#make)
                 }
             }
@@ -226,7 +226,7 @@ fn expand(input: &DeriveInput) -> syn::Result<Tokens> {
             fn call(
                 args: &[::moldloft_registry::Value<T>],
                 context: &::moldloft_registry::Context,
-            ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::Fault> {
+            ) -> ::core::result::Result<::moldloft_registry::Value<T>, ::moldloft_registry::CallError> {
                 #check
                 let this = Self { #(#reads),* };
                 let nesting = args.iter().map(::moldloft_registry::Value::depth).max().unwrap_or(0);

@@ -1,4 +1,7 @@
-use crate::{Argument, Class, Fault, Field, FieldId, Head, Row, Value};
+//! Arguments of a call bound to the fields of its row: order, defaults, counts, names and classes are checked here,
+//! so that the kinds need not.
+
+use crate::{Argument, Attributes, CallError, Class, Field, FieldId, Row, Value};
 use moldloft_num::Real;
 use moldloft_num::trace::Key;
 
@@ -12,22 +15,22 @@ pub struct Given<'a, T: Real> {
 }
 
 /// Puts arguments in the order of the row's fields, fills in defaults and checks count, names,
-/// classes and ranges; `class_of` tells the class of an object that was not read yet. Named
+/// classes and ranges; `class_of` reports the class of an object that was not read yet. Named
 /// arguments that belong to the head go there.
 ///
 /// # Errors
-/// A [`Fault`] with its place.
-pub fn arrange<T: Real>(
+/// A [`CallError`] with its place.
+pub fn bind_arguments<T: Real>(
     row: &Row,
     mut given: Given<T>,
     class_of: impl Fn(Key) -> Class,
-) -> Result<(Vec<Value<T>>, Head), Fault> {
+) -> Result<(Vec<Value<T>>, Attributes), CallError> {
     let fields = &row.fields;
-    let mut head = Head::of(row.class);
+    let mut head = Attributes::of(row.class);
     gather(fields, &mut given.positional);
     if given.positional.len() > fields.len() {
         let names: Vec<_> = fields.iter().map(|f| f.name).collect();
-        return Err(Fault::new(
+        return Err(CallError::new(
             "too-many-arguments",
             format!("{} takes at most {} arguments", row.name, fields.len()),
         )
@@ -41,7 +44,7 @@ pub fn arrange<T: Real>(
         match row.field(name) {
             Some(at) if args[at].is_none() => args[at] = Some(value),
             Some(at) => {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "argument-twice",
                     format!("`{name}` of {} is given twice", row.name),
                 )
@@ -63,7 +66,7 @@ pub fn arrange<T: Real>(
             (None | Some(Value::Unset), Some(default)) => default.value(),
             (Some(arg), _) => arg,
             (None, None) => {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "missing-argument",
                     format!("{} needs `{}`: {}", row.name, field.name, lower(field.help)),
                 )
@@ -107,15 +110,16 @@ fn expectation(field: &Field) -> String {
     if field.many {
         format!("a list {{...}} of {}s", field.class.name())
     } else {
-        field.class.a().to_string()
+        field.class.with_article().to_string()
     }
 }
 
-fn unknown_argument(row: &Row, name: &str) -> Fault {
-    let heads = if row.kind { &crate::HEAD[..] } else { &[] };
+fn unknown_argument(row: &Row, name: &str) -> CallError {
+    let heads = if row.kind { &crate::ATTRIBUTES[..] } else { &[] };
     let known = || row.fields.iter().chain(heads).map(|f| f.name);
-    let fault = Fault::new("unknown-argument", format!("{} has no argument `{name}`", row.name))
-        .expected(known().collect::<Vec<_>>().join(", "));
+    let fault =
+        CallError::new("unknown-argument", format!("{} has no argument `{name}`", row.name))
+            .expected(known().collect::<Vec<_>>().join(", "));
     match moldloft_diag::nearest(name, known()) {
         Some(near) => fault.help(format!("did you mean `{near}`?")),
         None => fault,
@@ -126,15 +130,15 @@ fn check<T: Real>(
     field: &Field,
     arg: &Value<T>,
     class_of: &impl Fn(Key) -> Class,
-) -> Result<(), Fault> {
-    let one = |value: &Value<T>| -> Result<(), Fault> {
+) -> Result<(), CallError> {
+    let one = |value: &Value<T>| -> Result<(), CallError> {
         let found = match value {
             Value::Object(key) => class_of(*key),
             Value::Unset if field.default.is_some() => return Ok(()),
             other => other.class(),
         };
         if !field.class.accepts(found) {
-            return Err(Fault::wrong_class(field.class, found));
+            return Err(CallError::wrong_class(field.class, found));
         }
         if let Value::Number(x) = value {
             range(field, x.re())?;
@@ -164,23 +168,27 @@ fn check<T: Real>(
             if found == Class::Any || gives_items(field.class, found) {
                 return Ok(());
             }
-            return Err(Fault::new(
+            return Err(CallError::new(
                 "not-a-list",
-                format!("expected a list of {}s, found {}", field.class.name(), found.a()),
+                format!(
+                    "expected a list of {}s, found {}",
+                    field.class.name(),
+                    found.with_article()
+                ),
             )
             .expected(expectation(field))
-            .found(found.a())
+            .found(found.with_article())
             .help("write the items in braces: {a, b}"));
         }
     };
     enough(field, length)
 }
 
-fn enough(field: &Field, length: usize) -> Result<(), Fault> {
+fn enough(field: &Field, length: usize) -> Result<(), CallError> {
     if length >= field.min_items {
         return Ok(());
     }
-    Err(Fault::new(
+    Err(CallError::new(
         "too-few-items",
         format!("`{}` needs at least {} items, found {length}", field.name, field.min_items),
     )
@@ -202,8 +210,8 @@ fn gives_items(item: Class, found: Class) -> bool {
 /// it has, and the range of its numbers.
 ///
 /// # Errors
-/// A [`Fault`] with its item.
-pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), Fault> {
+/// A [`CallError`] with its item.
+pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), CallError> {
     if field.many {
         let length = match value {
             Value::List(items) => items.len(),
@@ -226,14 +234,11 @@ pub fn check_evaluated<T: Real>(field: &Field, value: &Value<T>) -> Result<(), F
     }
 }
 
-fn range(field: &Field, x: f64) -> Result<(), Fault> {
+fn range(field: &Field, x: f64) -> Result<(), CallError> {
     if !x.is_finite() {
-        return Err(Fault::new(
-            "not-finite",
-            format!("`{}` is {x}, which is no number", field.name),
-        )
-        .expected("a finite number")
-        .found(x.to_string()));
+        return Err(CallError::new("not-finite", format!("`{}` is {x}, not a number", field.name))
+            .expected("a finite number")
+            .found(x.to_string()));
     }
     let low = field.min.is_some_and(|low| x < low);
     let high = field.max.is_some_and(|high| x > high);
@@ -246,7 +251,7 @@ fn range(field: &Field, x: f64) -> Result<(), Fault> {
         (None, Some(high)) => format!("a number of at most {high}"),
         (None, None) => unreachable!("a bound was exceeded"),
     };
-    Err(Fault::new("out-of-range", format!("`{}` = {x} is out of range", field.name))
+    Err(CallError::new("out-of-range", format!("`{}` = {x} is out of range", field.name))
         .expected(expected)
         .found(x.to_string()))
 }

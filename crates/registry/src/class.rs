@@ -1,3 +1,5 @@
+//! Classes: what kind of thing a value is, and which class serves where another is expected.
+
 use std::fmt;
 
 /// What kind of thing a value is, or an argument must be. Classes are data: a bead is a point that
@@ -37,7 +39,7 @@ pub enum Class {
     /// A plane.
     Plane,
     /// What things are mirrored in or projected to: a plane, line, point or "x=0", "y=0", "z=0".
-    Mirror,
+    MirrorArgument,
     /// What bounds a patch of a surface: a snake, or a magnet for a side without length.
     Side,
     /// A curve, or a bead on it that says where to begin a search.
@@ -84,7 +86,7 @@ impl Class {
         Class::Surface,
         Class::Solid,
         Class::Plane,
-        Class::Mirror,
+        Class::MirrorArgument,
         Class::Side,
         Class::Along,
         Class::AlongSnake,
@@ -118,7 +120,7 @@ impl Class {
             Class::Surface => "surface",
             Class::Solid => "solid",
             Class::Plane => "plane",
-            Class::Mirror => "mirror",
+            Class::MirrorArgument => "mirror",
             Class::Side => "side",
             Class::Along => "curve or bead",
             Class::AlongSnake => "snake or ring",
@@ -135,7 +137,7 @@ impl Class {
     }
 
     /// The name with its article, for messages: "a curve".
-    pub fn a(self) -> &'static str {
+    pub fn with_article(self) -> &'static str {
         match self {
             Class::Any => "a value",
             Class::Number => "a number",
@@ -153,7 +155,7 @@ impl Class {
             Class::Surface => "a surface",
             Class::Solid => "a solid",
             Class::Plane => "a plane",
-            Class::Mirror => "a plane, line or point to mirror in",
+            Class::MirrorArgument => "a plane, line or point to mirror in",
             Class::Side => "a snake or a magnet",
             Class::Along => "a curve or a bead",
             Class::AlongSnake => "a snake or a ring",
@@ -208,7 +210,7 @@ impl Class {
             Set => matches!(found, Field | Plane),
             // A point stands for the axes of the world there.
             Frame => matches!(found, Point | Bead | Magnet | Ring | Vector),
-            Mirror => {
+            MirrorArgument => {
                 matches!(found, Plane | Point | Bead | Magnet | Ring | Vector | Curve | Text)
             }
             _ => false,

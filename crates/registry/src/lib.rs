@@ -10,32 +10,34 @@
 //! Invariant: this crate knows no particular kind, no graph and no file; it builds without them.
 
 mod args;
+mod attributes;
+mod call_error;
 mod class;
-mod facets;
-mod fault;
-mod found;
-mod head;
 mod kept;
 mod read;
 mod refs;
 mod relabelled;
 mod row;
+mod search_report;
 mod sweep;
+mod triangle_body;
 mod value;
 
-pub use args::{Given, arrange, check_evaluated};
+pub use args::{Given, bind_arguments, check_evaluated};
+pub use attributes::{ATTRIBUTES, Attributes, PanelAttributes, Spacing};
+pub use call_error::{Argument, ArgumentPlace, CallError, FieldId};
 pub use class::Class;
-pub use facets::{Border, Facets, Flaw, Group, Hem, Hemmed};
-pub use fault::{Argument, Fault, FieldId, Place};
-pub use found::{Found, FoundStatus, Remark};
-pub use head::{HEAD, Head, Panels, Spacing};
 pub use kept::Kept;
 pub use moldloft_registry_derive::Kind;
-pub use read::{FromValue, Mirror, many};
-pub use refs::{CurveRef, FieldRef, Implicit, Point, RelabelRef, SetRef, SolidRef, SurfaceRef};
+pub use read::{FromValue, MirrorArgument, many};
+pub use refs::{
+    CurveRef, FieldRef, Implicit, Point, ReparametrizationRef, SetRef, SolidRef, SurfaceRef,
+};
 pub use relabelled::relabelled;
 pub use row::{Body, Build, Context, DefaultValue, Field, Foreign, Registry, Row, Scalar, Unit};
+pub use search_report::{Remark, SearchReport, SearchStatus};
 pub use sweep::{LocusRef, MovingCurve, MovingPoint, Sweep};
+pub use triangle_body::{Border, BorderCurve, Flaw, Group, TriangleBody, TriangulatedBorder};
 pub use value::{Array, ArrayShape, Contours, Family, OBLIQUE, Value, Vectors};
 
 /// What the derive macro's output refers to.

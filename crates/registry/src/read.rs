@@ -1,6 +1,8 @@
+//! Arguments read as the types of the fields of a kind: each type says its class and what it refuses.
+
 use crate::{
-    Class, CurveRef, Facets, Fault, FieldRef, Point, RelabelRef, SetRef, SolidRef, SurfaceRef,
-    Value,
+    CallError, Class, CurveRef, FieldRef, Point, ReparametrizationRef, SetRef, SolidRef,
+    SurfaceRef, TriangleBody, Value,
 };
 use moldloft_num::{Axis, Dual4, Frame, Plane, Real, Vec3};
 use std::sync::Arc;
@@ -16,24 +18,26 @@ pub trait FromValue<T: Real>: Sized {
     /// Reads the argument.
     ///
     /// # Errors
-    /// A [`Fault`] when the value is not of this class.
-    fn from_value(value: &Value<T>) -> Result<Self, Fault>;
+    /// A [`CallError`] when the value is not of this class.
+    fn from_value(value: &Value<T>) -> Result<Self, CallError>;
 }
 
-fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
+fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, CallError> {
     Err(match value {
-        Value::Unset => Fault::new("missing-argument", format!("{} is missing", class.a())),
-        _ => Fault::wrong_class(class, value.class()),
+        Value::Unset => {
+            CallError::new("missing-argument", format!("{} is missing", class.with_article()))
+        }
+        _ => CallError::wrong_class(class, value.class()),
     })
 }
 
-fn finite<T: Real>(x: T) -> Result<T, Fault> {
+fn finite<T: Real>(x: T) -> Result<T, CallError> {
     if x.is_finite() {
         return Ok(x);
     }
     let found = x.re();
     let found = if found.is_finite() { "an infinite derivative".into() } else { found.to_string() };
-    Err(Fault::new("not-finite", format!("expected a finite number, found {found}"))
+    Err(CallError::new("not-finite", format!("expected a finite number, found {found}"))
         .expected("a finite number")
         .found(found))
 }
@@ -42,7 +46,7 @@ macro_rules! number_field {
     ($t:ty) => {
         impl FromValue<$t> for $t {
             const CLASS: Class = Class::Number;
-            fn from_value(value: &Value<$t>) -> Result<Self, Fault> {
+            fn from_value(value: &Value<$t>) -> Result<Self, CallError> {
                 match value {
                     Value::Number(x) => finite(*x),
                     other => wrong(Class::Number, other),
@@ -54,13 +58,13 @@ macro_rules! number_field {
 number_field!(f64);
 number_field!(Dual4);
 
-fn whole<T: Real>(value: &Value<T>) -> Result<f64, Fault> {
+fn whole<T: Real>(value: &Value<T>) -> Result<f64, CallError> {
     let Value::Number(x) = value else { return wrong(Class::Integer, value) };
     let x = x.re();
     if x.fract() == 0.0 && x.abs() < 9e15 {
         return Ok(x);
     }
-    Err(Fault::new("not-whole", format!("expected a whole number, found {x}"))
+    Err(CallError::new("not-whole", format!("expected a whole number, found {x}"))
         .expected("a whole number")
         .found(x.to_string()))
 }
@@ -69,11 +73,11 @@ macro_rules! integer_field {
     ($($t:ty),*) => {$(
         impl<T: Real> FromValue<T> for $t {
             const CLASS: Class = Class::Integer;
-            fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+            fn from_value(value: &Value<T>) -> Result<Self, CallError> {
                 let x = whole(value)?;
                 if x < <$t>::MIN as f64 || x > <$t>::MAX as f64 {
                     let range = format!("a whole number from {} to {}", <$t>::MIN, <$t>::MAX);
-                    return Err(Fault::new("out-of-range", format!("{x} is out of range"))
+                    return Err(CallError::new("out-of-range", format!("{x} is out of range"))
                         .expected(range)
                         .found(x.to_string()));
                 }
@@ -86,7 +90,7 @@ integer_field!(u32, i32, usize);
 
 impl<T: Real> FromValue<T> for Arc<str> {
     const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Text(text) => Ok(text.clone()),
             other => wrong(Class::Text, other),
@@ -94,7 +98,7 @@ impl<T: Real> FromValue<T> for Arc<str> {
     }
 }
 
-fn vector<T: Real>(value: &Value<T>, class: Class) -> Result<Vec3<T>, Fault> {
+fn vector<T: Real>(value: &Value<T>, class: Class) -> Result<Vec3<T>, CallError> {
     let v = match value {
         Value::Vector(v) => *v,
         Value::Point(p) => p.xyz,
@@ -109,14 +113,14 @@ fn vector<T: Real>(value: &Value<T>, class: Class) -> Result<Vec3<T>, Fault> {
 
 impl<T: Real> FromValue<T> for Vec3<T> {
     const CLASS: Class = Class::Vector;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         vector(value, Class::Vector)
     }
 }
 
 impl<T: Real> FromValue<T> for Point<T> {
     const CLASS: Class = Class::Point;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Point(p) => Ok((**p).clone()),
             other => vector(other, Class::Point).map(Point::free),
@@ -126,7 +130,7 @@ impl<T: Real> FromValue<T> for Point<T> {
 
 impl<T: Real> FromValue<T> for CurveRef<T> {
     const CLASS: Class = Class::Curve;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Curve(c) => Ok(c.clone()),
             other => wrong(Class::Curve, other),
@@ -136,7 +140,7 @@ impl<T: Real> FromValue<T> for CurveRef<T> {
 
 impl<T: Real> FromValue<T> for SurfaceRef<T> {
     const CLASS: Class = Class::Surface;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Surface(s) => Ok(s.clone()),
             other => wrong(Class::Surface, other),
@@ -146,7 +150,7 @@ impl<T: Real> FromValue<T> for SurfaceRef<T> {
 
 impl<T: Real> FromValue<T> for SolidRef<T> {
     const CLASS: Class = Class::Solid;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Solid(s) => Ok(s.clone()),
             other => wrong(Class::Solid, other),
@@ -156,7 +160,7 @@ impl<T: Real> FromValue<T> for SolidRef<T> {
 
 impl<T: Real> FromValue<T> for FieldRef<T> {
     const CLASS: Class = Class::Field;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Field(f) => Ok(f.clone()),
             other => wrong(Class::Field, other),
@@ -166,7 +170,7 @@ impl<T: Real> FromValue<T> for FieldRef<T> {
 
 impl<T: Real> FromValue<T> for SetRef<T> {
     const CLASS: Class = Class::Set;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Set(s) => Ok(s.clone()),
             other => wrong(Class::Set, other),
@@ -174,9 +178,9 @@ impl<T: Real> FromValue<T> for SetRef<T> {
     }
 }
 
-impl<T: Real> FromValue<T> for RelabelRef<T> {
+impl<T: Real> FromValue<T> for ReparametrizationRef<T> {
     const CLASS: Class = Class::Relabel;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Relabel(r) => Ok(r.clone()),
             other => wrong(Class::Relabel, other),
@@ -184,11 +188,11 @@ impl<T: Real> FromValue<T> for RelabelRef<T> {
     }
 }
 
-impl<T: Real> FromValue<T> for Arc<Facets<T>> {
+impl<T: Real> FromValue<T> for Arc<TriangleBody<T>> {
     const CLASS: Class = Class::Mesh;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
-            Value::Mesh(m) => Ok(m.clone()),
+            Value::Body(m) => Ok(m.clone()),
             other => wrong(Class::Mesh, other),
         }
     }
@@ -196,7 +200,7 @@ impl<T: Real> FromValue<T> for Arc<Facets<T>> {
 
 impl<T: Real> FromValue<T> for Plane<T> {
     const CLASS: Class = Class::Plane;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Plane(p) => Ok(**p),
             Value::Text(text) => system_plane(text),
@@ -207,7 +211,7 @@ impl<T: Real> FromValue<T> for Plane<T> {
 
 impl<T: Real> FromValue<T> for Frame<T> {
     const CLASS: Class = Class::Frame;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Frame(f) => Ok(**f),
             // A point stands for the axes of the world there.
@@ -217,14 +221,14 @@ impl<T: Real> FromValue<T> for Frame<T> {
 }
 
 /// The coordinate plane of a text such as "y=0" (model files write `*Y=0`).
-fn system_plane<T: Real>(text: &str) -> Result<Plane<T>, Fault> {
+fn system_plane<T: Real>(text: &str) -> Result<Plane<T>, CallError> {
     let spelled = text.trim_start_matches('*').replace(' ', "").to_ascii_lowercase();
     let normal = match spelled.as_str() {
         "x=0" => Vec3::of(1.0, 0.0, 0.0),
         "y=0" => Vec3::of(0.0, 1.0, 0.0),
         "z=0" => Vec3::of(0.0, 0.0, 1.0),
         _ => {
-            return Err(Fault::new("unknown-plane", format!("there is no plane \"{text}\""))
+            return Err(CallError::new("unknown-plane", format!("unknown plane \"{text}\""))
                 .expected("\"x=0\", \"y=0\" or \"z=0\", or a plane object")
                 .found(format!("\"{text}\"")));
         }
@@ -234,7 +238,7 @@ fn system_plane<T: Real>(text: &str) -> Result<Plane<T>, Fault> {
 
 /// What things are mirrored in, or projected to.
 #[derive(Clone, Debug)]
-pub enum Mirror<T: Real> {
+pub enum MirrorArgument<T: Real> {
     /// A plane.
     Plane(Plane<T>),
     /// The line through the ends of a curve.
@@ -243,13 +247,13 @@ pub enum Mirror<T: Real> {
     Point(Vec3<T>),
 }
 
-impl<T: Real> Mirror<T> {
+impl<T: Real> MirrorArgument<T> {
     /// The foot of the perpendicular from `p`, for a plane or line; the point itself for a point.
     pub fn foot(&self, p: Vec3<T>) -> Vec3<T> {
         match self {
-            Mirror::Plane(plane) => plane.foot(p),
-            Mirror::Line(line) => line.foot(p),
-            Mirror::Point(point) => *point,
+            MirrorArgument::Plane(plane) => plane.foot(p),
+            MirrorArgument::Line(line) => line.foot(p),
+            MirrorArgument::Point(point) => *point,
         }
     }
 
@@ -262,34 +266,34 @@ impl<T: Real> Mirror<T> {
     /// `project`): its linear part.
     pub fn direction(&self, d: Vec3<T>, project: bool) -> Vec3<T> {
         let foot = match self {
-            Mirror::Plane(plane) => d - plane.normal * plane.normal.dot(d),
-            Mirror::Line(line) => line.direction * line.direction.dot(d),
-            Mirror::Point(_) => Vec3::zero(),
+            MirrorArgument::Plane(plane) => d - plane.normal * plane.normal.dot(d),
+            MirrorArgument::Line(line) => line.direction * line.direction.dot(d),
+            MirrorArgument::Point(_) => Vec3::zero(),
         };
         if project { foot } else { foot * T::from(2.0) - d }
     }
 
     /// True when the image of a surface has its natural normal reversed.
     pub fn reverses(&self) -> bool {
-        !matches!(self, Mirror::Line(_))
+        !matches!(self, MirrorArgument::Line(_))
     }
 }
 
-impl<T: Real> FromValue<T> for Mirror<T> {
-    const CLASS: Class = Class::Mirror;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+impl<T: Real> FromValue<T> for MirrorArgument<T> {
+    const CLASS: Class = Class::MirrorArgument;
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
-            Value::Plane(p) => Ok(Mirror::Plane(**p)),
-            Value::Text(text) => system_plane(text).map(Mirror::Plane),
-            Value::Curve(c) => axis(c).map(Mirror::Line),
-            other => vector(other, Class::Mirror).map(Mirror::Point),
+            Value::Plane(p) => Ok(MirrorArgument::Plane(**p)),
+            Value::Text(text) => system_plane(text).map(MirrorArgument::Plane),
+            Value::Curve(c) => axis(c).map(MirrorArgument::Line),
+            other => vector(other, Class::MirrorArgument).map(MirrorArgument::Point),
         }
     }
 }
 
-fn axis<T: Real>(curve: &CurveRef<T>) -> Result<Axis<T>, Fault> {
+fn axis<T: Real>(curve: &CurveRef<T>) -> Result<Axis<T>, CallError> {
     Axis::through(curve.end(0.0), curve.end(1.0)).ok_or_else(|| {
-        Fault::new("zero-length-axis", "the axis has no direction: its ends coincide")
+        CallError::new("zero-length-axis", "the axis has no direction: its ends coincide")
             .expected("a line between two different points")
             .found("no distance between its ends")
             .help("move one end of the line")
@@ -298,7 +302,7 @@ fn axis<T: Real>(curve: &CurveRef<T>) -> Result<Axis<T>, Fault> {
 
 impl<T: Real> FromValue<T> for Axis<T> {
     const CLASS: Class = Class::Curve;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Curve(c) => axis(c),
             other => wrong(Class::Curve, other),
@@ -310,7 +314,7 @@ impl<T: Real, F: FromValue<T>> FromValue<T> for Option<F> {
     const CLASS: Class = F::CLASS;
     const MANY: bool = F::MANY;
     const OPTIONAL: bool = true;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Unset => Ok(None),
             other => F::from_value(other).map(Some),
@@ -322,7 +326,7 @@ impl<T: Real, F: FromValue<T>> FromValue<T> for Option<F> {
 ///
 /// # Errors
 /// The fault of the first item that is not an `F`, with its place.
-pub fn many<T: Real, F: FromValue<T>>(value: &Value<T>) -> Result<Vec<F>, Fault> {
+pub fn many<T: Real, F: FromValue<T>>(value: &Value<T>) -> Result<Vec<F>, CallError> {
     let item = |(k, v): (usize, &Value<T>)| F::from_value(v).map_err(|fault| fault.in_item(k));
     match value {
         Value::List(items) => items.iter().enumerate().map(item).collect(),
@@ -333,19 +337,23 @@ pub fn many<T: Real, F: FromValue<T>>(value: &Value<T>) -> Result<Vec<F>, Fault>
             a.iter().enumerate().map(|(k, x)| item((k, &Value::Vector(x)))).collect()
         }
         Value::Unset => wrong(Class::List, value),
-        other => Err(Fault::new(
+        other => Err(CallError::new(
             "not-a-list",
-            format!("expected a list of {}s, found {}", F::CLASS.name(), other.class().a()),
+            format!(
+                "expected a list of {}s, found {}",
+                F::CLASS.name(),
+                other.class().with_article()
+            ),
         )
         .expected(format!("a list such as {{a, b, c}} of {}s", F::CLASS.name()))
-        .found(other.class().a())),
+        .found(other.class().with_article())),
     }
 }
 
 impl<T: Real, F: FromValue<T>> FromValue<T> for Vec<F> {
     const CLASS: Class = F::CLASS;
     const MANY: bool = true;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         // {a, b, c} of three numbers reads as a vector before the argument's class is known.
         match value {
             Value::Vector(v) if matches!(F::CLASS, Class::Number | Class::Integer) => {
@@ -358,7 +366,7 @@ impl<T: Real, F: FromValue<T>> FromValue<T> for Vec<F> {
 
 impl<T: Real> FromValue<T> for Value<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         Ok(value.clone())
     }
 }

@@ -1,8 +1,11 @@
-use crate::Found;
+//! Evaluated parents as arguments: located points, curves, surfaces, solids, fields, sets and reparametrizations, with
+//! the identity of their objects.
+
+use crate::SearchReport;
 use moldloft_num::trace::{Key, Piece, Root, Trace};
 use moldloft_num::{
-    Curve, CurveJet, Field, Jet, Law, LawJet, Order, Real, Solid, Surface, Vec3, lift_curve,
-    lift_law, lift_surface,
+    Curve, CurveJet, Field, Jet, Order, Real, Reparametrization, ReparametrizationJet, Solid,
+    Surface, Vec3, lift_curve, lift_reparametrization, lift_surface,
 };
 use smallvec::SmallVec;
 use std::any::Any;
@@ -10,7 +13,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 /// A point in space that may also know its place on a curve and on a surface: so a bead, a magnet
-/// or a ring is a point with more to tell.
+/// or a ring is a point with more data.
 #[derive(Clone, Debug)]
 pub struct Point<T: Real> {
     /// Position.
@@ -22,7 +25,7 @@ pub struct Point<T: Real> {
     /// The surface and parameters (u, v) it lies at, for magnets and rings.
     pub on_surface: Option<Arc<(SurfaceRef<T>, [T; 2])>>,
     /// How it was found, when that took a search.
-    pub found: Option<Arc<Found>>,
+    pub found: Option<Arc<SearchReport>>,
 }
 
 impl<T: Real> Point<T> {
@@ -67,7 +70,7 @@ impl<T: Real> Point<T> {
     }
 
     /// The same point with the report of how it was found.
-    pub fn with_found(mut self, found: Found) -> Self {
+    pub fn with_found(mut self, found: SearchReport) -> Self {
         self.found = Some(Arc::new(found));
         self
     }
@@ -107,7 +110,7 @@ pub struct CurveRef<T: Real> {
     /// parameters there of the part's ends.
     pub part_of: Option<Arc<(CurveRef<T>, [T; 2])>>,
     /// How it was found, when that took a search.
-    pub found: Option<Arc<Found>>,
+    pub found: Option<Arc<SearchReport>>,
     /// How deep shapes are nested in it, itself included.
     pub depth: u32,
 }
@@ -119,7 +122,7 @@ pub struct SurfaceRef<T: Real> {
     /// The object, once it has a name.
     pub key: Option<Key>,
     /// How it was found, when that took a search or a fit.
-    pub found: Option<Arc<Found>>,
+    pub found: Option<Arc<SearchReport>>,
     /// For a fillet: the snakes on both surfaces along which it touches them, at v = 0 and v = 1.
     pub contacts: Option<Arc<[CurveRef<T>; 2]>>,
     /// How deep shapes are nested in it, itself included.
@@ -159,8 +162,8 @@ pub struct SetRef<T: Real> {
 
 /// A law that redistributes a parameter.
 #[derive(Clone)]
-pub struct RelabelRef<T: Real> {
-    shape: Arc<dyn Law<T>>,
+pub struct ReparametrizationRef<T: Real> {
+    shape: Arc<dyn Reparametrization<T>>,
     /// The object, once it has a name.
     pub key: Option<Key>,
     /// How deep shapes are nested in it, itself included.
@@ -202,7 +205,7 @@ macro_rules! shape_ref {
 }
 shape_ref!(CurveRef, Curve);
 shape_ref!(SurfaceRef, Surface);
-shape_ref!(RelabelRef, Law);
+shape_ref!(ReparametrizationRef, Reparametrization);
 shape_ref!(SolidRef, Solid);
 
 impl<T: Real> CurveRef<T> {
@@ -221,7 +224,7 @@ impl<T: Real> CurveRef<T> {
     }
 
     /// The same curve with the report of how it was found.
-    pub fn with_found(mut self, found: Found) -> Self {
+    pub fn with_found(mut self, found: SearchReport) -> Self {
         self.found = Some(Arc::new(found));
         self
     }
@@ -243,7 +246,7 @@ impl<T: Real> CurveRef<T> {
         self.shape.jet(T::from(t), Order::Zero)[0]
     }
 
-    /// The roots it runs along; a nameless curve that is no alias has none.
+    /// The roots it runs along; a nameless curve that is not an alias has none.
     pub fn pieces(&self) -> SmallVec<[Piece<T>; 1]> {
         match (self.shape.trace(), self.key) {
             (Trace::Own(_), None) => SmallVec::new(),
@@ -277,7 +280,7 @@ impl<T: Real> SurfaceRef<T> {
     }
 
     /// The same surface with the report of how it was found.
-    pub fn with_found(mut self, found: Found) -> Self {
+    pub fn with_found(mut self, found: SearchReport) -> Self {
         self.found = Some(Arc::new(found));
         self
     }
@@ -354,31 +357,31 @@ impl<T: Real> SetRef<T> {
     }
 }
 
-impl<T: Real> RelabelRef<T> {
+impl<T: Real> ReparametrizationRef<T> {
     /// A law that holds on to shapes nested `nesting` deep (0 when it holds on to none).
-    pub fn new(law: impl Law<T> + 'static, nesting: u32) -> Self {
+    pub fn new(law: impl Reparametrization<T> + 'static, nesting: u32) -> Self {
         Self { shape: Arc::new(law), key: None, depth: nesting + 1 }
     }
 
     /// The same for a law that others hold on to as well.
-    pub fn shared(law: Arc<dyn Law<T>>, nesting: u32) -> Self {
+    pub fn shared(law: Arc<dyn Reparametrization<T>>, nesting: u32) -> Self {
         Self { shape: law, key: None, depth: nesting + 1 }
     }
 
     /// The law itself.
-    pub fn law(&self) -> &Arc<dyn Law<T>> {
+    pub fn law(&self) -> &Arc<dyn Reparametrization<T>> {
         &self.shape
     }
 
     /// R at a parameter that is a jet.
     #[inline(always)]
     pub fn at<J: Jet<T>>(&self, t: J) -> J {
-        lift_law(&self.shape.jet(t.value(), J::ORDER), t)
+        lift_reparametrization(&self.shape.jet(t.value(), J::ORDER), t)
     }
 
     /// R and its derivatives at `t`.
     #[inline(always)]
-    pub fn jet(&self, t: T, order: Order) -> LawJet<T> {
+    pub fn jet(&self, t: T, order: Order) -> ReparametrizationJet<T> {
         self.shape.jet(t, order)
     }
 }

@@ -1,12 +1,13 @@
 //! Curves and surfaces whose parameter is redistributed by a law: the `relabel` of their heads.
 
 use crate::{
-    Class, CurveRef, DefaultValue, Fault, Field, FromValue, RelabelRef, SurfaceRef, Unit, Value,
+    CallError, Class, CurveRef, DefaultValue, Field, FromValue, ReparametrizationRef, SurfaceRef,
+    Unit, Value,
 };
 use moldloft_num::trace::{Edge, Edges, Mark, Piece, Trace};
 use moldloft_num::{
-    Composed, Curve, CurveJet, Law, Order, Real, SurfJet, Surface, Vec3, inv_law, inv_law_in,
-    line_crossings,
+    Composed, Curve, CurveJet, Order, Real, Reparametrization, SurfJet, Surface, Vec3,
+    inv_reparametrization, inv_reparametrization_in, line_crossings,
 };
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -15,7 +16,7 @@ use std::sync::Arc;
 /// masters.
 pub const RELABEL_FIELD: Field = Field {
     name: "relabel",
-    help: "How the parameter (of a surface: v) is redistributed; by itself as it comes.",
+    help: "Reparametrisation of t (surfaces: v). Default: none.",
     class: Class::Relabel,
     many: false,
     default: Some(DefaultValue::Unset),
@@ -39,8 +40,8 @@ const ONE_BREAK: f64 = 1e-12;
 ///
 /// # Errors
 /// `wrong-class` when the law is none.
-pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, Fault> {
-    let Some(law) = Option::<RelabelRef<T>>::from_value(law)? else { return Ok(value) };
+pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, CallError> {
+    let Some(law) = Option::<ReparametrizationRef<T>>::from_value(law)? else { return Ok(value) };
     if law.is_straight() && law.breaks().is_empty() && reaches(&law) == [true; 2] {
         return Ok(value);
     }
@@ -69,16 +70,16 @@ pub fn relabelled<T: Real>(value: Value<T>, law: &Value<T>) -> Result<Value<T>, 
 }
 
 /// Whether the law runs from 0, and to 1: a partial one does not.
-fn reaches<T: Real>(law: &RelabelRef<T>) -> [bool; 2] {
+fn reaches<T: Real>(law: &ReparametrizationRef<T>) -> [bool; 2] {
     [0.0, 1.0].map(|end| law.jet(T::from(end), Order::Zero)[0].re() == end)
 }
 
 /// The breaks of the law, and where it reaches those of the shape.
-fn breaks<T: Real>(law: &RelabelRef<T>, of_shape: Vec<f64>) -> Vec<f64> {
+fn breaks<T: Real>(law: &ReparametrizationRef<T>, of_shape: Vec<f64>) -> Vec<f64> {
     let mut all = law.breaks();
     let [low, high] = [0.0, 1.0].map(|end| law.jet(T::from(end), Order::Zero)[0].re());
     let inside = of_shape.into_iter().filter(|b| low < *b && *b < high);
-    all.extend(inside.map(|b| inv_law(&**law, b)));
+    all.extend(inside.map(|b| inv_reparametrization(&**law, b)));
     all.retain(|t| *t > 0.0 && *t < 1.0);
     all.sort_by(f64::total_cmp);
     all.dedup_by(|b, a| *b - *a < ONE_BREAK);
@@ -86,7 +87,7 @@ fn breaks<T: Real>(law: &RelabelRef<T>, of_shape: Vec<f64>) -> Vec<f64> {
 }
 
 /// The values of the law at plain parameters; as plain numbers too, when they carry no derivatives.
-fn values<T: Real>(law: &RelabelRef<T>, ts: &[f64]) -> (Vec<T>, Option<Vec<f64>>) {
+fn values<T: Real>(law: &ReparametrizationRef<T>, ts: &[f64]) -> (Vec<T>, Option<Vec<f64>>) {
     let values: Vec<T> = ts.iter().map(|&t| law.jet(T::from(t), Order::Zero)[0]).collect();
     let plain = values.iter().all(|r| r.is_constant());
     let plain = plain.then(|| values.iter().map(|r| r.re()).collect());
@@ -94,7 +95,10 @@ fn values<T: Real>(law: &RelabelRef<T>, ts: &[f64]) -> (Vec<T>, Option<Vec<f64>>
 }
 
 /// Straight lines between the same points, run by the same law, are one.
-fn governed<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallVec<[Piece<T>; 1]>> {
+fn governed<T: Real>(
+    law: &ReparametrizationRef<T>,
+    pieces: &[Piece<T>],
+) -> Option<SmallVec<[Piece<T>; 1]>> {
     match pieces {
         [piece] => Some(std::iter::once(piece.governed(law.key?)?).collect()),
         _ => None,
@@ -102,7 +106,10 @@ fn governed<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallVe
 }
 
 /// The same pieces run by a law; `None` where their divisions are no one else's.
-fn pieces_by<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallVec<[Piece<T>; 1]>> {
+fn pieces_by<T: Real>(
+    law: &ReparametrizationRef<T>,
+    pieces: &[Piece<T>],
+) -> Option<SmallVec<[Piece<T>; 1]>> {
     if !law.is_straight() {
         return governed(law, pieces);
     }
@@ -119,10 +126,16 @@ fn pieces_by<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallV
             let share = (turn - begin) / (end - begin);
             let t = piece.from.t + (piece.to.t - piece.from.t) * share;
             let to = Mark { t, point: None };
-            out.push(Piece { root: piece.root, from, to, until: inv_law_in(&**law, turn) });
+            out.push(Piece {
+                root: piece.root,
+                from,
+                to,
+                until: inv_reparametrization_in(&**law, turn),
+            });
             from = to;
         }
-        let until = if k + 1 == pieces.len() { T::one() } else { inv_law_in(&**law, end) };
+        let until =
+            if k + 1 == pieces.len() { T::one() } else { inv_reparametrization_in(&**law, end) };
         out.push(Piece { root: piece.root, from, to: piece.to, until });
         begin = end;
     }
@@ -131,7 +144,7 @@ fn pieces_by<T: Real>(law: &RelabelRef<T>, pieces: &[Piece<T>]) -> Option<SmallV
 
 struct RelabelledCurve<T: Real> {
     curve: CurveRef<T>,
-    law: RelabelRef<T>,
+    law: ReparametrizationRef<T>,
 }
 
 impl<T: Real> RelabelledCurve<T> {
@@ -188,7 +201,7 @@ impl<T: Real> Curve<T> for RelabelledCurve<T> {
         Some(self.chained(t, order, place))
     }
 
-    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         let first = self.law.law().clone();
         Some(match self.curve.law() {
             Some(second) => Arc::new(Composed { first, second }),
@@ -199,7 +212,7 @@ impl<T: Real> Curve<T> for RelabelledCurve<T> {
 
 struct RelabelledSurface<T: Real> {
     surface: SurfaceRef<T>,
-    law: RelabelRef<T>,
+    law: ReparametrizationRef<T>,
 }
 
 impl<T: Real> Surface<T> for RelabelledSurface<T> {

@@ -1,4 +1,6 @@
-use crate::{Class, Fault, FieldId, FromValue, Kept, Value};
+//! Rows: name, fields, help and evaluation of whatever can be called; and the registry, which finds them by name.
+
+use crate::{CallError, Class, FieldId, FromValue, Kept, Value};
 use indexmap::IndexMap;
 use moldloft_num::{Dual4, Real};
 use std::borrow::Cow;
@@ -11,11 +13,11 @@ pub trait Scalar: Real + FromValue<Self> {
     ///
     /// # Errors
     /// What the body reports.
-    fn call(row: &Row, args: &[Value<Self>], context: &Context) -> Result<Value<Self>, Fault>;
+    fn call(row: &Row, args: &[Value<Self>], context: &Context) -> Result<Value<Self>, CallError>;
 }
 
 impl Scalar for f64 {
-    fn call(row: &Row, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, Fault> {
+    fn call(row: &Row, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, CallError> {
         match &row.body {
             Body::Native { plain, .. } => plain(args, context),
             Body::Foreign(f) => f.call_plain(args, context),
@@ -24,7 +26,11 @@ impl Scalar for f64 {
 }
 
 impl Scalar for Dual4 {
-    fn call(row: &Row, args: &[Value<Dual4>], context: &Context) -> Result<Value<Dual4>, Fault> {
+    fn call(
+        row: &Row,
+        args: &[Value<Dual4>],
+        context: &Context,
+    ) -> Result<Value<Dual4>, CallError> {
         match &row.body {
             Body::Native { dual, .. } => dual(args, context),
             Body::Foreign(f) => f.call_dual(args, context),
@@ -56,8 +62,8 @@ pub trait Build<T: Real> {
     /// The value.
     ///
     /// # Errors
-    /// A [`Fault`] when the arguments make no such thing.
-    fn build(self, context: &Context) -> Result<Value<T>, Fault>;
+    /// A [`CallError`] when the arguments make no such thing.
+    fn build(self, context: &Context) -> Result<Value<T>, CallError>;
 }
 
 /// The unit of a number, where language and model files differ.
@@ -122,15 +128,19 @@ pub trait Foreign: Send + Sync {
     ///
     /// # Errors
     /// What the function reports.
-    fn call_plain(&self, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, Fault>;
+    fn call_plain(&self, args: &[Value<f64>], context: &Context) -> Result<Value<f64>, CallError>;
     /// The value for numbers with derivatives.
     ///
     /// # Errors
     /// What the function reports.
-    fn call_dual(&self, args: &[Value<Dual4>], context: &Context) -> Result<Value<Dual4>, Fault>;
+    fn call_dual(
+        &self,
+        args: &[Value<Dual4>],
+        context: &Context,
+    ) -> Result<Value<Dual4>, CallError>;
 }
 
-type Call<T> = fn(&[Value<T>], &Context) -> Result<Value<T>, Fault>;
+type Call<T> = fn(&[Value<T>], &Context) -> Result<Value<T>, CallError>;
 
 /// How a row is computed.
 #[derive(Clone)]

@@ -1,4 +1,6 @@
-use crate::{Class, CurveRef, Fault, FromValue, Value};
+//! Points and curves that follow a bead: arguments of the kinds that sweep one along its curve.
+
+use crate::{CallError, Class, CurveRef, FromValue, Value};
 use moldloft_num::{Real, Vec3};
 use std::sync::Arc;
 
@@ -9,7 +11,7 @@ pub trait Sweep<T: Real>: Send + Sync {
     ///
     /// # Errors
     /// The fault of the first object that has no value then.
-    fn at(&self, t: T) -> Result<Value<T>, Fault>;
+    fn at(&self, t: T) -> Result<Value<T>, CallError>;
 }
 
 /// An object that follows a bead: made by the model for kinds that sweep, see [`crate::Row::sweep`].
@@ -38,10 +40,10 @@ impl<T: Real> MovingPoint<T> {
     ///
     /// # Errors
     /// See [`Sweep::at`].
-    pub fn at(&self, t: T) -> Result<Vec3<T>, Fault> {
+    pub fn at(&self, t: T) -> Result<Vec3<T>, CallError> {
         match self.0.0.at(t)? {
             Value::Point(p) => Ok(p.xyz),
-            other => Err(Fault::wrong_class(Class::Point, other.class())),
+            other => Err(CallError::wrong_class(Class::Point, other.class())),
         }
     }
 }
@@ -55,33 +57,33 @@ impl<T: Real> MovingCurve<T> {
     ///
     /// # Errors
     /// See [`Sweep::at`].
-    pub fn at(&self, t: T) -> Result<CurveRef<T>, Fault> {
+    pub fn at(&self, t: T) -> Result<CurveRef<T>, CallError> {
         match self.0.0.at(t)? {
             Value::Curve(c) => Ok(c),
-            other => Err(Fault::wrong_class(Class::Curve, other.class())),
+            other => Err(CallError::wrong_class(Class::Curve, other.class())),
         }
     }
 }
 
-fn locus<T: Real>(value: &Value<T>, class: Class) -> Result<LocusRef<T>, Fault> {
+fn locus<T: Real>(value: &Value<T>, class: Class) -> Result<LocusRef<T>, CallError> {
     match value {
         Value::Locus(locus) => Ok(locus.clone()),
-        _ => Err(Fault::new("no-model", "things are swept in a model only")
+        _ => Err(CallError::new("no-model", "things are swept in a model only")
             .expected(format!("a named {} that depends on a bead", class.name()))
-            .found(value.class().a())),
+            .found(value.class().with_article())),
     }
 }
 
 impl<T: Real> FromValue<T> for MovingPoint<T> {
     const CLASS: Class = Class::Point;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         locus(value, Class::Point).map(Self)
     }
 }
 
 impl<T: Real> FromValue<T> for MovingCurve<T> {
     const CLASS: Class = Class::Curve;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         locus(value, Class::Curve).map(Self)
     }
 }

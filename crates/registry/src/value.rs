@@ -1,6 +1,8 @@
+//! The values of the language: numbers, text, arrays, located points, shapes, sets, bodies, families of contours.
+
 use crate::{
-    Class, CurveRef, Facets, FieldRef, Found, LocusRef, Point, RelabelRef, Remark, SetRef,
-    SolidRef, SurfaceRef,
+    Class, CurveRef, FieldRef, LocusRef, Point, Remark, ReparametrizationRef, SearchReport, SetRef,
+    SolidRef, SurfaceRef, TriangleBody,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Frame, Plane, Real, Vec3};
@@ -247,13 +249,13 @@ pub enum Value<T: Real> {
     /// Plane sections.
     Contours(Arc<Contours<T>>),
     /// A law that redistributes a parameter.
-    Relabel(RelabelRef<T>),
+    Relabel(ReparametrizationRef<T>),
     /// An implicit function.
     Field(FieldRef<T>),
     /// A set of points: what implicit functions leave solid, combined.
     Set(SetRef<T>),
     /// A body of triangles.
-    Mesh(Arc<Facets<T>>),
+    Body(Arc<TriangleBody<T>>),
     /// Where a point is when a bead moves, for kinds that sweep one.
     Locus(LocusRef<T>),
 }
@@ -295,7 +297,7 @@ impl<T: Real> Value<T> {
             Value::Relabel(_) => Class::Relabel,
             Value::Field(_) => Class::Field,
             Value::Set(_) => Class::Set,
-            Value::Mesh(_) => Class::Mesh,
+            Value::Body(_) => Class::Mesh,
             Value::Locus(_) => Class::Point,
         }
     }
@@ -341,7 +343,7 @@ impl<T: Real> Value<T> {
             (Value::Relabel(a), Value::Relabel(b)) => a.same(b),
             (Value::Field(a), Value::Field(b)) => a.same(b),
             (Value::Set(a), Value::Set(b)) => a.same(b),
-            (Value::Mesh(a), Value::Mesh(b)) => Arc::ptr_eq(a, b) || a.same(b),
+            (Value::Body(a), Value::Body(b)) => Arc::ptr_eq(a, b) || a.same(b),
             _ => false,
         }
     }
@@ -383,7 +385,7 @@ impl<T: Real> Value<T> {
     }
 
     /// How it was found, when that took a search.
-    pub fn found(&self) -> Option<&Arc<Found>> {
+    pub fn found(&self) -> Option<&Arc<SearchReport>> {
         match self {
             Value::Point(p) => p.found.as_ref(),
             Value::Curve(c) => c.found.as_ref(),
@@ -395,7 +397,7 @@ impl<T: Real> Value<T> {
     /// True when there is something to warn of.
     pub fn warns(&self) -> bool {
         match self {
-            Value::Mesh(m) => !m.flaws.is_empty(),
+            Value::Body(m) => !m.flaws.is_empty(),
             _ => self.found().is_some_and(|found| found.warns()),
         }
     }
@@ -403,7 +405,7 @@ impl<T: Real> Value<T> {
     /// What there is to warn of.
     pub fn remarks(&self) -> Vec<Remark> {
         match self {
-            Value::Mesh(m) => m.flaws.iter().map(|f| f.remark.clone()).collect(),
+            Value::Body(m) => m.flaws.iter().map(|f| f.remark.clone()).collect(),
             _ => self.found().and_then(|found| found.remark()).into_iter().collect(),
         }
     }
@@ -423,7 +425,7 @@ impl<T: Real> Value<T> {
                 let finite = c.family.parts().iter().all(|v| v.is_finite());
                 finite && c.values.iter().all(|x| x.is_finite())
             }
-            Value::Mesh(m) => m.is_finite(),
+            Value::Body(m) => m.is_finite(),
             _ => true,
         }
     }

@@ -4,7 +4,8 @@ use moldloft_num::trace::Key;
 use moldloft_num::{Dual4, Jet, Order, Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{
-    Build, Class, Context, CurveRef, Fault, Given, Kind, Point, Registry, Scalar, Value, arrange,
+    Build, CallError, Class, Context, CurveRef, Given, Kind, Point, Registry, Scalar, Value,
+    bind_arguments,
 };
 
 /// A straight line: C(t) = (1-t) P1 + t P2.
@@ -31,7 +32,7 @@ impl<T: Real> moldloft_num::CurveFormula for Straight<T> {
 }
 
 impl<T: Real> Build<T> for Segment<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let end = self.p1.xyz + (self.p2.xyz - self.p1.xyz) * self.stretch;
         Ok(Value::Curve(CurveRef::new(Straight([self.p1.xyz, end]), 0)))
     }
@@ -61,7 +62,7 @@ fn a_struct_becomes_a_documented_row() {
 fn calls_for_both_scalars() {
     let row = Segment::<f64>::row();
     let args = given(vec![vector(0.0, 0.0, 0.0), vector(2.0, 0.0, 0.0)], vec![]);
-    let (args, _) = arrange(&row, args, |_| Class::Any).unwrap();
+    let (args, _) = bind_arguments(&row, args, |_| Class::Any).unwrap();
     let Value::Curve(c) = f64::call(&row, &args, &Context::default()).unwrap() else { panic!() };
     assert_eq!(
         c.jet(0.5, Order::First),
@@ -73,7 +74,7 @@ fn calls_for_both_scalars() {
         vec![vector(0.0, 0.0, 0.0), vector(2.0, 0.0, 0.0)],
         vec![("stretch", stretch), ("divisions", Value::Number(7.0.into()))],
     );
-    let (args, head) = arrange(&row, args, |_| Class::Any).unwrap();
+    let (args, head) = bind_arguments(&row, args, |_| Class::Any).unwrap();
     assert_eq!(head.divisions[0], 7);
     let Value::Curve(c) = Dual4::call(&row, &args, &Context::default()).unwrap() else { panic!() };
     assert_eq!(c.end(1.0).x.eps, [0.0, 0.0, 2.0, 0.0]);
@@ -83,7 +84,7 @@ fn calls_for_both_scalars() {
 fn says_what_is_wrong_and_where() {
     let row = Segment::<f64>::row();
     let fault = |positional, named| {
-        arrange(&row, given(positional, named), |_| Class::Surface).unwrap_err()
+        bind_arguments(&row, given(positional, named), |_| Class::Surface).unwrap_err()
     };
     let p = || vector(0.0, 0.0, 0.0);
     let f = fault(vec![p()], vec![]);

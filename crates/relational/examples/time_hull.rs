@@ -3,7 +3,8 @@
 //!
 //! `cargo run --release -p moldloft-relational --example time_hull`
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common.rs"]
+#[allow(dead_code, unused_imports)]
 mod common;
 
 use common::{HULL, run, scene};

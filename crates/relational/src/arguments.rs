@@ -2,12 +2,12 @@
 
 use moldloft_num::trace::Key;
 use moldloft_num::{CurveJet, Order, Real};
-use moldloft_registry::{Class, CurveRef, Fault, FieldId, FromValue, SurfaceRef, Value};
+use moldloft_registry::{CallError, Class, CurveRef, FieldId, FromValue, SurfaceRef, Value};
 use moldloft_spline::{End, Ends};
 use std::sync::Arc;
 
-fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
-    Err(Fault::wrong_class(class, value.class()))
+fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, CallError> {
+    Err(CallError::wrong_class(class, value.class()))
 }
 
 /// A point on a curve.
@@ -15,13 +15,13 @@ fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
 pub struct Bead<T: Real> {
     /// The point object.
     pub key: Option<Key>,
-    /// The curve it lies on.
+    /// The curve it is on.
     pub curve: CurveRef<T>,
     /// Its parameter there.
     pub t: T,
 }
 
-fn bead<T: Real>(value: &Value<T>, class: Class) -> Result<Bead<T>, Fault> {
+fn bead<T: Real>(value: &Value<T>, class: Class) -> Result<Bead<T>, CallError> {
     let Value::Point(point) = value else { return wrong(class, value) };
     match &point.on_curve {
         Some(place) => Ok(Bead { key: point.key, curve: place.0.clone(), t: place.1 }),
@@ -31,7 +31,7 @@ fn bead<T: Real>(value: &Value<T>, class: Class) -> Result<Bead<T>, Fault> {
 
 impl<T: Real> FromValue<T> for Bead<T> {
     const CLASS: Class = Class::Bead;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         bead(value, Class::Bead)
     }
 }
@@ -42,7 +42,7 @@ pub struct Ring<T: Real>(pub Bead<T>);
 
 impl<T: Real> FromValue<T> for Ring<T> {
     const CLASS: Class = Class::Ring;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let bead = bead(value, Class::Ring)?;
         if bead.curve.surface.is_some() { Ok(Ring(bead)) } else { wrong(Class::Ring, value) }
     }
@@ -53,7 +53,7 @@ impl<T: Real> FromValue<T> for Ring<T> {
 pub struct Magnet<T: Real> {
     /// The point object.
     pub key: Option<Key>,
-    /// The surface it lies on.
+    /// The surface it is on.
     pub surface: SurfaceRef<T>,
     /// Its parameters (u, v) there.
     pub uv: [T; 2],
@@ -61,7 +61,7 @@ pub struct Magnet<T: Real> {
 
 impl<T: Real> FromValue<T> for Magnet<T> {
     const CLASS: Class = Class::Magnet;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Point(p) => match &p.on_surface {
                 Some(place) => Ok(Magnet { key: p.key, surface: place.0.clone(), uv: place.1 }),
@@ -77,7 +77,7 @@ impl<T: Real> FromValue<T> for Magnet<T> {
 pub struct Snake<T: Real> {
     /// The curve.
     pub curve: CurveRef<T>,
-    /// The surface it lies on.
+    /// The surface it is on.
     pub surface: SurfaceRef<T>,
 }
 
@@ -90,7 +90,7 @@ impl<T: Real> Snake<T> {
 
 impl<T: Real> FromValue<T> for Snake<T> {
     const CLASS: Class = Class::Snake;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Curve(curve) => match &curve.surface {
                 Some(surface) => {
@@ -113,7 +113,7 @@ pub enum Side<T: Real> {
 }
 
 impl<T: Real> Side<T> {
-    /// The surface it lies on.
+    /// The surface it is on.
     pub fn surface(&self) -> &SurfaceRef<T> {
         match self {
             Side::Snake(snake) => &snake.surface,
@@ -124,7 +124,7 @@ impl<T: Real> Side<T> {
 
 impl<T: Real> FromValue<T> for Side<T> {
     const CLASS: Class = Class::Side;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value.class() {
             Class::Snake => Snake::from_value(value).map(Side::Snake),
             Class::Magnet | Class::Ring => Magnet::from_value(value).map(Side::Magnet),
@@ -175,12 +175,12 @@ impl EndRule {
 
 impl<T: Real> FromValue<T> for EndRule {
     const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let text = Arc::<str>::from_value(value)?;
         let found = Self::NAMES.iter().find(|(name, _)| *name == &*text);
         found.map(|(_, rule)| *rule).ok_or_else(|| {
             let names = Self::NAMES.map(|(name, _)| format!("\"{name}\"")).join(", ");
-            Fault::new("unknown-ends", format!("there are no ends \"{text}\""))
+            CallError::new("unknown-ends", format!("unknown ends \"{text}\""))
                 .expected(names)
                 .found(format!("\"{text}\""))
         })
@@ -198,19 +198,19 @@ fn same_surface<T: Real>(a: &SurfaceRef<T>, b: &SurfaceRef<T>) -> bool {
 /// `wrong-surface` at the first item on another surface than the first item.
 pub fn common_surface<T: Real>(
     items: &[(Option<Key>, &SurfaceRef<T>)],
-    place: impl Fn(Fault, usize) -> Fault,
-) -> Result<SurfaceRef<T>, Fault> {
+    place: impl Fn(CallError, usize) -> CallError,
+) -> Result<SurfaceRef<T>, CallError> {
     let (first_key, first) = items[0];
     for (k, (key, surface)) in items.iter().enumerate() {
         if !same_surface(first, surface) {
-            let message = format!("item {} lies on another surface than item 1", k + 1);
-            let fault = Fault::new("wrong-surface", message)
+            let message = format!("item {} is on another surface than item 1", k + 1);
+            let fault = CallError::new("wrong-surface", message)
                 .expected("magnets and snakes of one surface")
                 .found("two different surfaces")
                 .help("take magnets of one surface; CopyMagnet and CopySnake take them to another")
-                .related(*key, "lies on one surface")
+                .related(*key, "is on one surface")
                 .related(surface.key, "is the surface of the one")
-                .related(first_key, "lies on another surface")
+                .related(first_key, "is on another surface")
                 .related(first.key, "is the surface of the other");
             return Err(place(fault, k));
         }
@@ -222,18 +222,21 @@ pub fn common_surface<T: Real>(
 ///
 /// # Errors
 /// `wrong-curve`, in field `field`, when they lie on different curves.
-pub fn common_curve<T: Real>([a, b]: [&Bead<T>; 2], field: FieldId) -> Result<CurveRef<T>, Fault> {
+pub fn common_curve<T: Real>(
+    [a, b]: [&Bead<T>; 2],
+    field: FieldId,
+) -> Result<CurveRef<T>, CallError> {
     let named = a.curve.key.is_some() || b.curve.key.is_some();
     let same = if named { a.curve.key == b.curve.key } else { a.curve.same(&b.curve) };
     if same {
         return Ok(a.curve.clone());
     }
-    Err(Fault::new("wrong-curve", "the two beads lie on different curves")
+    Err(CallError::new("wrong-curve", "the two beads are on different curves")
         .expected("two beads of one curve")
         .found("beads of two curves")
-        .related(a.key, "lies on one curve")
+        .related(a.key, "is on one curve")
         .related(a.curve.key, "is the curve of the one")
-        .related(b.key, "lies on another curve")
+        .related(b.key, "is on another curve")
         .related(b.curve.key, "is the curve of the other")
         .in_field(field))
 }
@@ -253,7 +256,7 @@ impl Named {
     ///
     /// # Errors
     /// `unknown-name`, in field `field`.
-    pub fn among<'n>(&self, names: &[&'n str], field: FieldId) -> Result<&'n str, Fault> {
+    pub fn among<'n>(&self, names: &[&'n str], field: FieldId) -> Result<&'n str, CallError> {
         let found = match self {
             Named::Text(text) => names.iter().find(|name| **name == &**text),
             Named::Number(k) => k.checked_sub(1).and_then(|k| names.get(k)),
@@ -264,7 +267,7 @@ impl Named {
                 Named::Number(k) => k.to_string(),
             };
             let list = names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>();
-            Fault::new("unknown-name", format!("there is no {found} to choose here"))
+            CallError::new("unknown-name", format!("there is no {found} to choose here"))
                 .expected(format!("{}, or a number from 1 to {}", list.join(", "), names.len()))
                 .found(found)
                 .in_field(field)
@@ -274,7 +277,7 @@ impl Named {
 
 impl<T: Real> FromValue<T> for Named {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Text(text) => Ok(Named::Text(text.clone())),
             Value::Number(_) => usize::from_value(value).map(Named::Number),
@@ -289,13 +292,13 @@ pub struct AxisName(pub usize);
 
 impl<T: Real> FromValue<T> for AxisName {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let at = match Named::from_value(value)? {
             Named::Text(text) => ["x", "y", "z"].iter().position(|name| *name == &*text),
             Named::Number(k) => k.checked_sub(1).filter(|k| *k < 3),
         };
         at.map(Self).ok_or_else(|| {
-            Fault::new("unknown-axis", "there is no such axis")
+            CallError::new("unknown-axis", "unknown axis")
                 .expected("\"x\", \"y\" or \"z\", or 1, 2 or 3")
         })
     }
@@ -312,19 +315,22 @@ pub struct Start<T: Real> {
 
 impl<T: Real> FromValue<T> for Start<T> {
     const CLASS: Class = Class::Along;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Curve(curve) => Ok(Self { curve: curve.clone(), t: T::zero() }),
             Value::Point(point) if point.on_curve.is_some() => {
                 let Bead { curve, t, .. } = Bead::from_value(value)?;
                 Ok(Self { curve, t })
             }
-            other => Err(Fault::new(
+            other => Err(CallError::new(
                 "wrong-class",
-                format!("expected a curve or a bead on one, found {}", other.class().a()),
+                format!(
+                    "expected a curve or a bead on one, found {}",
+                    other.class().with_article()
+                ),
             )
             .expected("a curve, or a bead on one")
-            .found(other.class().a())),
+            .found(other.class().with_article())),
         }
     }
 }

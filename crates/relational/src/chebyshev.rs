@@ -9,7 +9,7 @@ const DEGREE: usize = 16;
 /// So many places determine one.
 pub const NODES: usize = DEGREE + 1;
 
-/// Pieces are halved so often at most, and so many there are at most: beyond, a kink stays.
+/// Pieces are halved that many times at most, and so many there are at most: beyond, a kink stays.
 pub const DEEPEST: u32 = 16;
 pub const MOST_PIECES: usize = 256;
 

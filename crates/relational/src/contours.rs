@@ -2,7 +2,7 @@
 
 use moldloft_num::{Axis, Plane, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, Contours, Family, Fault, FieldId, Kind, OBLIQUE, Point, SurfaceRef, Value,
+    Build, CallError, Context, Contours, Family, FieldId, Kind, OBLIQUE, Point, SurfaceRef, Value,
 };
 use std::sync::Arc;
 
@@ -15,19 +15,16 @@ fn values<T: Real>(
     start: T,
     step: T,
     field: FieldId,
-) -> Result<Vec<T>, Fault> {
+) -> Result<Vec<T>, CallError> {
     let count = i64::from(last) - i64::from(first) + 1;
     if count < 1 {
-        return Err(Fault::new(
-            "empty-range",
-            format!("there is no section from {first} to {last}"),
-        )
-        .expected(format!("a last index of at least {first}"))
-        .found(last.to_string())
-        .in_field(field));
+        return Err(CallError::new("empty-range", format!("no section from {first} to {last}"))
+            .expected(format!("a last index of at least {first}"))
+            .found(last.to_string())
+            .in_field(field));
     }
     if count > MOST_SECTIONS {
-        return Err(Fault::new("out-of-range", format!("{count} sections are too many"))
+        return Err(CallError::new("out-of-range", format!("{count} sections are too many"))
             .expected(format!("at most {MOST_SECTIONS}"))
             .found(count.to_string())
             .in_field(field));
@@ -41,10 +38,10 @@ fn contours<T: Real>(
     values: Vec<T>,
     surfaces: Option<Vec<SurfaceRef<T>>>,
     field: FieldId,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let key = |(k, surface): (usize, SurfaceRef<T>)| {
         surface.key.ok_or_else(|| {
-            Fault::new("wrong-class", "contours are drawn on surfaces that have a name")
+            CallError::new("wrong-class", "contours are drawn on surfaces that have a name")
                 .expected("names of surfaces")
                 .found("a surface without a name")
                 .in_item(k)
@@ -75,7 +72,7 @@ macro_rules! contour_kind {
         }
 
         impl<T: Real> Build<T> for $name<T> {
-            fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+            fn build(self, _: &Context) -> Result<Value<T>, CallError> {
                 let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
                 contours($axis, Family::coordinate($axis), values, self.surfaces, Self::SURFACES)
             }
@@ -132,7 +129,7 @@ pub struct PlaneContours<T: Real> {
 }
 
 impl<T: Real> Build<T> for PlaneContours<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
         contours(OBLIQUE, Family::Planes(self.plane), values, self.surfaces, Self::SURFACES)
     }
@@ -165,12 +162,12 @@ pub struct CylinderContours<T: Real> {
 }
 
 impl<T: Real> Build<T> for CylinderContours<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;
         if let Some(k) = values.iter().position(|r| r.re() <= 0.0) {
             let radius = values[k].re();
             let index = i64::from(self.first) + k as i64;
-            return Err(Fault::new("out-of-range", format!("a cylinder of radius {radius}"))
+            return Err(CallError::new("out-of-range", format!("a cylinder of radius {radius}"))
                 .expected("positive radii")
                 .found(format!("the radius {radius} for i = {index}"))
                 .in_field(Self::START));
@@ -217,7 +214,7 @@ pub struct AngleContours<T: Real> {
 const UPRIGHT: f64 = 0.999_847_695;
 
 impl<T: Real> Build<T> for AngleContours<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let axis = self.line;
         let toward = match &self.zero {
             Some(point) => point.xyz - axis.foot(point.xyz),
@@ -230,10 +227,10 @@ impl<T: Real> Build<T> for AngleContours<T> {
         };
         let Some(zero) = toward.normalized() else {
             let key = self.zero.as_ref().and_then(|p| p.key);
-            return Err(Fault::new("coincident-points", "the point of angle 0 lies on the axis")
+            return Err(CallError::new("coincident-points", "the point of angle 0 is on the axis")
                 .expected("a point off the axis")
                 .found("no direction from the axis to it")
-                .related(key, "lies on the axis")
+                .related(key, "is on the axis")
                 .in_field(Self::ZERO));
         };
         let values = values([self.first, self.last], self.start, self.step, Self::LAST)?;

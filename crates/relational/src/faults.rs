@@ -1,22 +1,22 @@
 //! What the mathematics below refuses, as faults with a place.
 
-use moldloft_registry::{Fault, FieldId};
+use moldloft_registry::{CallError, FieldId};
 use moldloft_spline::{ArcError, InterpolationError, KnotError, SplineError};
 
 /// The fault of a B-spline whose control points are the list in field `items` and whose degree is
 /// the number in field `degree`.
-pub fn of_spline(error: SplineError, items: FieldId, degree: FieldId) -> Fault {
+pub fn of_spline(error: SplineError, items: FieldId, degree: FieldId) -> CallError {
     match error {
         SplineError::Knots(KnotError::Degree { degree: found }) => {
-            Fault::new("out-of-range", format!("degree = {found} is out of range"))
+            CallError::new("out-of-range", format!("degree = {found} is out of range"))
                 .expected("a degree from 1 to 25")
                 .found(found.to_string())
                 .in_field(degree)
         }
         SplineError::NotFinite { index } => {
-            Fault::new("not-finite", error.to_string()).in_item(index).in_field(items)
+            CallError::new("not-finite", error.to_string()).in_item(index).in_field(items)
         }
-        _ => Fault::new("no-spline", error.to_string()).in_field(items),
+        _ => CallError::new("no-spline", error.to_string()).in_field(items),
     }
 }
 
@@ -26,50 +26,50 @@ pub fn of_interpolation(
     error: InterpolationError,
     noun: &str,
     [items, degree, ends]: [FieldId; 3],
-) -> Fault {
+) -> CallError {
     match error {
         InterpolationError::Coincident { first, second } => {
             let message = format!("{noun}s {} and {} coincide", first + 1, second + 1);
-            Fault::new("coincident-points", message)
-                .expected("neighbours at different places")
+            CallError::new("coincident-points", message)
+                .expected("distinct neighbouring points")
                 .found(format!("no distance between {noun}s {} and {}", first + 1, second + 1))
                 .help(format!("move one of the two, or leave {noun} {} out", second + 1))
                 .in_item(second)
                 .in_field(items)
         }
         InterpolationError::NotFinite { index } => {
-            Fault::new("not-finite", error.to_string()).in_item(index).in_field(items)
+            CallError::new("not-finite", error.to_string()).in_item(index).in_field(items)
         }
         InterpolationError::TooFew { expected, actual } => {
-            Fault::new("too-few-items", error.to_string())
+            CallError::new("too-few-items", error.to_string())
                 .expected(format!("at least {expected} {noun}s"))
                 .found(actual.to_string())
                 .in_field(items)
         }
-        InterpolationError::NotClosed { gap } => Fault::new("not-closed", error.to_string())
+        InterpolationError::NotClosed { gap } => CallError::new("not-closed", error.to_string())
             .expected(format!("the first {noun} again as the last"))
             .found(format!("a gap of {gap}"))
             .help(format!("repeat the first {noun} at the end of the list"))
             .in_field(ends),
-        InterpolationError::Type { actual } => Fault::new("out-of-range", error.to_string())
+        InterpolationError::Type { actual } => CallError::new("out-of-range", error.to_string())
             .expected("1 (polyline) or 3 (cubic)")
             .found(actual.to_string())
             .in_field(degree),
-        InterpolationError::Knots { .. } => Fault::new("no-spline", error.to_string()),
+        InterpolationError::Knots { .. } => CallError::new("no-spline", error.to_string()),
     }
 }
 
 /// The fault of an arc; `field` is its first point.
-pub fn of_arc(error: ArcError, field: FieldId) -> Fault {
+pub fn of_arc(error: ArcError, field: FieldId) -> CallError {
     let fault = match error {
-        ArcError::Collinear => Fault::new("collinear-points", error.to_string())
+        ArcError::Collinear => CallError::new("collinear-points", error.to_string())
             .expected("three points that span a plane")
             .found("three points in line")
             .help("move the third point off the line through the others"),
-        ArcError::AtCentre => Fault::new("coincident-points", error.to_string())
+        ArcError::AtCentre => CallError::new("coincident-points", error.to_string())
             .expected("points away from the centre")
             .found("a point at the centre"),
-        ArcError::NotFinite { .. } => Fault::new("not-finite", error.to_string()),
+        ArcError::NotFinite { .. } => CallError::new("not-finite", error.to_string()),
     };
     fault.in_field(field)
 }

@@ -2,9 +2,9 @@
 //! from them.
 
 use crate::arguments::Named;
-use crate::lifted;
+use crate::third_derivatives;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3};
-use moldloft_registry::{CurveRef, Fault, FieldId};
+use moldloft_registry::{CallError, CurveRef, FieldId};
 use moldloft_spline::foil::{FoilError, Layout, Metric, Offset, Profile, Section, SectionSpec};
 use std::sync::Arc;
 
@@ -124,25 +124,27 @@ pub struct Arguments<T: Real> {
     pub section: Option<CurveRef<T>>,
     pub ordinates: Option<Vec<Vec3<T>>>,
     pub metric: Option<Vec3<T>>,
-    /// Where faults are told.
+    /// Where faults are reported.
     pub fields: Fields,
 }
 
 /// The choice of a word of two.
-fn either(word: &str, names: [&str; 2], field: FieldId) -> Result<bool, Fault> {
+fn either(word: &str, names: [&str; 2], field: FieldId) -> Result<bool, CallError> {
     match names.iter().position(|name| *name == word) {
         Some(at) => Ok(at == 0),
-        None => Err(Fault::new("unknown-name", format!("there is no \"{word}\" to choose here"))
-            .expected(names.map(|n| format!("\"{n}\"")).join(" or "))
-            .found(format!("\"{word}\""))
-            .in_field(field)),
+        None => {
+            Err(CallError::new("unknown-name", format!("there is no \"{word}\" to choose here"))
+                .expected(names.map(|n| format!("\"{n}\"")).join(" or "))
+                .found(format!("\"{word}\""))
+                .in_field(field))
+        }
     }
 }
 
 impl<T: Real> Arguments<T> {
     /// The foil between `points`, whether its section is closed, and how deep shapes are nested in
     /// it.
-    pub fn profile(self, points: &[Vec3<T>]) -> Result<(Profile<T>, bool, u32), Fault> {
+    pub fn profile(self, points: &[Vec3<T>]) -> Result<(Profile<T>, bool, u32), CallError> {
         let fields = self.fields;
         let metric = self.metric.map_or(Metric::Space, |m| Metric::Plane(m.to_array()));
         let layout = Layout::new(points, metric).map_err(|error| of_foil(error, fields))?;
@@ -154,7 +156,7 @@ impl<T: Real> Arguments<T> {
 
     /// The same in numbers that may depend on a parameter, for lofts; points that all are in one
     /// place make a foil without size.
-    pub fn lifted<J: Jet<T>>(&self, points: &[Vec3<J>]) -> Result<Profile<J>, Fault> {
+    pub fn lifted<J: Jet<T>>(&self, points: &[Vec3<J>]) -> Result<Profile<J>, CallError> {
         let fixed = |v: Vec3<T>| v.map(J::fixed);
         let arguments = Arguments::<J> {
             family: self.family.clone(),
@@ -182,7 +184,7 @@ impl<T: Real> Arguments<T> {
     }
 
     /// The section, where it lies, how thickness is set off, and how deep shapes are nested in it.
-    fn laid(self, layout: Layout<T>) -> Result<(Section<T>, Layout<T>, Offset, u32), Fault> {
+    fn laid(self, layout: Layout<T>) -> Result<(Section<T>, Layout<T>, Offset, u32), CallError> {
         let fields = self.fields;
         let families = Section::<T>::FAMILIES;
         let family = self.family.among(&families, fields.family)?;
@@ -194,7 +196,7 @@ impl<T: Real> Arguments<T> {
         let mut nesting = 0;
         let section = match (self.section, self.ordinates) {
             (Some(_), Some(_)) => {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "unused-argument",
                     "a section is given by a curve or by ordinates, not by both",
                 )
@@ -244,7 +246,9 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
     fn jet(&self, t: J, order: Order) -> CurveJet<J> {
         let at = t.value();
         let [_, _, dd] = self.0.jet(at, order.max(J::ORDER));
-        let along = |t: J| lifted::tangent(|t, order| self.0.jet(t, order), || self.0.breaks(), t);
+        let along = |t: J| {
+            third_derivatives::tangent(|t, order| self.0.jet(t, order), || self.0.breaks(), t)
+        };
         let d = if order == Order::Zero { Vec3::zero() } else { along(t) };
         // Sections are run through alike at all places of a loft, so t has no derivatives that the
         // second one would pass on.
@@ -256,14 +260,14 @@ impl<T: Real, J: Jet<T>> Curve<J> for Fixed<T> {
 }
 
 /// The fault of a foil.
-fn of_foil(error: FoilError, fields: Fields) -> Fault {
+fn of_foil(error: FoilError, fields: Fields) -> CallError {
     let text = error.to_string();
     match error {
-        FoilError::Family { name } => Fault::new("unknown-name", text)
+        FoilError::Family { name } => CallError::new("unknown-name", text)
             .expected(Section::<f64>::FAMILIES.map(|n| format!("\"{n}\"")).join(", "))
             .found(format!("\"{name}\""))
             .in_field(fields.family),
-        FoilError::Mean { name } => Fault::new("unknown-name", text)
+        FoilError::Mean { name } => CallError::new("unknown-name", text)
             .expected(Section::<f64>::MEANS.map(|n| format!("\"{n}\"")).join(", "))
             .found(format!("\"{name}\""))
             .in_field(fields.mean),
@@ -274,31 +278,31 @@ fn of_foil(error: FoilError, fields: Fields) -> Fault {
                 "the place of the greatest camber" => fields.camber_at,
                 _ => fields.load,
             };
-            Fault::new("out-of-range", text)
+            CallError::new("out-of-range", text)
                 .expected(format!("a number from {min} to {max}"))
                 .found(value.to_string())
                 .in_field(field)
         }
-        FoilError::Ordinates { index, .. } => Fault::new("no-section", text)
+        FoilError::Ordinates { index, .. } => CallError::new("no-section", text)
             .expected("{x, half thickness, camber} with x ascending from 0 to 1")
             .in_item(index)
             .in_field(fields.ordinates),
-        FoilError::Points { actual } => Fault::new("wrong-length", text)
+        FoilError::Points { actual } => CallError::new("wrong-length", text)
             .expected("3 points (half a section), 4 (symmetric) or 5 (cambered)")
             .found(actual.to_string())
             .in_field(fields.points),
-        FoilError::NoChord => Fault::new("coincident-points", text)
-            .expected("a nose away from the tail")
+        FoilError::NoChord => CallError::new("coincident-points", text)
+            .expected("a nose distinct from the tail")
             .found("no chord between them")
             .in_field(fields.points),
-        FoilError::Metric => Fault::new("out-of-range", text)
+        FoilError::Metric => CallError::new("out-of-range", text)
             .expected("{uu, uv, vv} with uu > 0 and uu vv > uv^2")
             .in_field(fields.metric),
-        FoilError::NoSlope => Fault::new("unused-argument", text)
+        FoilError::NoSlope => CallError::new("unused-argument", text)
             .expected("offset = \"affine\" with a section of one's own")
             .in_field(fields.offset),
         FoilError::NotFinite { index } => {
-            Fault::new("not-finite", text).in_item(index).in_field(fields.points)
+            CallError::new("not-finite", text).in_item(index).in_field(fields.points)
         }
     }
 }

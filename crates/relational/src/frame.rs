@@ -1,7 +1,7 @@
 //! Frames: three points, or roll, pitch and yaw.
 
 use moldloft_num::{Axis, Frame, Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 use std::sync::Arc;
 
 /// The frame of three points: its origin is the first, its x axis points to the second, and the
@@ -23,14 +23,14 @@ pub struct ThreePointFrame<T: Real> {
 }
 
 impl<T: Real> Build<T> for ThreePointFrame<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [o, x, xy] = [self.p1.xyz, self.p2.xyz, self.p3.xyz];
         let (a, b) = ((x - o).re(), (xy - o).re());
         // Points in line by rounding only span no plane.
         let flat = a.cross(b).norm() <= 8.0 * f64::EPSILON * a.norm() * b.norm();
         match Frame::through(o, x, xy) {
             Some(frame) if !flat => Ok(Value::Frame(Arc::new(frame))),
-            _ => Err(Fault::new("collinear-points", "the three points lie on a line")
+            _ => Err(CallError::new("collinear-points", "the three points are collinear")
                 .expected("three points that span a plane")
                 .found("three points in line")
                 .help("move the third point off the line through the others")
@@ -65,7 +65,7 @@ pub struct RPYFrame<T: Real> {
 }
 
 impl<T: Real> Build<T> for RPYFrame<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let base = self.frame.unwrap_or_else(Frame::world).axes;
         // Turned about the fixed axes in the opposite order, which is the same.
         let turned = |d: Vec3<T>| {

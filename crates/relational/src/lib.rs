@@ -20,7 +20,6 @@ mod curve;
 mod faults;
 mod foil;
 mod frame;
-mod lifted;
 mod lists;
 mod normal;
 mod plane;
@@ -31,6 +30,7 @@ mod search;
 mod snake;
 mod solid;
 mod surface;
+mod third_derivatives;
 
 use moldloft_registry::Row;
 use moldloft_registry::export::StaticRow;

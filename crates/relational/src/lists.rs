@@ -1,10 +1,10 @@
 //! Lists under a name: of numbers, of knots, of objects.
 
 use moldloft_num::Real;
-use moldloft_registry::{Array, Build, Context, Fault, Kind, Value};
+use moldloft_registry::{Array, Build, CallError, Context, Kind, Value};
 use std::sync::Arc;
 
-/// A list of numbers under a name; it stands wherever a list of numbers is asked for.
+/// A list of numbers under a name, for use wherever a list of numbers is expected.
 #[derive(Kind)]
 #[kind(
     class = Numbers,
@@ -18,15 +18,15 @@ pub struct RealList<T: Real> {
 }
 
 impl<T: Real> Build<T> for RealList<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Numbers(Arc::new(Array::row(self.values))))
     }
 }
 
-/// A list of knots under a name: numbers that never descend. It stands wherever a list of numbers is
+/// A list of knots under a name: non-decreasing numbers, for use wherever a list of numbers is
 /// asked for.
 ///
-/// Which knots a spline takes (how many, repeated how often) is said by the spline.
+/// The spline determines the number of knots and their multiplicity.
 #[derive(Kind)]
 #[kind(class = Numbers, columns = "values", example = "KnotList k({0, 0, 0, 0.4, 1, 1, 1});")]
 pub struct KnotList<T: Real> {
@@ -36,11 +36,11 @@ pub struct KnotList<T: Real> {
 }
 
 impl<T: Real> Build<T> for KnotList<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let descends = self.values.windows(2).position(|w| w[1].re() < w[0].re());
         if let Some(k) = descends {
             let [before, value] = [self.values[k].re(), self.values[k + 1].re()];
-            return Err(Fault::new("not-monotone", "knots must not descend")
+            return Err(CallError::new("not-monotone", "knots must not descend")
                 .expected(format!("a knot of at least {before}"))
                 .found(value.to_string())
                 .in_item(k + 1)
@@ -50,7 +50,7 @@ impl<T: Real> Build<T> for KnotList<T> {
     }
 }
 
-/// Objects under a common name; it stands wherever a list of such objects is asked for: the wetted
+/// Objects under a common name, for use wherever a list of such objects is expected: the wetted
 /// surfaces, the points of a curve.
 ///
 /// A list among the objects adds its own.
@@ -67,7 +67,7 @@ pub struct EntityList<T: Real> {
 }
 
 impl<T: Real> Build<T> for EntityList<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let mut all = Vec::with_capacity(self.objects.len());
         for object in self.objects {
             match object {

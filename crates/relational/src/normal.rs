@@ -2,7 +2,7 @@
 
 use crate::arguments::Magnet;
 use moldloft_num::{Order, Real, SurfJet, Vec3};
-use moldloft_registry::Fault;
+use moldloft_registry::CallError;
 
 /// Below this the sine of the angle between S_u and S_v, or the ratio of their lengths, is rounding.
 const SINGULAR: f64 = 1e-10;
@@ -12,16 +12,16 @@ const SINGULAR: f64 = 1e-10;
 ///
 /// # Errors
 /// `no-normal` where there is no such limit either.
-pub fn normal<T: Real>(magnet: &Magnet<T>) -> Result<Vec3<T>, Fault> {
+pub fn normal<T: Real>(magnet: &Magnet<T>) -> Result<Vec3<T>, CallError> {
     let [u, v] = magnet.uv;
     let jet = magnet.surface.jet(u, v, Order::Second);
     let product = product(&jet, [u.re(), v.re()]);
     product.and_then(Vec3::normalized).ok_or_else(|| {
-        Fault::new("no-normal", "the surface has no normal there")
+        CallError::new("no-normal", "the surface has no normal there")
             .expected("a place where the surface has a tangent plane")
             .found(format!("none at (u, v) = ({}, {})", u.re(), v.re()))
             .help("move the magnet off the pole or crease")
-            .related(magnet.key, "lies there")
+            .related(magnet.key, "is there")
     })
 }
 

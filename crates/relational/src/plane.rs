@@ -4,10 +4,10 @@ use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
 use crate::point::tangent;
 use moldloft_num::{Order, Plane, Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 use std::sync::Arc;
 
-fn plane<T: Real>(plane: Plane<T>) -> Result<Value<T>, Fault> {
+fn plane<T: Real>(plane: Plane<T>) -> Result<Value<T>, CallError> {
     Ok(Value::Plane(Arc::new(plane)))
 }
 
@@ -22,7 +22,7 @@ macro_rules! coordinate_plane {
         }
 
         impl<T: Real> Build<T> for $name<T> {
-            fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+            fn build(self, _: &Context) -> Result<Value<T>, CallError> {
                 let point: fn(T, T) -> Vec3<T> = $point;
                 let [x, y, z] = $normal;
                 plane(Plane { point: point(self.$coordinate, T::zero()), normal: Vec3::of(x, y, z) })
@@ -59,7 +59,7 @@ pub struct OffsetPlane<T: Real> {
 }
 
 impl<T: Real> Build<T> for OffsetPlane<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Plane { point, normal } = self.plane;
         plane(Plane { point: point + normal * self.distance, normal })
     }
@@ -84,7 +84,7 @@ pub struct ThreePointPlane<T: Real> {
 }
 
 impl<T: Real> Build<T> for ThreePointPlane<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (a, b) = (self.p2.xyz - self.p1.xyz, self.p3.xyz - self.p1.xyz);
         let normal = a.cross(b);
         let size = a.re().norm() * b.re().norm();
@@ -92,7 +92,7 @@ impl<T: Real> Build<T> for ThreePointPlane<T> {
         let flat = normal.re().norm() <= 8.0 * f64::EPSILON * size;
         match Plane::new(self.p1.xyz, normal) {
             Some(p) if !flat => plane(p),
-            _ => Err(Fault::new("collinear-points", "the three points lie on a line")
+            _ => Err(CallError::new("collinear-points", "the three points are collinear")
                 .expected("three points that span a plane")
                 .found("three points in line")
                 .help("move the third point off the line through the others")
@@ -116,11 +116,11 @@ pub struct TwoPointPlane<T: Real> {
 }
 
 impl<T: Real> Build<T> for TwoPointPlane<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let normal = self.p2.xyz - self.p1.xyz;
         match Plane::new(self.p1.xyz, normal) {
             Some(p) => plane(p),
-            None => Err(Fault::new("coincident-points", "the two points coincide")
+            None => Err(CallError::new("coincident-points", "the two points coincide")
                 .expected("two different points")
                 .found("no direction between them")
                 .in_field(Self::P2)),
@@ -143,7 +143,7 @@ pub struct PlaneThroughPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for PlaneThroughPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         plane(Plane { point: self.point.xyz, normal: self.plane.normal })
     }
 }
@@ -159,12 +159,12 @@ impl<T: Real> Build<T> for PlaneThroughPoint<T> {
                TanPlane t(p);"
 )]
 pub struct TanPlane<T: Real> {
-    /// Where it touches the surface.
+    /// The point of contact.
     magnet: Magnet<T>,
 }
 
 impl<T: Real> Build<T> for TanPlane<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let normal = normal(&self.magnet).map_err(|fault| fault.in_field(Self::MAGNET))?;
         let [u, v] = self.magnet.uv;
         plane(Plane { point: self.magnet.surface.jet(u, v, Order::Zero).p, normal })
@@ -181,12 +181,12 @@ impl<T: Real> Build<T> for TanPlane<T> {
                AbsBead b(c, 0.25); NormalPlane across(b);"
 )]
 pub struct NormalPlane<T: Real> {
-    /// Where it crosses the curve.
+    /// The point of intersection with the curve.
     bead: Bead<T>,
 }
 
 impl<T: Real> Build<T> for NormalPlane<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let normal = tangent(&self.bead, Self::BEAD)?;
         let point = self.bead.curve.jet(self.bead.t, Order::Zero)[0];
         plane(Plane { point, normal })

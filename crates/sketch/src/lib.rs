@@ -23,7 +23,7 @@
 //! - [`Session::objects`] (data) and [`Session::objects_json`] (`{"objects": [...]}`, each with name,
 //!   state, points, lines, faces, volume, area, centroid, inertia, missing and loose dimensions) say
 //!   what came of it; each solid gives a mesh by [`Solid::mesh`].
-//! - [`Session::complete`] completes words for a prompt; [`Session::over`] tells that QUIT was given.
+//! - [`Session::complete`] completes words for a prompt; [`Session::over`] reports that QUIT was given.
 //!
 //! For derivatives, [`solve`] and [`solid()`] take any scalar: seed the values of dimensions by name.
 //!

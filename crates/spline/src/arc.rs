@@ -1,4 +1,6 @@
-use crate::even::{atanc_of_sq, cos_of_sq, sinc_of_sq};
+//! Circular arcs by three points, uniform in angle.
+
+use crate::even_functions::{atanc_of_sq, cos_of_sq, sinc_of_sq};
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3, curve_jet_of};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
@@ -20,8 +22,8 @@ pub enum ArcError {
 impl fmt::Display for ArcError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Collinear => write!(f, "the three points of the arc lie on a line"),
-            Self::AtCentre => write!(f, "a point of the arc lies at its centre"),
+            Self::Collinear => write!(f, "the three points of the arc are collinear"),
+            Self::AtCentre => write!(f, "a point of the arc is at its centre"),
             Self::NotFinite { index } => write!(f, "point {} of the arc is not finite", index + 1),
         }
     }

@@ -1,3 +1,5 @@
+//! Arc length of curves, integrals along them and the inverse of the length, with derivatives.
+
 use moldloft_num::{Curve, Order, Real, integrate};
 use std::fmt;
 
@@ -13,7 +15,7 @@ pub struct BeyondEnd {
 impl fmt::Display for BeyondEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { asked, available } = self;
-        write!(f, "the length {asked} lies beyond the end of the curve, which is {available} away")
+        write!(f, "the length {asked} is beyond the end of the curve, at {available}")
     }
 }
 

@@ -1,3 +1,5 @@
+//! The B-spline basis functions that do not vanish on a span, and their derivatives.
+
 use crate::KnotVector;
 use moldloft_num::{Order, Real};
 use smallvec::{SmallVec, smallvec};

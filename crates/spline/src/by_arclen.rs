@@ -1,3 +1,5 @@
+//! Curves of piecewise cubics run at constant speed.
+
 use crate::PiecewiseCubic;
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, integrate};
 use std::iter::once;

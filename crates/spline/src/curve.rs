@@ -1,3 +1,5 @@
+//! B-spline curves of any degree, rational ones among them.
+
 use crate::{Basis, KnotError, KnotVector, PiecewiseCubic};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use std::fmt;

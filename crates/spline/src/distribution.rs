@@ -4,7 +4,7 @@
 //! the direction. Unknowns of a law are solved for in plain numbers, and one more Newton step gives
 //! their derivatives (implicit function theorem).
 
-use crate::even::{cos_of_sq, sinc_of_sq};
+use crate::even_functions::{cos_of_sq, sinc_of_sq};
 use moldloft_num::{Dual, Real, find_root};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;

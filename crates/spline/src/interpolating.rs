@@ -1,4 +1,6 @@
-use crate::{KnotLaw, PiecewiseCubic};
+//! Interpolating splines: twice differentiable piecewise cubics through points, open or closed, with end conditions.
+
+use crate::{Parametrization, PiecewiseCubic};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use smallvec::{SmallVec, smallvec};
 use std::fmt;
@@ -139,7 +141,7 @@ impl<T: Real> InterpolatingSpline<T> {
     /// # Errors
     /// As [`InterpolatingSpline::through`]; [`InterpolationError::NotClosed`] for periodic ends.
     pub fn with_ends(points: &[Vec3<T>], ends: Ends<T>) -> Result<Self, InterpolationError> {
-        Self::with_knots(&KnotLaw::Chord.knots(points)?, points, ends)
+        Self::with_knots(&Parametrization::Chord.knots(points)?, points, ends)
     }
 
     /// The spline of a C-curve's type: 1 the polyline, 3 the cubic with not-a-knot ends. A type
@@ -161,7 +163,7 @@ impl<T: Real> InterpolatingSpline<T> {
     /// # Errors
     /// As [`InterpolatingSpline::through`].
     pub fn polyline(points: &[Vec3<T>]) -> Result<Self, InterpolationError> {
-        let knots = KnotLaw::Chord.knots(points)?;
+        let knots = Parametrization::Chord.knots(points)?;
         let pieces = knots
             .windows(2)
             .zip(points.windows(2))

@@ -1,9 +1,11 @@
+//! Knot vectors: checked once, non-decreasing, `n + degree + 1` knots for `n` control points.
+
 use std::fmt;
 
 /// The highest polynomial degree of a spline.
 pub const MAX_DEGREE: usize = 25;
 
-/// Why a list of numbers is no knot vector.
+/// Why a list of numbers is not a knot vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KnotError {
     /// The degree is not in 1..=[`MAX_DEGREE`].
@@ -62,7 +64,7 @@ impl fmt::Display for KnotError {
                 write!(f, "knot {} is {knot}, smaller than the knot {before} before it", index + 1)
             }
             Self::Multiplicity { knot, actual, allowed } => {
-                write!(f, "knot {knot} stands {actual} times, at most {allowed} are allowed")
+                write!(f, "knot {knot} has multiplicity {actual}, at most {allowed} is allowed")
             }
             Self::EmptyDomain { at } => {
                 write!(f, "the knots span no parameter range, only the value {at}")

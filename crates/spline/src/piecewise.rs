@@ -1,3 +1,5 @@
+//! Curves of cubic polynomials between knots that are scalars of their own, so that derivatives by them are known.
+
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 use smallvec::SmallVec;
 

@@ -1,10 +1,13 @@
-use crate::even::{cos_of_sq, sinc_of_sq};
+//! Closed forms of reparametrizations: B-spline, cosine, geometric, hyperbolic tangent, tables. Each is monotone and
+//! runs from 0 to 1 exactly, or is refused.
+
+use crate::even_functions::{cos_of_sq, sinc_of_sq};
 use crate::{KnotError, KnotVector};
-use moldloft_num::{Jet, Law as Relabelling, LawJet, Order, Real};
+use moldloft_num::{Jet, Order, Real, Reparametrization, ReparametrizationJet};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
-/// Why a law is no relabelling.
+/// Why a law is not a relabelling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RelabelError {
     /// The values do not begin with 0 and end with 1.
@@ -23,7 +26,7 @@ pub enum RelabelError {
         /// The value.
         value: f64,
     },
-    /// The law stands still inside (0, 1).
+    /// The law has a zero tangent inside (0, 1).
     ZeroSlope {
         /// Where.
         at: f64,
@@ -70,10 +73,10 @@ impl fmt::Display for RelabelError {
                 write!(f, "expected a {name} from {min} to {max}, found {value}")
             }
             Self::ZeroSlope { at } => {
-                write!(f, "a relabelling must not stand still inside, as it does at t = {at}")
+                write!(f, "a relabel must increase strictly inside; its slope is zero at t = {at}")
             }
             Self::Unordered { index } => {
-                write!(f, "the parameters must ascend, which number {} does not", index + 1)
+                write!(f, "the parameters must increase; number {} does not", index + 1)
             }
             Self::Lengths { parameters, values } => {
                 write!(f, "{parameters} parameters do not go with {values} values")
@@ -107,12 +110,12 @@ pub enum Dense {
 /// assert_eq!((cosine.at(0.0), cosine.at(1.0)), (0.0, 1.0));
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Relabel<T> {
-    law: Law<T>,
+pub struct ReparametrizationForm<T> {
+    law: Formula<T>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
-enum Law<T> {
+enum Formula<T> {
     #[default]
     Identity,
     Spline {
@@ -139,15 +142,15 @@ enum Law<T> {
     },
 }
 
-impl<T: Real> Relabel<T> {
+impl<T: Real> ReparametrizationForm<T> {
     /// R(t) = t.
     pub fn identity() -> Self {
-        Self { law: Law::Identity }
+        Self { law: Formula::Identity }
     }
 
     /// True for the law R(t) = t.
     pub fn is_identity(&self) -> bool {
-        matches!(self.law, Law::Identity)
+        matches!(self.law, Formula::Identity)
     }
 
     /// The clamped uniform B-spline function with these coefficients, as B-sub-curves use it. They
@@ -156,7 +159,7 @@ impl<T: Real> Relabel<T> {
     ///
     /// # Errors
     /// [`RelabelError`] when the values run back, do not run from 0 to 1, are too few, or so many
-    /// are equal that R stands still inside.
+    /// are equal that R has a zero tangent inside.
     pub fn spline(degree: usize, mut values: Vec<T>) -> Result<Self, RelabelError> {
         if let [first, .., last] = values.as_mut_slice() {
             let ends = (first.re(), last.re());
@@ -186,7 +189,7 @@ impl<T: Real> Relabel<T> {
         }
         let mut ends = knots.as_slice().to_vec();
         ends.dedup();
-        let law = Self { law: Law::Spline { knots, values } };
+        let law = Self { law: Formula::Spline { knots, values } };
         // The slope is a spline whose coefficients are none negative: inside a span it vanishes
         // everywhere or nowhere.
         let middles = ends.windows(2).map(|w| 0.5 * (w[0] + w[1]));
@@ -260,7 +263,7 @@ impl<T: Real> Relabel<T> {
                 (slopes[k], slopes[k + 1]) = (a * shrink, b * shrink);
             }
         }
-        Ok(Self { law: Law::Table { nodes, values, slopes } })
+        Ok(Self { law: Formula::Table { nodes, values, slopes } })
     }
 
     /// (1 - weight) t + weight R(t) with R = (1 - cos pi t) / 2, 1 - cos(pi t / 2) or
@@ -270,7 +273,7 @@ impl<T: Real> Relabel<T> {
     /// [`RelabelError::Range`] unless the weight is in [0, 1].
     pub fn cosine(dense: Dense, weight: T) -> Result<Self, RelabelError> {
         within("weight", weight, 0.0, 1.0)?;
-        Ok(Self { law: Law::Cosine { dense, weight } })
+        Ok(Self { law: Formula::Cosine { dense, weight } })
     }
 
     /// (q^t - 1) / (q - 1): equal steps of t grow geometrically, the last being q times the first
@@ -280,7 +283,7 @@ impl<T: Real> Relabel<T> {
     /// [`RelabelError::Range`] unless the ratio is positive and finite.
     pub fn geometric(ratio: T) -> Result<Self, RelabelError> {
         within("ratio", ratio, f64::MIN_POSITIVE, f64::MAX)?;
-        Ok(Self { law: Law::Geometric { log_ratio: ratio.ln() } })
+        Ok(Self { law: Formula::Geometric { log_ratio: ratio.ln() } })
     }
 
     /// The hyperbolic tangent law (Vinokur 1983): 1/2 + tanh(d (t - 1/2)) / (2 tanh(d/2)) dense at
@@ -291,14 +294,14 @@ impl<T: Real> Relabel<T> {
     /// [`RelabelError::Range`] unless the strength is in [0, 100].
     pub fn tanh(dense: Dense, strength: T) -> Result<Self, RelabelError> {
         within("strength", strength, 0.0, 100.0)?;
-        Ok(Self { law: Law::Tanh { dense, strength } })
+        Ok(Self { law: Formula::Tanh { dense, strength } })
     }
 
     /// R(t), with t possibly a jet.
     pub fn at<J: Jet<T>>(&self, t: J) -> J {
         match &self.law {
-            Law::Identity => t,
-            Law::Spline { knots, values } => {
+            Formula::Identity => t,
+            Formula::Spline { knots, values } => {
                 let basis = knots.basis(t, Order::Zero);
                 let mut sum = J::zero();
                 for (b, &value) in basis.rows[0].iter().zip(&values[basis.first..]) {
@@ -306,7 +309,7 @@ impl<T: Real> Relabel<T> {
                 }
                 sum
             }
-            Law::Cosine { dense, weight } => {
+            Formula::Cosine { dense, weight } => {
                 let law = match dense {
                     Dense::Both => -(t * PI).cos() * 0.5 + 0.5,
                     // 1 - cos x as the sine of the angle left: exactly 1 at the end.
@@ -315,7 +318,7 @@ impl<T: Real> Relabel<T> {
                 };
                 t.scaled(-*weight + 1.0) + law.scaled(*weight)
             }
-            Law::Geometric { log_ratio } => {
+            Formula::Geometric { log_ratio } => {
                 // With r = ln q: exp(r (t-1) / 2) sinh(r t / 2) / sinh(r / 2).
                 let half = *log_ratio * 0.5;
                 let square = -(half * half);
@@ -323,7 +326,7 @@ impl<T: Real> Relabel<T> {
                 let share = sinc_of_sq((t * t).scaled(square)) / J::fixed(sinc_of_sq(square));
                 growth * t * share
             }
-            Law::Table { nodes, values, slopes } => {
+            Formula::Table { nodes, values, slopes } => {
                 let at = nodes.partition_point(|x| x.re() <= t.re()).clamp(1, nodes.len() - 1) - 1;
                 let h = nodes[at + 1] - nodes[at];
                 let x = (t - J::fixed(nodes[at])).scaled(T::one() / h);
@@ -334,7 +337,7 @@ impl<T: Real> Relabel<T> {
                 let [a, b] = [slopes[at] * h, slopes[at + 1] * h];
                 ends + (x * y) * (y.scaled(a) - x.scaled(b))
             }
-            Law::Tanh { dense, strength } => match dense {
+            Formula::Tanh { dense, strength } => match dense {
                 Dense::Both => {
                     let c = t - 0.5;
                     c * tanh_share(c, 0.5, *strength) + 0.5
@@ -346,23 +349,25 @@ impl<T: Real> Relabel<T> {
     }
 }
 
-impl<T: Real> Relabelling<T> for Relabel<T> {
-    fn jet(&self, t: T, order: Order) -> LawJet<T> {
-        moldloft_num::law_jet_of!(self, Relabel::at, t, order)
+impl<T: Real> Reparametrization<T> for ReparametrizationForm<T> {
+    fn jet(&self, t: T, order: Order) -> ReparametrizationJet<T> {
+        moldloft_num::reparametrization_jet_of!(self, ReparametrizationForm::at, t, order)
     }
 
     fn breaks(&self) -> Vec<f64> {
         match &self.law {
-            Law::Spline { knots, .. } => knots.breaks(),
-            Law::Table { nodes, .. } => nodes[1..nodes.len() - 1].iter().map(|x| x.re()).collect(),
+            Formula::Spline { knots, .. } => knots.breaks(),
+            Formula::Table { nodes, .. } => {
+                nodes[1..nodes.len() - 1].iter().map(|x| x.re()).collect()
+            }
             _ => Vec::new(),
         }
     }
 
     fn is_straight(&self) -> bool {
         match &self.law {
-            Law::Identity => true,
-            Law::Spline { knots, .. } => knots.degree() == 1,
+            Formula::Identity => true,
+            Formula::Spline { knots, .. } => knots.degree() == 1,
             _ => false,
         }
     }

@@ -1,3 +1,5 @@
+//! Tensor-product B-spline surfaces of any degrees, rational ones among them.
+
 use crate::curve::check_net;
 use crate::patches::Patches;
 use crate::{Basis, KnotVector, SplineError};

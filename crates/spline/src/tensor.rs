@@ -1,3 +1,5 @@
+//! Surfaces through grids of points: bicubic and twice differentiable, or bilinear.
+
 use crate::{Ends, InterpolatingSpline, InterpolationError};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
 

@@ -12,27 +12,28 @@ from importlib import import_module
 __all__ = ["main"]
 
 COMMANDS = {
-    "build": "run a model, mesh it, measure it, write it",
+    "build": "run, mesh and measure a model, and write files",
     "hydro": "hydrostatics, equilibrium, tables over drafts, righting arms",
     "check": "report what is wrong with a model",
     "run": "run a program that prints and writes its own files",
-    "repl": "talk to the language line by line",
-    "lsp": "the language server, for editors",
-    "eval": "the value of expressions in a model's names",
-    "new": "a model to start from",
-    "fmt": "canonical text",
-    "convert": "between programs, model files, tables of offsets and all other formats",
-    "graph": "the dependency digraph as SVG",
-    "render": "a picture without a display",
-    "sketch": "a sketch file, or the sketch language line by line",
+    "repl": "interactive prompt",
+    "lsp": "start the language server for editors",
+    "eval": "print values of expressions in a model's names",
+    "new": "write a starter model",
+    "fmt": "format as canonical text",
+    "convert": "convert between programs, model files, tables of offsets and sketches",
+    "formats": "print the table of file formats",
+    "graph": "draw the dependency graph as SVG",
+    "render": "render a picture without a display",
+    "sketch": "run a sketch file, or open a sketch prompt",
     "fair": "fair points, a curve or a surface within a certified tolerance",
-    "doc": "the reference of entity kinds and functions",
+    "doc": "show the reference of entity kinds and functions",
 }
 """Commands with a line about each; the module of the same name has ``add`` and ``run``."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command; the exit status: 0 done, 1 the model has errors, 2 wrong use."""
+    """Run the command; exit status 0: success, 1: errors in the model, 2: usage error."""
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         status = _run(arguments)
@@ -78,7 +79,7 @@ def _parser(arguments: list[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="moldloft",
         description="Describe a shape, relate its parts, panel it, measure it.",
-        epilog="`moldloft COMMAND --help` tells more about each.",
+        epilog="`moldloft COMMAND --help` describes each.",
     )
     parser.add_argument("-V", "--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)

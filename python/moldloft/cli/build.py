@@ -42,13 +42,17 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="files to write: " + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
     )
     parser.add_argument(
-        "-o", "--output", metavar="DIR", default=".", help="folder for the files, by default here"
+        "-o",
+        "--output",
+        metavar="DIR",
+        default=".",
+        help="folder for the files; default: the current one",
     )
     parser.add_argument(
         "--level", metavar="Z", type=float, default=0.0, help="height of the water, by default 0"
     )
     parser.add_argument(
-        "--density", type=float, default=1.0, help="mass per volume of the water, by default 1"
+        "--density", type=float, default=1.0, help="density of the water; default: 1"
     )
     parser.add_argument(
         "--sides",
@@ -56,11 +60,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         default="both",
         help="count a mirrored model with its image (the default), or one side alone",
     )
-    parser.add_argument("--lids", action="store_true", help="lids too in the files of panel codes")
+    parser.add_argument(
+        "--lids", action="store_true", help="include lids in the files of panel codes"
+    )
     parser.add_argument(
         "--immersed",
         action="store_true",
-        help="only what is below z = 0 in the files of panel codes, cut there",
+        help="cut at z = 0 and write only the part below, in the files of panel codes",
     )
     parser.add_argument(
         "--tag",
@@ -71,11 +77,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="only patches with one of these tags, in the table and in the files",
     )
     parser.add_argument(
-        "--quality", action="store_true", help="the worst panels of each patch, by their place"
+        "--quality", action="store_true", help="the worst panels of each patch, with their indices"
     )
     parser.add_argument("--json", action="store_true", help="one object instead of the table")
     parser.add_argument(
-        "--watch", action="store_true", help="again at every save, with a picture; ends by Ctrl-C"
+        "--watch", action="store_true", help="rebuild on save, with a picture; Ctrl-C ends"
     )
 
 
@@ -311,7 +317,9 @@ def _floating(floating: Hydrostatics) -> str:
     width = max(map(len, figures))
     lines += [f"  {name.ljust(width)}  {_number(value)}" for name, value in figures.items()]
     if floating.open_edges:
-        lines.append(f"  {floating.open_edges} open panel edges below the water: it would leak")
+        lines.append(
+            f"  {floating.open_edges} open panel edges below the waterline: results are unreliable"
+        )
     return "\n".join(lines)
 
 

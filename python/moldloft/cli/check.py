@@ -26,7 +26,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quality",
         action="store_true",
-        help="corners that miss their neighbours, what is open, and the worst panels of each patch",
+        help="also report unjoined corners, open edges and the worst panels of each patch",
     )
     parser.add_argument("--json", action="store_true", help="diagnostics as data")
 

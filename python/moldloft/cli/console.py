@@ -57,14 +57,14 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         action="append",
         default=[],
-        help="a folder besides the model's own from which it may load; may be repeated",
+        help="a further folder for `load`; may be repeated",
     )
     parser.add_argument(
         "--refine",
         metavar="TIMES",
         type=int,
         default=0,
-        help="halve the intervals of sizes declared by refined() so often, by default 0",
+        help="refinement level: each level halves the spacing of refined() sizes; default 0",
     )
 
 
@@ -103,7 +103,7 @@ def block_problems(model: Model) -> list[Diagnostic]:
 
 
 def print_json(data: Any) -> None:
-    """Prints data as JSON on standard output; what is no finite number becomes null."""
+    """Prints data as JSON on standard output; non-finite numbers become null."""
     print(json.dumps(_finite(data), indent=2, ensure_ascii=False, allow_nan=False))
 
 

@@ -21,12 +21,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--to",
         metavar="FORMAT",
         choices=list(FORMATS),
-        help="by default that of -o, else the other one of sdl and ms2: "
+        help="default: that of -o, else the other one of sdl and ms2: "
         + "; ".join(f"{name} ({line})" for name, line in FORMATS.items()),
     )
-    parser.add_argument(
-        "-o", "--output", metavar="FILE", help="by default standard output, for text"
-    )
+    parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output, for text")
     parser.add_argument(
         "--curves",
         choices=["CCurve", "BCurve"],
@@ -58,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
         (output,) = produce(model, form, Path(f"{Path(options.model).stem}.{form}"))
         sys.stdout.write(output.data.decode())
     else:
-        raise Error(f"{form} is no text for a terminal: name the file with -o")
+        raise Error(f"{form} is binary and cannot be printed: name the file with -o")
     return 0
 
 

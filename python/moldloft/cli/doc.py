@@ -15,7 +15,9 @@ __all__ = ["add", "markdown", "run"]
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     parser.add_argument("name", metavar="NAME", nargs="?", help="a kind or function")
-    parser.add_argument("--list", action="store_true", help="all of them, with class and fields")
+    parser.add_argument(
+        "--list", action="store_true", help="list all of them, with class and fields"
+    )
     parser.add_argument("--json", action="store_true", help="the same as data")
     parser.add_argument("--markdown", action="store_true", help="the reference page")
     parser.add_argument(
@@ -44,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     if row is None:
         near = difflib.get_close_matches(options.name, [row["name"] for row in rows], n=1)
         hint = f"; did you mean `{near[0]}`?" if near else "; see `moldloft doc --list`"
-        raise UnknownNameError(f"there is no kind or function `{options.name}`{hint}")
+        raise UnknownNameError(f"unknown kind or function `{options.name}`{hint}")
     if options.pictures:
         _draw([row], options.pictures)
     elif options.json:

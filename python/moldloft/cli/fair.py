@@ -42,7 +42,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="D",
         required=True,
         type=_tolerance,
-        help="how far the result may be from the original; 0 changes nothing; `none` for no limit",
+        help="largest distance from the original; 0 changes nothing; `none` for no limit",
     )
     parser.add_argument(
         "--as",
@@ -54,18 +54,18 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--closed", action="store_true", help="the last point joins the first; of surfaces along u"
     )
-    parser.add_argument("--closed-v", action="store_true", help="a surface is closed along v")
+    parser.add_argument("--closed-v", action="store_true", help="the surface is closed along v")
     parser.add_argument(
         "--mode",
         choices=["optimum", "faithful", "literal", "vertex", "sweeps", "levels"],
-        help="the best there is, with a certificate (the default); or local steps: knots removed "
+        help="the optimum, with a certificate (the default); or local steps: knots removed "
         "and re-inserted, the report's literal rule, single points, sweeps, all wavelengths",
     )
     parser.add_argument(
         "--measure",
         choices=["second", "third", "jumps", "jump-lengths", "bending", "variation"],
-        help="what there is to be little of; by default the integral of the squared third "
-        "derivative of data, squared third differences of networks, second ones otherwise",
+        help="the measure to minimise; default: the integral of the squared third derivative of "
+        "data, squared third differences of networks, squared second differences otherwise",
     )
     parser.add_argument(
         "--bound", choices=["data", "curve", "points"], help="what the tolerance is a bound on"
@@ -81,33 +81,33 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--ends",
         metavar="END[,END]",
-        help="what open ends keep: free, position, tangent, curvature or a number of points; of a "
+        help="kept at open ends: free, position, tangent, curvature or a number of points; of a "
         "network corners, ends or none",
     )
     parser.add_argument(
         "--rims",
         metavar="WORD|u0=WORD,..",
         default="corners",
-        help="what rims of a surface keep: corners, position, tangent or curvature; of all, or of "
+        help="kept at rims of a surface: corners, position, tangent or curvature; of all, or of "
         "some, as in u0=curvature,v1=position",
     )
     parser.add_argument(
         "--seams",
         choices=["position", "tangent", "curvature"],
-        help="what runs on across common edges of the blocks of a Plot3D file, which are faired "
-        "together; by default curvature",
+        help="continuity across common edges of the blocks of a Plot3D file, which are faired "
+        "together; default: curvature",
     )
     parser.add_argument(
         "--degree",
         metavar="P[,Q]",
         type=_degrees,
         default=3,
-        help="polynomial degree, by default 3; of surfaces one or two",
+        help="polynomial degree; default: 3; of surfaces one or two",
     )
     parser.add_argument(
         "--knots",
         metavar="FILE",
-        help="knots of the curve, or of a surface along u: numbers that do not fall",
+        help="knots of the curve, or of a surface along u: non-decreasing values",
     )
     parser.add_argument("--knots-v", metavar="FILE", help="knots of a surface along v")
     parser.add_argument(
@@ -140,7 +140,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action="append",
         default=[],
-        help="points of a curve that begins or ends where this one does, which runs on from it "
+        help="points of a curve that shares an end with this one, which continues it "
         "with the same tangent and curvature (both fitted: --as fit); may be repeated",
     )
     parser.add_argument(
@@ -180,7 +180,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="allow inflections that the curve of least bending does not have",
     )
     parser.add_argument(
-        "--count", type=int, help="fit so many control points by least squares instead of all"
+        "--count",
+        type=int,
+        help="number of control points of a least-squares fit; default: interpolate all points",
     )
     parser.add_argument("--steps", type=int, help="local steps; of surfaces per point")
     parser.add_argument(
@@ -256,7 +258,7 @@ def _condition(text: str) -> tuple[list[float], list[float]]:
 def _degrees(text: str) -> int | tuple[int, int]:
     words = text.split(",")
     if len(words) > 2 or not all(w.isdigit() for w in words):
-        raise argparse.ArgumentTypeError(f"`{text}` is no degree, nor two of them")
+        raise argparse.ArgumentTypeError(f"`{text}` is not a degree or a pair of degrees")
     return int(words[0]) if len(words) == 1 else (int(words[0]), int(words[1]))
 
 

@@ -13,7 +13,7 @@ __all__ = ["add", "run"]
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="by default MODEL.graph.svg here")
+    parser.add_argument("-o", "--output", metavar="FILE", help="default: MODEL.graph.svg")
     parser.add_argument("--json", action="store_true", help="nodes and edges as data, no picture")
 
 

@@ -1,4 +1,4 @@
-"""``moldloft hydro``: a model afloat."""
+"""``moldloft hydro``: hydrostatics of a model."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--fixed",
         choices=["trim", "heel", "both"],
-        help="what keeps its value although --cg is given",
+        help="quantities held fixed when --cg is given",
     )
-    parser.add_argument("--density", type=float, default=1.0, help="mass per volume, by default 1")
-    parser.add_argument("--gravity", type=float, help="by default 9.80665 m/s² in the model's unit")
+    parser.add_argument("--density", type=float, default=1.0, help="density; default: 1")
+    parser.add_argument("--gravity", type=float, help="default: 9.80665 m/s² in the model's unit")
     parser.add_argument("--sides", choices=["both", "one"], default="both")
     parser.add_argument(
         "--table", metavar="LOW,HIGH,N", type=_range, help="a table over N drafts from LOW to HIGH"
@@ -158,8 +158,8 @@ def _warn(rows: list[Hydrostatics]) -> None:
         heels = sum(row.heel != 0 for row in wet)
         where = f" in {len(wet)} of {len(rows)} rows" if len(rows) > 1 else ""
         note = ", heeled" if heels else ""
-        text = f"warning: an open edge of the skin is under water{where}{note}: it would flood, "
-        print(text + "and the figures there are in doubt", file=sys.stderr)
+        text = f"warning: the mesh has an open edge below the waterline{where}{note}; "
+        print(text + "results are unreliable", file=sys.stderr)
     lost = sum(row.status == "not-converged" for row in rows)
     if lost:
         print(f"warning: {lost} of {len(rows)} attitudes did not come to rest", file=sys.stderr)
@@ -169,7 +169,7 @@ def _warn(rows: list[Hydrostatics]) -> None:
 
 def _one(afloat: Hydrostatics) -> str:
     sides = {"both": "both sides", "one": "one side", "whole": "the whole body"}[afloat.sides]
-    lines = [f"afloat, {sides}"]
+    lines = [f"hydrostatics, {sides}"]
     figures = {k: v for k, v in afloat.as_dict().items() if k not in _HIDDEN}
     width = max(map(len, figures))
     for name, value in figures.items():
@@ -180,7 +180,9 @@ def _one(afloat: Hydrostatics) -> str:
         more = "".join(f"  d/d{by} {slope:.6g}" for by, slope in slopes.items())
         lines.append(f"  {name.ljust(width)}  {shown}{more}")
     if afloat.open_edges:
-        lines.append(f"  {afloat.open_edges} open panel edges below the water: it would leak")
+        lines.append(
+            f"  {afloat.open_edges} open panel edges below the waterline: results are unreliable"
+        )
     return "\n".join(lines)
 
 

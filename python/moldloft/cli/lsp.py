@@ -25,7 +25,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--stdio", action="store_true", help="speak on standard input and output (always so)"
     )
     parser.add_argument(
-        "--where", action="store_true", help="print the path of the server and leave"
+        "--where", action="store_true", help="print the path of the server and exit"
     )
 
 
@@ -52,7 +52,7 @@ def server() -> Path:
     given = os.environ.get("MOLDLOFT_LSP")
     if given:
         if not Path(given).is_file():
-            raise Error(f"MOLDLOFT_LSP names `{given}`, which is no file")
+            raise Error(f"MOLDLOFT_LSP names `{given}`, which is not a file")
         return Path(given)
     checkout = Path(__file__).resolve().parents[3]
     target = Path(os.environ.get("CARGO_TARGET_DIR", checkout / "target"))

@@ -21,7 +21,7 @@ def _size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d+)x(\d+)", text)
     if not match or not all(16 <= int(side) <= _LARGEST for side in match.groups()):
         raise argparse.ArgumentTypeError(
-            f"`{text}` is no size WIDTHxHEIGHT of 16 to {_LARGEST} pixels a side"
+            f"`{text}` is not a size WIDTHxHEIGHT of 16 to {_LARGEST} pixels a side"
         )
     return int(match[1]), int(match[2])
 
@@ -32,7 +32,7 @@ def _corner(text: str) -> tuple[float, float, float]:
         x, y, z = (float(part) for part in parts)
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"`{text}` is no point: three numbers like -1,0,2.5"
+            f"`{text}` is not a point: expected three numbers like -1,0,2.5"
         ) from None
     return x, y, z
 
@@ -46,7 +46,7 @@ def _traced(options: argparse.Namespace, model: Model) -> bytes:
     thing = model.eval(name)
     if not isinstance(thing, Set):
         raise Error(
-            f"`{name}` is no set: --traced takes the name of a set, or an expression of sets"
+            f"`{name}` is not a set: --traced takes the name of a set, or an expression of sets"
         )
     if (options.low is None) != (options.high is None):
         raise Error("a box has two corners: give both --low and --high, or neither")
@@ -58,7 +58,7 @@ def _traced(options: argparse.Namespace, model: Model) -> bytes:
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
     add_model(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="by default MODEL.png here")
+    parser.add_argument("-o", "--output", metavar="FILE", help="default: MODEL.png")
     parser.add_argument(
         "--size", metavar="WxH", type=_size, default=(1200, 800), help="pixels; default 1200x800"
     )

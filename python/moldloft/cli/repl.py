@@ -1,7 +1,7 @@
-"""``moldloft repl``: talk to the language line by line.
+"""``moldloft repl``: interactive prompt.
 
 The lines are a program that is run again at each of them: only what changed is computed. A line
-that has errors is told and left out.
+with errors is reported and skipped.
 """
 
 from __future__ import annotations
@@ -133,7 +133,7 @@ def shown(value: Any) -> str:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Declares the arguments."""
-    parser.add_argument("program", metavar="PROGRAM", nargs="?", help="a program to begin with")
+    parser.add_argument("program", metavar="PROGRAM", nargs="?", help="a program to load first")
     parser.add_argument(
         "--library", metavar="DIR", action="append", default=[], help="a folder to load from"
     )
@@ -199,7 +199,7 @@ def _command(session: Session, entry: str) -> list[str] | None:
         path = Path(rest.strip())
         commit(path.parent, [Output(path.name, session.model.text.encode())])
         return [f"wrote {path}"]
-    raise Error(f"there is no command `{word}`; :help lists them")
+    raise Error(f"unknown command `{word}`; :help lists them")
 
 
 def _read(terminal: bool) -> str:

@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--output",
         metavar="DIR",
         default=".",
-        help="folder for the files that the program writes, by default here",
+        help="folder for the files that the program writes; default: the current one",
     )
     parser.add_argument(
         "--to",

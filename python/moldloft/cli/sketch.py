@@ -1,4 +1,4 @@
-"""``moldloft sketch``: run a sketch file, or talk to it line by line."""
+"""``moldloft sketch``: run a sketch file, or open a prompt."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "completion on a terminal. HELP lists the commands, HELP VERB explains one."
     )
     parser.add_argument(
-        "file", metavar="FILE", nargs="?", help="a file of commands (.skt), or its JSON twin"
+        "file", metavar="FILE", nargs="?", help="a file of commands (.skt), or a sketch as JSON"
     )
     parser.add_argument(
         "--set",
@@ -39,21 +39,21 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="a dimension or variable of the last object, after FILE was run; may be repeated",
     )
     parser.add_argument("--json", action="store_true", help="the objects as data, and the replies")
+    parser.add_argument("--edit", action="store_true", help="open the prompt after running FILE")
     parser.add_argument(
-        "--edit", action="store_true", help="go on at the prompt after FILE was run"
-    )
-    parser.add_argument(
-        "-o", "--output", metavar="DIR", default=".", help="folder for SAVE and EXPORT, here"
+        "-o",
+        "--output",
+        metavar="DIR",
+        default=".",
+        help="folder for SAVE and EXPORT; default: the current one",
     )
     parser.add_argument(
         "-q", "--quiet", action="store_true", help="only warnings and errors of the commands"
     )
     restore = parser.add_mutually_exclusive_group()
+    restore.add_argument("--recover", action="store_true", help="resume an unsaved session")
     restore.add_argument(
-        "--recover", action="store_true", help="go on with a session that ended unsaved"
-    )
-    restore.add_argument(
-        "--discard", action="store_true", help="forget sessions that ended unsaved, then go on"
+        "--discard", action="store_true", help="delete unsaved sessions, then start"
     )
 
 
@@ -106,7 +106,7 @@ class Host:
             reason = (error.strerror or str(error)).lower()
             raise FileError(f"cannot read `{path}`: {reason}") from error
         except UnicodeDecodeError as error:
-            raise FileError(f"cannot read `{path}`: it is no text in UTF-8") from error
+            raise FileError(f"cannot read `{path}`: it is not UTF-8 text") from error
         if text.lstrip().startswith(("[", "{")):
             self.run_line(f'INPUT "{path.name}"', where=str(path))
         else:
@@ -186,7 +186,7 @@ class Host:
         self.journal.close(keep=unsaved)
         if unsaved and not self.options.json:
             print(
-                "not saved: `moldloft sketch --recover` goes on with it; SAVE writes a file",
+                "not saved: `moldloft sketch --recover` resumes it; SAVE writes a file",
                 file=sys.stderr,
             )
 
@@ -220,7 +220,7 @@ class Host:
         elif left:
             print(_offer(left[0], self.options.file), file=sys.stderr)
         elif self.options.recover:
-            raise Error("there is no unsaved session to go on with")
+            raise Error("no unsaved session to resume")
         if taken is not None:
             commands = taken.commands
             before = self.refused
@@ -255,7 +255,7 @@ def _offer(left: Left, file: str | None) -> str:
     forget = again.replace("--recover", "--discard")
     return (
         f"an unsaved session of {left.when} with {len(left.commands)} commands was found: "
-        f"`{again}` goes on with it, `{forget}` forgets it"
+        f"`{again}` resumes it, `{forget}` deletes it"
     )
 
 

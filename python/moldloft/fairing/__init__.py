@@ -9,7 +9,7 @@
 True
 >>> faired.jumps_after < 1e-3 * faired.jumps_before
 True
->>> faired.gap < 1e-6                                  # what is left to gain, proved
+>>> faired.gap < 1e-6                                  # optimality gap, proved
 True
 
 A row of points is a curve, a grid ``(m, n, 3)`` the net of a surface; :func:`network` fairs curves
@@ -70,7 +70,7 @@ def fair(
         or a :class:`SplineSurface`, a surface.
     tol
         How far the result may be from the original: a length, or one for each point. 0 leaves a
-        point alone. ``None`` is no limit at all, which closed curves refuse.
+        point alone. ``None`` means no limit and is an error for closed curves.
     **options
         Those of :func:`~moldloft.fairing.curve.fair_curve` or
         :func:`~moldloft.fairing.surface.fair_surface`.

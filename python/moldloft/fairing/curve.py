@@ -51,7 +51,7 @@ class Fairing:
     mode: str
     """How it was done."""
     measure: str
-    """What there was to be little of."""
+    """The measure that was minimised."""
     breaks: tuple[int, ...]
     """Points, from 0, that were intended breaks."""
     before: Numbers
@@ -210,9 +210,9 @@ class Fairing:
             ("monotone pieces", str(b.pieces), str(a.pieces)),
             ("inflections", str(b.inflections), str(a.inflections)),
         ]
-        left = f"at most {self.gap_relative:.1e} of it left to gain"
+        left = f"relative optimality gap <= {self.gap_relative:.1e}"
         if not np.isfinite(self.gap):
-            left = "without a tolerance nothing bounds what is left to gain"
+            left = "without a tolerance there is no optimality bound"
         ended = f"{self.steps}"
         if self.mode == "optimum":
             ended += f" Newton steps, {self.active} limits reached"
@@ -302,7 +302,7 @@ def _joins(joins: Sequence[Spline], spline: Spline) -> list[_Condition]:
     extent = float(np.ptp(spline.control_points, axis=0).max())
     for k, other in enumerate(joins):
         if not isinstance(other, Spline) or other.closed:
-            raise FairingError(f"join {k + 1} is no open spline")
+            raise FairingError(f"join {k + 1} is not an open spline")
         ends = other.at([0.0, 1.0])
         away = np.linalg.norm(own[:, None] - ends.points[None], axis=2)
         a, b = (int(i) for i in np.unravel_index(int(np.argmin(away)), away.shape))
@@ -374,7 +374,7 @@ def fair_curve(
     degree
         Polynomial degree.
     measure
-        What there is to be little of. ``"second"``: squared second differences (the measure of the
+        The measure to minimise. ``"second"``: squared second differences (the measure of the
         knot steps); ``"third"``: squared third differences; ``"jumps"``: squared jumps of the
         highest derivative; ``"jump-lengths"``: their lengths, which leaves few polynomial pieces;
         ``"bending"`` and ``"variation"``: integrals of the squared second and third derivative. By
@@ -574,7 +574,7 @@ def _goal(given: Any) -> tuple[str, float]:
     word, share = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
     known = {"near": BUDGET, "budget": BUDGET, "fairest": 0.0, "nearest": 0.1}
     if word not in known:
-        raise FairingError(f"there is no goal `{word}`; there are: near, fairest, budget, nearest")
+        raise FairingError(f"unknown goal `{word}`; there are: near, fairest, budget, nearest")
     return str(word), known[word] if share is None else float(share)
 
 

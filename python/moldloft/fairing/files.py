@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,7 +13,8 @@ import numpy as np
 
 from moldloft import _core
 from moldloft.errors import FairingError, FileError, FormatError
-from moldloft.grids import Plot3DVariant, decode_plot3d, write_plot3d
+from moldloft.files import Output, commit
+from moldloft.grids import Plot3DVariant, decode_plot3d, encode_plot3d
 
 if TYPE_CHECKING:
     import os
@@ -132,7 +134,7 @@ def read_numbers(path: str | os.PathLike[str]) -> list[float]:
     Raises
     ------
     FairingError
-        With the line of a word that is no number.
+        With the line of a word that is not a number.
     FileError
         When the file cannot be read.
     """
@@ -175,18 +177,35 @@ class GridFile:
         """Whether it begins with the number of blocks."""
         return self.variant.multi
 
+    def __post_init__(self) -> None:
+        if isinstance(self.variant, str):
+            message = "GridFile takes a moldloft.grids.Plot3DVariant in place of a layout"
+            warnings.warn(message, DeprecationWarning, stacklevel=3)
+            self.variant = Plot3DVariant(layout=self.variant)
+
+    def encoded(self, grids: Sequence[Floats]) -> bytes:
+        """The file with other coordinates; :meth:`write` takes its place."""
+        message = "GridFile.encoded is GridFile.write, or moldloft.grids.encode_plot3d"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return self._encoded(grids)
+
     def write(self, path: str | os.PathLike[str], grids: Sequence[Floats]) -> Path:
         """Write other coordinates in the same variant, in double precision.
 
         A third coordinate is added where the file has two and the points need it; blanking is kept
         where the blocks have as many points as those read.
         """
+        path = Path(path)
+        commit(path.parent, [Output(path.name, self._encoded(grids))])
+        return path
+
+    def _encoded(self, grids: Sequence[Floats]) -> bytes:
         flat = all((grid[..., 2] == 0).all() for grid in grids)
         variant = replace(self.variant, double=True, three=self.variant.three or not flat)
         blanks = self.iblank
         if blanks is not None and [b.shape for b in blanks] != [g.shape[:2] for g in grids]:
             blanks = None
-        return write_plot3d(Path(path), grids, variant, iblank=blanks)
+        return encode_plot3d(grids, variant, iblank=blanks)
 
 
 _GRID_SUFFIXES = {".p3d", ".plot3d", ".xyz", ".x", ".g", ".grd", ".fmt", ".grid"}
@@ -224,7 +243,7 @@ def read_grids(path: str | os.PathLike[str]) -> GridFile:
     Raises
     ------
     FairingError
-        When it is no such file, or holds volumes.
+        When it is not such a file, or holds volumes.
     """
     path = Path(path)
     try:
@@ -250,7 +269,6 @@ def write_vts(path: str | os.PathLike[str], points: Floats, fields: dict[str, An
 
     Fields are ``(m, n)`` or ``(m, n, 3)``.
     """
-    from moldloft.files import Output, commit
 
     def shaped(values: Any) -> Floats:
         grid = np.asarray(values, np.float64)

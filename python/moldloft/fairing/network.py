@@ -45,7 +45,7 @@ class NetworkFairing:
     mode: str
     """How it was done."""
     measure: str
-    """What there was to be little of."""
+    """The measure that was minimised."""
     shared: int
     """How many points stand in more than one curve."""
     measure_before: float
@@ -124,7 +124,7 @@ class NetworkFairing:
             (self.measure, f"{self.measure_before:.6e}", f"{self.measure_after:.6e}"),
             ("squared jumps", f"{self.jumps_before:.6e}", f"{self.jumps_after:.6e}"),
         ]
-        left = f"at most {self.gap_relative:.1e} of it left to gain"
+        left = f"relative optimality gap <= {self.gap_relative:.1e}"
         tail = [
             ("network", f"{len(self.curves)} curves, {self.shared} shared points"),
             (
@@ -176,7 +176,7 @@ def network(
     degree
         Polynomial degree of the curves.
     measure
-        What there is to be little of, summed over all curves; see :func:`~moldloft.fairing.fair`.
+        The measure to minimise, summed over all curves; see :func:`~moldloft.fairing.fair`.
     mode
         ``"optimum"``, ``"faithful"`` (curve after curve, ``passes`` times) or ``"sweeps"``.
     spacing
@@ -230,7 +230,7 @@ def network(
             )
         lists.append((own, closed))
     if not lists:
-        raise FairingError("there are no curves")
+        raise FairingError("no curves")
     uses = np.zeros(count, int)
     ends = np.zeros(count, int)
     for own, closed in lists:

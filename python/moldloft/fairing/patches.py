@@ -44,7 +44,7 @@ class PatchesFairing:
     as_: str
     """What the points were: ``"control"`` or ``"fit"``."""
     measure: str
-    """What there was to be little of."""
+    """The measure that was minimised."""
     measure_before: float
     """The measure over all curves of the nets before."""
     measure_after: float
@@ -106,7 +106,7 @@ class PatchesFairing:
             ),
             (
                 "certificate",
-                f"{self.value:.9e}, at most {self.gap_relative:.1e} of it left to gain",
+                f"{self.value:.9e}, relative optimality gap <= {self.gap_relative:.1e}",
             ),
             ("time", f"{1e3 * self.seconds:.3g} ms"),
         ]

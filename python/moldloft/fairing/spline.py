@@ -1,4 +1,4 @@
-"""Spline curves and what can be asked of them."""
+"""Spline curves and their interrogation."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Samples:
     """Third derivatives by t, ``(n, 3)``."""
     curvature: Floats
     """Curvature, ``(n,)``: of a plane curve positive where it turns left seen against +z (or
-    against the plane's normal nearest to it), of others not signed. 0 where the curve stands
+    against the plane's normal nearest to it), of others not signed. 0 where the tangent
     still."""
     torsion: Floats
     """Torsion, ``(n,)``; 0 at inflections."""
@@ -66,7 +66,7 @@ class Spline:
     degree
         The polynomial degree.
     knots
-        ``n + degree + 1`` knots that do not fall, of a closed curve n rising ones. Without them
+        ``n + degree + 1`` non-decreasing knots, of a closed curve n increasing ones. Without them
         they are uniform: clamped, so that the curve begins and ends at control points, or not.
     weights
         Positive weights of a rational curve.

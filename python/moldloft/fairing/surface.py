@@ -392,7 +392,7 @@ class SurfaceFairing:
     mode: str
     """How it was done."""
     measure: str
-    """What there was to be little of."""
+    """The measure that was minimised."""
     measure_before: float
     """The measure over all curves of the net before."""
     measure_after: float
@@ -467,9 +467,9 @@ class SurfaceFairing:
             ("  along u", f"{bu:.6e}", f"{au:.6e}"),
             ("  along v", f"{bv:.6e}", f"{av:.6e}"),
         ]
-        left = f"at most {self.gap_relative:.1e} of it left to gain"
+        left = f"relative optimality gap <= {self.gap_relative:.1e}"
         if not np.isfinite(self.gap):
-            left = "without a tolerance nothing bounds what is left to gain"
+            left = "without a tolerance there is no optimality bound"
         tail = [
             (
                 "deviation",
@@ -633,7 +633,7 @@ def fair_surface(
         raise FairingError(f"points of a surface are `control` or `fit`, not `{as_}`")
     if mode not in ("optimum", "faithful", "sweeps"):
         raise FairingError(
-            f"there is no mode `{mode}` of surfaces; there are: optimum, faithful, sweeps"
+            f"unknown mode `{mode}` of surfaces; expected one of: optimum, faithful, sweeps"
         )
     conditions, labels = _conditions(through, normals, keep)
     if conditions and mode != "optimum":

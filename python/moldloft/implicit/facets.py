@@ -244,7 +244,7 @@ class Facets:
         return _drawn([(n, self.section(n, point)) for n in normals], point, width)
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> Path:
-        """Write the facets to a file, whole or not at all; the ending tells the format.
+        """Write the facets to a file, whole or not at all; the ending selects the format.
 
         ``stl``, ``obj``, ``ply``, ``glb``, ``vtp`` and ``3mf`` hold solids and sheets; wires and
         points go into ``obj`` and ``vtp``, the others refuse them.

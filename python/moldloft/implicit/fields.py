@@ -336,7 +336,7 @@ def sqrt(x: Field) -> Field:
 
 
 def s_sqrt(x: Field) -> Field:
-    """sgn(f) sqrt|f|. This is no distance: its slope on the surface has no bound."""
+    """sgn(f) sqrt|f|. This is not a distance: its slope on the surface has no bound."""
     return _unary("s_sqrt", x)
 
 

@@ -504,7 +504,7 @@ class Set:
             Rays along each side of a picture point.
         """
         if not 0 < angle < math.pi:
-            raise ValueError(f"the angle of view lies between 0 and pi radians, found {angle}")
+            raise ValueError(f"the angle of view must be between 0 and pi radians, found {angle}")
         if min(size) < 1:
             raise ValueError(f"a picture is 1 to 8192 points wide and high, found {size}")
         if samples < 1:

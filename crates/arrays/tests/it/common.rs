@@ -2,7 +2,9 @@
 #![allow(dead_code)]
 
 use moldloft_num::{Dual4, Real, Vec3};
-use moldloft_registry::{Array, Context, Fault, Given, Row, Scalar, Value, Vectors, arrange};
+use moldloft_registry::{
+    Array, CallError, Context, Given, Row, Scalar, Value, Vectors, bind_arguments,
+};
 use std::sync::Arc;
 
 pub fn row(name: &str) -> Row {
@@ -13,10 +15,10 @@ pub fn row(name: &str) -> Row {
 }
 
 /// Calls an intrinsic.
-pub fn call<T: Scalar>(name: &str, args: &[Value<T>]) -> Result<Value<T>, Fault> {
+pub fn call<T: Scalar>(name: &str, args: &[Value<T>]) -> Result<Value<T>, CallError> {
     let row = row(name);
     let given = Given { positional: args.to_vec(), named: vec![] };
-    let (args, _) = arrange(&row, given, |_| unreachable!("no objects here"))?;
+    let (args, _) = bind_arguments(&row, given, |_| unreachable!("no objects here"))?;
     T::call(&row, &args, &Context::default())
 }
 

@@ -241,7 +241,7 @@ fn curvature_of_splines() {
     }
 }
 
-/// A surface that is no product of curves.
+/// A surface that is not a product of curves.
 fn wavy(i: usize, j: usize) -> [f64; 3] {
     let (u, v) = (i as f64 / 6.0, j as f64 / 4.0);
     [u + 0.1 * v * v, v * (1.0 + 0.3 * u), (2.0 * u).sin() * v]
@@ -359,7 +359,7 @@ fn faults_say_where() {
         refused("distc", &[p.clone(), farray(&[0.0, 1.5])]),
         ("out-of-range", Some(1), Some(1))
     );
-    // An array where a pcurve is asked for, and the other way round: the fault tells how to mend it.
+    // An array where a pcurve is asked for, and the other way round: the fault tells how to fix it.
     let fault = call("distc", &[good, farray(&[0.0])]).unwrap_err();
     assert_eq!((fault.id, fault.help.is_empty()), ("wrong-class", false));
     let fault = call("makecc", &[p]).unwrap_err();

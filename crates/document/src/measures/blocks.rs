@@ -29,7 +29,7 @@ impl Blocked {
                 b.folded, b.cells, b.name
             );
             let help = if inside_out {
-                "all are: the solid is left-handed; let w run the other way, or swap u and v"
+                "all cells are: the solid is left-handed; reverse w, or swap u and v"
             } else {
                 "move its faces apart where they cross, or divide it into several solids"
             };

@@ -2,7 +2,7 @@
 
 use crate::Document;
 use moldloft_num::trace::Key;
-use moldloft_panel::{Polyline, Sectioned, body_section};
+use moldloft_panel::{Contour, ContourCutter, body_section};
 use moldloft_registry::Value;
 use std::collections::HashMap;
 
@@ -16,7 +16,7 @@ pub struct Section {
     /// The plane's coordinate, the distance, the radius, or the angle in radians.
     pub value: f64,
     /// The lines on each surface or body that it cuts, with its name.
-    pub lines: Vec<(String, Vec<Polyline>)>,
+    pub lines: Vec<(String, Vec<Contour>)>,
 }
 
 impl Document {
@@ -30,19 +30,19 @@ impl Document {
             _ => None,
         };
         let body = |key: Key| match graph.get(key)?.value()? {
-            Value::Mesh(body) => Some(body),
+            Value::Body(body) => Some(body),
             _ => None,
         };
         let drawn = |k: &Key| is_surface(*k).is_some() || body(*k).is_some();
         let all: Vec<Key> = shown().map(|o| o.key).filter(drawn).collect();
-        let mut tables: HashMap<Key, Sectioned<'_>> = HashMap::new();
+        let mut tables: HashMap<Key, ContourCutter<'_>> = HashMap::new();
         let mut sections = Vec::new();
         for object in shown() {
             let Some(Value::Contours(contours)) = object.value() else { continue };
             let keys = contours.surfaces.as_ref().unwrap_or(&all);
             for &key in keys {
                 if let (Some(surface), Some(object)) = (is_surface(key), graph.get(key)) {
-                    tables.entry(key).or_insert_with(|| Sectioned::new(surface, &object.head));
+                    tables.entry(key).or_insert_with(|| ContourCutter::new(surface, &object.head));
                 }
             }
             for &value in &contours.values {

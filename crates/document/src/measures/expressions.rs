@@ -191,7 +191,7 @@ impl Document {
         outcome
     }
 
-    /// The options of the model's hydrostatics: afloat at z = 0, mirrored as its header says.
+    /// The options of the model's hydrostatics: water at z = 0, mirrored as its header says.
     pub fn hydrostatic_options(&self) -> crate::measures::hydrostatics::Options {
         crate::measures::hydrostatics::Options {
             mirrored: self.symmetry().contains('y'),

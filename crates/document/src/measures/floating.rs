@@ -1,4 +1,4 @@
-//! A model afloat: figures at given drafts, trims and heels, equilibria, and their derivatives.
+//! Hydrostatics of a model: figures at given drafts, trims and heels, equilibria, and their derivatives.
 
 use crate::Document;
 use moldloft_diag::Diagnostic;
@@ -9,7 +9,7 @@ use moldloft_mesh::{
 use moldloft_num::{Dual4, Real, Vec3};
 use rayon::prelude::*;
 
-/// What is asked of a model afloat; heel and trim in radians.
+/// A hydrostatics request; heel and trim in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloatRequest {
     /// What is given of the immersion.
@@ -82,7 +82,7 @@ pub struct FloatAnswer {
 }
 
 impl Document {
-    /// The model afloat, an answer for each request, with derivatives by the parameters or literals
+    /// Hydrostatics, one answer per request, with derivatives by the parameters or literals
     /// `by`.
     ///
     /// # Errors

@@ -69,7 +69,7 @@ impl World for Files {
         let found = self.0.iter().find(|(name, _)| *name == path);
         found
             .map(|(name, text)| ReadText { name: name.to_string(), bytes: text.as_bytes().into() })
-            .ok_or_else(|| ReadError { message: format!("there is no file `{path}`"), help: None })
+            .ok_or_else(|| ReadError { message: format!("unknown file `{path}`"), help: None })
     }
 }
 

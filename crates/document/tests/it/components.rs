@@ -138,7 +138,7 @@ fn what_is_no_component() {
         ("Component c(3);", "wrong-class", "a file"),
         ("Component c(\"none.sdl\");", "cannot-read", "no file"),
         ("Component c(\"keel.sdl\", rot = 3);", "unknown-argument", "`rot`"),
-        // A word of the file that is no name in it, and nothing near: what there is is told.
+        // A word of the file that is not a name in it, and nothing near: what there is is reported.
         ("Component c(\"keel.sdl\", RelPoint = 3);", "unknown-argument", "`RelPoint`"),
         ("Component c(\"keel.sdl\", zebra = 3);", "unknown-argument", "declares: `span`"),
         ("Component c(\"keel.sdl\", root = 3);", "wrong-class", "expected a curve"),

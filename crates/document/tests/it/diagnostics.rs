@@ -3,7 +3,7 @@
 //!
 //! - `#< text`: a printed line,
 //! - `#> severity[id] line:column message (expectation)`: a diagnostic,
-//! - `#+ line:column label` and `#? help`: its other places, and how to mend it.
+//! - `#+ line:column label` and `#? help`: its other places, and how to fix it.
 //!
 //! `MOLDLOFT_ACCEPT=1 cargo test -p moldloft-lang --test diagnostics` writes the present output
 //! into the files.
@@ -235,7 +235,7 @@ fn loads() {
     assert_eq!((document.printed().join(","), ids(&document)), ("1".into(), vec![]));
     // What is missing is said where it is asked for.
     let document = with_files("float x = 1;\nload \"lid.sdl\";\nprint x;", &[lib]);
-    assert_eq!(told(&document), ["error[cannot-read] 2:1 there is no file `lid.sdl`"]);
+    assert_eq!(told(&document), ["error[cannot-read] 2:1 unknown file `lid.sdl`"]);
     assert_eq!(document.printed(), ["1"]);
 }
 
@@ -282,8 +282,8 @@ fn set_refuses_what_a_run_would() {
     refused("w", 4.0, "out-of-range", "from 1 to 3");
     refused("w", f64::NAN, "out-of-range", "finite");
     refused("n", 2.5, "out-of-range", "whole");
-    refused("A.x", 1.0, "not-a-literal", "set what it is computed from: w");
-    refused("A.y", 1.0, "not-a-literal", "set what it is computed from: w");
+    refused("A.x", 1.0, "not-a-literal", "set its parameters: w");
+    refused("A.y", 1.0, "not-a-literal", "set its parameters: w");
     refused("p[1].y", 1.0, "not-a-literal", "shares its number");
     refused("r.dx", 1.0, "not-a-literal", "default");
     refused("A.q", 1.0, "unknown-member", "x, y, z");

@@ -1,5 +1,5 @@
 //! Refusals that need more than a program: files, floating, solids, models too large; and the bad
-//! input of which designers are most often guilty, each with what was expected and how to mend it.
+//! input of which designers are most often guilty, each with what was expected and how to fix it.
 
 use crate::common::{ids, open, sound, told};
 use moldloft_document::{AfloatOptions, Document, FloatRequest, Immersion, registry};

@@ -110,7 +110,7 @@ const HEAD: &str = "load \"stdsubs.sdl\"\nparam float p0 = 1.25;\nfloat x = p0, 
     vector p = {0, 1, x};\nAbsPoint A(1, 2, p0);\nAbsPoint B(2, 0, 1);\nLine l(A, B);\nfarray f = p0*uniform(0, 1, N), g = cosine(-1, 2, N);\n\
     curve c = {f, g, f*g}, d = {g, f + 1, g^2};\nsurface s[2, N], t[2, N];\ns[1,] = c; s[2,] = d; t[1,] = d + v; t[2,] = c*2;\n";
 
-/// The bits of all numbers; those of what is no number say nothing.
+/// The bits of all numbers; those of what is not a number say nothing.
 fn bits(value: &Value<f64>) -> Vec<u64> {
     let of = |x: &f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
     match value {

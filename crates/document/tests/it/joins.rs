@@ -1,9 +1,9 @@
-//! Divisions along chains of patches, vertices shared by identity, and what is told of joins.
+//! Divisions along chains of patches, vertices shared by identity, and what is reported for joins.
 
 use crate::common::{Random, ids, open, rounds, sound, told};
 use moldloft_document::{Document, Panelled};
 use moldloft_num::Vec3;
-use moldloft_panel::Remark;
+use moldloft_panel::PanelNote;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ fn counts_flow_from_patch_to_patch() {
 fn contradictions_are_told_with_the_chain() {
     let mut d = open(&strips([", divisions = {10, 4}", "", ", divisions = {12, 5}"]));
     let p = panelled(&mut d);
-    let [Remark::Divisions { chain, divisions: [10, 12] }] = p.panelling.remarks() else {
+    let [PanelNote::Divisions { chain, divisions: [10, 12] }] = p.panelling.remarks() else {
         panic!("{:?}", p.panelling.remarks())
     };
     let names: Vec<_> =
@@ -334,7 +334,7 @@ fn corners_that_miss_their_neighbours_are_told() {
     let said: Vec<_> = told.iter().map(|t| t.message.as_str()).collect();
     let (id, first) = (
         &told[0].id,
-        "the corner (u, v) = (1, 0) of `left` lies in the middle of edge v = 0 of \
+        "the corner (u, v) = (1, 0) of `left` is in the middle of edge v = 0 of \
          `top` at u = 0.350000 but is not joined to it, at (1.4, 0, 0)",
     );
     assert!(id == "corner-not-joined" && said.contains(&first), "{said:?}");

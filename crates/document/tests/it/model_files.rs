@@ -3,7 +3,7 @@
 use moldloft_diag::Severity;
 use moldloft_document::{Document, Format, NoFiles, ReadError, ReadText, World, registry};
 use moldloft_num::Vec3;
-use moldloft_registry::{Head, Value};
+use moldloft_registry::{Attributes, Value};
 use std::f64::consts::PI;
 
 /// Our own copy of Table 2 of Letcher and Shook (1995).
@@ -91,7 +91,7 @@ fn faults(text: &str) -> Vec<(String, String, String)> {
 }
 
 /// What a model consists of, names as a model file has them.
-fn objects(document: &Document) -> Vec<(String, String, Vec<String>, Head)> {
+fn objects(document: &Document) -> Vec<(String, String, Vec<String>, Attributes)> {
     let graph = document.graph();
     let plain = |name: &str| {
         let mut name = name.to_string();
@@ -498,7 +498,7 @@ fn variables_and_formulas_are_computed() {
         let (a, b) = (number(&mut document, text), number(&mut converted, text));
         assert!((a - b).abs() < 1e-14, "{text}");
     }
-    // Faults: a word in place of a number, a cycle, what is no number.
+    // Faults: a word in place of a number, a cycle, what is not a number.
     for (from, to, id) in [
         ("[beam/2]", "[beam/]", "bad-formula"),
         ("[beam/2]", "[A.z]", "cycle"),

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// steps, which is the longest of all.
 const LONGEST: Duration = Duration::from_secs(30);
 
-/// What took longer than this is told, so that it can be looked at.
+/// What took longer than this is reported, so that it can be looked at.
 const LONG: Duration = Duration::from_secs(2);
 
 /// The processor time of this program so far, where the system tells it, else the time of the clock:

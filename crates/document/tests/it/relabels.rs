@@ -98,9 +98,9 @@ fn neighbours_along_a_relabelled_curve_share_its_vertices() {
     let all = 2 * 2 * (8 + 3);
     assert_eq!(pair("r", "r", 0), all - 16);
     assert_eq!(pair("part", "part", 0), all - 16);
-    // The same shape with other divisions is no neighbour.
+    // The same shape with other divisions is not a neighbour.
     assert_eq!(pair("r", "c", 0), all);
-    // A part with as many divisions as the whole contradicts it, and is told of.
+    // A part with as many divisions as the whole contradicts it, and is reported.
     assert_eq!(pair("whole", "r", 1), all);
 }
 
@@ -166,7 +166,7 @@ fn laws_that_are_none_are_refused() {
         ("TableRelabel x({0, 0.5, 1}, {0, 0, 1});", "zero-slope", "t = 0.5"),
         ("TableRelabel x({0, 0.5, 1}, {0, 2, 1});", "not-monotone", "value 3"),
         ("InvRelabel x(cosine);", "zero-slope", "undone"),
-        ("ArcLenRelabel x(r);", "zero-slope", "stands still"),
+        ("ArcLenRelabel x(r);", "zero-slope", "zero tangent"),
         ("Line x(A, B, relabel = c);", "wrong-class", "expected a relabel"),
         ("Line x(A, B, relabel = 0.5);", "wrong-class", "expected a relabel"),
         ("AbsPoint x(0, 0, 0, relabel = cosine);", "unknown-argument", "relabel"),

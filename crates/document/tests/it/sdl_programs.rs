@@ -140,7 +140,7 @@ fn figure_3_reflection_planes() {
         near("join", number(&mut m, &format!("|uref[{i},1] - body[{i},1]|")), 0.0, 0.0);
         near("edge", number(&mut m, &format!("|uref[{i},25] - outer_profile[{i}]|")), 0.0, 0.0);
     }
-    // Rounding of the arc's ends, before the program mends it.
+    // Rounding of the arc's ends, before the program fixes it.
     let text =
         FIGURES_1_AND_3.replace("outer_profile[1].y = 0.0;", "float y1 = outer_profile[1].y;");
     near("y1", number(&mut run(&text), "y1"), 1.49e-15, 1e-17);

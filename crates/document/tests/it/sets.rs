@@ -257,9 +257,9 @@ fn bad_input_is_told() {
         (
             "field f = sphere({0,0,0}, 1)/plane({1,0,0}, {0,0,0});",
             "field-division",
-            "divided by numbers",
+            "divided by a non-zero number",
         ),
-        ("field f = sphere({0,0,0}, 1)/0;", "field-division", "divided by numbers"),
+        ("field f = sphere({0,0,0}, 1)/0;", "field-division", "divided by a non-zero number"),
         ("field f = sphere({0,0,0}, 1)^0.5;", "field-power", "whole number"),
         ("field f = sphere({0,0,0}, 1)^-1;", "field-power", "whole number"),
         ("field f = plane({0,0,0}, {0,0,0});", "degenerate", "normal"),
@@ -299,7 +299,7 @@ fn bad_input_is_told() {
         ("set s = abs(set(sphere({0,0,0}, 1)));", "wrong-class", "takes no set"),
         ("field f = set(sphere({0,0,0}, 1));", "wrong-type", "expected a field, found a set"),
         ("set s = 3;", "wrong-type", "expected a set"),
-        ("float d = sphere({0,0,0}, 1)(3);", "wrong-type", "asked at a point"),
+        ("float d = sphere({0,0,0}, 1)(3);", "wrong-type", "evaluated at a point"),
         ("float t = hit(set(sphere({0,0,0}, 1)), {0,5,0}, {1,0,0});", "no-hit", "does not meet"),
         ("set t = tetrahedron({0,0,0}, {1,0,0}, {0,1,0}, {1,1,0});", "degenerate", "tetrahedron"),
         ("set t = scaled(cuboid({0,0,0}, {1,1,1}), 0);", "degenerate", "map"),
@@ -343,7 +343,7 @@ fn sheets_wires_and_points_reach_the_body() {
     );
     let body = |name: &str| {
         let object = model.graph().get(model.graph().find(name).unwrap()).unwrap();
-        let Some(Value::Mesh(m)) = object.value() else { panic!() };
+        let Some(Value::Body(m)) = object.value() else { panic!() };
         m.clone()
     };
     let (sheet, wire, dot) = (body("sheet"), body("wire"), body("dot"));
@@ -375,7 +375,7 @@ fn lines_and_points_are_sets() {
     close(number(&mut model, "volume(rod)"), 0.0);
     let body = |model: &Document, name: &str| {
         let object = model.graph().get(model.graph().find(name).unwrap()).unwrap();
-        let Some(Value::Mesh(m)) = object.value() else { panic!() };
+        let Some(Value::Body(m)) = object.value() else { panic!() };
         m.clone()
     };
     assert_eq!(body(&model, "body").wires.len(), 2);

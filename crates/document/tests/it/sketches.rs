@@ -38,7 +38,7 @@ fn a_sketch_becomes_parameters_and_objects() {
     let mut m = model("load \"dam.skt\"; AbsPoint top(dam.p4.x, 0, dam.p4.z + dam.CREST);");
     fine(&m);
     let names: Vec<&str> = m.params().iter().map(|p| p.name.as_str()).collect();
-    // RUN is an expression, so it is no parameter but has a value.
+    // RUN is an expression, so it is not a parameter but has a value.
     assert_eq!(names, ["dam.CREST", "dam.LENGTH1", "dam.HEIGHT", "dam.PARAPET"]);
     assert_eq!(m.params()[0].range, Some((10.0, 30.0)));
     assert_eq!(number(&mut m, "dam.RUN"), 54.0);
@@ -188,7 +188,7 @@ fn edits_leave_what_a_fresh_run_makes() {
         let other = edited.graph().find(&object.name).and_then(|k| edited.graph().get(k)).unwrap();
         match (object.value(), other.value()) {
             (Some(Value::Point(a)), Some(Value::Point(b))) => assert!(a.xyz.bits_eq(b.xyz)),
-            (Some(Value::Mesh(a)), Some(Value::Mesh(b))) => assert!(a.same(b)),
+            (Some(Value::Body(a)), Some(Value::Body(b))) => assert!(a.same(b)),
             (a, b) => assert_eq!(a.is_some(), b.is_some()),
         }
     }

@@ -11,6 +11,7 @@ mod hydrostar;
 mod model_file;
 mod nemoh;
 mod obj;
+mod off;
 mod p3d;
 mod ply;
 mod png;
@@ -42,6 +43,7 @@ pub static FORMATS: &[Format] = &[
     stl::FORMAT,
     threemf::FORMAT,
     obj::FORMAT,
+    off::FORMAT,
     ply::FORMAT,
     glb::FORMAT,
     vtp::FORMAT,
@@ -214,7 +216,7 @@ pub fn format_named(name: &str) -> Result<&'static Format, Diagnostic> {
     let ends = FORMATS.iter().filter(|f| [f.suffix, f.other_suffix].contains(&wanted.as_str()));
     let ends: Vec<String> = ends.map(|f| format!("`{}`", f.name)).collect();
     let names = FORMATS.iter().map(|f| f.name);
-    let error = Diagnostic::error("unknown-format", format!("there is no format `{name}`"));
+    let error = Diagnostic::error("unknown-format", format!("unknown format `{name}`"));
     Err(match &ends[..] {
         [] => error.expected(names.clone().collect::<Vec<_>>().join(", ")).suggest(name, names),
         codes => error.expected(codes.join(" or ")),

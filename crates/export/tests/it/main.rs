@@ -62,9 +62,9 @@ fn names_and_aliases_mean_one_format_each() {
         }
     }
     let error = format_named("dat").err().unwrap();
-    assert!(error.expected.unwrap().contains("`aqwa`"));
+    assert!(error.expected.as_ref().unwrap().contains("`aqwa`"));
     let error = format_named("gfd").err().unwrap();
-    assert!(error.message.contains("`gfd`") && error.expected.unwrap().contains("gdf"));
+    assert!(error.message.contains("`gfd`") && error.expected.as_ref().unwrap().contains("gdf"));
 }
 
 #[test]

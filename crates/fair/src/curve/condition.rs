@@ -214,7 +214,7 @@ pub(crate) fn end_jet<T: Real>(space: &Space, points: &[Vec3<T>], at_end: bool) 
 /// and gamma read off the own ones, so that speed and its change are kept.
 ///
 /// # Errors
-/// [`FairError::Singular`] when the neighbour stands still there, [`FairError::TurnsBack`] when the
+/// [`FairError::Singular`] when the neighbour has a zero tangent there, [`FairError::TurnsBack`] when the
 /// curve runs against it.
 pub fn joined<T: Real>(own: [Vec3<T>; 2], other: [Vec3<T>; 2]) -> Result<[Vec3<T>; 2], FairError> {
     let ([d1, d2], [n1, n2]) = (own, other);

@@ -41,7 +41,7 @@ impl End {
         }
     }
 
-    /// How many control points stand still so that the end is kept. A clamped spline's first k
+    /// How many control points stay fixed so that the end is kept. A clamped spline's first k
     /// points fix k - 1 derivatives; on other knots `degree` points hold the end's whole germ.
     pub(crate) fn points(self, clamped: bool, degree: usize) -> usize {
         match self {
@@ -76,7 +76,7 @@ impl Job {
     /// control points each, which on clamped knots is position and tangent.
     ///
     /// # Errors
-    /// [`FairError`] when the points are too few or not finite or the tolerance is no distance.
+    /// [`FairError`] when the points are too few or not finite or the tolerance is not a distance.
     pub fn new(space: Space, points: Vec<Vec3<f64>>, tolerance: f64) -> Result<Self, FairError> {
         let limit = Limit::ball(points.len(), tolerance)?;
         let ends = [End::Points(2), End::Points(2)];
@@ -151,7 +151,7 @@ impl Job {
         Ok(())
     }
 
-    /// Which control points stand still.
+    /// Which control points stay fixed.
     pub fn frozen(&self) -> Vec<bool> {
         let n = self.points.len();
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();

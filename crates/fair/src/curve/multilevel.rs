@@ -21,12 +21,12 @@ fn bump(x: f64) -> f64 {
 /// for L = 20. A bump that is 2^k points wide moves as one, so each level damps the waves of its
 /// own width. Every move is the exact minimiser of the measure along its bump, halved until every
 /// point is within its limit, so the measure never rises and the limits hold. Bumps that would move a
-/// point that stands still are left out.
+/// point that stays fixed are left out.
 ///
 /// One cycle costs O(n) per level. For the certified end of that road see [`crate::optimum`].
 ///
 /// # Errors
-/// [`FairError`] when the measure does not exist for the degree or is no sum of squares.
+/// [`FairError`] when the measure does not exist for the degree or is not a sum of squares.
 pub fn multilevel(
     job: &Job,
     measure: Measure,

@@ -51,7 +51,7 @@ pub struct Report {
     pub after: Numbers,
     /// Distance from the original.
     pub deviation: Deviation,
-    /// The measure and what is left to gain.
+    /// The measure and the optimality gap.
     pub certificate: Certificate,
     /// Newton steps, or local steps.
     pub steps: usize,
@@ -238,7 +238,7 @@ fn notes(job: &Job, report: &Report) -> Vec<String> {
                 .to_string(),
         );
     }
-    // Noise in end points that stand still shows as a kink beside them.
+    // Noise in end points that stay fixed shows as a kink beside them.
     let jumps = &report.jumps[1];
     if let (Some(first), Some(last)) = (jumps.first(), jumps.last())
         && !job.space.is_closed()
@@ -248,7 +248,7 @@ fn notes(job: &Job, report: &Report) -> Vec<String> {
         let inner = jumps[1..jumps.len() - 1].iter().copied().fold(0.0, f64::max);
         if largest > 0.0 && largest == first.max(*last) && largest > 2.0 * inner {
             notes.push(
-                "the largest jump left is beside an end that stands still: its points may be \
+                "the largest remaining jump is beside a clamped end, whose points may be \
                  off; free the end or fit it"
                     .to_string(),
             );
@@ -276,7 +276,7 @@ impl fmt::Display for Report {
         )?;
         writeln!(
             f,
-            "certificate        {:.9e}, at most {:.2e} of it left to gain",
+            "certificate        {:.9e}, relative optimality gap <= {:.2e}",
             self.certificate.value,
             self.certificate.relative()
         )?;

@@ -30,7 +30,7 @@ impl Sample {
         Self { t, point, derivatives: [d1, d2, d3] }
     }
 
-    /// The curvature vector's length, |x' x x''| / |x'|^3; 0 where the curve stands still.
+    /// The curvature vector's length, |x' x x''| / |x'|^3; 0 where the curve has a zero tangent.
     pub fn curvature(&self) -> f64 {
         let [d1, d2, _] = self.derivatives;
         let speed = d1.norm();
@@ -156,7 +156,7 @@ pub fn monotone_runs(values: &[f64], share: f64) -> usize {
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let size = low.abs().max(high.abs());
     let least = share * (high - low);
-    // A range within rounding is no range.
+    // A range within rounding is not a range.
     if high - low <= 1e-9 * size {
         return 0;
     }

@@ -4,7 +4,7 @@ use super::shapes::{self, Ended};
 use super::{Intent, Own, Places, end, faithful, fault, measure, role};
 use crate::FairError;
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use std::sync::Arc;
 
 /// A fair B-spline curve within a tolerance of the one through its points.
@@ -30,11 +30,11 @@ pub struct FairCurve<T: Real> {
     /// How far the curve may be from each of the points; 0 passes through all.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of: "second", "third", "jumps", "jump-lengths", "bending" or
+    /// The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
     /// "variation".
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the points are: "fit" (the curve passes through them before it is faired), "control"
+    /// Meaning of the points: "fit" (the curve passes through them before it is faired), "control"
     /// (its control points) or "points" (they are faired and then interpolated).
     #[field(default = "fit")]
     r#as: Arc<str>,
@@ -64,8 +64,8 @@ pub struct FairCurve<T: Real> {
     /// they are. They count as constants: derivatives do not go through them.
     #[field(default)]
     weights: Option<Vec<T>>,
-    /// Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of them, which
-    /// do not fall; constants too.
+    /// Knots of the control points (`as = "control"`) of an open curve, degree + 1 more of them,
+    /// non-decreasing; constants too.
     #[field(default)]
     knots: Option<Vec<T>>,
     /// How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z", for
@@ -100,7 +100,7 @@ const ALONG: FieldId = FairCurve::<f64>::ALONG;
 
 impl<T: Real> FairCurve<T> {
     /// Weights and knots, where they have a meaning.
-    fn own(&self) -> Result<Own, Fault> {
+    fn own(&self) -> Result<Own, CallError> {
         let plain =
             |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
         let own = Own { knots: plain(&self.knots), weights: plain(&self.weights) };
@@ -108,7 +108,7 @@ impl<T: Real> FairCurve<T> {
             [(own.weights.is_some(), "weights", WEIGHTS), (own.knots.is_some(), "knots", KNOTS)];
         for (_, what, field) in given.into_iter().filter(|g| g.0) {
             let refused = |why: &str, expected: &str, found: &str| {
-                Fault::new("not-control", format!("{what} {why}"))
+                CallError::new("not-control", format!("{what} {why}"))
                     .expected(expected)
                     .found(found)
                     .in_field(field)
@@ -138,14 +138,14 @@ impl<T: Real> FairCurve<T> {
 impl<T: Real> FairCurve<T> {
     /// What the curve runs on from at its start and its end, and which of the joins that is.
     #[expect(clippy::type_complexity, reason = "two ends, each with a place and derivatives")]
-    fn neighbours(&self) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], Fault> {
+    fn neighbours(&self) -> Result<[Option<(usize, [Vec3<T>; 2])>; 2], CallError> {
         let mut found = [None; 2];
         let joins = self.joins.as_deref().unwrap_or_default();
         let ([first, .., last], false) = (self.points.as_slice(), joins.is_empty()) else {
             return Ok(found);
         };
         let only = |what: &str, found: &str| {
-            Fault::new("not-joined", format!("a curve that joins others {what}"))
+            CallError::new("not-joined", format!("a curve that joins others {what}"))
                 .expected("no `joins`, or another way")
                 .found(found)
                 .in_field(JOINS)
@@ -170,7 +170,7 @@ impl<T: Real> FairCurve<T> {
             let (a, b) = near.expect("there are four pairs");
             let far = away(&(a, b));
             if far.is_nan() || far > TOGETHER * extent {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "no-common-end",
                     "a curve of `joins` does not meet this one",
                 )
@@ -182,11 +182,14 @@ impl<T: Real> FairCurve<T> {
             }
             if found[a].is_some() {
                 let end = ["start", "end"][a];
-                return Err(Fault::new("joined-twice", format!("two curves join at its {end}"))
-                    .expected("one at each end")
-                    .related(other.key, "the second")
-                    .in_item(k)
-                    .in_field(JOINS));
+                return Err(CallError::new(
+                    "joined-twice",
+                    format!("two curves join at its {end}"),
+                )
+                .expected("one at each end")
+                .related(other.key, "the second")
+                .in_item(k)
+                .in_field(JOINS));
             }
             // The neighbour's parameter runs into the start, or on from the end, or the other way.
             let sign = if a == b { -1.0 } else { 1.0 };
@@ -197,10 +200,10 @@ impl<T: Real> FairCurve<T> {
 }
 
 /// Which of the joins a refusal is about.
-fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> Fault {
+fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> CallError {
     let present: Vec<usize> = joins.iter().flatten().copied().collect();
     let about = |k: Option<&usize>, id: &'static str, message: String| {
-        let fault = Fault::new(id, message);
+        let fault = CallError::new(id, message);
         k.map_or(fault.clone(), |&k| fault.in_item(k)).in_field(JOINS)
     };
     match error {
@@ -225,14 +228,14 @@ fn unjoined(error: FairError, joins: [Option<usize>; 2], places: &Places) -> Fau
 }
 
 impl<T: Real> Build<T> for FairCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let neighbours = self.neighbours()?;
         let own = self.own()?;
         let motion = match &self.along {
             None => crate::Motion::Ball,
             Some(d) if d.re().norm() > 0.0 => crate::Motion::Along(d.re()),
             Some(_) => {
-                return Err(Fault::new("zero-direction", "the direction has no length")
+                return Err(CallError::new("zero-direction", "the direction has no length")
                     .expected("a direction such as {0, 1, 0}")
                     .in_field(ALONG));
             }
@@ -262,17 +265,17 @@ impl<T: Real> Build<T> for FairCurve<T> {
         let joins = neighbours.map(|n| n.map(|(k, _)| k));
         let about = |e: FairError| match e {
             FairError::Weight { .. } | FairError::Count { what: "weights", .. } => {
-                Fault::new("bad-weight", e.to_string()).in_field(WEIGHTS)
+                CallError::new("bad-weight", e.to_string()).in_field(WEIGHTS)
             }
             FairError::Unsorted { .. }
             | FairError::Knots(_)
             | FairError::Count { what: "knots", .. } => {
-                Fault::new("bad-knots", e.to_string()).in_field(KNOTS)
+                CallError::new("bad-knots", e.to_string()).in_field(KNOTS)
             }
             FairError::TurnsAlong { index } => {
-                Fault::new("runs-back", e.to_string()).in_item(index).in_field(SPACING)
+                CallError::new("runs-back", e.to_string()).in_item(index).in_field(SPACING)
             }
-            FairError::Goal(why) => Fault::new("no-goal", why).in_field(GOAL),
+            FairError::Goal(why) => CallError::new("no-goal", why).in_field(GOAL),
             e => unjoined(e, joins, &places),
         };
         let index = matches!(intent.spacing, crate::Spacing::Uniform);
@@ -281,7 +284,7 @@ impl<T: Real> Build<T> for FairCurve<T> {
             let curve = intent.near(&points).map_err(about)?;
             let [first, .., last] = self.points.as_slice() else {
                 return Err(
-                    Fault::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
+                    CallError::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
                 );
             };
             // A free end leaves its point, and a closed curve has no ends.
@@ -295,9 +298,11 @@ impl<T: Real> Build<T> for FairCurve<T> {
             None => shapes::curve(&space, &control),
         };
         let curve =
-            made.map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
+            made.map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
         let [first, .., last] = self.points.as_slice() else {
-            return Err(Fault::new("too-few-items", "a curve needs points").in_field(Self::POINTS));
+            return Err(
+                CallError::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
+            );
         };
         // A free end leaves its point, and a closed curve has no ends.
         let kept = |at: usize| !intent.closed && (intent.end.kept() > 0 || joins[at].is_some());

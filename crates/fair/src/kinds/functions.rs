@@ -3,7 +3,7 @@
 use super::{Intent, Places, Role, faithful, fault, measure};
 use crate::{FairError, Space};
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Array, Build, Context, CurveRef, Fault, Kind, Value, Vectors};
+use moldloft_registry::{Array, Build, CallError, Context, CurveRef, Kind, Value, Vectors};
 use std::sync::Arc;
 
 /// A row of points, faired: control points of a uniform cubic that each stay within a tolerance.
@@ -22,10 +22,10 @@ pub struct Fair<T: Real> {
     /// Points, five or more (closed: eight or more).
     #[field(min_items = 5)]
     points: Vec<Vec3<T>>,
-    /// How far each point may move.
+    /// Largest move of each point.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
     /// "optimum" or "faithful".
@@ -37,7 +37,7 @@ pub struct Fair<T: Real> {
 }
 
 impl<T: Real> Build<T> for Fair<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let intent = Intent {
             tolerance: self.tolerance,
             degree: 3,
@@ -64,7 +64,7 @@ impl<T: Real> Build<T> for Fair<T> {
     }
 }
 
-/// How unfair a row of points is: the length of the jump of the third derivative at each knot of
+/// The unfairness of a row of points: the length of the jump of the third derivative at each knot of
 /// the uniform cubic with these control points, `|d[i-2] - 4 d[i-1] + 6 d[i] - 4 d[i+1] + d[i+2]|`.
 ///
 /// An open row has four fewer jumps than points.
@@ -86,7 +86,7 @@ pub struct Jumps<T: Real> {
 }
 
 impl<T: Real> Build<T> for Jumps<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let n = self.points.len();
         let space = match (self.closed, n) {
             (1, _) => Space::closed(3, n),
@@ -130,16 +130,16 @@ pub struct Curvature<T: Real> {
 }
 
 impl<T: Real> Build<T> for Curvature<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let at = |t: T| {
             let [_, d1, d2] = self.curve.jet(t, Order::Second);
             let speed = d1.norm();
             if speed.re() == 0.0 {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "stands-still",
-                    format!("the curve stands still at t = {}", t.re()),
+                    format!("zero tangent at t = {}", t.re()),
                 )
-                .expected("a parameter at which the curve moves on")
+                .expected("a parameter with a non-zero tangent")
                 .in_field(Self::T));
             }
             let cross = d1.cross(d2);
@@ -153,7 +153,7 @@ impl<T: Real> Build<T> for Curvature<T> {
                 let items: Result<_, _> = a.items.iter().map(|&t| at(t)).collect();
                 Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: items? })))
             }
-            other => Err(Fault::wrong_class(moldloft_registry::Class::Number, other.class())
+            other => Err(CallError::wrong_class(moldloft_registry::Class::Number, other.class())
                 .expected("a number or an farray")
                 .in_field(Self::T)),
         }

@@ -16,7 +16,7 @@ use crate::{
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Fault, FieldId, Row};
+use moldloft_registry::{CallError, FieldId, Row};
 use moldloft_spline::{KnotVector, MovingSpline};
 
 /// All kinds and functions of this crate, in the order of the reference.
@@ -70,7 +70,7 @@ pub(crate) struct Intent<T> {
 }
 
 /// The way in which points get their parameters that is called `name`.
-pub(crate) fn spacing(name: &str, field: FieldId) -> Result<Spacing, Fault> {
+pub(crate) fn spacing(name: &str, field: FieldId) -> Result<Spacing, CallError> {
     let axis = |x, y, z| Spacing::Along(Vec3::of(x, y, z));
     Ok(match name {
         "chord" => Spacing::Chord,
@@ -90,7 +90,7 @@ pub(crate) fn spacing(name: &str, field: FieldId) -> Result<Spacing, Fault> {
 pub(crate) const BUDGET: f64 = 0.8;
 
 /// The goal called `name`.
-pub(crate) fn goal(name: &str, field: FieldId) -> Result<Goal, Fault> {
+pub(crate) fn goal(name: &str, field: FieldId) -> Result<Goal, CallError> {
     Ok(match name {
         "near" => Goal::Near(BUDGET),
         "budget" => Goal::Budget(BUDGET),
@@ -149,16 +149,16 @@ pub(crate) struct Places {
     pub breaks: FieldId,
 }
 
-fn unknown(noun: &str, found: &str, all: &[&str], field: FieldId) -> Fault {
+fn unknown(noun: &str, found: &str, all: &[&str], field: FieldId) -> CallError {
     let all: Vec<_> = all.iter().map(|n| format!("\"{n}\"")).collect();
-    Fault::new("unknown-name", format!("there is no {noun} \"{found}\""))
+    CallError::new("unknown-name", format!("unknown {noun} \"{found}\""))
         .expected(all.join(", "))
         .found(format!("\"{found}\""))
         .in_field(field)
 }
 
 /// The role called `name`, an argument in `field`.
-pub(crate) fn role(name: &str, field: FieldId) -> Result<Role, Fault> {
+pub(crate) fn role(name: &str, field: FieldId) -> Result<Role, CallError> {
     Ok(match name {
         "fit" => Role::Fit,
         "control" => Role::Control,
@@ -168,13 +168,13 @@ pub(crate) fn role(name: &str, field: FieldId) -> Result<Role, Fault> {
 }
 
 /// The measure called `name`.
-pub(crate) fn measure(name: &str, field: FieldId) -> Result<Measure, Fault> {
+pub(crate) fn measure(name: &str, field: FieldId) -> Result<Measure, CallError> {
     let all = Measure::ALL.map(Measure::name);
     Measure::named(name).ok_or_else(|| unknown("measure", name, &all, field))
 }
 
 /// True for the mode "faithful", false for "optimum".
-pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, Fault> {
+pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, CallError> {
     match name {
         "optimum" => Ok(false),
         "faithful" => Ok(true),
@@ -183,40 +183,40 @@ pub(crate) fn faithful(name: &str, field: FieldId) -> Result<bool, Fault> {
 }
 
 /// The end condition called `name`.
-pub(crate) fn end(name: &str, field: FieldId) -> Result<End, Fault> {
+pub(crate) fn end(name: &str, field: FieldId) -> Result<End, CallError> {
     let all = ["free", "position", "tangent", "curvature"];
     End::named(name).ok_or_else(|| unknown("end condition", name, &all, field))
 }
 
 /// A refusal as a fault at its argument.
-pub(crate) fn fault(error: FairError, places: &Places) -> Fault {
+pub(crate) fn fault(error: FairError, places: &Places) -> CallError {
     let text = error.to_string();
     match error {
-        FairError::TooFew { expected, actual } => Fault::new("too-few-items", text)
+        FairError::TooFew { expected, actual } => CallError::new("too-few-items", text)
             .expected(format!("at least {expected} points"))
             .found(actual.to_string())
             .in_field(places.points),
         FairError::NotFinite { index } => {
-            Fault::new("not-finite", text).in_item(index).in_field(places.points)
+            CallError::new("not-finite", text).in_item(index).in_field(places.points)
         }
         FairError::Coincident { first } => {
-            Fault::new("coincident-points", text).in_item(first + 1).in_field(places.points)
+            CallError::new("coincident-points", text).in_item(first + 1).in_field(places.points)
         }
-        FairError::Tolerance { value } => Fault::new("out-of-range", text)
+        FairError::Tolerance { value } => CallError::new("out-of-range", text)
             .expected("a tolerance of at least 0")
             .found(value.to_string())
             .in_field(places.tolerance),
         FairError::Mark { index, count } => {
-            Fault::new("out-of-range", format!("there is no point {}", index + 1))
+            CallError::new("out-of-range", format!("there is no point {}", index + 1))
                 .expected(format!("numbers of points from 1 to {count}"))
                 .found((index + 1).to_string())
                 .in_field(places.breaks)
         }
-        FairError::Degree { expected, actual } => Fault::new("out-of-range", text)
+        FairError::Degree { expected, actual } => CallError::new("out-of-range", text)
             .expected(format!("degree {expected} or more for this measure"))
             .found(actual.to_string())
             .in_field(places.degree),
-        _ => Fault::new("not-faired", text).in_field(places.points),
+        _ => CallError::new("not-faired", text).in_field(places.points),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Build, Class, Context, CurveRef, Fault, FromValue, Kind, Point, Value, many,
+    Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, Value, many,
 };
 use moldloft_spline::MovingSpline;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ struct Row<T: Real>(Vec<Point<T>>);
 
 impl<T: Real> FromValue<T> for Row<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         many(value).map(Self)
     }
 }
@@ -27,7 +27,7 @@ impl<T: Real> FromValue<T> for Row<T> {
 /// Curves that share points, faired together within a tolerance: the stations, waterlines and
 /// buttocks of a hull.
 ///
-/// Each curve is a list of points; a point object that stands in several lists is one point of all
+/// Each curve is a list of points; a point object in several lists is one point of all
 /// these curves. All points move at once, none by more than the tolerance, so that the sum of the
 /// measure over all curves is the least; each curve then passes through its moved points, so that
 /// curves still meet where they did. A list that ends with its first point is a closed curve. The
@@ -46,17 +46,17 @@ pub struct FairNet<T: Real> {
     /// The curves, each a list of at least degree + 2 points (closed: 2 degree + 2).
     #[field(min_items = 1)]
     curves: Vec<Row<T>>,
-    /// How far each point may move; 0 leaves all alone.
+    /// Largest move of each point; 0 leaves all unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
     /// Points that are intended breaks: they stay, nothing is smoothed across them, and curves have
     /// corners there.
     #[field(default)]
     breaks: Option<Vec<Point<T>>>,
-    /// Which ends of open curves stay: "corners" (the points at which every curve that has them
+    /// Kept ends of open curves: "corners" (the points at which every curve that has them
     /// ends), "ends" or "none".
     #[field(default = "corners")]
     keep: Arc<str>,
@@ -117,7 +117,7 @@ impl<T: Real> Joined<T> {
     }
 
     /// The ends that stay.
-    fn kept(&self, which: &str) -> Result<Vec<usize>, Fault> {
+    fn kept(&self, which: &str) -> Result<Vec<usize>, CallError> {
         let mut ends = vec![0usize; self.points.len()];
         let mut uses = vec![0usize; self.points.len()];
         for (own, closed) in &self.curves {
@@ -146,18 +146,21 @@ impl<T: Real> Joined<T> {
 }
 
 impl<T: Real> Build<T> for FairNet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let joined = Joined::of(&self.curves);
         let breaks = self.breaks.unwrap_or_default();
         let mut marked = Vec::new();
         for (k, b) in breaks.iter().enumerate() {
             let found = joined.points.iter().position(|p| p.key.is_some() && p.key == b.key);
             let Some(at) = found else {
-                return Err(Fault::new("not-a-parent", "a break is no point of the network")
-                    .expected("points that stand in the lists of the curves")
-                    .related(b.key, "is in none of them")
-                    .in_item(k)
-                    .in_field(Self::BREAKS));
+                return Err(CallError::new(
+                    "not-a-parent",
+                    "a break is not a point of the network",
+                )
+                .expected("points in the lists of the curves")
+                .related(b.key, "is in none of them")
+                .in_item(k)
+                .in_field(Self::BREAKS));
             };
             marked.push(at);
         }
@@ -178,7 +181,7 @@ impl<T: Real> Build<T> for FairNet<T> {
             None => Motion::Ball,
             Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
             Some(_) => {
-                return Err(Fault::new("zero-direction", "the direction has no length")
+                return Err(CallError::new("zero-direction", "the direction has no length")
                     .expected("a direction such as {0, 1, 0}")
                     .in_field(Self::ALONG));
             }
@@ -194,9 +197,9 @@ impl<T: Real> Build<T> for FairNet<T> {
             };
             let space = space.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
             if let Some(twice) = (0..own.len()).find(|&i| own[..i].contains(&own[i])) {
-                return Err(Fault::new("point-twice", "a curve passes twice through a point")
+                return Err(CallError::new("point-twice", "a curve passes twice through a point")
                     .expected("different points; only the first may come again, at the end")
-                    .related(joined.points[own[twice]].key, "stands twice in the list")
+                    .related(joined.points[own[twice]].key, "is listed twice")
                     .in_item(k)
                     .in_field(Self::CURVES));
             }
@@ -262,11 +265,12 @@ impl<T: Real> Build<T> for FairNet<T> {
                 interpolate_with_corners(degree, &points, Spacing::Uniform, *closed, &marks)
                     .map_err(about)?;
             let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
-                Fault::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
+                CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
             })?;
             Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
         };
-        let curves: Result<Vec<_>, Fault> = joined.curves.iter().enumerate().map(curve).collect();
+        let curves: Result<Vec<_>, CallError> =
+            joined.curves.iter().enumerate().map(curve).collect();
         Ok(Value::list(curves?))
     }
 }
@@ -303,21 +307,23 @@ pub struct NetCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for NetCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Value::List(curves) = &self.net else {
-            return Err(Fault::wrong_class(Class::List, self.net.class())
+            return Err(CallError::wrong_class(Class::List, self.net.class())
                 .expected("a network of curves, such as a FairNet")
                 .in_field(Self::NET));
         };
         match curves.get(self.index.wrapping_sub(1)) {
             Some(Value::Curve(curve)) => Ok(Value::Curve(curve.clone())),
             Some(other) => {
-                Err(Fault::wrong_class(Class::Curve, other.class()).in_item(self.index - 1))
+                Err(CallError::wrong_class(Class::Curve, other.class()).in_item(self.index - 1))
             }
-            None => Err(Fault::new("out-of-range", format!("there is no curve {}", self.index))
-                .expected(format!("a number from 1 to {}", curves.len()))
-                .found(self.index.to_string())
-                .in_field(Self::INDEX)),
+            None => {
+                Err(CallError::new("out-of-range", format!("there is no curve {}", self.index))
+                    .expected(format!("a number from 1 to {}", curves.len()))
+                    .found(self.index.to_string())
+                    .in_field(Self::INDEX))
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use super::surface::{Grid, Rims, fitted, turned};
 use super::{ACCURACY, Places, Role, fault, measure, role};
 use crate::{Bound, End, FairError, Limit, Network, PatchNet, Seam, Space};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{ArrayShape, Build, Class, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{ArrayShape, Build, CallError, Class, Context, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
 
@@ -32,34 +32,34 @@ pub struct FairPatches<T: Real> {
     /// Grids of points, each at least degree + 2 in each direction.
     #[field(min_items = 1)]
     surfaces: Vec<Grid<T>>,
-    /// How far control points may move; 0 leaves all alone.
+    /// Largest move of control points; 0 leaves all unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the points are: "fit" or "control".
+    /// Meaning of the points: "fit" or "control".
     #[field(default = "fit")]
     r#as: Arc<str>,
     /// Polynomial degree in both directions.
     #[field(default = 3, min = 2, max = 9)]
     degree: usize,
-    /// What is continuous across seams: "position", "tangent" or "curvature".
+    /// Continuity across seams: "position", "tangent" or "curvature".
     #[field(default = "curvature")]
     seams: Arc<str>,
-    /// What rims that are no seams keep; see `FairSurf`.
+    /// Kept at rims that are not seams; see `FairSurf`.
     #[field(default = "corners")]
     rims: Rims,
 }
 
 impl<T: Real> Build<T> for FairPatches<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let measure = measure(&self.measure, Self::MEASURE)?;
         let fit = match role(&self.r#as, Self::AS)? {
             Role::Fit => true,
             Role::Control => false,
             Role::Points => {
-                return Err(Fault::new("unknown-name", "surfaces have no role \"points\"")
+                return Err(CallError::new("unknown-name", "surfaces have no role \"points\"")
                     .expected("\"fit\" or \"control\"")
                     .found("\"points\"")
                     .in_field(Self::AS));
@@ -86,7 +86,7 @@ impl<T: Real> Build<T> for FairPatches<T> {
         let mut given: Vec<Vec3<T>> = Vec::new();
         for (k, Grid(grid)) in self.surfaces.iter().enumerate() {
             let ArrayShape::Grid(m, n) = grid.shape else {
-                return Err(Fault::new("wrong-shape", "a surface needs a grid of points")
+                return Err(CallError::new("wrong-shape", "a surface needs a grid of points")
                     .expected("a grid [m, n] of vectors")
                     .found(format!("a row {}", grid.shape))
                     .in_item(k)
@@ -140,11 +140,11 @@ impl<T: Real> Build<T> for FairPatches<T> {
                 let text = format!(
                     "the surfaces cannot run on across their seams within the tolerance (missed by {miss:.3e})"
                 );
-                Fault::new("contradiction", text)
+                CallError::new("contradiction", text)
                     .expected("a larger tolerance, or surfaces that run on more smoothly")
                     .in_field(Self::SEAMS)
             }
-            FairError::TurnsBack => Fault::new("turns-back", e.to_string())
+            FairError::TurnsBack => CallError::new("turns-back", e.to_string())
                 .expected("surfaces that run on where their neighbours end")
                 .in_field(Self::SURFACES),
             e => fault(e, &places),
@@ -153,10 +153,10 @@ impl<T: Real> Build<T> for FairPatches<T> {
         let surface = |(sheet, points): (&PatchNet, Vec<Vec3<T>>)| {
             let [u, v] = sheet.spaces.each_ref().map(|s| s.knot_vector().0);
             let surface = BSplineSurface::new(u, v, points, None)
-                .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::SURFACES))?;
+                .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::SURFACES))?;
             Ok(Value::Surface(SurfaceRef::new(surface, 0)))
         };
-        let surfaces: Result<Vec<_>, Fault> = sheets.iter().zip(faired).map(surface).collect();
+        let surfaces: Result<Vec<_>, CallError> = sheets.iter().zip(faired).map(surface).collect();
         Ok(Value::list(surfaces?))
     }
 }
@@ -179,21 +179,23 @@ pub struct NetSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for NetSurf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Value::List(surfaces) = &self.net else {
-            return Err(Fault::wrong_class(Class::List, self.net.class())
+            return Err(CallError::wrong_class(Class::List, self.net.class())
                 .expected("surfaces that are faired together, a FairPatches")
                 .in_field(Self::NET));
         };
         match surfaces.get(self.index.wrapping_sub(1)) {
             Some(Value::Surface(surface)) => Ok(Value::Surface(surface.clone())),
             Some(other) => {
-                Err(Fault::wrong_class(Class::Surface, other.class()).in_item(self.index - 1))
+                Err(CallError::wrong_class(Class::Surface, other.class()).in_item(self.index - 1))
             }
-            None => Err(Fault::new("out-of-range", format!("there is no surface {}", self.index))
-                .expected(format!("a number from 1 to {}", surfaces.len()))
-                .found(self.index.to_string())
-                .in_field(Self::INDEX)),
+            None => {
+                Err(CallError::new("out-of-range", format!("there is no surface {}", self.index))
+                    .expected(format!("a number from 1 to {}", surfaces.len()))
+                    .found(self.index.to_string())
+                    .in_field(Self::INDEX))
+            }
         }
     }
 }

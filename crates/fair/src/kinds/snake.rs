@@ -4,7 +4,7 @@ use super::shapes::{self, OnSurface};
 use super::{Intent, Places, Role, end, faithful, fault, measure};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    Build, Class, Context, CurveRef, Fault, FromValue, Kind, Point, SurfaceRef, Value,
+    Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, SurfaceRef, Value,
 };
 use std::sync::Arc;
 
@@ -17,13 +17,13 @@ struct Magnet<T: Real> {
 
 impl<T: Real> FromValue<T> for Magnet<T> {
     const CLASS: Class = Class::Magnet;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         if let Value::Point(p) = value
             && let Some(place) = &p.on_surface
         {
             return Ok(Self { point: (**p).clone(), surface: place.0.clone(), uv: place.1 });
         }
-        Err(Fault::wrong_class(Class::Magnet, value.class()))
+        Err(CallError::wrong_class(Class::Magnet, value.class()))
     }
 }
 
@@ -43,13 +43,13 @@ pub struct FairSnake<T: Real> {
     /// Magnets of one surface, at least degree + 2 of them.
     #[field(min_items = 3)]
     magnets: Vec<Magnet<T>>,
-    /// How far the path may be from the one through the magnets, in u and v.
+    /// Largest distance from the path through the magnets, in u and v.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the ends keep: "position", "tangent" or "curvature".
+    /// Kept at the ends: "position", "tangent" or "curvature".
     #[field(default = "tangent")]
     ends: Arc<str>,
     /// "optimum" or "faithful".
@@ -61,10 +61,10 @@ pub struct FairSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for FairSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let [first, .., last] = self.magnets.as_slice() else {
             return Err(
-                Fault::new("too-few-items", "a snake needs magnets").in_field(Self::MAGNETS)
+                CallError::new("too-few-items", "a snake needs magnets").in_field(Self::MAGNETS)
             );
         };
         let surface = first.surface.clone();
@@ -76,11 +76,11 @@ impl<T: Real> Build<T> for FairSnake<T> {
                 surface.same(&magnet.surface)
             };
             if !same {
-                let message = format!("magnet {} lies on another surface than magnet 1", k + 1);
-                return Err(Fault::new("wrong-surface", message)
+                let message = format!("magnet {} is on another surface than magnet 1", k + 1);
+                return Err(CallError::new("wrong-surface", message)
                     .expected("magnets of one surface")
                     .found("two different surfaces")
-                    .related(magnet.point.key, "lies on another surface")
+                    .related(magnet.point.key, "is on another surface")
                     .in_item(k)
                     .in_field(Self::MAGNETS));
             }
@@ -120,7 +120,7 @@ impl<T: Real> Build<T> for FairSnake<T> {
         }
         let (space, control) = intent.spline(&path).map_err(|e| fault(e, &places))?;
         let path = shapes::curve(&space, &control)
-            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::MAGNETS))?;
+            .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::MAGNETS))?;
         let shape = OnSurface { surface: surface.clone(), path, ends };
         Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)))
     }

@@ -4,7 +4,8 @@ use super::{ACCURACY, Own, Places, Role, faithful, fault, indices, measure, role
 use crate::{Bound, End, FairError, Limit, Network, Space, Spacing, interpolate_with_corners};
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
-    ArrayShape, Build, Class, Context, Fault, FieldId, FromValue, Kind, SurfaceRef, Value, Vectors,
+    ArrayShape, Build, CallError, Class, Context, FieldId, FromValue, Kind, SurfaceRef, Value,
+    Vectors,
 };
 use moldloft_spline::BSplineSurface;
 use std::sync::Arc;
@@ -14,10 +15,10 @@ pub(super) struct Grid<T: Real>(pub Arc<Vectors<T>>);
 
 impl<T: Real> FromValue<T> for Grid<T> {
     const CLASS: Class = Class::Vectors;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Vectors(array) => Ok(Self(array.clone())),
-            other => Err(Fault::wrong_class(Class::Vectors, other.class())),
+            other => Err(CallError::wrong_class(Class::Vectors, other.class())),
         }
     }
 }
@@ -40,13 +41,13 @@ impl<T: Real> FromValue<T> for Grid<T> {
 pub struct FairSurf<T: Real> {
     /// A grid of points, at least degree + 2 in each direction.
     points: Grid<T>,
-    /// How far the surface may be from the one through the points; 0 leaves it alone.
+    /// Largest distance from the surface through the points; 0 leaves it unchanged.
     #[field(min = 0)]
     tolerance: T,
-    /// What there is to be little of; see `FairCurve`.
+    /// The measure to minimise; see `FairCurve`.
     #[field(default = "second")]
     measure: Arc<str>,
-    /// What the points are: "fit" or "control".
+    /// Meaning of the points: "fit" or "control".
     #[field(default = "fit")]
     r#as: Arc<str>,
     /// Polynomial degree in both directions.
@@ -65,7 +66,7 @@ pub struct FairSurf<T: Real> {
     /// Passes of the faithful mode.
     #[field(default = 1, min = 1, max = 100)]
     passes: usize,
-    /// What the rims keep, so that neighbours still fit: "corners" (only these), "position",
+    /// Kept at the rims, so that neighbours still fit: "corners" (only these), "position",
     /// "tangent" or "curvature", or a list of four of these for v = 0, u = 1, v = 1 and u = 0.
     #[field(default = "corners")]
     rims: Rims,
@@ -73,8 +74,8 @@ pub struct FairSurf<T: Real> {
     /// it rational and stay as they are. They count as constants: derivatives do not go through them.
     #[field(default)]
     weights: Option<Weights>,
-    /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, which do not
-    /// fall; constants too.
+    /// Knots along u of the control points (`as = "control"`), degree + 1 more of them, none
+    /// decreasing; constants too.
     #[field(default)]
     knots_u: Option<Vec<T>>,
     /// The same along v.
@@ -94,20 +95,20 @@ struct Weights {
 
 impl<T: Real> FromValue<T> for Weights {
     const CLASS: Class = Class::Numbers;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Numbers(array) => {
                 let items = array.items.iter().map(|x| x.re()).collect();
                 Ok(Self { shape: array.shape, items })
             }
-            other => Err(Fault::wrong_class(Class::Numbers, other.class())),
+            other => Err(CallError::wrong_class(Class::Numbers, other.class())),
         }
     }
 }
 
 impl<T: Real> FairSurf<T> {
     /// Weights and knots, where they have a meaning.
-    fn own(&self, shape: ArrayShape) -> Result<[Own; 2], Fault> {
+    fn own(&self, shape: ArrayShape) -> Result<[Own; 2], CallError> {
         let plain =
             |x: &Option<Vec<T>>| x.as_ref().map(|x| x.iter().map(|x| x.re()).collect::<Vec<f64>>());
         let own = [&self.knots_u, &self.knots_v].map(|k| Own { knots: plain(k), weights: None });
@@ -119,7 +120,7 @@ impl<T: Real> FairSurf<T> {
         for (_, what, field) in fields.into_iter().filter(|g| g.0) {
             if &*self.r#as != "control" {
                 let text = format!("{what} are those of control points");
-                return Err(Fault::new("not-control", text)
+                return Err(CallError::new("not-control", text)
                     .expected("as = \"control\"")
                     .found(format!("as = \"{}\"", self.r#as))
                     .in_field(field));
@@ -127,7 +128,7 @@ impl<T: Real> FairSurf<T> {
         }
         if let Some(weights) = &self.weights {
             let refused = |text: &str, expected: String, found: String| {
-                Err(Fault::new("bad-weight", text)
+                Err(CallError::new("bad-weight", text)
                     .expected(expected)
                     .found(found)
                     .in_field(WEIGHTS))
@@ -150,7 +151,7 @@ pub(super) struct Rims(pub [End; 4]);
 
 impl<T: Real> FromValue<T> for Rims {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let known = ["corners", "position", "tangent", "curvature"];
         let one = |word: &str| match word {
             "corners" => Ok(End::Free),
@@ -168,7 +169,7 @@ impl<T: Real> FromValue<T> for Rims {
                 }
                 Ok(Self(ends))
             }
-            Value::List(items) => Err(Fault::new("wrong-count", "a surface has four rims")
+            Value::List(items) => Err(CallError::new("wrong-count", "a surface has four rims")
                 .expected("a word, or four of them for v = 0, u = 1, v = 1 and u = 0")
                 .found(format!("{} items", items.len()))),
             other => Ok(Self([one(&text(other)?)?; 4])),
@@ -210,10 +211,10 @@ pub(super) fn turned<T: Real>(grid: &[Vec3<T>], m: usize) -> Vec<Vec3<T>> {
 }
 
 impl<T: Real> Build<T> for FairSurf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Grid(grid) = &self.points;
         let ArrayShape::Grid(m, n) = grid.shape else {
-            return Err(Fault::new("wrong-shape", "a surface needs a grid of points")
+            return Err(CallError::new("wrong-shape", "a surface needs a grid of points")
                 .expected("a grid [m, n] of vectors")
                 .found(format!("a row {}", grid.shape))
                 .in_field(Self::POINTS));
@@ -223,7 +224,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
             Role::Fit => true,
             Role::Control => false,
             Role::Points => {
-                return Err(Fault::new("unknown-name", "surfaces have no role \"points\"")
+                return Err(CallError::new("unknown-name", "surfaces have no role \"points\"")
                     .expected("\"fit\" or \"control\"")
                     .found("\"points\"")
                     .in_field(Self::AS));
@@ -280,12 +281,14 @@ impl<T: Real> Build<T> for FairSurf<T> {
             Ok((spaces, points))
         };
         let about = |e: FairError| match e {
-            FairError::Weight { .. } => Fault::new("bad-weight", e.to_string()).in_field(WEIGHTS),
+            FairError::Weight { .. } => {
+                CallError::new("bad-weight", e.to_string()).in_field(WEIGHTS)
+            }
             FairError::Unsorted { .. }
             | FairError::Knots(_)
             | FairError::Count { what: "knots", .. } => {
                 let along = usize::from(own[0].space(self.degree, m).is_ok());
-                Fault::new("bad-knots", e.to_string()).in_field(KNOTS[along])
+                CallError::new("bad-knots", e.to_string()).in_field(KNOTS[along])
             }
             e => fault(e, &places),
         };
@@ -293,7 +296,7 @@ impl<T: Real> Build<T> for FairSurf<T> {
         let [u, v] = spaces.map(|s| s.knot_vector().0);
         let weights = weights.map(|w| w.into_iter().map(T::from).collect());
         let surface = BSplineSurface::new(u, v, points, weights)
-            .map_err(|e| Fault::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
+            .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::POINTS))?;
         Ok(Value::Surface(SurfaceRef::new(surface, 0)))
     }
 }

@@ -82,7 +82,7 @@ impl Network {
     /// The surface passes through a point at (u, v) in [0, 1]: three conditions.
     ///
     /// # Errors
-    /// [`FairError::Count`] when the network is no net.
+    /// [`FairError::Count`] when the network is not a net.
     pub fn point_condition(
         &self,
         at: [f64; 2],

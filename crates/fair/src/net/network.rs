@@ -134,7 +134,7 @@ impl Network {
     /// them.
     ///
     /// # Errors
-    /// [`FairError::Mark`] when there is no such row, or the network is no net.
+    /// [`FairError::Mark`] when there is no such row, or the network is not a net.
     pub fn with_breaks(mut self, along_u: &[usize], along_v: &[usize]) -> Result<Self, FairError> {
         let [nu, nv] = self.net.as_ref().map_or([0, 0], |[u, v]| [u.count(), v.count()]);
         for (breaks, count) in [(along_u, nu), (along_v, nv)] {
@@ -146,7 +146,7 @@ impl Network {
         for (k, strand) in self.strands.iter_mut().enumerate() {
             strand.marks.extend(if k < nv { along_u } else { along_v });
         }
-        // Those along the knuckle stand still too, whole.
+        // Those along the knuckle stay fixed too, whole.
         for (k, strand) in self.strands.iter().enumerate() {
             let own = if k < nv { along_v.contains(&k) } else { along_u.contains(&(k - nv)) };
             if own {
@@ -164,7 +164,7 @@ impl Network {
     /// none.
     ///
     /// # Errors
-    /// [`FairError::Count`] when the network is no net.
+    /// [`FairError::Count`] when the network is not a net.
     pub fn with_rims(mut self, rims: [[End; 2]; 2]) -> Result<Self, FairError> {
         let Some([su, sv]) = &self.net else {
             return Err(FairError::Count { what: "directions of a net", expected: 2, actual: 0 });
@@ -243,7 +243,7 @@ impl Network {
         }
     }
 
-    /// Curve `k` at the original points, where what stands still for any curve does so for this one.
+    /// Curve `k` at the original points, where what stays fixed for any curve does so for this one.
     fn pass_job(&self, k: usize, frozen: &[bool]) -> Job {
         let mut job = self.job(k, &self.points);
         for (radius, &i) in job.limit.radii.iter_mut().zip(&self.strands[k].points) {
@@ -694,7 +694,7 @@ impl Network {
     /// The surface of a net with these control points.
     ///
     /// # Errors
-    /// [`FairError::Count`] when there are more or fewer, or the network is no net.
+    /// [`FairError::Count`] when there are more or fewer, or the network is not a net.
     pub fn surface(&self, points: &[Vec3<f64>]) -> Result<BSplineSurface<f64>, FairError> {
         let expected = self.points.len();
         let Some([u, v]) = self.net.as_ref().filter(|_| points.len() == expected) else {
@@ -742,7 +742,7 @@ pub struct NetworkReport {
     pub certified: f64,
     /// The largest distance found by sampling.
     pub sampled: f64,
-    /// The measure and what is left to gain within the limits.
+    /// The measure and the optimality gap within the limits.
     pub certificate: Certificate,
     /// Of goals, the mean of the squared moves over tolerances, over 1/3; else no number.
     pub used: f64,

@@ -396,7 +396,7 @@ fn root(same: &[usize], mut i: usize) -> usize {
     i
 }
 
-/// The net of a sheet, and what stands still in it: corners, then rims and breaks.
+/// The net of a sheet, and what stays fixed in it: corners, then rims and breaks.
 #[allow(clippy::type_complexity)]
 fn net(sheet: &PatchNet) -> Result<(Network, [Vec<usize>; 2]), FairError> {
     let (points, limit) = (sheet.points.clone(), sheet.limit.clone());

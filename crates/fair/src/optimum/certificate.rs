@@ -1,4 +1,4 @@
-//! Bounds on what is left to gain, computed from the result alone.
+//! Bounds on the optimality gap, computed from the result alone.
 
 use crate::{Job, Limit, Motion, Norm, SparseRows};
 use moldloft_num::Vec3;

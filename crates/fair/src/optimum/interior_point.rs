@@ -1,6 +1,6 @@
 //! The interior point method of [`crate::optimum::problem`], for D coordinates.
 //!
-//! All lists are over unknowns: points that stand still are left out of the rows, for their
+//! All lists are over unknowns: points that stay fixed are left out of the rows, for their
 //! displacement is zero.
 
 use crate::optimum::band::Band;
@@ -345,7 +345,7 @@ impl<'a, const D: usize> State<'a, D> {
         }
     }
 
-    /// The measure and a rigorous bound on what is left to gain.
+    /// The measure and a rigorous bound on the optimality gap.
     ///
     /// With any z (|z| <= 1 for lengths, e for squares) and g = P^T z, every allowed y has
     /// f(y) >= f(x) - sum(|e| - z . e) + g (y - x). For any forces m and nu,

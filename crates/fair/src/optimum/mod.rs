@@ -27,7 +27,7 @@ pub enum Bound {
 /// How to look for the optimum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OptimumOptions {
-    /// What there is to be little of.
+    /// The measure to minimise.
     pub measure: Measure,
     /// What the tolerance bounds.
     pub bound: Bound,
@@ -50,7 +50,7 @@ impl OptimumOptions {
 pub struct Optimum {
     /// The control points; those that must not move have their original bits.
     pub points: Vec<Vec3<f64>>,
-    /// The measure and the proven bound on what is left to gain.
+    /// The measure and the proven bound on the optimality gap.
     pub certificate: Certificate,
     /// Newton steps taken.
     pub iterations: usize,
@@ -405,7 +405,7 @@ impl<'a> Parts<'a> {
         let solution = problem::solve(problem, self.accuracy, floor, margin)?;
         let points = self.moved(frame, &solution.x);
         let count = self.conditions.len();
-        // What is no number is missed.
+        // What is not a number is missed.
         let met = |k: usize| solution.misses[k] <= 1e-7;
         let missed: Vec<usize> = (0..count).filter(|&k| !met(k)).collect();
         if !missed.is_empty() {

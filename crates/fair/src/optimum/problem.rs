@@ -73,7 +73,7 @@ pub(crate) struct Solution {
     pub x: Vec<V>,
     /// psi's sum.
     pub value: f64,
-    /// A bound on what is left to gain.
+    /// A bound on the optimality gap.
     pub gap: f64,
     pub iterations: usize,
     /// Largest miss of a condition, relative to its own scale, and which ones are missed.
@@ -95,7 +95,7 @@ pub(crate) struct Active {
     pub forces: Vec<f64>,
 }
 
-/// The place of a point that is no unknown.
+/// The place of a point that is not an unknown.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// Which unknown each point is.

@@ -1,4 +1,4 @@
-//! Corners and wrong digits are told apart, reported, and kept out of the fairing.
+//! Corners and wrong digits are distinguished, reported, and kept out of the fairing.
 
 use crate::fixtures::*;
 use moldloft_fair::*;

@@ -4,8 +4,8 @@ use crate::fixtures::*;
 use moldloft_fair::rows;
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{
-    Array, Class, Context, CurveRef, Fault, Given, Registry, Scalar, SurfaceRef, Value, Vectors,
-    arrange,
+    Array, CallError, Class, Context, CurveRef, Given, Registry, Scalar, SurfaceRef, Value,
+    Vectors, bind_arguments,
 };
 use std::sync::Arc;
 
@@ -13,10 +13,10 @@ fn call<T: Scalar>(
     name: &str,
     positional: Vec<Value<T>>,
     named: Vec<(&str, Value<T>)>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let registry = Registry::new(rows());
     let row = registry.get(name).unwrap();
-    let (args, _) = arrange(row, Given { positional, named }, |_| Class::Any)?;
+    let (args, _) = bind_arguments(row, Given { positional, named }, |_| Class::Any)?;
     T::call(row, &args, &Context::default())
 }
 

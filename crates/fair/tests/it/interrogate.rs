@@ -163,7 +163,7 @@ fn the_report_tells_all() {
     assert_eq!(stalled.stopped, Some(Stopped::Stalled));
     assert!(stalled.notes.iter().any(|n| n.contains("stalled")));
     assert!(stalled.certificate.gap > best.certificate.gap);
-    for word in ["certified", "monotone pieces", "inflections", "left to gain", "stalled"] {
+    for word in ["certified", "monotone pieces", "inflections", "optimality gap", "stalled"] {
         assert!(stalled.to_string().contains(word), "{word}");
     }
 }

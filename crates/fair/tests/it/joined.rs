@@ -5,7 +5,9 @@ use moldloft_fair::{
     Bound, Edge, End, FairError, Limit, Measure, Network, PatchNet, Seam, Space, rows,
 };
 use moldloft_num::{Dual4, Order, Real, Surface, Vec3};
-use moldloft_registry::{Class, Context, Fault, Given, Registry, Scalar, Value, Vectors, arrange};
+use moldloft_registry::{
+    CallError, Class, Context, Given, Registry, Scalar, Value, Vectors, bind_arguments,
+};
 use std::sync::Arc;
 
 /// A bent hull side, cut at `cut` along u: the nets of both parts, with noise of up to `noise`.
@@ -186,13 +188,13 @@ fn call<T: Scalar>(
     grids: [Vec<Vec3<T>>; 2],
     tolerance: T,
     named: Vec<(&str, Value<T>)>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let registry = Registry::new(rows());
     let row = registry.get("FairPatches").unwrap();
     let grid =
         |points: Vec<Vec3<T>>| Value::Vectors(Arc::new(Vectors::grid(points.len() / 8, 8, points)));
     let positional = vec![Value::list(grids.map(grid)), Value::Number(tolerance)];
-    let (args, _) = arrange(row, Given { positional, named }, |_| Class::Any)?;
+    let (args, _) = bind_arguments(row, Given { positional, named }, |_| Class::Any)?;
     T::call(row, &args, &Context::default())
 }
 

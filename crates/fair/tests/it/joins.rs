@@ -3,15 +3,17 @@
 use crate::fixtures::*;
 use moldloft_fair::rows;
 use moldloft_num::{Dual4, Order, Real, Vec3};
-use moldloft_registry::{Class, Context, CurveRef, Fault, Given, Registry, Scalar, Value, arrange};
+use moldloft_registry::{
+    CallError, Class, Context, CurveRef, Given, Registry, Scalar, Value, bind_arguments,
+};
 
 fn call<T: Scalar>(
     positional: Vec<Value<T>>,
     named: Vec<(&str, Value<T>)>,
-) -> Result<CurveRef<T>, Fault> {
+) -> Result<CurveRef<T>, CallError> {
     let registry = Registry::new(rows());
     let row = registry.get("FairCurve").unwrap();
-    let (args, _) = arrange(row, Given { positional, named }, |_| Class::Any)?;
+    let (args, _) = bind_arguments(row, Given { positional, named }, |_| Class::Any)?;
     match T::call(row, &args, &Context::default())? {
         Value::Curve(curve) => Ok(curve),
         other => panic!("{other:?}"),

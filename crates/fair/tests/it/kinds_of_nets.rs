@@ -5,7 +5,8 @@ use moldloft_fair::rows;
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{
-    Class, Context, CurveRef, Fault, Given, Point, Registry, Scalar, Value, Vectors, arrange,
+    CallError, Class, Context, CurveRef, Given, Point, Registry, Scalar, Value, Vectors,
+    bind_arguments,
 };
 use std::sync::Arc;
 
@@ -13,10 +14,10 @@ fn call<T: Scalar>(
     name: &str,
     positional: Vec<Value<T>>,
     named: Vec<(&str, Value<T>)>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let registry = Registry::new(rows());
     let row = registry.get(name).unwrap();
-    let (args, _) = arrange(row, Given { positional, named }, |_| Class::Any)?;
+    let (args, _) = bind_arguments(row, Given { positional, named }, |_| Class::Any)?;
     T::call(row, &args, &Context::default())
 }
 

@@ -4,7 +4,8 @@ use crate::fixtures::*;
 use moldloft_fair::rows;
 use moldloft_num::{Dual4, Order, Real, Vec3};
 use moldloft_registry::{
-    Array, ArrayShape, Class, Context, Fault, Given, Registry, Scalar, Value, Vectors, arrange,
+    Array, ArrayShape, CallError, Class, Context, Given, Registry, Scalar, Value, Vectors,
+    bind_arguments,
 };
 use std::sync::Arc;
 
@@ -14,10 +15,10 @@ fn call<T: Scalar>(
     name: &str,
     positional: Vec<Value<T>>,
     named: Named<T>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let registry = Registry::new(rows());
     let row = registry.get(name).unwrap();
-    let (args, _) = arrange(row, Given { positional, named }, |_| Class::Any)?;
+    let (args, _) = bind_arguments(row, Given { positional, named }, |_| Class::Any)?;
     T::call(row, &args, &Context::default())
 }
 

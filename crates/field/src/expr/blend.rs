@@ -263,7 +263,7 @@ fn contact(
     })
 }
 
-/// Visits halves of a box until `settled` says so; the second argument tells that a box is not halved
+/// Visits halves of a box until `settled` says so; the second argument states that a box is not halved
 /// again.
 fn search(
     over: &Box3,

@@ -4,7 +4,7 @@ use crate::expr::interval::Interval;
 use moldloft_num::{Box3, Field, Real, Vec3};
 use std::sync::Arc;
 
-/// A primitive that is no formula of ours. Its ranges must contain every value that it takes; wide
+/// A primitive that is not a formula of ours. Its ranges must contain every value that it takes; wide
 /// ones cost time, wrong ones cost correctness.
 pub trait Oracle<T: Real>: Field<T> {
     /// A range of the value over a box.

@@ -242,7 +242,7 @@ impl<T: Real> Primitive<T> {
     pub fn sqrt(&self) -> Self {
         self.unary(Unary::Sqrt)
     }
-    /// sgn(f) sqrt|f|. This is no distance: its slope on the surface is unbounded.
+    /// sgn(f) sqrt|f|. This is not a distance: its slope on the surface is unbounded.
     pub fn s_sqrt(&self) -> Self {
         self.unary(Unary::SignedSqrt)
     }

@@ -56,7 +56,7 @@ pub(super) fn crossings(
         })
     };
     let mut map: FxHashMap<[i64; 3], Vec<usize>> = FxHashMap::default();
-    // Which bins hold something, by a hash of few bits: most are told to be empty without a look.
+    // Which bins hold something, by a hash of few bits: most are known to be empty without a look.
     let mut filled = vec![false; 1 << 16];
     let place = |[i, j, k]: [i64; 3]| {
         let mix = (i.wrapping_mul(73_856_093))

@@ -10,7 +10,7 @@ use crate::set::Leaf;
 use moldloft_num::{Box3, Vec3};
 use smallvec::SmallVec;
 
-/// Of an edge or corner that passes by its vertex within this part of a cell nothing to speak of is cut off: such are
+/// An edge or corner within this fraction of a cell from its vertex counts as hit: such are
 /// those of surfaces that touch along it.
 const MIN_FEATURE: f64 = 0.01;
 

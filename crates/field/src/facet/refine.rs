@@ -3,7 +3,7 @@
 //!
 //! This is svLis's rule (divide where the gradient is not narrow) on the finished triangles, so that a
 //! sharp bend costs a few more of them and not a finer grid. A new vertex lies on the same primitives as
-//! the edge that it divides. What the surface does between the ends of an edge is told by the normals there:
+//! the edge that it divides. What the surface does between the ends of an edge is identified by the normals there:
 //! a chord e whose ends have normals n and m leaves an arc's middle by |e . (m - n)| / 8.
 
 use super::assemble::Assembled;

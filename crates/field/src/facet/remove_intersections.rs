@@ -3,7 +3,7 @@
 //! First the polygons about them become fans about the crossings of the grid, which are on the surface. Then
 //! vertices outside their cells, on an edge that passes beside, go back into them, onto one surface; pieces of
 //! surface with several vertices get one; in cells with several pieces of surface, vertices go near their
-//! crossings. What remains is told as undecided.
+//! crossings. What remains is reported as undecided.
 
 use super::assemble::{Assembled, Assembly};
 use super::cell::start_corner;
@@ -58,7 +58,7 @@ pub(super) fn assembled(
         }
         let doubtful =
             |v: &u32| *v < assembly.count && made.doubtful.binary_search_by_key(v, |d| d.0).is_ok();
-        // Of each pair the vertex that is farthest from its crossings: the others may be innocent.
+        // Of each pair the vertex that is farthest from its crossings: the others need not move.
         let mut chosen: Vec<u32> = Vec::new();
         for pair in pairs {
             let all = pair.into_iter().flat_map(corners).filter(doubtful);

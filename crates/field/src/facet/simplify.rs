@@ -114,7 +114,7 @@ impl Work<'_> {
         k.map_or_else(Vec3::zero, |k| self.normals[v as usize][k])
     }
 
-    /// The error of moving `v` into `w`, told by the normals of the surface at the vertices: a chord e leaves
+    /// The error of moving `v` into `w`, from the normals of the surface at the vertices: a chord e leaves
     /// the middle of an arc between normals n and m by |e . (m - n)| / 8. `None` when that must not be.
     fn error(&self, v: u32, w: u32) -> Option<f64> {
         let beside = self.beside(v, w)?;

@@ -4,14 +4,14 @@ use super::read::{Shape, fault, field, set};
 use super::region::corners;
 use crate::{Blend, FieldError, Primitive, check_rail, check_rails, liming, liming_on_rail, zhang};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, Value};
 
 /// The surface through the four curves in which two bodies meet two others:
 /// lambda L1 L2 - (1 - lambda) L3 L4. With one rail, L4 = L3, it touches both bodies where the rail does.
 ///
 /// After Liming (1944). With a rail, `contact = n` gives contact G^n by lambda L1 L2 -
 /// (1 - lambda) |L3|^(n + 1). The rail must cut each body outside the other; with a box `low`, `high` that
-/// is proved, or the place is told where it fails.
+/// is proved, or the place where it fails is reported.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -44,7 +44,7 @@ pub struct Liming<T: Real> {
 }
 
 impl<T: Real> Build<T> for Liming<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [l1, l2, l3] = [&self.l1, &self.l2, &self.l3].map(|s| &s.primitive);
         if let Some(l4) = &self.l4 {
             return field(liming([l1, l2], [l3, &l4.primitive], self.lambda));
@@ -56,7 +56,7 @@ impl<T: Real> Build<T> for Liming<T> {
     }
 }
 
-fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), Fault> {
+fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), CallError> {
     outcome.map_err(|e| fault(&e).in_field(field))
 }
 
@@ -64,7 +64,7 @@ fn checked(outcome: Result<(), FieldError>, field: FieldId) -> Result<(), Fault>
 /// (1 - lambda) L1 |L4|^(n + 1) + lambda L2 |L3|^(n + 1).
 ///
 /// After Zhang. The rails L3 (on L1) and L4 (on L2) must not meet; with a box `low`, `high` that is proved,
-/// or the place is told where it fails.
+/// or the place where it fails is reported.
 #[derive(Kind)]
 #[kind(
     class = Field,
@@ -96,7 +96,7 @@ pub struct Zhang<T: Real> {
 }
 
 impl<T: Real> Build<T> for Zhang<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [l1, l2, l3, l4] = [&self.l1, &self.l2, &self.l3, &self.l4].map(|s| &s.primitive);
         if let Some(over) = corners(&self.low, &self.high, Self::HIGH)? {
             checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over), Self::L3)?;
@@ -128,7 +128,7 @@ pub struct Setback<T: Real> {
 }
 
 impl<T: Real> Build<T> for Setback<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let setbacks = [self.a, self.b.unwrap_or(self.a)];
         field(crate::setback_rail([&self.l1.primitive, &self.l2.primitive], setbacks))
     }
@@ -139,7 +139,7 @@ macro_rules! corner_blend {
         #[doc = $doc]
         ///
         /// With distances the widths are lengths. With a box `low`, `high` the contact is proved over it, or the
-        /// place is told where it fails.
+        /// place where it fails is reported.
         #[derive(Kind)]
         #[kind(class = Set, function, name = $name, example = $example)]
         pub struct $kind<T: Real> {
@@ -166,7 +166,7 @@ macro_rules! corner_blend {
         }
 
         impl<T: Real> Build<T> for $kind<T> {
-            fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+            fn build(self, _: &Context) -> Result<Value<T>, CallError> {
                 let bodies = [&self.l1.primitive, &self.l2.primitive];
                 let setbacks = [self.width, self.other.unwrap_or(self.width)];
                 let blend = $make(bodies, setbacks, self.lambda).map_err(|e| fault(&e))?;
@@ -191,7 +191,7 @@ fn finished<T: Real>(
     blend: Blend<T>,
     bodies: [&Shape<T>; 2],
     word: &str,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let name = |p: &Primitive<T>| {
         let called = |s: &&&Shape<T>| s.primitive.same(p) || s.primitive.same(&-p);
         match bodies.iter().find(called) {
@@ -251,7 +251,7 @@ pub struct Transition<T: Real> {
 }
 
 impl<T: Real> Build<T> for Transition<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [l1, l2, l3, l4] = [&self.l1, &self.l2, &self.l3, &self.l4].map(|s| &s.primitive);
         if let Some(over) = corners(&self.low, &self.high, Self::HIGH)? {
             checked(check_rails([&l1.re(), &l2.re()], [&l3.re(), &l4.re()], &over), Self::L3)?;

@@ -6,7 +6,7 @@ use crate::facet::sheets::Mixed;
 use crate::facet::{Facets, Options, Resolution};
 use crate::{FacetMemo, FieldError, Leaf, Lifter, Set, facet_mixed};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, Facets as Body, Fault, Group, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, Group, Kind, Point, TriangleBody, Value};
 use std::sync::Arc;
 
 /// Facets of that resolution, which stop when the model does.
@@ -34,23 +34,23 @@ pub struct SetBody<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How often the longest side of the box is halved: cells of its 2^depth-th part. 6 when no accuracy
+    /// Number of halvings of the longest side of the box: cells of its 2^depth-th part. 6 when no accuracy
     /// is asked.
     #[field(default, min = 1, max = 16)]
     depth: Option<u32>,
-    /// How far the middles of triangles are from the surface at most: estimated by refining.
+    /// Largest distance of triangle centres from the surface: estimated by refining.
     #[field(default)]
     accuracy: Option<T>,
-    /// How far triangles may be from the surface when fewer are made of them; none are merged by default.
+    /// Largest distance from the surface when triangles are merged; none are merged by default.
     #[field(default)]
     simplify: Option<T>,
 }
 
 impl<T: Real> Build<T> for SetBody<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let resolution = match (self.depth, self.accuracy) {
             (Some(_), Some(_)) => {
-                return Err(Fault::new("argument-twice", "depth and accuracy are both given")
+                return Err(CallError::new("argument-twice", "depth and accuracy are both given")
                     .expected("one of them")
                     .in_field(Self::ACCURACY));
             }
@@ -61,7 +61,7 @@ impl<T: Real> Build<T> for SetBody<T> {
         let set = &self.set.0;
         let plain = set.re();
         if plain.is_nothing() {
-            return Err(Fault::new("empty-set", "the set is empty").in_field(Self::SET));
+            return Err(CallError::new("empty-set", "the set is empty").in_field(Self::SET));
         }
         let region = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let lifter = Lifter::of(set, &plain, region.corners);
@@ -75,11 +75,11 @@ impl<T: Real> Build<T> for SetBody<T> {
                 .and_then(|pieces| pieces.body(&lifter))
                 .map_err(|e| fault(&e))?;
         if body.triangles.is_empty() && body.wires.is_empty() && body.dots.is_empty() {
-            return Err(Fault::new("empty-set", "the set has no surface in the box")
+            return Err(CallError::new("empty-set", "the set has no surface in the box")
                 .expected("a set whose surface passes through the box")
                 .in_field(Self::SET));
         }
-        Ok(Value::Mesh(Arc::new(body)))
+        Ok(Value::Body(Arc::new(body)))
     }
 }
 
@@ -142,7 +142,7 @@ impl Pieces {
     ///
     /// # Errors
     /// A lifter of another set.
-    pub fn body<T: Real>(&self, lifter: &Lifter<T>) -> Result<Body<T>, FieldError> {
+    pub fn body<T: Real>(&self, lifter: &Lifter<T>) -> Result<TriangleBody<T>, FieldError> {
         let solid: &Facets = match self {
             Pieces::Solid(facets) => facets,
             Pieces::Mixed(mixed) => &mixed.solid,
@@ -185,12 +185,12 @@ impl Pieces {
                 dots.extend(lifter.moved_on(&[dot.point], &dot.on)?);
             }
         }
-        let mut body = Body::new(points, triangles);
+        let mut body = TriangleBody::new(points, triangles);
         let m = lifted.moments;
         body.volume = m.volume();
         if m.volume().re() > 0.0 {
             body.centroid = m.centroid();
         }
-        Ok(Body { groups, wires, dots, flaws: super::flaws::flaws(solid), ..body })
+        Ok(TriangleBody { groups, wires, dots, flaws: super::flaws::flaws(solid), ..body })
     }
 }

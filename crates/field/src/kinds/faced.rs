@@ -4,7 +4,7 @@ use super::read::{fault, set};
 use crate::shapes::Inside;
 use crate::{FieldError, Primitive, Profile, Round, Set, Sides, faced};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, Facets, Fault, Kind, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, TriangleBody, Value};
 use std::sync::Arc;
 
 /// The set of a closed body of plane faces: exact half-spaces, one for each plane.
@@ -21,11 +21,11 @@ use std::sync::Arc;
 )]
 pub struct Polyhedron<T: Real> {
     /// The body.
-    body: Arc<Facets<T>>,
+    body: Arc<TriangleBody<T>>,
 }
 
 impl<T: Real> Build<T> for Polyhedron<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (points, triangles) = (&self.body.points[..], &self.body.triangles[..]);
         set(faced(&Sides { points, triangles, sides: None, rounds: &[] }))
             .map_err(|f| f.in_field(Self::BODY))
@@ -50,7 +50,7 @@ impl<T: Real> Build<T> for Polyhedron<T> {
 )]
 pub struct FaceSet<T: Real> {
     /// The body; triangles of round faces are chords of them.
-    body: Arc<Facets<T>>,
+    body: Arc<TriangleBody<T>>,
     /// The number of the face of each triangle; triangles in one plane make a face by default.
     #[field(default)]
     faces: Option<Vec<u32>>,
@@ -63,13 +63,13 @@ pub struct FaceSet<T: Real> {
 const MOST: usize = 200;
 
 impl<T: Real> Build<T> for FaceSet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (points, triangles) = (&self.body.points[..], &self.body.triangles[..]);
         if let Some(faces) = &self.faces
             && faces.len() != triangles.len()
         {
             let (n, m) = (faces.len(), triangles.len());
-            return Err(Fault::new(
+            return Err(CallError::new(
                 "wrong-count",
                 format!("{n} numbers of faces for {m} triangles"),
             )
@@ -80,17 +80,20 @@ impl<T: Real> Build<T> for FaceSet<T> {
         let vectors = self.rounds.unwrap_or_default();
         if !vectors.len().is_multiple_of(5) {
             let n = vectors.len();
-            return Err(Fault::new("wrong-count", format!("{n} vectors make no round faces"))
-                .expected("five vectors for each")
-                .found(n.to_string())
-                .in_field(Self::ROUNDS));
+            return Err(CallError::new(
+                "wrong-count",
+                format!("{n} vectors do not define round faces"),
+            )
+            .expected("five vectors for each")
+            .found(n.to_string())
+            .in_field(Self::ROUNDS));
         }
         let round = |(k, v): (usize, &[Vec3<T>])| {
             let (sweep, scale, side) = (v[4].x, v[4].y, v[4].z.re());
             let known = self.faces.as_ref().is_some_and(|f| f.contains(&(side as u32)));
             if side < 0.0 || side.fract() != 0.0 || !known {
                 let text = format!("there is no face {side}");
-                return Err(Fault::new("out-of-range", text)
+                return Err(CallError::new("out-of-range", text)
                     .expected("the number of a face")
                     .found(side.to_string())
                     .in_field(Self::ROUNDS)

@@ -11,7 +11,7 @@ use crate::{
 };
 use moldloft_num::{Box3, Real, Vec3};
 use moldloft_registry::{
-    Array, Build, Class, Context, Fault, FieldId, FromValue, Kind, Point, Value, Vectors,
+    Array, Build, CallError, Class, Context, FieldId, FromValue, Kind, Point, Value, Vectors,
 };
 use std::sync::Arc;
 
@@ -96,7 +96,7 @@ macro_rules! measure {
         }
 
         impl<T: Real> Build<T> for $kind<T> {
-            fn build(self, $context: &Context) -> Result<Value<T>, Fault> {
+            fn build(self, $context: &Context) -> Result<Value<T>, CallError> {
                 let $this = self;
                 let $set = &$this.set.0;
                 let $region = region(&$set.re(), &$this.low, &$this.high, [Self::SET, Self::HIGH])?;
@@ -151,8 +151,8 @@ measure!(
     }
 );
 
-fn empty(set: FieldId) -> Fault {
-    Fault::new("empty-set", "the set has no volume in the box")
+fn empty(set: FieldId) -> CallError {
+    CallError::new("empty-set", "the set has no volume in the box")
         .expected("a solid in the box")
         .in_field(set)
 }
@@ -190,7 +190,7 @@ fn refined<T: Real>(
     field: FieldId,
     context: &Context,
     measure: impl Fn(&crate::Options) -> Result<T, FieldError>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let asked = match accuracy {
         Some(a) => Some(
             crate::error::positive("accuracy", a.re()).map_err(|e| fault(&e).in_field(field))?,
@@ -220,7 +220,7 @@ fn area<T: Real>(
     let lifter = Lifter::of(set, &plain, region.corners);
     let own = |facets: &Facets| -> Result<T, FieldError> {
         let (positions, primitives) = (lifter.positions(facets)?, lifter.primitives(facets)?);
-        // A face of the box is no surface of the set.
+        // A face of the box is not a surface of the set.
         let counts = |leaf: u32| (leaf as usize) < facets.own_leaves;
         Ok(Curved::new(&facets.flat()).area(&positions, &primitives, counts))
     };
@@ -269,13 +269,13 @@ pub struct VolumeBracket<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How often the box is halved.
+    /// Number of halvings of the box.
     #[field(default = 6, min = 1, max = 12)]
     depth: u32,
 }
 
 impl<T: Real> Build<T> for VolumeBracket<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let set = self.set.0.re();
         let region = region(&set, &self.low, &self.high, [Self::SET, Self::HIGH])?;
         let volume = bracket(&set, &region.over, self.depth).map_err(|e| fault(&e))?.volume();
@@ -284,7 +284,7 @@ impl<T: Real> Build<T> for VolumeBracket<T> {
     }
 }
 
-/// Where a point lies: "solid", "surface" or "air".
+/// The position of a point: "solid", "surface" or "air".
 #[derive(Kind)]
 #[kind(
     class = Text,
@@ -297,13 +297,13 @@ pub struct Member<T: Real> {
     set: Solid<T>,
     /// The point.
     point: Point<T>,
-    /// How near to a surface counts as on it.
+    /// Distance from a surface that counts as on it.
     #[field(default = 1e-9, min = 0)]
     tolerance: T,
 }
 
 impl<T: Real> Build<T> for Member<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let place = self.set.0.member(self.point.xyz, self.tolerance.re());
         Ok(Value::text(match place {
             Membership::Solid => "solid",
@@ -329,7 +329,7 @@ pub struct Winner<T: Real> {
 }
 
 impl<T: Real> Build<T> for Winner<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let word = match self.set.0.winner(self.point.xyz) {
             (_, Some(leaf)) => {
                 let leaf = self.set.0.leaves().swap_remove(leaf);
@@ -349,8 +349,8 @@ enum Either<T: Real> {
 
 impl<T: Real> FromValue<T> for Either<T> {
     const CLASS: Class = Class::Set;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
-        let wrong = || Fault::wrong_class(Class::Set, value.class());
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
+        let wrong = || CallError::wrong_class(Class::Set, value.class());
         match value {
             Value::Set(_) => set_of(value).map(Either::Set).ok_or_else(wrong),
             _ => primitive_of(value).map(Either::Field).ok_or_else(wrong),
@@ -374,7 +374,7 @@ pub struct Gradient<T: Real> {
 }
 
 impl<T: Real> Build<T> for Gradient<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let p = self.point.xyz;
         Ok(Value::Vector(match self.shape {
             Either::Field(f) => f.gradient(p).slope,
@@ -401,7 +401,7 @@ pub struct Range<T: Real> {
 }
 
 impl<T: Real> Build<T> for Range<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let over = Box3 { low: self.low.xyz.re(), high: self.high.xyz.re() };
         let over = crate::error::solid_box(over).map_err(|e| fault(&e).in_field(Self::HIGH))?;
         let range = match self.shape {
@@ -428,7 +428,7 @@ pub struct Degree<T: Real> {
 }
 
 impl<T: Real> Build<T> for Degree<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let degree = match self.shape {
             Either::Field(f) => f.degree(),
             Either::Set(s) => s.degree(),
@@ -458,13 +458,13 @@ pub struct NearestPoint<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How much nearer another point may be; by default 1e-6 of the box.
+    /// Error bound of the distance; by default 1e-6 of the box.
     #[field(default)]
     accuracy: Option<T>,
 }
 
 impl<T: Real> Build<T> for NearestPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let set = &self.set.0;
         let plain = set.re();
         let over = region(&plain, &self.low, &self.high, [Self::SET, Self::HIGH])?.over;
@@ -472,7 +472,7 @@ impl<T: Real> Build<T> for NearestPoint<T> {
         let p = self.point.xyz;
         let found = crate::nearest(&plain, p.re(), &over, accuracy).map_err(|e| fault(&e))?;
         let Some(found) = found else {
-            return Err(Fault::new("no-surface", "the set has no surface in the box")
+            return Err(CallError::new("no-surface", "the set has no surface in the box")
                 .expected("a set whose surface passes through the box")
                 .in_field(Self::SET));
         };
@@ -481,7 +481,7 @@ impl<T: Real> Build<T> for NearestPoint<T> {
     }
 }
 
-/// How far along a ray, in lengths of its direction, it first meets the surface of a set.
+/// The first intersection of a ray with the surface of a set, in lengths of its direction.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -492,17 +492,17 @@ impl<T: Real> Build<T> for NearestPoint<T> {
 pub struct FirstHit<T: Real> {
     /// The set.
     set: Solid<T>,
-    /// Where the ray begins.
+    /// Start of the ray.
     start: Point<T>,
-    /// Where it goes.
+    /// Its image.
     direction: Point<T>,
-    /// How far it goes; by default through the box of the set.
+    /// Its length; by default through the box of the set.
     #[field(default, min = 0)]
     length: Option<T>,
 }
 
 impl<T: Real> Build<T> for FirstHit<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let set = &self.set.0;
         let plain = set.re();
         let (start, direction) = (self.start.xyz, self.direction.xyz);
@@ -512,7 +512,8 @@ impl<T: Real> Build<T> for FirstHit<T> {
             return Err(fault(&none).in_field(Self::DIRECTION));
         }
         let none = || {
-            Fault::new("no-hit", "the ray does not meet the set").expected("a ray that meets it")
+            CallError::new("no-hit", "the ray does not meet the set")
+                .expected("a ray that meets it")
         };
         let length = match self.length {
             Some(length) => length.re(),
@@ -533,7 +534,7 @@ impl<T: Real> Build<T> for FirstHit<T> {
     }
 }
 
-/// How far two sets are apart; 0 where they overlap or touch.
+/// The distance between two sets; 0 where they overlap or touch.
 ///
 /// The box is found when it is not given.
 #[derive(Kind)]
@@ -554,13 +555,13 @@ pub struct Distance<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How much nearer they may be; by default 1e-5 of the box.
+    /// Error bound of the distance; by default 1e-5 of the box.
     #[field(default)]
     accuracy: Option<T>,
 }
 
 impl<T: Real> Build<T> for Distance<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [a, b] = [&self.a.0, &self.b.0];
         let [p, q] = [a.re(), b.re()];
         let over =
@@ -579,7 +580,7 @@ impl<T: Real> Build<T> for Distance<T> {
     }
 }
 
-/// How many bodies a set is of, those that only touch counted apart: by facets.
+/// The number of bodies of a set, those that only touch counted separately: by facets.
 #[derive(Kind)]
 #[kind(
     class = Number,
@@ -596,13 +597,13 @@ pub struct Components<T: Real> {
     /// High corner of the box.
     #[field(default)]
     high: Option<Point<T>>,
-    /// How often the longest side of the box is halved.
+    /// Number of halvings of the longest side of the box.
     #[field(default = 6, min = 1, max = 10)]
     depth: u32,
 }
 
 impl<T: Real> Build<T> for Components<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let set = self.set.0.re();
         if set.is_nothing() {
             return Ok(Value::Number(T::zero()));
@@ -626,13 +627,13 @@ impl<T: Real> Build<T> for Components<T> {
 pub struct Bounds<T: Real> {
     /// The set.
     set: Solid<T>,
-    /// How much wider than the set it may be.
+    /// Largest excess over the set.
     #[field(default = 1e-3, min = 0)]
     accuracy: T,
 }
 
 impl<T: Real> Build<T> for Bounds<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let found = crate::bounds(&self.set.0.re(), self.accuracy.re()).map_err(|e| fault(&e))?;
         let Some(over) = found else { return Err(empty(Self::SET)) };
         let ends = vec![Vec3::lifted(over.low), Vec3::lifted(over.high)];

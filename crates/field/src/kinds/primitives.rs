@@ -3,7 +3,7 @@
 use super::read::{Shape, field};
 use crate::Primitive;
 use moldloft_num::{Axis, Plane, Real};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 
 /// The half-space behind a plane: the distance from it, positive on the side of the normal.
 #[derive(Kind)]
@@ -21,7 +21,7 @@ pub struct HalfSpace<T: Real> {
 }
 
 impl<T: Real> Build<T> for HalfSpace<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         field(Primitive::plane(self.normal.xyz, self.point.xyz))
     }
 }
@@ -41,7 +41,7 @@ pub struct BehindPlane<T: Real> {
 }
 
 impl<T: Real> Build<T> for BehindPlane<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         field(Primitive::plane(self.plane.normal, self.plane.point))
     }
 }
@@ -66,7 +66,7 @@ pub struct Sphere<T: Real> {
 }
 
 impl<T: Real> Build<T> for Sphere<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (centre, radius) = (self.centre.xyz, self.radius);
         field(match self.distance {
             0 => Primitive::sphere(centre, radius),
@@ -96,7 +96,7 @@ pub struct Cylinder<T: Real> {
 }
 
 impl<T: Real> Build<T> for Cylinder<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         field(match self.distance {
             0 => Primitive::cylinder(self.axis, self.radius),
             _ => Primitive::cylinder_distance(self.axis, self.radius),
@@ -121,7 +121,7 @@ pub struct Cone<T: Real> {
 }
 
 impl<T: Real> Build<T> for Cone<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         field(Primitive::cone(self.axis, self.angle))
     }
 }
@@ -146,7 +146,7 @@ pub struct Torus<T: Real> {
 }
 
 impl<T: Real> Build<T> for Torus<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         field(Primitive::torus(self.axis, self.major, self.minor))
     }
 }
@@ -170,12 +170,12 @@ pub struct Cyclide<T: Real> {
     /// Mean radius of the tube.
     #[field(min = 0)]
     minor: T,
-    /// How much thinner the tube is there, and thicker opposite; below the major radius.
+    /// Variation of the tube's radius: thinner there, thicker opposite; below the major radius.
     change: T,
 }
 
 impl<T: Real> Build<T> for Cyclide<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         field(Primitive::cyclide(self.axis, self.along.xyz, self.major, self.minor, self.change))
     }
 }
@@ -196,7 +196,7 @@ pub struct FieldObject<T: Real> {
 }
 
 impl<T: Real> Build<T> for FieldObject<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         drop(self.of);
         Ok(self.field.value())
     }

@@ -2,7 +2,7 @@
 
 use crate::{FieldError, Primitive, Set};
 use moldloft_num::{Field, Real, Vec3};
-use moldloft_registry::{Class, Fault, FieldRef, FromValue, Implicit, SetRef, Value};
+use moldloft_registry::{CallError, Class, FieldRef, FromValue, Implicit, SetRef, Value};
 use std::sync::Arc;
 
 impl<T: Real> Implicit<T> for Primitive<T> {
@@ -87,14 +87,14 @@ impl<T: Real> Shape<T> {
 
 impl<T: Real> FromValue<T> for Shape<T> {
     const CLASS: Class = Class::Field;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let name = match value {
             Value::Field(f) => f.name.clone(),
             _ => None,
         };
         match primitive_of(value) {
             Some(primitive) => Ok(Self { primitive, name }),
-            None => Err(Fault::wrong_class(Class::Field, value.class())),
+            None => Err(CallError::wrong_class(Class::Field, value.class())),
         }
     }
 }
@@ -104,16 +104,16 @@ pub struct Solid<T: Real>(pub Set<T>);
 
 impl<T: Real> FromValue<T> for Solid<T> {
     const CLASS: Class = Class::Set;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match set_of(value) {
             Some(set) => Ok(Self(set)),
-            None => Err(Fault::wrong_class(Class::Set, value.class())),
+            None => Err(CallError::wrong_class(Class::Set, value.class())),
         }
     }
 }
 
-/// The error as a fault that says how to mend it.
-pub fn fault(error: &FieldError) -> Fault {
+/// The error as a fault that says how to fix it.
+pub fn fault(error: &FieldError) -> CallError {
     let id = match error {
         FieldError::NotFinite { .. } => "not-finite",
         FieldError::NotPositive { .. }
@@ -133,21 +133,21 @@ pub fn fault(error: &FieldError) -> Fault {
         FieldError::Cancelled => "cancelled",
         FieldError::NoValue { .. } => "no-value",
     };
-    let fault = Fault::new(id, error.to_string());
+    let fault = CallError::new(id, error.to_string());
     match error {
         FieldError::Division => fault.help("multiply out, or divide by a number"),
         FieldError::Exponent { .. } => {
             fault.expected("a whole number from 0 to 1000").help("roots are sqrt() and s_sqrt()")
         }
         FieldError::Lambda { .. } => fault.expected("a number above 0 and below 1"),
-        FieldError::RailsMeet { .. } => fault.help("set the rails apart, or look at a smaller box"),
+        FieldError::RailsMeet { .. } => fault.help("separate the rails, or use a smaller box"),
         FieldError::RailInside { .. } => {
             fault.help("a rail must cut each body outside the other: move it outward")
         }
         FieldError::Unbounded { .. } => {
             fault.expected("a box: {low corner}, {high corner}").help("or cut it with planes")
         }
-        FieldError::TooFine { .. } => fault.help("ask for a coarser accuracy, or a smaller box"),
+        FieldError::TooFine { .. } => fault.help("use a coarser accuracy, or a smaller box"),
         FieldError::ThinBox { depth, .. } => {
             fault.expected(format!("a depth of {depth} or more, or a thicker box"))
         }
@@ -163,11 +163,11 @@ pub fn fault(error: &FieldError) -> Fault {
 }
 
 /// A primitive as the value of a row, or its error as a fault.
-pub fn field<T: Real>(primitive: Result<Primitive<T>, FieldError>) -> Result<Value<T>, Fault> {
+pub fn field<T: Real>(primitive: Result<Primitive<T>, FieldError>) -> Result<Value<T>, CallError> {
     primitive.map(field_value).map_err(|e| fault(&e))
 }
 
 /// A set as the value of a row, or its error as a fault.
-pub fn set<T: Real>(set: Result<Set<T>, FieldError>) -> Result<Value<T>, Fault> {
+pub fn set<T: Real>(set: Result<Set<T>, FieldError>) -> Result<Value<T>, CallError> {
     set.map(set_value).map_err(|e| fault(&e))
 }

@@ -3,21 +3,21 @@
 use super::read::fault;
 use crate::{Set, bounds};
 use moldloft_num::{Box3, Real, Vec3};
-use moldloft_registry::{Fault, FieldId, Point};
+use moldloft_registry::{CallError, FieldId, Point};
 
 /// The box of two corners, if both are given; `field` is the second.
 pub fn corners<T: Real>(
     low: &Option<Point<T>>,
     high: &Option<Point<T>>,
     field: FieldId,
-) -> Result<Option<Box3>, Fault> {
+) -> Result<Option<Box3>, CallError> {
     match (low, high) {
         (Some(low), Some(high)) => {
             let over = Box3 { low: low.xyz.re(), high: high.xyz.re() };
             crate::error::solid_box(over).map(Some).map_err(|e| fault(&e).in_field(field))
         }
         (None, None) => Ok(None),
-        _ => Err(Fault::new("missing-argument", "a box has two corners, and one is missing")
+        _ => Err(CallError::new("missing-argument", "a box has two corners, and one is missing")
             .expected("low and high, or neither")
             .in_field(field)),
     }
@@ -42,7 +42,7 @@ pub fn region<T: Real>(
     low: &Option<Point<T>>,
     high: &Option<Point<T>>,
     [of, second]: [FieldId; 2],
-) -> Result<Region<T>, Fault> {
+) -> Result<Region<T>, CallError> {
     if let Some(over) = corners(low, high, second)? {
         let corners = low.as_ref().zip(high.as_ref()).map(|(l, h)| [l.xyz, h.xyz]);
         return Ok(Region { over, corners });
@@ -50,7 +50,7 @@ pub fn region<T: Real>(
     let over = around(set).map_err(|e| fault(&e).in_field(of))?;
     match over {
         Some(over) => Ok(Region { over, corners: None }),
-        None => Err(Fault::new("empty-set", "the set is empty: it has no box")
+        None => Err(CallError::new("empty-set", "the set is empty: it has no box")
             .expected("a set with points in it, or a box")
             .in_field(of)),
     }

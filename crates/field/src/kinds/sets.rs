@@ -3,7 +3,7 @@
 use super::read::{Shape, Solid, set, set_value};
 use crate::{Attributes, Set};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Point, Value};
 use std::sync::Arc;
 
 /// What a set is made of: its solid side, a wire or a point.
@@ -18,7 +18,7 @@ const STRAIGHT: f64 = 1e-9;
 
 impl<T: Real> FromValue<T> for Source<T> {
     const CLASS: Class = Class::Any;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match value {
             Value::Curve(curve) => {
                 let [from, to] = [0.0, 1.0].map(|t| curve.end(t));
@@ -29,10 +29,13 @@ impl<T: Real> FromValue<T> for Source<T> {
                     (p - along * p.dot(along)).norm()
                 });
                 if bent.fold(0.0, f64::max) > STRAIGHT * length {
-                    return Err(Fault::new("not-straight", "a set is made of straight lines only")
-                        .expected("a line")
-                        .found("a curve that bends")
-                        .help("take the sheets of two fields that meet in the curve"));
+                    return Err(CallError::new(
+                        "not-straight",
+                        "a set is made of straight lines only",
+                    )
+                    .expected("a line")
+                    .found("a curve that bends")
+                    .help("take the sheets of two fields that meet in the curve"));
                 }
                 Ok(Self::Line([from, to]))
             }
@@ -61,7 +64,7 @@ pub struct SetOf<T: Real> {
 }
 
 impl<T: Real> Build<T> for SetOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         match self.field {
             Source::Field(field) => {
                 let set = Set::new(&field.primitive);
@@ -87,7 +90,7 @@ pub struct Cuboid<T: Real> {
 }
 
 impl<T: Real> Build<T> for Cuboid<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         set(Set::cuboid(self.low.xyz, self.high.xyz))
     }
 }
@@ -112,7 +115,7 @@ pub struct Tetrahedron<T: Real> {
 }
 
 impl<T: Real> Build<T> for Tetrahedron<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         set(Set::tetrahedron([self.a.xyz, self.b.xyz, self.c.xyz, self.d.xyz]))
     }
 }
@@ -131,7 +134,7 @@ pub struct Thin<T: Real> {
 }
 
 impl<T: Real> Build<T> for Thin<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(set_value(self.set.0.skin()))
     }
 }
@@ -146,7 +149,7 @@ pub struct Everything<T: Real> {
 }
 
 impl<T: Real> Build<T> for Everything<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let _ = self.unused;
         Ok(set_value(Set::everything()))
     }
@@ -167,7 +170,7 @@ pub struct Nothing<T: Real> {
 }
 
 impl<T: Real> Build<T> for Nothing<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let _ = self.unused;
         Ok(set_value(Set::nothing()))
     }
@@ -201,7 +204,7 @@ pub struct Attributed<T: Real> {
 }
 
 impl<T: Real> Build<T> for Attributed<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let text = |t: Option<Arc<str>>| t.map(|t| t.to_string());
         Ok(set_value(self.set.0.with(Attributes {
             given: self.name.is_some(),
@@ -228,7 +231,7 @@ pub struct Regularized<T: Real> {
 }
 
 impl<T: Real> Build<T> for Regularized<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(set_value(self.set.0.regularized()))
     }
 }
@@ -245,7 +248,7 @@ pub struct SetObject<T: Real> {
 }
 
 impl<T: Real> Build<T> for SetObject<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         drop(self.of);
         Ok(set_value(self.set.0))
     }

@@ -5,11 +5,11 @@ use crate::shapes::{Beside, Inside, Near, Tube};
 use crate::{FieldError, Primitive};
 use moldloft_num::Real;
 use moldloft_registry::{
-    Build, Context, CurveRef, Facets, Fault, FieldId, Kind, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, TriangleBody, Value,
 };
 use std::sync::Arc;
 
-fn positive<T: Real>(what: &'static str, value: T, field: FieldId) -> Result<T, Fault> {
+fn positive<T: Real>(what: &'static str, value: T, field: FieldId) -> Result<T, CallError> {
     crate::error::positive(what, value).map_err(|e: FieldError| fault(&e).in_field(field))
 }
 
@@ -30,7 +30,7 @@ pub struct TubeOf<T: Real> {
 }
 
 impl<T: Real> Build<T> for TubeOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let radius = positive("radius", self.radius, Self::RADIUS)?;
         Ok(field_value(Primitive::user(Arc::new(Tube::new(self.curve, radius)))))
     }
@@ -53,7 +53,7 @@ pub struct PlateOf<T: Real> {
 }
 
 impl<T: Real> Build<T> for PlateOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let thickness = positive("thickness", self.thickness, Self::THICKNESS)?;
         let near = Near::new(self.surface, Beside::Plate(thickness));
         Ok(field_value(Primitive::user(Arc::new(near))))
@@ -79,7 +79,7 @@ pub struct SideOf<T: Real> {
 }
 
 impl<T: Real> Build<T> for SideOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(field_value(Primitive::user(Arc::new(Near::new(self.surface, Beside::Side)))))
     }
 }
@@ -94,16 +94,16 @@ impl<T: Real> Build<T> for SideOf<T> {
 )]
 pub struct InsideOf<T: Real> {
     /// The body.
-    body: Arc<Facets<T>>,
+    body: Arc<TriangleBody<T>>,
 }
 
 impl<T: Real> Build<T> for InsideOf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         match Inside::new(self.body) {
             Ok(inside) => Ok(field_value(Primitive::user(Arc::new(inside)))),
             Err(open) => {
                 let found = format!("{} edges without just one triangle on each side", open.edges);
-                Err(Fault::new("not-closed", "the body is not closed, so it has no inside")
+                Err(CallError::new("not-closed", "the body is not closed, so it has no inside")
                     .expected("a closed, oriented body")
                     .found(found)
                     .in_field(Self::BODY))

@@ -27,7 +27,7 @@ use crate::facet::vertex::{Solver, Surfaces};
 
 /// How far a middle may be from that of the chord, as a share of its length; beyond, the side stays straight.
 const AWAY: f64 = 0.3;
-/// A layer whose curvature changes its area by more than this is no thin layer of a smooth surface.
+/// A layer whose curvature changes its area by more than this is not a thin layer of a smooth surface.
 const THIN: f64 = 0.2;
 /// How many triangles are summed at once, so that the order of sums does not depend on threads.
 const CHUNK: usize = 512;

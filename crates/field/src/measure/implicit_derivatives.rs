@@ -29,7 +29,7 @@ impl<T: Real> Lifter<T> {
     }
 
     /// As [`Lifter::new`], given the set in plain numbers of which facets were made. Primitives from outside
-    /// are told by their identity, so they must be those.
+    /// are identified by their identity, so they must be those.
     pub fn of(set: &Set<T>, plain: &Set<f64>, corners: Option<[Vec3<T>; 2]>) -> Self {
         let pairs = plain.traversal().into_iter().zip(set.traversal()).collect();
         Self { pairs, corners }

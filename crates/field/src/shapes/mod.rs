@@ -8,7 +8,7 @@ use crate::expr::interval::Interval;
 use crate::expr::oracle::Oracle;
 use moldloft_locate::{NearestCurve, NearestSurface, PlainCurve, PlainSurface};
 use moldloft_num::{Box3, Curve, CurveJet, Field, Order, Real, SurfJet, Surface, Vec3};
-use moldloft_registry::{CurveRef, Facets, SurfaceRef};
+use moldloft_registry::{CurveRef, SurfaceRef, TriangleBody};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -195,7 +195,7 @@ const LEAF: usize = 4;
 
 /// The signed distance from a closed mesh.
 pub struct Inside<T: Real> {
-    body: Arc<Facets<T>>,
+    body: Arc<TriangleBody<T>>,
     plain: Arc<Vec<Vec3>>,
     tree: Arc<Tree>,
 }
@@ -205,7 +205,7 @@ impl<T: Real> Inside<T> {
     ///
     /// # Errors
     /// How many edges are open.
-    pub fn new(body: Arc<Facets<T>>) -> Result<Self, NotClosed> {
+    pub fn new(body: Arc<TriangleBody<T>>) -> Result<Self, NotClosed> {
         let points: Vec<Vec3> = body.points.iter().map(|p| p.re()).collect();
         let mut edges: HashMap<(u32, u32), usize> = HashMap::new();
         for t in &body.triangles {
@@ -283,7 +283,7 @@ impl Tree {
         number
     }
 
-    /// The triangle nearest to `p`, the weights of its corners and the normal that tells the side.
+    /// The triangle nearest to `p`, the weights of its corners and the normal that determines the side.
     fn nearest(&self, points: &[Vec3], triangles: &[[u32; 3]], p: Vec3) -> (u32, [f64; 3], Vec3) {
         let reach = |b: &Box3| {
             (0..3).map(|k| (b.low[k] - p[k]).max(p[k] - b.high[k]).max(0.0).powi(2)).sum::<f64>()
@@ -382,7 +382,7 @@ impl<T: Real> Oracle<T> for Inside<T> {
         [Interval { low: -1.0, high: 1.0 }; 3]
     }
     fn re(&self) -> Arc<dyn Oracle<f64>> {
-        let body = Facets {
+        let body = TriangleBody {
             points: self.plain.to_vec(),
             triangles: self.body.triangles.clone(),
             groups: Vec::new(),

@@ -66,7 +66,7 @@ impl Piece {
         let (middle, reach) = ball(n);
         let reach = reach + slack;
         // The sine of the angle between a vector and one at most `error` from it; the chord of that angle
-        // is at most sqrt(2) sines while it is no right angle.
+        // is at most sqrt(2) sines while it is not a right angle.
         let known = error < size;
         let (normal, turn) = if known {
             (across / size, std::f64::consts::SQRT_2 * (error / size) * (1.0 + 1e-12))

@@ -3,7 +3,7 @@
 use moldloft_field::rows;
 use moldloft_num::{Curve, CurveJet, Dual4, Order, Real, Vec3};
 use moldloft_registry::{
-    Class, Context, CurveRef, Given, Point, Registry, Row, Scalar, Value, arrange,
+    Class, Context, CurveRef, Given, Point, Registry, Row, Scalar, Value, bind_arguments,
 };
 
 /// The line from the origin along z.
@@ -37,8 +37,8 @@ fn arguments<T: Real>(row: &Row, radius: T) -> Vec<Value<T>> {
 fn call<T: Scalar>(
     row: &Row,
     positional: Vec<Value<T>>,
-) -> Result<Value<T>, moldloft_registry::Fault> {
-    let (args, _) = arrange(row, Given { positional, named: vec![] }, |_| Class::Any)?;
+) -> Result<Value<T>, moldloft_registry::CallError> {
+    let (args, _) = bind_arguments(row, Given { positional, named: vec![] }, |_| Class::Any)?;
     T::call(row, &args, &Context::default())
 }
 

@@ -1,6 +1,6 @@
 //! Plot3D in: which variant the bytes are, and the grids that they hold.
 //!
-//! Text is told from binary by its bytes; binary files are tried as Fortran records in both byte
+//! Text is distinguished from binary by its bytes; binary files are tried as Fortran records in both byte
 //! orders and mark sizes, then as plain numbers.
 
 use super::read_text::read_text;
@@ -79,7 +79,7 @@ fn looks_like_text(bytes: &[u8]) -> bool {
     first.is_some_and(|b| b.is_ascii_digit() || *b == b'+') && bytes.iter().all(of_text)
 }
 
-/// Refuses what is no number, and tells where the first is.
+/// Refuses what is not a number, and reports the first place.
 fn finite(blocks: &[StructuredGrid]) -> Result<(), ReadError> {
     for (number, block) in blocks.iter().enumerate() {
         for (axis, plane) in ["x", "y", "z"].iter().zip(&block.planes) {

@@ -145,6 +145,6 @@ pub(super) fn read_text(bytes: &[u8]) -> Result<(Vec<StructuredGrid>, Variant), 
             ),
             format!("{left} numbers"),
         ),
-        None => error("the sizes of a grid".into(), "numbers that are no sizes".into()),
+        None => error("the sizes of a grid".into(), "numbers that are not sizes".into()),
     })
 }

@@ -537,7 +537,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 }
 
-/// The value of an entry that is computed of others; `None` for a fault, which the tree tells.
+/// The value of an entry that is computed of others; `None` for a fault, which the tree reports.
 fn compute<'v, T: Real>(entry: &Entry<T>, of: impl Fn(Cell) -> &'v Value<T>) -> Option<Value<T>> {
     match *entry {
         Entry::Binary(op, a, b) => match (op, of(a), of(b)) {

@@ -113,7 +113,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         Ok(value)
     }
 
-    /// What comes of an expression, by its recipe when it has one that fits, else through the tree.
+    /// The value of an expression, from its cached tape if one fits, else through the tree.
     fn worked(
         &mut self,
         m: &Module,
@@ -178,7 +178,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    /// A part of an expression that is no operator, executed as it stands; an object is read when
+    /// A part of an expression that is not an operator, executed as it stands; an object is read when
     /// `read`.
     fn leaf(&mut self, m: &Module, id: ExprId, read: bool, work: &mut Work<T>) -> Operated<T> {
         if let ExprKind::Number(literal) = m.program[id].kind {
@@ -673,7 +673,7 @@ pub(crate) fn is_elementwise(op: BinaryOp) -> bool {
     )
 }
 
-/// True when the outermost part of an expression is an operator, so that it is no object.
+/// True when the outermost part of an expression is an operator, so that it is not an object.
 fn is_operator(m: &Module, id: ExprId) -> bool {
     match m.program[m.program.bare(id)].kind {
         ExprKind::Chain(_) | ExprKind::Magnitude(_) | ExprKind::Unary { .. } => true,

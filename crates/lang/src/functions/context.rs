@@ -17,7 +17,7 @@ use moldloft_syntax::sdl::{Arg, ExprId, List, Symbol, Type};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// The finest grids: intervals halved so often.
+/// The finest grids: intervals halved that many times.
 pub const MOST_REFINED: u32 = 8;
 
 /// A built-in function, as the reference and the editor show it.
@@ -38,7 +38,7 @@ pub const BUILTINS: [Builtin; 22] = [
     Builtin {
         name: "format",
         signature: "format(pattern, ...)",
-        doc: "Text of numbers by the directives of C; the pattern is used again for what is left over.",
+        doc: "Formats numbers by C directives; the pattern repeats for the remaining values.",
         example: "assert format(\"%6.2f|%d\", 2.5, 3) == \"  2.50|3\";",
     },
     Builtin {
@@ -68,55 +68,55 @@ pub const BUILTINS: [Builtin; 22] = [
     Builtin {
         name: "more",
         signature: "more(c)",
-        doc: "Whether a multiple argument, or a file, has something that was not read yet.",
+        doc: "Reports whether a multiple argument, or a file, has unread items.",
         example: "function float total(float x...) { float s = 0; while (more(x)) s += next(x); return s; } assert total(1, 2) == 3;",
     },
     Builtin {
         name: "next",
         signature: "next(c)",
-        doc: "The next of a multiple argument.",
+        doc: "The next item of a multiple argument.",
         example: "function float second(float x...) { next(x); return next(x); } assert second(1, 2) == 2;",
     },
     Builtin {
         name: "rewind",
         signature: "rewind(c)",
-        doc: "Goes back to the first of a multiple argument, or to the beginning of a file.",
+        doc: "Returns to the first item of a multiple argument, or to the start of a file.",
         example: "function float first(float x...) { next(x); rewind(x); return next(x); } assert first(1, 2) == 1;",
     },
     Builtin {
         name: "count",
         signature: "count(c)",
-        doc: "How many arguments a multiple argument has.",
+        doc: "The number of items of a multiple argument.",
         example: "function float n(float x...) { return count(x); } assert n(5, 6, 7) == 3;",
     },
     Builtin {
         name: "isset",
         signature: "isset(a[i])",
-        doc: "Whether a variable, or all of a part of it, was given a value.",
+        doc: "Reports whether a variable, or every element of a section, has a value.",
         example: "curve c[3]; c[1:2] = {0, 0, 0}; assert isset(c[2]) and not isset(c);",
     },
     Builtin {
         name: "check_edges",
         signature: "check_edges(s)",
-        doc: "Stops with the place and the gap when the four edges of a surface are not set or do not meet.",
+        doc: "Stops with location and gap when the four edges of a surface are not set or do not meet.",
         example: "surface s[3,3] = {0, 0, 0}; check_edges(s);",
     },
     Builtin {
         name: "refined",
         signature: "refined(n)",
-        doc: "n points, or more when the run is refined: intervals double, so that coarse points recur.",
+        doc: "n points, or more when the run is refined: intervals are halved, so that coarse points recur.",
         example: "farray s = uniform(0, 1, refined(5));",
     },
     Builtin {
         name: "refined_step",
         signature: "refined_step(ds)",
-        doc: "A step per index that goes with refined(n): it halves when intervals double.",
+        doc: "A step per index consistent with refined(n): halved at each refinement.",
         example: "farray s = d_tanh(0, 1, refined_step(.01), 0, refined(25));",
     },
     Builtin {
         name: "refinement",
         signature: "refinement()",
-        doc: "Into how many parts each interval of refined(n) is cut: 1, 2, 4, ...",
+        doc: "The number of parts of each interval of refined(n): 1, 2, 4, ...",
         example: "assert refinement() >= 1;",
     },
     Builtin {
@@ -134,7 +134,7 @@ pub const BUILTINS: [Builtin; 22] = [
     Builtin {
         name: "write_stl",
         signature: "write_stl(name, words, s1, s2, ...)",
-        doc: "Writes surfaces as binary STL, triangles without area at poles left out; \"flip\" turns the normals round.",
+        doc: "Writes surfaces as binary STL, triangles without area at poles left out; \"flip\" reverses the normals.",
         example: "surface s[2,2]; s[1,] = {{0, 0, 0}, {0, 1, 0}}; s[2,] = {{1, 0, 0}, {1, 1, 0}}; write_stl(\"s.stl\", s);",
     },
     Builtin {
@@ -146,7 +146,7 @@ pub const BUILTINS: [Builtin; 22] = [
     Builtin {
         name: "write_csv",
         signature: "write_csv(name, c1, c2, ...)",
-        doc: "Writes points as lines of x,y,z under a heading, all digits kept.",
+        doc: "Writes points as lines of x,y,z under a heading, with all digits.",
         example: "curve c[2] = {1, 2, 3}; write_csv(\"c.csv\", c); assert read_points(\"c.csv\")[2] . {1, 0, 0} == 1;",
     },
     Builtin {
@@ -237,7 +237,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         if !(least..=most).contains(&given.len()) {
             let id = if given.len() < least { "missing-argument" } else { "too-many-arguments" };
-            let message = format!("{} takes other arguments", builtin.name);
+            let message = format!("invalid arguments of {}", builtin.name);
             return Err(Diagnostic::error(id, message)
                 .at(span)
                 .expected(builtin.signature)
@@ -319,7 +319,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if n.fract() == 0.0 && (1.0..=1e9).contains(&n) {
             return Ok(n);
         }
-        Err(Diagnostic::error("not-whole", "a number of points is whole")
+        Err(Diagnostic::error("not-whole", "the number of points must be a whole number")
             .at(m.program[arg].span)
             .expected("a whole number of at least 1")
             .found(n.to_string()))
@@ -341,7 +341,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if unit.fract() == 0.0 && (0.0..1e6).contains(&unit) {
             return Ok(unit as u32);
         }
-        Err(Diagnostic::error("not-open", "this is no file")
+        Err(Diagnostic::error("not-open", "this is not a file")
             .at(span)
             .expected("a file that open() gave, or a unit number")
             .found(unit.to_string()))
@@ -370,7 +370,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if mode != Mode::Read && self.run.extent() == Extent::Edit {
             return Err(Diagnostic::error(
                 "misplaced-assignment",
-                "an expression from outside writes no files",
+                "a queried expression cannot write files",
             )
             .expected("an expression that reads the program's variables"));
         }
@@ -392,7 +392,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         match self.root(place).map(|b| &b.what) {
             Some(Binding::Variable { ty, value, known, .. }) => Ok((*ty, value, known)),
             Some(Binding::Poisoned) | None => Err(silent()),
-            _ => Err(Diagnostic::error("not-assignable", "this is no variable")
+            _ => Err(Diagnostic::error("not-assignable", "this is not a variable")
                 .expected("a variable, or a part of one")
                 .found("an object or parameter")),
         }
@@ -411,8 +411,11 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Some(shape) => section(shape),
             None if matches!(value, Value::Number(_) | Value::Vector(_)) => None,
             None => {
-                return Err(Diagnostic::error("no-shape", "it is not known how much to read")
-                    .help("declare the dimensions of the array first"));
+                return Err(Diagnostic::error(
+                    "no-shape",
+                    "the number of values to read is unknown",
+                )
+                .help("declare the dimensions of the array first"));
             }
         };
         let count = shape.map_or(1, ArrayShape::count);
@@ -486,7 +489,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                         format!("all arguments of `{text}` were read"),
                     )
                     .expected(format!("at most {all} calls of next"))
-                    .help(format!("ask more({text}) first, or begin again with rewind({text})")));
+                    .help(format!("test more({text}) first, or start over with rewind({text})")));
                 };
                 let item: Passed<T> = item.clone();
                 self.set_read(name, read + 1);
@@ -531,7 +534,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 let message =
                     format!("the edge {edge} of `{name}` is not set: {name}[{}]", at.join(","));
                 return Err(Diagnostic::error("edge-not-set", message)
-                    .expected("all four edges filled before the inside is")
+                    .expected("all four edges set before the interior")
                     .found(format!("no value at [{}]", at.join(",")))
                     .help(format!("assign {name}[1,], {name}[{name}.d1,], {name}[,1] and {name}[,{name}.d2] first")));
             }

@@ -4,7 +4,7 @@ use crate::value::variables::Called as _;
 use moldloft_num::Real;
 use moldloft_registry::export::field_id;
 use moldloft_registry::{
-    Array, Body, Class, Context, DefaultValue, Fault, Field, Row, Unit, Value,
+    Array, Body, CallError, Class, Context, DefaultValue, Field, Row, Unit, Value,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -24,15 +24,15 @@ const fn argument(name: &'static str, help: &'static str) -> Field {
     }
 }
 
-fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> Fault {
+fn not_a_number<T: Real>(value: &Value<T>, position: usize) -> CallError {
     let found = value.called();
-    Fault::new("wrong-class", format!("expected a number or a row of numbers, found {found}"))
+    CallError::new("wrong-class", format!("expected a number or a row of numbers, found {found}"))
         .expected("a number or an farray")
         .found(found)
         .in_field(field_id(position))
 }
 
-fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, Fault> {
+fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Value<T>, CallError> {
     if let Some(field) = crate::functions::sets::function(name, value) {
         return field;
     }
@@ -46,7 +46,11 @@ fn each<T: Real>(name: &str, value: &Value<T>, f: impl Fn(T) -> T) -> Result<Val
     }
 }
 
-fn pairs<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Result<Value<T>, Fault> {
+fn pairs<T: Real>(
+    a: &Value<T>,
+    b: &Value<T>,
+    f: impl Fn(T, T) -> T,
+) -> Result<Value<T>, CallError> {
     let array = |shape, items| Ok(Value::Numbers(Arc::new(Array { shape, items })));
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => Ok(Value::Number(f(*a, *b))),
@@ -59,10 +63,11 @@ fn pairs<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Result<V
         (Value::Numbers(a), Value::Numbers(b)) if a.shape == b.shape => {
             array(a.shape, a.items.iter().zip(&b.items).map(|(&x, &y)| f(x, y)).collect())
         }
-        (Value::Numbers(a), Value::Numbers(b)) => {
-            Err(Fault::new("shapes-differ", format!("shapes differ: {} and {}", a.shape, b.shape))
-                .expected("equal shapes, or a single number on one side"))
-        }
+        (Value::Numbers(a), Value::Numbers(b)) => Err(CallError::new(
+            "shapes-differ",
+            format!("shapes differ: {} and {}", a.shape, b.shape),
+        )
+        .expected("equal shapes, or a single number on one side")),
         (Value::Number(_) | Value::Numbers(_), other) => Err(not_a_number(other, 1)),
         (other, _) => Err(not_a_number(other, 0)),
     }
@@ -73,7 +78,7 @@ fn reduced<T: Real>(
     name: &str,
     args: &[Value<T>],
     f: impl Fn(T, T) -> T,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     if let Some(field) = crate::functions::sets::functions(name, args) {
         return field;
     }
@@ -91,7 +96,7 @@ fn reduced<T: Real>(
         .into_iter()
         .reduce(f)
         .map(Value::Number)
-        .ok_or_else(|| Fault::new("empty", "an empty row has no such number"))
+        .ok_or_else(|| CallError::new("empty", "an empty row has no such number"))
 }
 
 macro_rules! row {
@@ -162,7 +167,7 @@ pub(crate) fn apply<T: Real>(
     name: &str,
     f: Elementary<T>,
     args: &[Value<T>],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     match f {
         Elementary::Unary(f) => each(name, &args[0], f),
         Elementary::Binary(f) => match crate::functions::sets::functions(name, args) {
@@ -191,14 +196,14 @@ macro_rules! elementary {
         fn elementary_rows() -> Vec<Row> {
             vec![
                 $({
-                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
                         each($u, &args[0], $u_f)
                     }
                     row!($u, $u_doc, vec![argument("x", "A number, a row of numbers or a field.")],
                         "assert sin(0) == 0;", body)
                 },)*
                 $({
-                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+                    fn body<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
                         apply($b, Elementary::Binary($b_f), args)
                     }
                     let fields =
@@ -266,13 +271,13 @@ fn several() -> Vec<Field> {
 
 /// The rows of this file.
 pub fn rows() -> Vec<Row> {
-    fn least<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+    fn least<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("min", args, T::min)
     }
-    fn greatest<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+    fn greatest<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("max", args, T::max)
     }
-    fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, Fault> {
+    fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("sum", args, |a, b| a + b)
     }
     let mut rows = Vec::new();

@@ -61,7 +61,7 @@ impl Mode {
             "r" => Ok(Mode::Read),
             "w" => Ok(Mode::Write),
             "a" => Ok(Mode::Append),
-            _ => Err(Diagnostic::error("unknown-mode", format!("there is no mode \"{word}\""))
+            _ => Err(Diagnostic::error("unknown-mode", format!("unknown mode \"{word}\""))
                 .expected("\"r\" to read, \"w\" to write or \"a\" to append")
                 .found(format!("\"{word}\""))),
         }
@@ -87,7 +87,7 @@ fn inside(path: &str) -> Result<String, Diagnostic> {
             "" | "." => {}
             ".." => return Err(outside("it leaves the folder")),
             part if part.contains(|c: char| c.is_control()) => {
-                return Err(outside("it has characters that no name has"));
+                return Err(outside("it contains invalid characters"));
             }
             part => parts.push(part),
         }
@@ -246,7 +246,7 @@ impl Files {
         let word = &text[start..end];
         if word.is_empty() {
             return Err(Diagnostic::error("end-of-file", format!("`{name}` has no more numbers"))
-                .help("more(f) tells whether there is more to read"));
+                .help("more(f) reports whether there is more to read"));
         }
         // FORTRAN writes exponents with d as well.
         let spelled = word.replace(['d', 'D'], "e");
@@ -263,7 +263,7 @@ impl Files {
         let (name, text, at) = self.reading(unit)?;
         if *at >= text.len() {
             return Err(Diagnostic::error("end-of-file", format!("`{name}` has no more lines"))
-                .help("more(f) tells whether there is more to read"));
+                .help("more(f) reports whether there is more to read"));
         }
         let rest = &text[*at..];
         let end = rest.find('\n').unwrap_or(rest.len());

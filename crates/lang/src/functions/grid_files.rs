@@ -107,7 +107,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     fn write_grids(&mut self, m: &Module, name: &str, given: &[ExprId]) -> Result<(), Diagnostic> {
         if self.run.extent() == Extent::Edit {
-            let message = "an expression from outside writes no files";
+            let message = "a queried expression cannot write files";
             return Err(Diagnostic::error("misplaced-assignment", message)
                 .expected("an expression that reads the program's variables"));
         }
@@ -134,7 +134,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     if a.items.len() != ni * nj || a.items.iter().any(|x| x.re().fract() != 0.0) {
                         return Err(Diagnostic::error(
                             "shapes-differ",
-                            format!("blanking {} does not go with the surface before it", a.shape),
+                            format!("blanking {} does not fit the preceding surface", a.shape),
                         )
                         .at(span)
                         .expected(format!("a whole number for each of {ni} x {nj} points"))
@@ -168,7 +168,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             word if word == known => Ok(true),
             word => {
                 let expected = if known.is_empty() { "no words" } else { known };
-                Err(Diagnostic::error("unknown-word", format!("{name} knows no \"{word}\""))
+                Err(Diagnostic::error("unknown-word", format!("{name} has no option \"{word}\""))
                     .at(words_at)
                     .expected(expected.to_string()))
             }
@@ -208,7 +208,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                 if let Some(k) = blocks.iter().position(|b| b.size[0] < 2 || b.size[1] < 2) {
                     let message = format!("CGNS cannot hold `{}`: it has no cells", names[k]);
                     return Err(at(Diagnostic::error("cannot-write", message)
-                        .expected("surfaces of two lines and more each way")));
+                        .expected("surfaces with at least two points along each index")));
                 }
                 let bytes = plot3d::write(&blocks, Variant::default());
                 let bytes = bytes.map_err(|e| at(cannot(e)))?;

@@ -10,7 +10,7 @@ use moldloft_model::{Declaration, Extent, Failure};
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::field_id;
-use moldloft_registry::{Array, Class, Fault, Head, Scalar, Value};
+use moldloft_registry::{Array, Attributes, CallError, Class, Scalar, Value};
 use moldloft_syntax::sdl::{BinaryOp, Declarator, StmtId, StmtKind, Symbol, Type};
 use std::sync::Arc;
 
@@ -79,8 +79,8 @@ fn of_fields<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<
             } else {
                 "multiply out, or divide by a number: f / g = 0 is f = 0"
             };
-            Diagnostic::error("field-division", "a field is divided by numbers other than 0 only")
-                .expected("a number other than 0")
+            Diagnostic::error("field-division", "a field can only be divided by a non-zero number")
+                .expected("a non-zero number")
                 .found(b.called())
                 .help(help)
         })?,
@@ -115,9 +115,9 @@ pub(crate) fn magnitude<T: Real>(a: &Value<T>) -> Option<Value<T>> {
 }
 
 /// A function of one number applied to a field; `None` for other values.
-pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value<T>, Fault>> {
+pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value<T>, CallError>> {
     if let Value::Set(_) = a {
-        return Some(Err(Fault::new("wrong-class", format!("{name} takes no set"))
+        return Some(Err(CallError::new("wrong-class", format!("{name} takes no set"))
             .expected("a number, a row of numbers or a field")
             .found("a set")
             .help("apply it to the field, then make the set")
@@ -134,7 +134,7 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
         "cos" => f.cos(),
         "exp" => f.exp(),
         _ => {
-            return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
+            return Some(Err(CallError::new("wrong-class", format!("{name} takes no field"))
                 .expected("of fields abs, sign, sqrt, s_sqrt, sin, cos, exp, min, max, atan2")
                 .found("a field")
                 .in_field(field_id(0))));
@@ -143,7 +143,10 @@ pub(crate) fn function<T: Real>(name: &str, a: &Value<T>) -> Option<Result<Value
 }
 
 /// A function of several numbers applied to fields; `None` when there is no field among them.
-pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result<Value<T>, Fault>> {
+pub(crate) fn functions<T: Real>(
+    name: &str,
+    args: &[Value<T>],
+) -> Option<Result<Value<T>, CallError>> {
     let at = args.iter().position(is_implicit)?;
     let mut fields = Vec::new();
     for (k, arg) in args.iter().enumerate().filter(|(_, a)| !matches!(a, Value::Unset)) {
@@ -151,7 +154,7 @@ pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result
             Some(f) => fields.push(f),
             None => {
                 return Some(Err(
-                    Fault::wrong_class(Class::Field, arg.class()).in_field(field_id(k))
+                    CallError::wrong_class(Class::Field, arg.class()).in_field(field_id(k))
                 ));
             }
         }
@@ -166,7 +169,7 @@ pub(crate) fn functions<T: Real>(name: &str, args: &[Value<T>]) -> Option<Result
         "atan2" => fields[0].atan2(&fields[1]),
         "hypot" => combined(|a, b| (a * a + b * b).sqrt()),
         _ => {
-            return Some(Err(Fault::new("wrong-class", format!("{name} takes no field"))
+            return Some(Err(CallError::new("wrong-class", format!("{name} takes no field"))
                 .expected("numbers or rows of numbers")
                 .found("a field")
                 .in_field(field_id(at))));
@@ -255,7 +258,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         };
         let text = m.program.name(item.name.symbol);
         let origin = self.env.origins.len() as u32;
-        let (args, head) = (vec![value, parents], Head::of(row.class));
+        let (args, head) = (vec![value, parents], Attributes::of(row.class));
         let declaration = Declaration { name: text, row, args, head, origin };
         let key = self
             .run
@@ -294,7 +297,7 @@ pub(crate) fn at<T: Real>(shape: &Value<T>, place: &Value<T>) -> Result<Value<T>
         Value::Vectors(a) => {
             Ok(Value::Numbers(Arc::new(Array { shape: a.shape, items: values(&a.points()) })))
         }
-        other => Err(Diagnostic::error("wrong-type", "a field is asked at a point")
+        other => Err(Diagnostic::error("wrong-type", "a field is evaluated at a point")
             .expected("a point, a vector, or a row or grid of vectors")
             .found(other.called())),
     }

@@ -3,14 +3,14 @@
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, Row, Scalar, Value};
+use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Row, Scalar, Value};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// The name of the kind below.
 pub const KIND: &str = "Model";
 
-/// What the model says of itself: the planes it is mirrored in, its unit, and the header of the
+/// The model's properties: the planes it is mirrored in, its unit, and the header of the
 /// model file that it came from.
 ///
 /// A model has one at most. With `symmetry = "y"` the objects are the half on one side of y = 0,
@@ -37,18 +37,18 @@ pub struct Text<T>(Arc<str>, PhantomData<T>);
 
 impl<T: Real> FromValue<T> for Text<T> {
     const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         <Arc<str> as FromValue<T>>::from_value(value).map(|text| Text(text, PhantomData))
     }
 }
 
 impl<T: Real> Build<T> for Model<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let letters = &self.symmetry.0;
         let known = letters.chars().all(|c| matches!(c, 'x' | 'y' | 'z'));
         let once = letters.chars().enumerate().all(|(k, c)| letters.find(c) == Some(k));
         if !known || !once {
-            return Err(Fault::new("unknown-plane", format!("there is no symmetry \"{letters}\""))
+            return Err(CallError::new("unknown-plane", format!("unknown symmetry \"{letters}\""))
                 .expected("the letters of the mirror planes, such as \"y\" or \"xy\"")
                 .found(format!("\"{letters}\""))
                 .in_field(Self::SYMMETRY));

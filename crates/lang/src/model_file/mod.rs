@@ -26,7 +26,7 @@ use moldloft_diag::{Diagnostic, FileId, Sources, Span};
 use moldloft_model::{Applied, Declaration, Extent, Object, Run};
 use moldloft_num::trace::Key;
 use moldloft_registry::{
-    Class, Fault, Field, Given, Head, Registry, Row, Scalar, Unit, Value, arrange,
+    Attributes, CallError, Class, Field, Given, Registry, Row, Scalar, Unit, Value, bind_arguments,
 };
 use moldloft_syntax::model_file::{
     self, Field as Written, FieldKind, Fields, ModelFile, NumberId, Object as Line,
@@ -39,7 +39,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// More diagnostics of one run than this are counted, not listed.
 const MOST_DIAGNOSTICS: usize = 100;
 
-/// More cycles than this are not told: their paths may be long.
+/// More cycles than this are not reported: their paths may be long.
 const MOST_CYCLES: usize = 20;
 
 /// A parsed model file and the places of its objects.
@@ -89,7 +89,7 @@ struct Root {
     diagnostics: Vec<Diagnostic>,
     /// The objects that could not be built for want of it.
     blocked: Vec<String>,
-    /// For a root that is no error by itself: where it was asked for first.
+    /// For a root that is not an error by itself: where it was asked for first.
     first_use: Option<(Span, String)>,
 }
 
@@ -401,9 +401,9 @@ impl ModelFileSource {
     }
 
     /// How an object is drawn and divided; what is wrong with that is pushed.
-    fn head(&self, sorted: &Sorted, line: &Line, errors: &mut Vec<Diagnostic>) -> Head {
+    fn head(&self, sorted: &Sorted, line: &Line, errors: &mut Vec<Diagnostic>) -> Attributes {
         let class = sorted.row.as_ref().map_or(Class::Any, |row| row.class);
-        let mut head = Head::of(class);
+        let mut head = Attributes::of(class);
         let end = Span::point(line.span.file, line.span.end.saturating_sub(1));
         let mut parts: Vec<Part> = Vec::with_capacity(5);
         for (k, name) in ["colour", "visible"].into_iter().enumerate() {
@@ -430,7 +430,7 @@ impl ModelFileSource {
             Err(expected) => {
                 let ends = fields.first().zip(fields.last());
                 let place = ends.map_or(end, |(first, last)| first.span.to(last.span));
-                let message = format!("these are no divisions of {}", class.a());
+                let message = format!("invalid divisions of {}", class.with_article());
                 let found = format!("`{}`", self.model.slice(place));
                 let diagnostic = Diagnostic::error("wrong-field", message).at(place);
                 errors.push(diagnostic.expected(expected).found(found));
@@ -466,7 +466,7 @@ impl ModelFileSource {
     }
 
     /// Where the fault of an object lies.
-    pub fn fault_span<T: Scalar>(&self, object: &Object<T>, fault: &Fault) -> Option<Span> {
+    pub fn fault_span<T: Scalar>(&self, object: &Object<T>, fault: &CallError) -> Option<Span> {
         let line = self.lines.get(object.origin as usize)?;
         let whole = Some(line.entity.to(line.name));
         let Some(field) = fault.field() else { return whole };
@@ -566,7 +566,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         let source = self.source;
         let name = |at: usize| source.model.slice(source.lines[at].name);
         let round = cycle.iter().chain(cycle.first()).map(|&at| name(at));
-        // A long way round is told by its ends.
+        // A long way round is identified by its ends.
         let mut shown: Vec<&str> = round.collect();
         let left_out = shown.len().saturating_sub(1000);
         let text = if left_out > 0 {
@@ -622,10 +622,10 @@ impl<T: Scalar> Producer<'_, '_, T> {
             }
             let kinds = self.registry.rows().filter(|r| r.kind && r.columns.is_some());
             let diagnostic =
-                Diagnostic::warning("unknown-entity", format!("there is no entity `{entity}`"))
+                Diagnostic::warning("unknown-entity", format!("unknown entity `{entity}`"))
                     .at(line.entity)
                     .suggest(entity, kinds.map(|r| &*r.name))
-                    .note(format!("`{name}` is kept as it stands, and not built"))
+                    .note(format!("`{name}` is kept unchanged, but not built"))
                     .object(name);
             self.outcomes[at] = Some(self.root(vec![diagnostic]));
             return;
@@ -654,7 +654,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         }
         let arranged = if errors.is_empty() {
             let given = Given { positional: args, named: Vec::new() };
-            arrange(row, given, |key| self.run.class_of(key))
+            bind_arguments(row, given, |key| self.run.class_of(key))
                 .map_err(|fault| errors.push(self.misfit(line, sorted, &fault)))
                 .ok()
         } else {
@@ -765,7 +765,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
         let unexpected = |id, message: String| {
             Diagnostic::error(id, message)
                 .at(written.span)
-                .expected(field.class.a())
+                .expected(field.class.with_article())
                 .found(format!("`{text}`"))
         };
         match written.kind {
@@ -790,7 +790,11 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 Some(plane) if field.class.accepts(Class::Text) => Ok(Value::text(&plane)),
                 Some(_) => Err(wrong(unexpected(
                     "wrong-class",
-                    format!("`{}`: expected {}, found a plane", field.name, field.class.a()),
+                    format!(
+                        "`{}`: expected {}, found a plane",
+                        field.name,
+                        field.class.with_article()
+                    ),
                 ))),
                 None => Err(wrong(
                     unexpected("unknown-object", format!("there is no `{text}`"))
@@ -803,7 +807,11 @@ impl<T: Scalar> Producer<'_, '_, T> {
             }
             FieldKind::Formula => Err(wrong(unexpected(
                 "wrong-class",
-                format!("`{}`: expected {}, found a number", field.name, field.class.a()),
+                format!(
+                    "`{}`: expected {}, found a number",
+                    field.name,
+                    field.class.with_article()
+                ),
             ))),
             FieldKind::List(items) => self.list(field, items),
             FieldKind::Tuple(_)
@@ -811,7 +819,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
             | FieldKind::Slash
             | FieldKind::Attribute { .. } => Err(wrong(unexpected(
                 "wrong-field",
-                format!("`{}` must be {}", field.name, field.class.a()),
+                format!("`{}` must be {}", field.name, field.class.with_article()),
             ))),
         }
     }
@@ -831,10 +839,14 @@ impl<T: Scalar> Producer<'_, '_, T> {
                 Some(Outcome::Real) => Err(wrong(
                     Diagnostic::error(
                         "wrong-class",
-                        format!("`{}`: expected {}, found a number", field.name, field.class.a()),
+                        format!(
+                            "`{}`: expected {}, found a number",
+                            field.name,
+                            field.class.with_article()
+                        ),
                     )
                     .at(written.span)
-                    .expected(field.class.a())
+                    .expected(field.class.with_article())
                     .found("a number")
                     .note_at(source.lines[at].name, format!("`{text}` is defined here")),
                 )),
@@ -855,9 +867,9 @@ impl<T: Scalar> Producer<'_, '_, T> {
             return Ok(Value::text(text));
         }
         let mut diagnostic =
-            Diagnostic::error("unknown-object", format!("there is no object `{text}`"))
+            Diagnostic::error("unknown-object", format!("unknown object `{text}`"))
                 .at(written.span)
-                .expected(field.class.a());
+                .expected(field.class.with_article());
         if self.suggestions < 20 {
             self.suggestions += 1;
             let names = source.lines.iter().map(|line| source.model.slice(line.name));
@@ -867,7 +879,7 @@ impl<T: Scalar> Producer<'_, '_, T> {
     }
 
     /// The diagnostic of arguments that do not fit.
-    fn misfit(&self, line: &Line, sorted: &Sorted, fault: &Fault) -> Diagnostic {
+    fn misfit(&self, line: &Line, sorted: &Sorted, fault: &CallError) -> Diagnostic {
         let source = self.source;
         let at = fault.field().and_then(|field| source.place(sorted, field, fault.item()));
         let mut diagnostic =

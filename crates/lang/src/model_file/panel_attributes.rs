@@ -3,11 +3,11 @@
 //! `A:Size(0.5 0)`, `A:Spacing(cosine 1.2)`, `A:Tags(wetted keel)`; along u, then v, with `auto`
 //! where nothing is said. An attribute of these names that says something else is kept as it is.
 
-use moldloft_registry::{Head, Panels, Value};
+use moldloft_registry::{Attributes, PanelAttributes, Value};
 use std::fmt::Write;
 
 /// The attributes of a model file's line that say what a head says of its panels.
-pub(crate) fn written(panels: &Panels) -> String {
+pub(crate) fn written(panels: &PanelAttributes) -> String {
     let mut out = String::new();
     if panels.size.iter().any(Option::is_some) {
         let [u, v] = panels.size.map(|s| s.map_or("auto".into(), |s| s.to_string()));
@@ -25,7 +25,7 @@ pub(crate) fn written(panels: &Panels) -> String {
 }
 
 /// Takes over what an attribute says of panels; false when it says nothing of them.
-pub(crate) fn read(head: &mut Head, name: &str, text: &str) -> bool {
+pub(crate) fn read(head: &mut Attributes, name: &str, text: &str) -> bool {
     let argument = match name {
         "Size" => "size",
         "Spacing" => "spacing",
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        let mut head = Head::of(Class::Surface);
+        let mut head = Attributes::of(Class::Surface);
         let words = |words: &[&str]| Value::<f64>::list(words.iter().map(|w| Value::text(w)));
         head.set("size", &Value::list([Value::Number(0.5), Value::Number(0.0)])).unwrap();
         let spacing = [Value::<f64>::text("cosine"), Value::Number(1.25)];
@@ -56,7 +56,7 @@ mod tests {
         head.set("tags", &words(&["wetted", "keel"])).unwrap();
         let text = written(head.panels.as_ref().unwrap());
         assert_eq!(text, " A:Size(0.5 auto) A:Spacing(cosine 1.25) A:Tags(wetted keel)");
-        let mut again = Head::of(Class::Surface);
+        let mut again = Attributes::of(Class::Surface);
         for part in text.trim().trim_end_matches(')').split(") ") {
             let (name, value) = part.trim_start_matches("A:").split_once('(').unwrap();
             assert!(read(&mut again, name, value));
@@ -66,11 +66,11 @@ mod tests {
 
     #[test]
     fn others_of_the_name_are_left_alone() {
-        let mut head = Head::of(Class::Surface);
+        let mut head = Attributes::of(Class::Surface);
         for (name, text) in [("Size", "big"), ("Spacing", "1 2 3"), ("Size", "-1 2"), ("Note", "x")]
         {
             assert!(!read(&mut head, name, text), "{name}({text})");
         }
-        assert_eq!(head, Head::of(Class::Surface));
+        assert_eq!(head, Attributes::of(Class::Surface));
     }
 }

@@ -7,7 +7,7 @@ use crate::source::env::Evaluation;
 use crate::source::module::Module;
 use moldloft_diag::Diagnostic;
 use moldloft_model::Object;
-use moldloft_registry::{Class, Field, Head, Value};
+use moldloft_registry::{Attributes, Class, Field, Value};
 use std::fmt::Write;
 
 /// The version of model files made from programs that do not come from one.
@@ -190,7 +190,8 @@ impl<'a> ToModelFile<'a> {
     }
 
     fn refuse(&mut self, object: &Object<f64>, found: &str, help: &str) {
-        let message = format!("{} `{}` cannot stand in a model file", object.row.name, object.name);
+        let message =
+            format!("{} `{}` cannot be written to a model file", object.row.name, object.name);
         let diagnostic = Diagnostic::error("not-in-model-files", message)
             .found(found)
             .help(help)
@@ -251,7 +252,7 @@ impl<'a> ToModelFile<'a> {
         self.out += ";\n";
     }
 
-    fn head(&self, head: &Head, class: Class) -> String {
+    fn head(&self, head: &Attributes, class: Class) -> String {
         let mut out = format!(" {} {}", head.colour, head.visible);
         // 0 leaves a count to the neighbours.
         let ([mut nu, mut nv], [mu, mv]) = (head.divisions, head.subdivisions);
@@ -261,7 +262,7 @@ impl<'a> ToModelFile<'a> {
             nv = if panels.size[1].is_some() { 0 } else { nv };
         }
         let _ = match class.dimension() {
-            Some(1) if self.legacy && mu == Head::of(class).subdivisions[0] => {
+            Some(1) if self.legacy && mu == Attributes::of(class).subdivisions[0] => {
                 write!(out, " {nu}")
             }
             Some(1) => write!(out, " {nu}x{mu}"),
@@ -312,7 +313,7 @@ impl<'a> ToModelFile<'a> {
             }
             other => Err(match other.class() {
                 Class::Any => "a value without a name",
-                class => class.a(),
+                class => class.with_article(),
             }),
         }
     }

@@ -5,12 +5,12 @@ use crate::model_file::names::{bare, identifier, is_real, system_name};
 use crate::model_file::{ModelFileSource, Sorted, header};
 use crate::source::env::Evaluation;
 use moldloft_diag::Diagnostic;
-use moldloft_registry::{Class, Field, Head, Panels, Registry, Spacing, Unit};
+use moldloft_registry::{Attributes, Class, Field, PanelAttributes, Registry, Spacing, Unit};
 use moldloft_syntax::model_file::{Field as Written, FieldKind, ItemKind, Object as Line};
 use moldloft_syntax::number;
 use std::fmt::Write;
 
-/// A line of a model file that is no object of ours stands in a program as a comment.
+/// A line of a model file that is not an object of ours stands in a program as a comment.
 pub(crate) const VERBATIM: &str = "#ms2 ";
 
 /// The relabel of the object that follows.
@@ -37,8 +37,8 @@ pub fn prevents_conversion(evaluation: &Evaluation<f64>, diagnostic: &Diagnostic
 }
 
 /// The named arguments in which a head differs from what its class has by itself.
-fn head_arguments(head: &Head, class: Class) -> Vec<String> {
-    let usual = Head::of(class);
+fn head_arguments(head: &Attributes, class: Class) -> Vec<String> {
+    let usual = Attributes::of(class);
     let mut named = Vec::new();
     let pair = |[n, m]: [u32; 2]| match class.dimension() {
         Some(2) => format!("{{{n}, {m}}}"),
@@ -77,7 +77,7 @@ fn head_arguments(head: &Head, class: Class) -> Vec<String> {
 }
 
 /// What is said of panels besides their number.
-fn panel_arguments(panels: &Panels) -> Vec<String> {
+fn panel_arguments(panels: &PanelAttributes) -> Vec<String> {
     let mut named = Vec::new();
     let pair = |name: &str, [a, b]: [String; 2]| {
         if a == b { format!("{name} = {a}") } else { format!("{name} = {{{a}, {b}}}") }

@@ -13,7 +13,7 @@ use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::Failure;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, arrange, many,
+    Array, Class, CurveRef, Given, Scalar, SurfaceRef, Value, Vectors, bind_arguments, many,
 };
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, BinaryOp, ExprId, ExprKind, List, Subscript, Symbol, UnaryOp};
@@ -101,9 +101,9 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             Value::Object(key) => self.forced(key).map_err(|failure| {
                 let root = match failure {
                     Failure::Blocked { by } => by,
-                    Failure::Fault(_) => key,
+                    Failure::CallError(_) => key,
                 };
-                // The first reader of a failed object is told; the others would say the same.
+                // The first reader of a failed object is reported; the others would say the same.
                 if !self.blocked.insert(root) {
                     return silent();
                 }
@@ -205,10 +205,10 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     fn unknown_name(&self, m: &Module, symbol: Symbol, span: Span) -> Diagnostic {
         let text = m.program.name(symbol);
         let diagnostic =
-            Diagnostic::error("unknown-name", format!("there is no `{text}` here")).at(span);
+            Diagnostic::error("unknown-name", format!("unknown name `{text}`")).at(span);
         if !self.components.is_empty() {
             return diagnostic.help(format!(
-                "a component sees what it is given: Component name(\"file\", {text} = ...)"
+                "a component sees only its arguments: Component name(\"file\", {text} = ...)"
             ));
         }
         if !self.hints() {
@@ -376,7 +376,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
     }
 
     fn no_such_object(&self, text: &str) -> Diagnostic {
-        let diagnostic = Diagnostic::error("unknown-name", format!("there is no object `{text}`"));
+        let diagnostic = Diagnostic::error("unknown-name", format!("unknown object `{text}`"));
         if !self.hints() {
             return diagnostic;
         }
@@ -458,7 +458,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         };
         if step.fract() != 0.0 || step == 0.0 || (to - from) as f64 * step < 0.0 {
-            return Err(Diagnostic::error("empty-range", "this range selects nothing")
+            return Err(Diagnostic::error("empty-range", "empty range")
                 .expected("lo:hi with lo <= hi, or a negative step")
                 .found(format!("{}:{}:{step}", from + 1, to + 1)));
         }
@@ -552,7 +552,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
                     Diagnostic::remark("two-readings", format!("`.{word}` is the member here"))
                         .at(m.program.member_span(id))
                         .help(format!(
-                            "for the dot product with `{word}` put blanks round the dot"
+                            "for the dot product with `{word}` put blanks around the dot"
                         )),
                 );
             }
@@ -606,8 +606,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let known = self.env.solved.get(set).copied();
         let later = || {
-            Err(Diagnostic::error("no-value", format!("`{word}` is known after the run only"))
-                .help("ask for it from outside, as in `moldloft eval`"))
+            Err(Diagnostic::error("no-value", format!("`{word}` is available only after the run"))
+                .help("evaluate it with `moldloft eval`"))
         };
         Some(match word {
             "residual" => {
@@ -641,7 +641,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             let errors = self.error_count();
             let value = self.call_routine(m, routine, args, None, span)?;
             if value.is_none() && self.error_count() > errors {
-                // Why there is none was told.
+                // Why there is none was reported.
                 return Err(silent());
             }
             return value.ok_or_else(|| {
@@ -665,7 +665,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             }
         }
         let positional = given.positional.len();
-        let (filled, _) = arrange(&row, given, |_| Class::Any)
+        let (filled, _) = bind_arguments(&row, given, |_| Class::Any)
             .map_err(|fault| fault_location::diagnostic(m, args, &row, positional, &fault, span))?;
         // What is as quick to compute as to look up is not remembered.
         let value = if crate::functions::elementary::is_quick(&row) {
@@ -689,8 +689,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 
     fn unknown_function(&self, m: &Module, symbol: Symbol) -> Diagnostic {
         let text = m.program.name(symbol);
-        let diagnostic =
-            Diagnostic::error("unknown-name", format!("there is no function `{text}`"));
+        let diagnostic = Diagnostic::error("unknown-name", format!("unknown function `{text}`"));
         if let Some(hint) = crate::source::library::defining(text) {
             return diagnostic.help(hint);
         }

@@ -102,9 +102,9 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     /// The components under way, by module, and the names that the innermost was given.
     pub components: Vec<usize>,
     pub given: HashSet<Name>,
-    /// What was told already: a statement that is executed often tells each fault once.
+    /// What was reported already: a statement that is executed often reports each fault once.
     told: HashSet<(Cow<'static, str>, Span)>,
-    /// Failed objects that the program was told of when it read them.
+    /// Failed objects that were reported to the program when it read them.
     pub blocked: HashSet<Key>,
     pub executed: HashSet<usize>,
     /// Sketch files that were brought in.
@@ -213,12 +213,12 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                 Diagnostic::error("too-many-errors", "the run was given up: too many errors")
                     .at(span)
                     .expected(format!("fewer than {MOST_ERRORS} errors"))
-                    .help("mend the first ones, then run again"),
+                    .help("fix the first ones, then run again"),
             );
         }
     }
 
-    /// A fault inside a built-in library is told at the call that led there.
+    /// A fault inside a built-in library is reported at the call that led there.
     fn at_call(&self, mut diagnostic: Diagnostic) -> Diagnostic {
         let inside = diagnostic.span();
         let library = |module: u32| self.modules.get(module as usize).library;
@@ -285,7 +285,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
                     self.report(
                         Diagnostic::remark(
                             "redefined",
-                            format!("`{text}` of the program stands in for the library's"),
+                            format!("`{text}` of the program replaces the library's"),
                         )
                         .at(first),
                     );
@@ -575,7 +575,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             return Ok(());
         }
         let span = m.program[condition].span;
-        let mut text = format!("this does not hold: {}", m.program.slice(span));
+        let mut text = format!("assertion failed: {}", m.program.slice(span));
         if let Some(message) = message {
             let value = self.expr(m, message)?;
             text = crate::value::display::plain(&self.read(value, m.program[message].span)?);
@@ -672,7 +672,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
             "int", "float", "string", "vector", "farray", "curve", "surface", "pcurve", "psurface",
             "field", "set", "param",
         ];
-        Diagnostic::error("unknown-type", format!("there is no type `{word}`"))
+        Diagnostic::error("unknown-type", format!("unknown type `{word}`"))
             .suggest(word, TYPES)
             .help("an object is declared with its data in parentheses: AbsPoint P(0, 0, 1);")
     }
@@ -704,7 +704,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
         }
     }
 
-    /// An object must not take a name that means something already; a variable may be declared
+    /// An object must not take a name that is already in use; a variable may be declared
     /// again in another turn of a loop.
     pub fn check_free(&self, name: Name, span: Span, variable: bool) -> Result<(), Diagnostic> {
         let Some(known) = self.own(name) else { return Ok(()) };
@@ -847,7 +847,7 @@ impl<'a, 'g, T: Scalar> Interpreter<'a, 'g, T> {
     pub fn unknown_kind(&self, word: &str) -> Diagnostic {
         let kinds = self.loader.registry.rows().filter(|r| r.kind).map(|r| &*r.name);
         let routines = self.env.routines.keys().map(|&name| &**self.modules.text(name));
-        Diagnostic::error("unknown-entity", format!("there is no kind `{word}`"))
+        Diagnostic::error("unknown-entity", format!("unknown kind `{word}`"))
             .expected("the name of an entity kind or of a subroutine")
             .suggest(word, kinds.chain(routines))
             .help("`moldloft doc --list` lists all kinds")

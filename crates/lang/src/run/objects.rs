@@ -6,7 +6,7 @@ use crate::source::module::{Module, RoutineAt};
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::trace::Key;
-use moldloft_registry::{Given, Scalar, arrange};
+use moldloft_registry::{Given, Scalar, bind_arguments};
 use moldloft_syntax::number;
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
 use std::sync::Arc;
@@ -94,7 +94,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             return Err(diagnostic);
         }
         let positional = given.positional.len();
-        let (mut filled, head) = arrange(row, given, |key| self.run.class_of(key))
+        let (mut filled, head) = bind_arguments(row, given, |key| self.run.class_of(key))
             .map_err(|fault| {
                 crate::source::fault_location::diagnostic(m, args, row, positional, &fault, span)
             })

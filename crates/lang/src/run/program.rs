@@ -11,7 +11,7 @@ use crate::source::world::World;
 use crate::value::number_path::NumberPath;
 use moldloft_diag::{Diagnostic, Sources, Span};
 use moldloft_model::{Applied, Extent, Graph, Object};
-use moldloft_registry::{Fault, Registry, Scalar, Value};
+use moldloft_registry::{CallError, Registry, Scalar, Value};
 use moldloft_syntax::sdl::{self, ExprId, LiteralId, StmtKind, Type};
 use std::sync::Arc;
 
@@ -21,13 +21,13 @@ pub struct Program<'a> {
     pub world: &'a dyn World,
     pub registry: &'a Registry,
     pub sources: &'a mut Sources,
-    /// The sketch that is the model, when it is no program.
+    /// The sketch that is the model, when it is not a program.
     pub sketch: Option<Arc<SketchFile>>,
     /// The program of a model file that is loaded.
     pub converted: Convert,
 }
 
-/// Why a number of an object is no literal of the text.
+/// Why a number of an object is not a literal of the text.
 pub enum NotLiteral {
     /// It is computed from these names.
     Expression { span: Span, names: Vec<String> },
@@ -149,7 +149,7 @@ pub fn fault_span<T: Scalar>(
     modules: &Modules,
     env: &Environment<T>,
     object: &Object<T>,
-    fault: &Fault,
+    fault: &CallError,
 ) -> Option<Span> {
     let origin = env.origins.get(object.origin as usize)?;
     let m = modules.get(origin.module as usize);

@@ -174,7 +174,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
             .at(span)
             .expected(expected)
             .found(found)
-            .note_at(formal.ty.1, "asked for here")
+            .note_at(formal.ty.1, "requested here")
             .note_at(bound.span, "declared here"))
     }
 
@@ -258,6 +258,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
         let value = self.read(value, span)?;
         variables::converted(formal.ty.0, value)
-            .map_err(|d| d.or_at(span).note_at(formal.ty.1, "asked for here"))
+            .map_err(|d| d.or_at(span).note_at(formal.ty.1, "requested here"))
     }
 }

@@ -9,7 +9,7 @@ use moldloft_mesh::Mesh;
 use moldloft_model::{Declaration, Extent};
 use moldloft_num::Vec3;
 use moldloft_num::trace::Key;
-use moldloft_registry::{Given, Scalar, Value, arrange};
+use moldloft_registry::{Given, Scalar, Value, bind_arguments};
 use moldloft_sketch::curve::{Piece, Traced};
 use moldloft_sketch::{Axis, DimensionFault, PointId, RoundFace, Solid, solid, solve};
 use moldloft_syntax::sdl::{Arg, Ident, List, StmtId};
@@ -140,7 +140,7 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let [drawn] = &file.objects[..] else {
             file.faults.iter().for_each(|fault| self.report(fault.clone()));
             let found = format!("{} objects in `{path}`", file.objects.len());
-            return Err(Diagnostic::error("wrong-count", "a sketch under a name is one object")
+            return Err(Diagnostic::error("wrong-count", "a named sketch must have one object")
                 .at(span)
                 .expected("a file with one object")
                 .found(found)
@@ -309,16 +309,17 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         let row = self.loader.registry.get(kind)?.clone();
         let full = format!("{}.{name}", names.prefix);
         let given = Given { positional: args, named: Vec::new() };
-        let declared = arrange(&row, given, |key| self.run.class_of(key)).and_then(|filled| {
-            let (args, mut head) = filled;
-            head.visible = i32::from(shown);
-            if !shown {
-                // One panel: its corners are the face's.
-                (head.divisions, head.divided) = ([1, 1], true);
-            }
-            let origin = names.site.origin;
-            self.run.declare(Declaration { name: &full, row: &row, args, head, origin })
-        });
+        let declared =
+            bind_arguments(&row, given, |key| self.run.class_of(key)).and_then(|filled| {
+                let (args, mut head) = filled;
+                head.visible = i32::from(shown);
+                if !shown {
+                    // One panel: its corners are the face's.
+                    (head.divisions, head.divided) = ([1, 1], true);
+                }
+                let origin = names.site.origin;
+                self.run.declare(Declaration { name: &full, row: &row, args, head, origin })
+            });
         match declared {
             Ok(key) => {
                 names.members.push((name.to_owned(), Value::Object(key)));
@@ -412,7 +413,7 @@ fn fault_text(fault: &DimensionFault) -> Option<String> {
     Some(match fault {
         DimensionFault::Redundant { .. } => return None,
         DimensionFault::Contradictory { name, asked, measured, .. } => {
-            format!("{name} asks {asked}, but the others make it {measured}")
+            format!("{name} requires {asked}, but the others give {measured}")
         }
         DimensionFault::NoValue { name, reads } => {
             format!("{name} reads {reads}, which has no value")

@@ -7,7 +7,7 @@ use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Array, Build, Context, Fault, Kind, Row, Scalar, Value, many};
+use moldloft_registry::{Array, Build, CallError, Context, Kind, Row, Scalar, Value, many};
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ pub struct SolveSet<T: Real> {
 }
 
 impl<T: Real> Build<T> for SolveSet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let _ = (self.conditions, self.steps);
         Ok(Value::Numbers(Arc::new(Array::row(self.unknowns))))
     }

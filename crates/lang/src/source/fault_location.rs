@@ -2,11 +2,11 @@
 
 use crate::source::module::Module;
 use moldloft_diag::{Diagnostic, Span};
-use moldloft_registry::{Argument, Fault, Row};
+use moldloft_registry::{Argument, CallError, Row};
 use moldloft_syntax::sdl::{Arg, ExprId, ExprKind, List};
 
 /// The fault as a diagnostic without a place.
-pub fn unplaced(fault: &Fault) -> Diagnostic {
+pub fn unplaced(fault: &CallError) -> Diagnostic {
     let mut diagnostic = Diagnostic::error(fault.id, fault.message.clone());
     if let Some(expected) = &fault.expected {
         diagnostic = diagnostic.expected(expected.clone());
@@ -26,13 +26,19 @@ pub fn diagnostic(
     args: List<Arg>,
     row: &Row,
     positional: usize,
-    fault: &Fault,
+    fault: &CallError,
     whole: Span,
 ) -> Diagnostic {
     unplaced(fault).at(span(m, args, row, positional, fault).unwrap_or(whole))
 }
 
-fn span(m: &Module, args: List<Arg>, row: &Row, positional: usize, fault: &Fault) -> Option<Span> {
+fn span(
+    m: &Module,
+    args: List<Arg>,
+    row: &Row,
+    positional: usize,
+    fault: &CallError,
+) -> Option<Span> {
     let place = fault.place?;
     let args = &m.program[args];
     let expr = match place.argument {

@@ -27,7 +27,7 @@ pub struct Module {
     pub names: Vec<Name>,
     /// The registry's row of each symbol.
     pub rows: Vec<Option<Arc<Row>>>,
-    /// What is wrong with the text of a loaded file; told whenever it is run.
+    /// What is wrong with the text of a loaded file; reported whenever it is run.
     pub faults: Vec<Diagnostic>,
     /// True for a library that comes with the program.
     pub library: bool,

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 /// Files that a sketch may read through one another.
 const MOST_FILES: usize = 32;
 
-/// More refused commands than this are not told one by one.
+/// More refused commands than this are not reported one by one.
 const MOST_FAULTS: usize = 100;
 
 /// A file of sketches after its commands were run.
@@ -95,7 +95,7 @@ impl SketchFile {
             match json_format::from_json(text) {
                 Ok(script) => Some(script),
                 Err(why) => {
-                    let fault = Diagnostic::error("no-sketch", format!("this is no sketch: {why}"))
+                    let fault = Diagnostic::error("no-sketch", format!("not a sketch: {why}"))
                         .at(whole)
                         .help("SAVE writes files that can be read");
                     return SketchFile {

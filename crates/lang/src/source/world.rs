@@ -24,7 +24,7 @@ pub struct ReadText {
 pub struct ReadError {
     /// One line: what is wrong.
     pub message: String,
-    /// How to mend it.
+    /// The remedy.
     pub help: Option<String>,
 }
 
@@ -34,9 +34,6 @@ pub struct NoFiles;
 
 impl World for NoFiles {
     fn read(&self, path: &str, _from: Option<&str>) -> Result<ReadText, ReadError> {
-        Err(ReadError {
-            message: format!("cannot read `{path}`: there are no files here"),
-            help: None,
-        })
+        Err(ReadError { message: format!("cannot read `{path}`: no files here"), help: None })
     }
 }

@@ -23,6 +23,6 @@ pub fn plain<T: Real>(value: &Value<T>) -> String {
             format!("plane through {} with normal {}", vector(p.point), vector(p.normal))
         }
         other => crate::functions::sets::described(other)
-            .unwrap_or_else(|| other.class().a().to_string()),
+            .unwrap_or_else(|| other.class().with_article().to_string()),
     }
 }

@@ -28,7 +28,7 @@ pub fn of_value<T: Scalar>(value: &Value<T>, name: &str) -> Option<Result<Value<
             ("v", _, Some(place)) => number(place.1[1]),
             _ => None,
         },
-        (Value::Mesh(mesh), None) => match name {
+        (Value::Body(mesh), None) => match name {
             "volume" => number(mesh.volume),
             "area" => number(mesh.area),
             "centroid" => Some(Ok(Value::Vector(mesh.centroid))),
@@ -111,7 +111,7 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
         Value::Curve(_) => vec!["length"],
         Value::Surface(_) => vec!["area"],
-        Value::Mesh(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
+        Value::Body(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
         Value::Solid(_) => vec!["volume"],
         _ => Vec::new(),
     }

@@ -256,7 +256,7 @@ fn compare<T: Real>(op: BinaryOp, a: &Value<T>, b: &Value<T>) -> Result<Value<T>
 }
 
 fn a_of<T: Real>(value: &Value<T>) -> &'static str {
-    value.class().a()
+    value.class().with_article()
 }
 
 fn unsupported(op: BinaryOp, what: &str) -> Diagnostic {

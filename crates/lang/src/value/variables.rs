@@ -366,7 +366,7 @@ fn fill<T: Real>(
             let class: Class = other.class();
             return Err(Diagnostic::error(
                 "not-indexable",
-                format!("{} has no such part", class.a()),
+                format!("{} has no such part", class.with_article()),
             ));
         }
     }

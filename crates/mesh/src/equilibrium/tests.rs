@@ -1,3 +1,5 @@
+//! Closed forms of floating boxes: upright, heeled, trimmed.
+
 use super::*;
 use crate::report::fixtures::sphere;
 use crate::{PatchInfo, Tag, TopologyBuilder};

@@ -1,3 +1,5 @@
+//! Closed forms of floating boxes, spheres and the Wigley hull, with their rates of convergence.
+
 use super::*;
 use crate::report::fixtures::{grid, open_half_box, sphere};
 use crate::{PatchInfo, Tag, TopologyBuilder};

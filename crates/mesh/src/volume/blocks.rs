@@ -1,8 +1,10 @@
+//! Structured blocks of hexahedra that share vertices by number.
+
 use super::{Boundary, Hexahedron, Interface};
 use crate::MeshError;
 use moldloft_num::{Real, Vec3};
 
-/// A face of a block that a solver must know by name when it is no interface.
+/// A face of a block that a solver must know by name when it is not an interface.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BlockFace {
     /// The name of its boundary; several faces may have one name.

@@ -1,3 +1,5 @@
+//! One hexahedron as a trilinear map: volume, Jacobians, aspect.
+
 use crate::Panel;
 use moldloft_num::{Real, Vec3};
 

@@ -1,3 +1,5 @@
+//! Blocks for tests.
+
 use super::{BlockFace, Blocks, HexBlock};
 use moldloft_num::Vec3;
 

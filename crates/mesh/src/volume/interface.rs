@@ -181,7 +181,7 @@ impl<'a> Faces<'a> {
 /// All interfaces of `blocks`, ordered by their first sides; and what meets nothing.
 ///
 /// Panels are one by the identity of their vertices. Where more than two have the same, none of
-/// them meets another: such a place is no interface.
+/// them meets another: such a place is not an interface.
 pub fn find(blocks: &[HexBlock]) -> (Vec<Interface>, Vec<Boundary>) {
     let mut faces = Faces::new(blocks);
     let mut found = Vec::new();

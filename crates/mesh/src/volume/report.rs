@@ -1,3 +1,5 @@
+//! Quality of the cells of volume blocks.
+
 use super::Blocks;
 use rayon::prelude::*;
 
@@ -129,7 +131,7 @@ impl Blocks<f64> {
             let place = [i, j, k];
             let cell = self.cell(block, place);
             let (scaled, at) = cell.scaled_jacobian();
-            // A position that is no number is as bad as a folded cell.
+            // A position that is not a number is as bad as a folded cell.
             let good = scaled > 0.0;
             let one = Tally {
                 volume: cell.volume(),

@@ -1,42 +1,42 @@
 //! The divisions of volume blocks, solved through all of them.
 
-use super::draft::{Draft, FaceId, Stretch, face_axes, face_id, stretch};
-use super::joiner::Joiner;
-use super::marks::{Marks, Part};
-use super::notes::BlockRemark;
-use moldloft_num::trace::{Edge, Edges, Face, Law, Piece, Turn};
+use super::draft::{BlockDraft, FaceId, RootInterval, face_axes, face_id, interval};
+use super::joiner::BlockJoiner;
+use super::marks::{EdgePart, Marks};
+use super::notes::BlockNote;
+use moldloft_num::trace::{Edge, Edges, Face, LayerLaw, Piece, Turn};
 use moldloft_num::union_find::UnionFind;
-use moldloft_registry::Fault;
+use moldloft_registry::CallError;
 use std::collections::HashMap;
 
 /// Cells along an axis of which nobody says anything.
-const USUAL: usize = 8;
+const DEFAULT_DIVISIONS: usize = 8;
 
 /// Divisions of each block, and what was noticed.
-pub(crate) struct Solved {
+pub(crate) struct BlockDivisions {
     pub divisions: Vec<[usize; 3]>,
-    pub remarks: Vec<BlockRemark>,
+    pub remarks: Vec<BlockNote>,
 }
 
 /// Which axes of which blocks (number 3 b + axis), and which stretches of roots (numbers above
 /// those), have one number of divisions.
-pub(crate) struct Classes {
+pub(crate) struct DivisionClasses {
     equal: UnionFind,
-    stretches: HashMap<Stretch, usize>,
+    intervals: HashMap<RootInterval, usize>,
     /// An axis, a share of it, and the number of the stretch that runs along that share.
     shares: Vec<(usize, f64, usize)>,
 }
 
-impl Classes {
-    pub fn of(joiner: &mut Joiner) -> Self {
+impl DivisionClasses {
+    pub fn of(joiner: &mut BlockJoiner) -> Self {
         let drafts = joiner.drafts;
         let mut classes = Self {
             equal: UnionFind::new(3 * drafts.len()),
-            stretches: HashMap::new(),
+            intervals: HashMap::new(),
             shares: Vec::new(),
         };
         let mut faces: HashMap<FaceId, [usize; 2]> = HashMap::new();
-        let mut lines: HashMap<(Vec<u32>, Law), usize> = HashMap::new();
+        let mut lines: HashMap<(Vec<u32>, LayerLaw), usize> = HashMap::new();
         for (b, draft) in drafts.iter().enumerate() {
             let axes = |f: usize, turn: Turn| {
                 let [p, q] = face_axes(f).map(|axis| 3 * b + axis);
@@ -59,12 +59,12 @@ impl Classes {
             for (_, edges) in &layers.surfaces {
                 classes.along_edges(&joiner.marks, edges, axes(4, Turn::default()));
             }
-            if matches!(layers.law, Law::Along(None, _)) {
+            if matches!(layers.law, LayerLaw::Along(None, _)) {
                 continue;
             }
             for corner in [[0, 0], [1, 0], [0, 1], [1, 1]] {
                 let mut roots = joiner.roots(b, corner);
-                if !matches!(layers.law, Law::Along(..)) && roots.last() < roots.first() {
+                if !matches!(layers.law, LayerLaw::Along(..)) && roots.last() < roots.first() {
                     roots.reverse();
                 }
                 let line = (roots, layers.law);
@@ -81,31 +81,31 @@ impl Classes {
             let parts = marks.parts(pieces);
             if let ([_], [first, .., last]) = (pieces.as_slice(), parts.as_slice()) {
                 let whole = Piece { from: first.piece.from, ..last.piece };
-                let number = self.number(stretch(&whole).0);
+                let number = self.number(interval(&whole).0);
                 self.equal.join(number as u32, axis as u32);
             }
-            if let [Part { piece, .. }] = parts.as_slice() {
-                let number = self.number(stretch(piece).0);
+            if let [EdgePart { piece, .. }] = parts.as_slice() {
+                let number = self.number(interval(piece).0);
                 self.equal.join(number as u32, axis as u32);
                 continue;
             }
             let mut begin = 0.0;
-            for Part { piece, .. } in parts {
-                let number = self.number(stretch(&piece).0);
+            for EdgePart { piece, .. } in parts {
+                let number = self.number(interval(&piece).0);
                 self.shares.push((axis, piece.until - begin, number));
                 begin = piece.until;
             }
         }
     }
 
-    fn number(&mut self, stretch: Stretch) -> usize {
-        *self.stretches.entry(stretch).or_insert_with(|| self.equal.push() as usize)
+    fn number(&mut self, interval: RootInterval) -> usize {
+        *self.intervals.entry(interval).or_insert_with(|| self.equal.push() as usize)
     }
 
     /// # Errors
     /// `divisions-contradict` when two numbers are given for one class.
-    pub fn solved(mut self, drafts: &[Draft]) -> Result<Solved, Fault> {
-        let count = 3 * drafts.len() + self.stretches.len();
+    pub fn solved(mut self, drafts: &[BlockDraft]) -> Result<BlockDivisions, CallError> {
+        let count = 3 * drafts.len() + self.intervals.len();
         let mut known: Vec<Option<(usize, usize)>> = vec![None; count];
         for (b, draft) in drafts.iter().enumerate() {
             for axis in 0..3 {
@@ -156,7 +156,7 @@ impl Classes {
             .map(|b| {
                 std::array::from_fn(|axis| {
                     let class = self.equal.find((3 * b + axis) as u32) as usize;
-                    known[class].map_or(USUAL, |(n, _)| n)
+                    known[class].map_or(DEFAULT_DIVISIONS, |(n, _)| n)
                 })
             })
             .collect();
@@ -173,24 +173,28 @@ impl Classes {
             if (along - m).abs() > 1e-9 {
                 let name = |a: usize| drafts[a / 3].object.name.to_string();
                 let blocks = [name(whole), name(other)];
-                remarks.push(BlockRemark::Divisions { blocks, divisions: n, along: m, share });
+                remarks.push(BlockNote::Divisions { blocks, divisions: n, along: m, share });
             }
         }
-        Ok(Solved { divisions, remarks })
+        Ok(BlockDivisions { divisions, remarks })
     }
 }
 
-fn contradiction(drafts: &[Draft], (n, a): (usize, usize), (m, b): (usize, usize)) -> Fault {
+fn contradiction(
+    drafts: &[BlockDraft],
+    (n, a): (usize, usize),
+    (m, b): (usize, usize),
+) -> CallError {
     let name = |at: usize| &drafts[at / 3].object.name;
     let axis = |at: usize| ["u", "v", "w"][at % 3];
     let message = format!(
-        "`{}` has {n} cells along {} but `{}` has {m} along {}, and shared faces and edges make them one number",
+        "`{}` has {n} cells along {} but `{}` has {m} along {}, and shared faces and edges require equal counts",
         name(a),
         axis(a),
         name(b),
         axis(b)
     );
-    Fault::new("divisions-contradict", message)
+    CallError::new("divisions-contradict", message)
         .expected("one number of cells along edges that blocks share, directly or through others")
         .found(format!("{n} and {m}"))
         .related(Some(drafts[a / 3].object.key), format!("has {n} along {}", axis(a)))

@@ -22,13 +22,13 @@ pub fn grid<T: Real>(solid: &SolidRef<T>, divisions: [usize; 3]) -> Vec<Vec3<T>>
     points
 }
 
-pub(crate) struct Draft<'g> {
+pub(crate) struct BlockDraft<'g> {
     pub object: &'g Object<f64>,
     pub solid: &'g SolidRef<f64>,
     pub faces: Faces<f64>,
 }
 
-impl Draft<'_> {
+impl BlockDraft<'_> {
     /// The names of the surfaces that the faces are, or of the solid and the face.
     pub fn face_names(&self, graph: &Graph<f64>) -> [BlockFace; 6] {
         std::array::from_fn(|f| {
@@ -61,9 +61,9 @@ pub(crate) fn mark_id(mark: &Mark<f64>) -> MarkId {
 }
 
 /// A stretch of a root, from its lower to its higher end; and whether the piece runs against it.
-pub(crate) type Stretch = (Root, MarkId, MarkId);
+pub(crate) type RootInterval = (Root, MarkId, MarkId);
 
-pub(crate) fn stretch(piece: &Piece<f64>) -> (Stretch, bool) {
+pub(crate) fn interval(piece: &Piece<f64>) -> (RootInterval, bool) {
     let backwards = piece.from.t > piece.to.t;
     let (low, high) = if backwards { (piece.to, piece.from) } else { (piece.from, piece.to) };
     ((piece.root, mark_id(&low), mark_id(&high)), backwards)

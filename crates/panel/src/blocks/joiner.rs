@@ -1,9 +1,9 @@
 //! Which vertices of blocks are one.
 
-use super::draft::{Draft, FaceId, Stretch, face_axes, face_id, grid, stretch};
+use super::draft::{BlockDraft, FaceId, RootInterval, face_axes, face_id, grid, interval};
 use super::marks::{Marks, runs};
-use super::notes::BlockRemark;
-use moldloft_num::trace::{Edge, Edges, Face, Key, Law, Mark, Piece, Root, Turn};
+use super::notes::BlockNote;
+use moldloft_num::trace::{Edge, Edges, Face, Key, LayerLaw, Mark, Piece, Root, Turn};
 use moldloft_num::union_find::UnionFind;
 use moldloft_num::{Box3, Vec3};
 use std::collections::{HashMap, HashSet};
@@ -13,25 +13,25 @@ const JOIN_ACCURACY: f64 = 1e-9;
 
 /// Where a vertex is, by identity.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum Spot {
+enum VertexIdentity {
     Point(Key),
     OnRoot(Root, u64),
-    Division(Stretch, u32, u32),
+    Division(RootInterval, u32, u32),
     /// Place (i, j) of a face divided m x n times, in the surface's own parameters.
     OnFace(FaceId, [u32; 2], [u32; 2]),
     /// Division `at` of `of` of a line along w between vertices that are one.
-    OnLine(Vec<u32>, Law, u32, u32),
+    OnLine(Vec<u32>, LayerLaw, u32, u32),
 }
 
 /// Vertices of a surface's grid in its own parameters.
-struct Sheet {
+struct FaceGrid {
     /// Divisions along u and v.
     size: [usize; 2],
     /// At `[i * (size[1] + 1) + j]`.
     vertices: Vec<u32>,
 }
 
-impl Sheet {
+impl FaceGrid {
     fn at(&self, i: usize, j: usize) -> u32 {
         self.vertices[i * (self.size[1] + 1) + j]
     }
@@ -47,22 +47,22 @@ impl Sheet {
     }
 }
 
-pub(crate) struct Joiner<'a, 'g> {
-    pub drafts: &'a [Draft<'g>],
+pub(crate) struct BlockJoiner<'a, 'g> {
+    pub drafts: &'a [BlockDraft<'g>],
     divisions: &'a [[usize; 3]],
     /// The first vertex of each block.
     pub first: Vec<u32>,
     /// The first vertex of each inner layer of each block: layers 1, 2, ... of a loft.
     layers: Vec<Vec<u32>>,
     pub joined: UnionFind,
-    spots: HashMap<Spot, u32>,
+    spots: HashMap<VertexIdentity, u32>,
     /// Faces of solids that are surfaces elsewhere.
     named_faces: HashSet<(Key, u8)>,
     pub marks: Marks,
 }
 
-impl<'a, 'g> Joiner<'a, 'g> {
-    pub fn new(drafts: &'a [Draft<'g>], divisions: &'a [[usize; 3]]) -> Self {
+impl<'a, 'g> BlockJoiner<'a, 'g> {
+    pub fn new(drafts: &'a [BlockDraft<'g>], divisions: &'a [[usize; 3]]) -> Self {
         let (mut first, mut layers) = (Vec::new(), Vec::new());
         let mut next = 0u32;
         for (draft, [nu, nv, nw]) in drafts.iter().zip(divisions) {
@@ -103,7 +103,7 @@ impl<'a, 'g> Joiner<'a, 'g> {
     }
 
     /// The vertices of face 0..6 of a block in the parameters of a surface turned so.
-    fn sheet(&self, b: usize, face: usize, turn: Turn) -> Sheet {
+    fn sheet(&self, b: usize, face: usize, turn: Turn) -> FaceGrid {
         let n = self.divisions[b];
         let [p, q] = face_axes(face);
         let size = if turn.swaps() { [n[q], n[p]] } else { [n[p], n[q]] };
@@ -119,11 +119,11 @@ impl<'a, 'g> Joiner<'a, 'g> {
                 vertices.push(self.vertex(b, place));
             }
         }
-        Sheet { size, vertices }
+        FaceGrid { size, vertices }
     }
 
     /// The vertices of layer `l` of a block: of its faces w = 0 and w = 1, or of an inner one.
-    fn layer(&self, b: usize, l: usize, count: usize) -> Sheet {
+    fn layer(&self, b: usize, l: usize, count: usize) -> FaceGrid {
         if l == 0 {
             return self.sheet(b, 4, Turn::default());
         }
@@ -133,10 +133,10 @@ impl<'a, 'g> Joiner<'a, 'g> {
         let [nu, nv, _] = self.divisions[b];
         let first = self.layers[b][l - 1];
         let vertices = (first..first + ((nu + 1) * (nv + 1)) as u32).collect();
-        Sheet { size: [nu, nv], vertices }
+        FaceGrid { size: [nu, nv], vertices }
     }
 
-    fn settle(&mut self, vertex: u32, spot: Spot) {
+    fn identify(&mut self, vertex: u32, spot: VertexIdentity) {
         let known = *self.spots.entry(spot).or_insert(vertex);
         self.joined.join(known, vertex);
     }
@@ -146,7 +146,7 @@ impl<'a, 'g> Joiner<'a, 'g> {
         for (b, draft) in drafts.iter().enumerate() {
             for (c, point) in draft.faces.corners.iter().enumerate() {
                 if let Some(point) = point {
-                    self.settle(self.corner(b, c), Spot::Point(*point));
+                    self.identify(self.corner(b, c), VertexIdentity::Point(*point));
                 }
             }
             for (f, face) in draft.faces.faces.iter().enumerate() {
@@ -201,21 +201,24 @@ impl<'a, 'g> Joiner<'a, 'g> {
     }
 
     /// Joins the vertices of a whole face with those of the same face elsewhere.
-    fn join_places(&mut self, sheet: &Sheet, id: FaceId) {
+    fn join_places(&mut self, sheet: &FaceGrid, id: FaceId) {
         let [nu, nv] = sheet.size;
         let size = sheet.size.map(|n| n as u32);
         for i in 0..=nu {
             for j in 0..=nv {
-                self.settle(sheet.at(i, j), Spot::OnFace(id, [i as u32, j as u32], size));
+                self.identify(
+                    sheet.at(i, j),
+                    VertexIdentity::OnFace(id, [i as u32, j as u32], size),
+                );
             }
         }
     }
 
-    fn join_edges(&mut self, sheet: &Sheet, edges: &Edges<f64>) {
+    fn join_edges(&mut self, sheet: &FaceGrid, edges: &Edges<f64>) {
         let [nu, nv] = sheet.size;
         for ((i, j), point) in [(0, 0), (nu, 0), (nu, nv), (0, nv)].into_iter().zip(edges.corners) {
             if let Some(point) = point {
-                self.settle(sheet.at(i, j), Spot::Point(point));
+                self.identify(sheet.at(i, j), VertexIdentity::Point(point));
             }
         }
         for (k, edge) in edges.edges.iter().enumerate() {
@@ -236,7 +239,7 @@ impl<'a, 'g> Joiner<'a, 'g> {
                         self.joined.join(vertices[0], vertex);
                     }
                     if let Some(point) = point {
-                        self.settle(vertices[0], Spot::Point(*point));
+                        self.identify(vertices[0], VertexIdentity::Point(*point));
                     }
                 }
             }
@@ -247,22 +250,22 @@ impl<'a, 'g> Joiner<'a, 'g> {
     fn join_chain(&mut self, vertices: &[u32], pieces: &[Piece<f64>]) {
         for (first, last, piece) in runs(&self.marks.parts(pieces), vertices.len() - 1) {
             let part = &vertices[first..=last];
-            let (id, backwards) = stretch(&piece);
+            let (id, backwards) = interval(&piece);
             let (from, to) =
                 if backwards { (&piece.to, &piece.from) } else { (&piece.from, &piece.to) };
             let count = part.len() - 1;
             for (m, &vertex) in part.iter().enumerate() {
                 let m = if backwards { count - m } else { m };
                 let end = |mark: &Mark<f64>| match mark.point {
-                    Some(point) => Spot::Point(point),
-                    None => Spot::OnRoot(piece.root, mark.t.to_bits()),
+                    Some(point) => VertexIdentity::Point(point),
+                    None => VertexIdentity::OnRoot(piece.root, mark.t.to_bits()),
                 };
                 let spot = match m {
                     0 => end(from),
                     m if m == count => end(to),
-                    m => Spot::Division(id, m as u32, count as u32),
+                    m => VertexIdentity::Division(id, m as u32, count as u32),
                 };
-                self.settle(vertex, spot);
+                self.identify(vertex, spot);
             }
         }
     }
@@ -286,12 +289,12 @@ impl<'a, 'g> Joiner<'a, 'g> {
     /// Joins the lines along w at the rim of the layers.
     fn join_lines(&mut self, b: usize) {
         let Some(law) = self.drafts[b].faces.layers.as_ref().map(|l| l.law) else { return };
-        if matches!(law, Law::Along(None, _)) {
+        if matches!(law, LayerLaw::Along(None, _)) {
             return;
         }
         let [nu, nv, nw] = self.divisions[b];
         // A moved surface has no layer at w = 1; a loft has.
-        let last = if matches!(law, Law::Along(..)) { nw } else { nw - 1 };
+        let last = if matches!(law, LayerLaw::Along(..)) { nw } else { nw - 1 };
         for i in 0..=nu {
             for j in 0..=nv {
                 if i > 0 && i < nu && j > 0 && j < nv {
@@ -299,21 +302,21 @@ impl<'a, 'g> Joiner<'a, 'g> {
                 }
                 let mut roots = self.roots(b, [i, j]);
                 // A loft is the same one from its other end.
-                let turned = !matches!(law, Law::Along(..)) && roots.last() < roots.first();
+                let turned = !matches!(law, LayerLaw::Along(..)) && roots.last() < roots.first();
                 if turned {
                     roots.reverse();
                 }
                 for k in 1..=last {
                     let at = if turned { nw - k } else { k };
-                    let spot = Spot::OnLine(roots.clone(), law, at as u32, nw as u32);
-                    self.settle(self.vertex(b, [i, j, k]), spot);
+                    let spot = VertexIdentity::OnLine(roots.clone(), law, at as u32, nw as u32);
+                    self.identify(self.vertex(b, [i, j, k]), spot);
                 }
             }
         }
     }
 
     /// Shared vertices that are not in one place.
-    pub fn apart(&mut self) -> Vec<BlockRemark> {
+    pub fn apart(&mut self) -> Vec<BlockNote> {
         let mut owner: HashMap<u32, (usize, Vec3)> = HashMap::new();
         let mut worst: HashMap<(usize, usize), (f64, Vec3)> = HashMap::new();
         let grids: Vec<Vec<Vec3>> =
@@ -335,7 +338,7 @@ impl<'a, 'g> Joiner<'a, 'g> {
         let mut worst: Vec<_> = worst.into_iter().collect();
         worst.sort_by_key(|(pair, _)| *pair);
         let name = |b: usize| self.drafts[b].object.name.to_string();
-        let remark = |((a, b), (distance, at))| BlockRemark::Apart {
+        let remark = |((a, b), (distance, at))| BlockNote::Apart {
             blocks: [name(a), name(b)],
             distance,
             at,

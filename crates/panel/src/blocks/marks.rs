@@ -1,6 +1,6 @@
 //! Edges of blocks that are a part of another's edge: pieces broken where others begin or end.
 
-use super::draft::Draft;
+use super::draft::BlockDraft;
 use moldloft_num::trace::{Edge, Edges, Face, Mark, Piece, Root};
 use std::collections::HashMap;
 
@@ -10,9 +10,9 @@ pub(crate) struct Marks {
 }
 
 impl Marks {
-    pub fn new(drafts: &[Draft]) -> Self {
+    pub fn new(drafts: &[BlockDraft]) -> Self {
         let mut of: HashMap<Root, Vec<Mark<f64>>> = HashMap::new();
-        for edges in drafts.iter().flat_map(Draft::edges) {
+        for edges in drafts.iter().flat_map(BlockDraft::edges) {
             let chains = edges.edges.iter().filter_map(|edge| match edge {
                 Edge::Pieces(pieces) => Some(pieces),
                 _ => None,
@@ -39,7 +39,7 @@ impl Marks {
 
     /// The parts of `pieces` between all marks: each with the share of the whole at which it ends,
     /// and whether it goes on in the next one's piece.
-    pub fn parts(&self, pieces: &[Piece<f64>]) -> Vec<Part> {
+    pub fn parts(&self, pieces: &[Piece<f64>]) -> Vec<EdgePart> {
         let mut parts = Vec::new();
         let mut begin = 0.0;
         for piece in pieces {
@@ -62,10 +62,10 @@ impl Marks {
             for mark in breaks {
                 let until = begin + (piece.until - begin) * (mark.t - t0) / (t1 - t0);
                 let part = Piece { from, to: mark, until, ..piece };
-                parts.push(Part { piece: part, goes_on: true });
+                parts.push(EdgePart { piece: part, goes_on: true });
                 from = mark;
             }
-            parts.push(Part { piece: Piece { from, ..piece }, goes_on: false });
+            parts.push(EdgePart { piece: Piece { from, ..piece }, goes_on: false });
             begin = piece.until;
         }
         parts
@@ -73,13 +73,13 @@ impl Marks {
 }
 
 /// A part of an edge between two marks of its root.
-pub(crate) struct Part {
+pub(crate) struct EdgePart {
     pub piece: Piece<f64>,
     /// True when the next part is of the same piece.
     pub goes_on: bool,
 }
 
-impl Draft<'_> {
+impl BlockDraft<'_> {
     /// The edges of all faces and layers.
     fn edges(&self) -> impl Iterator<Item = &Edges<f64>> {
         let faces = self.faces.faces.iter().filter_map(|face| match face {
@@ -93,7 +93,7 @@ impl Draft<'_> {
 
 /// The runs of an edge with `cells` cells whose ends fall on its vertices: first and last vertex,
 /// and the piece. Parts whose ends do not are joined to the next one of the same piece.
-pub(crate) fn runs(parts: &[Part], cells: usize) -> Vec<(usize, usize, Piece<f64>)> {
+pub(crate) fn runs(parts: &[EdgePart], cells: usize) -> Vec<(usize, usize, Piece<f64>)> {
     let place = |share: f64| {
         let at = share * cells as f64;
         ((at - at.round()).abs() <= 1e-9).then(|| at.round() as usize)
@@ -101,7 +101,7 @@ pub(crate) fn runs(parts: &[Part], cells: usize) -> Vec<(usize, usize, Piece<f64
     let mut runs = Vec::new();
     let mut begin = 0.0;
     let mut from: Option<(f64, Mark<f64>)> = None;
-    for Part { piece, goes_on } in parts {
+    for EdgePart { piece, goes_on } in parts {
         let (start, mark) = *from.get_or_insert((begin, piece.from));
         begin = piece.until;
         match (place(start), place(piece.until)) {

@@ -11,15 +11,15 @@ mod joiner;
 mod marks;
 mod notes;
 
-use divisions::{Classes, Solved};
+use divisions::{BlockDivisions, DivisionClasses};
 pub use draft::grid;
-use draft::{Draft, solid_of};
-use joiner::Joiner;
+use draft::{BlockDraft, solid_of};
+use joiner::BlockJoiner;
 use moldloft_mesh::{BlockFace, Blocks, HexBlock};
 use moldloft_model::Graph;
 use moldloft_num::Vec3;
-use moldloft_registry::{Fault, Scalar};
-pub use notes::BlockRemark;
+use moldloft_registry::{CallError, Scalar};
+pub use notes::BlockNote;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -29,13 +29,13 @@ pub const MOST_CELLS: u64 = 20_000_000;
 /// Which vertices of volume blocks there are and who computes them; independent of the scalar.
 #[derive(Clone, Debug)]
 pub struct Blocking {
-    plans: Vec<Plan>,
+    plans: Vec<BlockPlan>,
     vertices: usize,
-    remarks: Vec<BlockRemark>,
+    remarks: Vec<BlockNote>,
 }
 
 #[derive(Clone, Debug)]
-struct Plan {
+struct BlockPlan {
     name: Arc<str>,
     divisions: [usize; 3],
     /// Vertex of (i, j, k) at `[(i * (nv + 1) + j) * (nw + 1) + k]`.
@@ -47,30 +47,31 @@ impl Blocking {
     /// The blocks of all shown solids that have a value.
     ///
     /// # Errors
-    /// A [`Fault`] when divisions contradict each other or there would be too many cells.
-    pub fn new(graph: &Graph<f64>) -> Result<Self, Fault> {
-        let drafts: Vec<Draft> = graph
+    /// A [`CallError`] when divisions contradict each other or there would be too many cells.
+    pub fn new(graph: &Graph<f64>) -> Result<Self, CallError> {
+        let drafts: Vec<BlockDraft> = graph
             .objects()
             .filter(|o| o.head.shown())
             .filter_map(|object| {
                 let solid = solid_of(object)?;
-                Some(Draft { object, solid, faces: solid.faces() })
+                Some(BlockDraft { object, solid, faces: solid.faces() })
             })
             .collect();
         // Who meets whom is found on undivided blocks first: then the divisions follow.
         let rough = vec![[1; 3]; drafts.len()];
-        let mut joiner = Joiner::new(&drafts, &rough);
+        let mut joiner = BlockJoiner::new(&drafts, &rough);
         joiner.join_all();
-        let Solved { divisions, mut remarks } = Classes::of(&mut joiner).solved(&drafts)?;
+        let BlockDivisions { divisions, mut remarks } =
+            DivisionClasses::of(&mut joiner).solved(&drafts)?;
         let cells = divisions.iter().map(|d| d.iter().map(|&n| n as u64).product::<u64>());
         let cells = cells.fold(0u64, u64::saturating_add);
         if cells > MOST_CELLS {
-            return Err(Fault::new("too-many-cells", format!("{cells} cells are too many"))
+            return Err(CallError::new("too-many-cells", format!("{cells} cells are too many"))
                 .expected(format!("at most {MOST_CELLS}"))
                 .found(cells.to_string())
                 .help("lower the divisions of the solids"));
         }
-        let mut joiner = Joiner::new(&drafts, &divisions);
+        let mut joiner = BlockJoiner::new(&drafts, &divisions);
         joiner.join_all();
         remarks.extend(joiner.apart());
         let mut number: HashMap<u32, u32> = HashMap::new();
@@ -82,7 +83,7 @@ impl Blocking {
                 let next = number.len() as u32;
                 *number.entry(joiner.joined.find(v)).or_insert(next)
             });
-            plans.push(Plan {
+            plans.push(BlockPlan {
                 name: draft.object.name.clone(),
                 divisions: divisions[b],
                 vertices: vertices.collect(),
@@ -93,7 +94,7 @@ impl Blocking {
     }
 
     /// What was noticed at the joins.
-    pub fn remarks(&self) -> &[BlockRemark] {
+    pub fn remarks(&self) -> &[BlockNote] {
         &self.remarks
     }
 

@@ -4,7 +4,7 @@ use moldloft_num::Vec3;
 
 /// Something about the joins of blocks that the user may want to know.
 #[derive(Clone, Debug, PartialEq)]
-pub enum BlockRemark {
+pub enum BlockNote {
     /// The cells of one block along a part of another's edge do not fit, so they are not joined.
     Divisions {
         /// The block whose edge has several parts, and the other one along one of them.
@@ -27,27 +27,27 @@ pub enum BlockRemark {
     },
 }
 
-impl BlockRemark {
+impl BlockNote {
     /// A stable word for its kind.
     pub fn id(&self) -> &'static str {
         match self {
-            BlockRemark::Divisions { .. } => "divisions-contradict",
-            BlockRemark::Apart { .. } => "faces-apart",
+            BlockNote::Divisions { .. } => "divisions-contradict",
+            BlockNote::Apart { .. } => "faces-apart",
         }
     }
 }
 
-impl std::fmt::Display for BlockRemark {
+impl std::fmt::Display for BlockNote {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
-            BlockRemark::Divisions { blocks: [a, b], divisions: n, along: m, share } => write!(
+            BlockNote::Divisions { blocks: [a, b], divisions: n, along: m, share } => write!(
                 f,
                 "`{a}` has {n} cells along an edge of which `{b}` has {m} along a share of {share}, \
                  so their cells do not join"
             ),
-            BlockRemark::Apart { blocks: [a, b], distance, at } => write!(
+            BlockNote::Apart { blocks: [a, b], distance, at } => write!(
                 f,
-                "`{a}` and `{b}` share a face or edge but lie {distance:.3e} apart at ({}, {}, {})",
+                "`{a}` and `{b}` share a face or edge but are {distance:.3e} apart at ({}, {}, {})",
                 at.x, at.y, at.z
             ),
         }

@@ -1,3 +1,5 @@
+//! Pictures of simple sheets: what covers what, equal bytes, refused requests.
+
 use super::*;
 use moldloft_mesh::{PatchInfo, TopologyBuilder};
 

@@ -61,7 +61,7 @@ fn floats(numbers: Option<PyReadonlyArray1<'_, f64>>) -> Option<Vec<f64>> {
 fn measure(name: &str) -> PyResult<Measure> {
     Measure::named(name).ok_or_else(|| {
         let all: Vec<_> = Measure::ALL.iter().map(|m| m.name()).collect();
-        refused(format!("there is no measure `{name}`; there are: {}", all.join(", ")))
+        refused(format!("unknown measure `{name}`; expected one of: {}", all.join(", ")))
     })
 }
 

@@ -277,7 +277,9 @@ fn solved<'py>(
         "faithful" => NetworkMode::Passes(passes, steps),
         _ => {
             let known = "optimum, faithful, sweeps";
-            return Err(refused(format!("there is no mode `{mode}` of nets; there are: {known}")));
+            return Err(refused(format!(
+                "unknown mode `{mode}` of nets; expected one of: {known}"
+            )));
         }
     };
     let wanted: Vec<(String, [f64; 2], [f64; 3])> = get(options, "conditions")?;

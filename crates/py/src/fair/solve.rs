@@ -29,7 +29,7 @@ pub fn motion(word: &str, direction: [f64; 3]) -> PyResult<Motion> {
         "box" => Motion::Box,
         "along" => Motion::Along(direction.into()),
         "across" => Motion::Across(direction.into()),
-        _ => return Err(refused(format!("there is no motion `{word}`"))),
+        _ => return Err(refused(format!("unknown motion `{word}`"))),
     })
 }
 
@@ -39,7 +39,7 @@ pub fn end(word: &str) -> PyResult<End> {
     }
     End::named(word).ok_or_else(|| {
         refused(format!(
-            "there is no end condition `{word}`; there are: free, position, tangent, curvature"
+            "unknown end condition `{word}`; expected one of: free, position, tangent, curvature"
         ))
     })
 }
@@ -48,7 +48,9 @@ pub fn bound(word: &str) -> PyResult<Bounded> {
     Ok(match word {
         "points" => Bounded::ControlPoints,
         "curve" => Bounded::Bezier,
-        _ => return Err(refused(format!("there is no bound `{word}`; there are: curve, points"))),
+        _ => {
+            return Err(refused(format!("unknown bound `{word}`; expected one of: curve, points")));
+        }
     })
 }
 
@@ -73,7 +75,7 @@ fn conditions(
         "centroid" => Condition::centroid(points),
         "area" => vec![Condition::area(space, points, v.into())],
         "volume" => vec![Condition::revolution(space, points, v.into())],
-        _ => return Err(refused(format!("there is no condition `{word}`"))),
+        _ => return Err(refused(format!("unknown condition `{word}`"))),
     })
 }
 
@@ -131,7 +133,7 @@ fn asked(spline: &Spline, options: Options) -> PyResult<(Job, Mode, Vec<usize>)>
         "levels" => Mode::Multilevel(named, steps),
         _ => {
             let known = "optimum, faithful, literal, vertex, sweeps, levels";
-            return Err(refused(format!("there is no mode `{mode}`; there are: {known}")));
+            return Err(refused(format!("unknown mode `{mode}`; expected one of: {known}")));
         }
     };
     Ok((job, mode, owners))
@@ -186,7 +188,7 @@ pub fn goal((word, share): &(String, f64)) -> PyResult<Goal> {
         "nearest" => Goal::Nearest(*share),
         _ => {
             let known = "near, fairest, budget, nearest";
-            return Err(refused(format!("there is no goal `{word}`; there are: {known}")));
+            return Err(refused(format!("unknown goal `{word}`; expected one of: {known}")));
         }
     })
 }

@@ -30,7 +30,7 @@ pub fn spacing(name: &str, direction: [f64; 3]) -> PyResult<Spacing> {
         "along" => Spacing::Along(direction.into()),
         _ => {
             let known = "chord, centripetal, index (or uniform), x, y, z, a direction";
-            return Err(refused(format!("there is no spacing `{name}`; there are: {known}")));
+            return Err(refused(format!("unknown spacing `{name}`; expected one of: {known}")));
         }
     })
 }
@@ -82,7 +82,7 @@ impl Spline {
             let vectors: Vec<Vec3> = samples.iter().map(|s| s.derivatives[k] * scale).collect();
             dict.set_item(name, rows(py, &vectors))?;
         }
-        // Whether the curve is plane is told by all of it.
+        // Whether the curve is plane is identified by all of it.
         let normal = shape::plane_normal(&self.samples(4));
         let curvature = |s: &Sample| match normal {
             Some(n) => s.signed_curvature(n),

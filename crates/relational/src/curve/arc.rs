@@ -1,7 +1,9 @@
+//! Circular arcs by three points.
+
 use crate::curve::Ended;
 use crate::faults;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A circular arc, uniform in angle.
 ///
@@ -26,17 +28,17 @@ pub struct Arc<T: Real> {
     p2: Point<T>,
     /// Third point.
     p3: Point<T>,
-    /// Which of the six types.
+    /// One of the six types.
     #[field(default = 1, min = 1, max = 6)]
     r#type: u32,
 }
 
 impl<T: Real> Build<T> for Arc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { p1, p2, p3, r#type } = self;
         let arc = moldloft_spline::Arc::of_type(r#type, [p1.xyz, p2.xyz, p3.xyz]);
         let arc = arc.ok_or_else(|| {
-            Fault::new("out-of-range", format!("there is no arc of type {}", r#type))
+            CallError::new("out-of-range", format!("unknown arc type {}", r#type))
                 .expected("a type from 1 to 6")
                 .found(r#type.to_string())
                 .in_field(Self::TYPE)

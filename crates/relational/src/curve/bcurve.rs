@@ -1,7 +1,9 @@
+//! B-spline curves.
+
 use crate::curve::Ended;
 use crate::faults;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use moldloft_spline::BSplineCurve;
 
 /// A B-spline curve: C(t) = sum N_i(t) P_i with clamped uniform knots (de Boor 1978).
@@ -26,7 +28,7 @@ pub struct BCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for BCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { points, degree } = self;
         let ends = ends(&points, Self::POINTS)?;
         let degree = degree.min(points.len() - 1);
@@ -43,10 +45,10 @@ impl<T: Real> Build<T> for BCurve<T> {
 pub(crate) fn ends<T: Real>(
     points: &[Point<T>],
     field: FieldId,
-) -> Result<[Option<moldloft_num::trace::Key>; 2], Fault> {
+) -> Result<[Option<moldloft_num::trace::Key>; 2], CallError> {
     match points {
         [first, .., last] => Ok([first.key, last.key]),
-        _ => Err(Fault::new("too-few-items", "a curve needs at least 2 points")
+        _ => Err(CallError::new("too-few-items", "a curve needs at least 2 points")
             .expected("at least 2 points")
             .found(points.len().to_string())
             .in_field(field)),

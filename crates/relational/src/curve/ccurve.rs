@@ -1,9 +1,11 @@
+//! Interpolating splines through points.
+
 use super::bcurve;
 use crate::arguments::EndRule;
 use crate::curve::Ended;
 use crate::faults;
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline};
 
 /// An interpolating spline: the twice differentiable piecewise cubic through the points, with
@@ -36,7 +38,7 @@ pub struct CCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for CCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let names = bcurve::ends(&self.points, Self::POINTS)?;
         let ends = clamped_ends(self.ends, self.start, self.end, [Self::START, Self::END])?;
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
@@ -61,17 +63,18 @@ pub fn clamped_ends<T: Real>(
     start: Option<Vec3<T>>,
     end: Option<Vec3<T>>,
     fields: [FieldId; 2],
-) -> Result<Ends<T>, Fault> {
+) -> Result<Ends<T>, CallError> {
     match (rule.ends(), start, end) {
         (Some(ends), None, None) => Ok(ends),
         (None, Some(start), Some(end)) => Ok(Ends::Open(End::Clamped(start), End::Clamped(end))),
-        (None, start, _) => {
-            Err(Fault::new("missing-argument", "clamped ends need the slopes `start` and `end`")
-                .expected("start = {x, y, z}, end = {x, y, z}")
-                .in_field(fields[usize::from(start.is_some())]))
-        }
+        (None, start, _) => Err(CallError::new(
+            "missing-argument",
+            "clamped ends need the slopes `start` and `end`",
+        )
+        .expected("start = {x, y, z}, end = {x, y, z}")
+        .in_field(fields[usize::from(start.is_some())])),
         (Some(_), start, _) => {
-            Err(Fault::new("unused-argument", "slopes are for clamped ends only")
+            Err(CallError::new("unused-argument", "slopes are for clamped ends only")
                 .help("add ends = \"clamped\", or leave the slopes out")
                 .in_field(fields[usize::from(start.is_none())]))
         }

@@ -1,5 +1,7 @@
+//! Conic sections by three points and a shape factor.
+
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A conic section in the plane of three points: C = P1 + f(a) (P2 - P1) + g(a) (P3 - P1), where
 /// a = a1 + t (a2 - a1).
@@ -18,14 +20,14 @@ use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
 pub struct Conic<T: Real> {
     /// Centre, or vertex of a parabola.
     p1: Point<T>,
-    /// Where a = 0 is on an ellipse or hyperbola.
+    /// The point of a = 0 on an ellipse or hyperbola.
     p2: Point<T>,
     /// The end of the conjugate half diameter.
     p3: Point<T>,
-    /// Where the curve begins.
+    /// Start of the curve.
     #[field(angle, default = 0)]
     a1: T,
-    /// Where it ends; a full turn when not given.
+    /// End; a full turn when not given.
     #[field(angle, default = std::f64::consts::TAU)]
     a2: T,
     /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.
@@ -34,7 +36,7 @@ pub struct Conic<T: Real> {
 }
 
 impl<T: Real> Build<T> for Conic<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { p1, p2, p3, a1, a2, r#type } = self;
         let (first, second) = (p2.xyz - p1.xyz, p3.xyz - p1.xyz);
         let shape = Oblique { centre: p1.xyz, first, second, a1, a2, kind: r#type };
@@ -50,9 +52,9 @@ pub struct Oblique<T> {
     pub first: Vec3<T>,
     /// P3 - P1.
     pub second: Vec3<T>,
-    /// Where it begins.
+    /// Start.
     pub a1: T,
-    /// Where it ends.
+    /// End.
     pub a2: T,
     /// Its type, 1 to 3.
     pub kind: u32,

@@ -1,3 +1,5 @@
+//! Curves of their own between point objects: what joins them to their neighbours.
+
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
 

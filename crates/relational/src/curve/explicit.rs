@@ -1,8 +1,10 @@
+//! Explicit splines: two coordinates as functions of the third.
+
 use super::{Ended, bcurve};
 use crate::arguments::{AxisName, EndRule};
 use crate::faults;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 use moldloft_spline::{InterpolatingSpline, InterpolationError};
 
 /// An explicit spline: one coordinate runs evenly with t, and the other two are cubic splines of
@@ -28,7 +30,7 @@ pub struct XCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for XCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let names = bcurve::ends(&self.points, Self::POINTS)?;
         let AxisName(axis) = self.axis;
         let points: Vec<_> = self.points.iter().map(|p| p.xyz).collect();
@@ -42,14 +44,14 @@ impl<T: Real> Build<T> for XCurve<T> {
         if let Some(k) = (1..points.len()).find(|k| !runs_on(k)) {
             let name = ["x", "y", "z"][axis];
             let message = format!("{name} does not run on from point {k} to point {}", k + 1);
-            return Err(Fault::new("not-monotone", message)
+            return Err(CallError::new("not-monotone", message)
                 .expected(format!("{name} ascending from point to point, or descending"))
                 .found(format!("{} after {}", points[k][axis].re(), points[k - 1][axis].re()))
                 .in_item(k)
                 .in_field(Self::POINTS));
         }
         let Some(ends) = self.ends.ends() else {
-            return Err(Fault::new("unknown-ends", "an explicit spline cannot be clamped")
+            return Err(CallError::new("unknown-ends", "an explicit spline cannot be clamped")
                 .expected("\"notaknot\", \"natural\", \"bessel\", \"quadratic\" or \"periodic\"")
                 .found("\"clamped\"")
                 .in_field(Self::ENDS));

@@ -1,9 +1,11 @@
+//! B-splines fitted to curves by least squares. A fit that comes no nearer than asked is refused.
+
 use super::Ended;
 use moldloft_num::{Curve, Order, Real};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, Found, FoundStatus, Kind, Value,
+    Build, CallError, Context, CurveRef, FieldId, Kind, SearchReport, SearchStatus, Value,
 };
-use moldloft_spline::{MovingSpline, SplineError};
+use moldloft_spline::{SplineError, SplineWithKnotDerivatives};
 
 /// A B-spline fitted to a curve by least squares: with clamped uniform knots, the ends of the
 /// curve, and the least sum of squared distances at equal parameters.
@@ -33,7 +35,7 @@ pub struct BFitCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for BFitCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, degree, points, accuracy } = self;
         fit(&curve, degree, None, points, accuracy, [Self::POINTS, Self::ACCURACY])
     }
@@ -62,7 +64,7 @@ pub struct NUBFitCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for NUBFitCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, degree, knots, accuracy } = self;
         let points = knots.len() + degree - 1;
         let all = clamped(degree, &knots, Self::KNOTS)?;
@@ -80,13 +82,13 @@ fn fit<T: Real>(
     points: usize,
     accuracy: Option<T>,
     [of, within]: [FieldId; 2],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let count = (SAMPLES * points).max(64);
     let samples: Vec<_> = (0..=count)
         .map(|k| k as f64 / count as f64)
         .map(|t| (t, curve.jet(T::from(t), Order::Zero)[0]))
         .collect();
-    let spline = MovingSpline::fitted(degree, knots, points, &samples);
+    let spline = SplineWithKnotDerivatives::fitted(degree, knots, points, &samples);
     let spline = spline.map_err(|error| no_fit(error).in_field(of))?;
     let residual = {
         let gap = |(t, p): &(f64, moldloft_num::Vec3<T>)| {
@@ -102,8 +104,8 @@ fn fit<T: Real>(
 }
 
 /// The fault of a fit whose knots or numbers do not serve.
-pub fn no_fit(error: SplineError) -> Fault {
-    let fault = Fault::new("no-fit", error.to_string());
+pub fn no_fit(error: SplineError) -> CallError {
+    let fault = CallError::new("no-fit", error.to_string());
     match error {
         SplineError::Count { .. } => fault
             .expected("knots with room between them")
@@ -113,12 +115,16 @@ pub fn no_fit(error: SplineError) -> Fault {
 }
 
 /// Refuses a fit of a `noun` that comes no nearer than asked.
-pub fn near_enough<T: Real>(residual: f64, accuracy: Option<T>, noun: &str) -> Result<(), Fault> {
+pub fn near_enough<T: Real>(
+    residual: f64,
+    accuracy: Option<T>,
+    noun: &str,
+) -> Result<(), CallError> {
     match accuracy {
         // Written so that NaN is refused.
         Some(accuracy) if residual.is_nan() || residual > accuracy.re() => {
             let message = format!("the fit does not come near enough to the {noun}");
-            Err(Fault::new("no-fit", message)
+            Err(CallError::new("no-fit", message)
                 .expected(format!("a distance of at most {}", accuracy.re()))
                 .found(format!("{residual}"))
                 .help("give it more control points or knots"))
@@ -128,9 +134,9 @@ pub fn near_enough<T: Real>(residual: f64, accuracy: Option<T>, noun: &str) -> R
 }
 
 /// How near a fit came.
-pub fn report(residual: f64) -> Found {
-    Found {
-        status: FoundStatus::Ok,
+pub fn report(residual: f64) -> SearchReport {
+    SearchReport {
+        status: SearchStatus::Ok,
         residual,
         iterations: 1,
         start: Vec::new(),
@@ -141,11 +147,11 @@ pub fn report(residual: f64) -> Found {
 }
 
 /// The knot vector of pieces that meet at `knots`, which are those of field `field`.
-pub fn clamped<T: Real>(degree: usize, knots: &[T], field: FieldId) -> Result<Vec<T>, Fault> {
+pub fn clamped<T: Real>(degree: usize, knots: &[T], field: FieldId) -> Result<Vec<T>, CallError> {
     let (first, last) = (knots.first().map(|k| k.re()), knots.last().map(|k| k.re()));
     if (first, last) != (Some(0.0), Some(1.0)) || knots.len() < 2 {
         let ends = |x: Option<f64>| x.map_or("nothing".into(), |x| x.to_string());
-        return Err(Fault::new("out-of-range", "the knots of a fit run from 0 to 1")
+        return Err(CallError::new("out-of-range", "the knots of a fit run from 0 to 1")
             .expected("knots from 0 to 1")
             .found(format!("knots from {} to {}", ends(first), ends(last)))
             .in_field(field));

@@ -1,7 +1,9 @@
+//! Foil sections as curves.
+
 use super::Ended;
 use crate::foil::foil_kind;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 foil_kind!(
     /// A foil section: thickness form and mean line of a NACA family, or ordinates of one's own,
@@ -13,7 +15,7 @@ foil_kind!(
     /// the camber. These run from the tail along the upper side to the nose, at t = 1/2, and back. Only
     /// the distance of a thickness point from the chord counts: it is half the nominal thickness.
     ///
-    /// The parameter is the square root of the way along the chord, so that the nose is smooth; the
+    /// The parameter is the square root of the position along the chord, so that the nose is smooth; the
     /// speed vanishes nowhere. Forms: NACA Reports 460, 492, 537 and 824, TM X-3069 (6-series, for the
     /// thickness ratio that the points have), Brockett 1966 (66tmb).
     #[derive(Kind)]
@@ -31,7 +33,7 @@ foil_kind!(
 );
 
 impl<T: Real> Build<T> for FoilCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (points, arguments) = self.parts();
         let places: Vec<_> = points.iter().map(|p| p.xyz).collect();
         let (curve, closed, nesting) = arguments.profile(&places)?;

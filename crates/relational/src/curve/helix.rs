@@ -1,6 +1,8 @@
+//! Helices.
+
 use super::Ended;
 use moldloft_num::{Axis, CurveFormula, Jet, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 use std::f64::consts::PI;
 
 /// A helix: the point turned about the line by t angle, right-handed, and moved along it by
@@ -13,7 +15,7 @@ use std::f64::consts::PI;
                Helix h(A, axis, 9.5, 0.75);"
 )]
 pub struct Helix<T: Real> {
-    /// Where it begins.
+    /// Start.
     point: Point<T>,
     /// Its axis, from the line's first end to its last.
     line: Axis<T>,
@@ -26,7 +28,7 @@ pub struct Helix<T: Real> {
 }
 
 impl<T: Real> Build<T> for Helix<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { point, line, angle, pitch } = self;
         let away = point.xyz - line.foot(point.xyz);
         let curve = Turning {

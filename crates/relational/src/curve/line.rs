@@ -1,6 +1,8 @@
+//! Straight lines.
+
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A straight line: C(t) = (1 - t) P1 + t P2.
 ///
@@ -21,7 +23,7 @@ pub struct Line<T: Real> {
 }
 
 impl<T: Real> Build<T> for Line<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let segment = Segment { from: self.p1.xyz, to: self.p2.xyz };
         let line = Straight { segment, ends: [self.p1.key, self.p2.key] };
         Ok(Value::Curve(CurveRef::new(line, 0)))

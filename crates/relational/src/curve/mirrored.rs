@@ -1,5 +1,7 @@
-use moldloft_num::{Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{CurveRef, Kind, Mirror};
+//! Mirror images of curves, which know their originals.
+
+use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_registry::{CurveRef, Kind, MirrorArgument};
 use std::sync::Arc;
 
 /// The mirror image of a curve in a plane, line or point, point by point: C(t) = 2 F(t) - P(t),
@@ -15,8 +17,8 @@ use std::sync::Arc;
 pub struct MirrCurve<T: Real> {
     /// The curve to mirror.
     curve: CurveRef<T>,
-    /// What to mirror it in.
-    mirror: Mirror<T>,
+    /// The mirror: a plane, line or point.
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Curve<T> for MirrCurve<T> {
@@ -40,7 +42,7 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
         self.curve.joints()
     }
 
-    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }
 }

@@ -1,7 +1,9 @@
+//! Rational B-spline curves.
+
 use super::{Ended, bcurve};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, Value};
-use moldloft_spline::{KnotError, MovingSpline, SplineError};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Point, Value};
+use moldloft_spline::{KnotError, SplineError, SplineWithKnotDerivatives};
 
 /// A rational B-spline curve: C(t) = sum w_i N_i(t) P_i / sum w_i N_i(t).
 ///
@@ -30,7 +32,7 @@ pub struct NURBCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for NURBCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let names = bcurve::ends(&self.points, Self::POINTS)?;
         let points = self.points.iter().map(|p| p.xyz).collect();
         let fields = [Self::POINTS, Self::DEGREE, Self::KNOTS, Self::WEIGHTS];
@@ -48,12 +50,12 @@ pub fn spline<T: Real>(
     knots: Option<Vec<T>>,
     weights: Option<Vec<T>>,
     [of, number, list, each]: [FieldId; 4],
-) -> Result<MovingSpline<T>, Fault> {
+) -> Result<SplineWithKnotDerivatives<T>, CallError> {
     // A degree that is only the default yields to few points; with knots it is meant.
     let degree = if knots.is_none() { degree.min(points.len() - 1) } else { degree };
     let count = points.len();
-    MovingSpline::new(degree, knots, points, weights).map_err(|error| {
-        let fault = Fault::new("no-spline", error.to_string());
+    SplineWithKnotDerivatives::new(degree, knots, points, weights).map_err(|error| {
+        let fault = CallError::new("no-spline", error.to_string());
         match error {
             SplineError::Knots(KnotError::Degree { degree }) => {
                 fault.expected("a degree from 1 to 25").found(degree.to_string()).in_field(number)

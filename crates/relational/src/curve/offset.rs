@@ -1,8 +1,10 @@
+//! Curves at a distance from others in a plane.
+
 use moldloft_num::{Curve, CurveJet, Order, Plane, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Value};
 
 /// A curve at a distance from another, sideways in a plane: C(t) = c(t) + d T x n / |T x n|, with T
-/// the tangent and n the normal of the plane; to the right of the way for one who stands on the
+/// the tangent and n the normal of the plane; to the right of the direction of travel, seen from the
 /// positive side, if d is positive.
 ///
 /// It is refused where the distance exceeds the radius of curvature on that side, since the offset
@@ -15,7 +17,7 @@ use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Value};
                OffsetCurve outside(c, -0.5, \"z=0\"); OffsetCurve inside(c, 0.25, \"z=0\");"
 )]
 pub struct OffsetCurve<T: Real> {
-    /// The curve it runs beside.
+    /// The curve that is offset.
     curve: CurveRef<T>,
     /// The distance.
     distance: T,
@@ -27,7 +29,7 @@ pub struct OffsetCurve<T: Real> {
 const TRIALS: usize = 32;
 
 impl<T: Real> Build<T> for OffsetCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, distance, plane } = self;
         let (nesting, key) = (curve.depth, curve.key);
         let mut ends = vec![0.0];
@@ -41,11 +43,14 @@ impl<T: Real> Build<T> for OffsetCurve<T> {
             for k in 0..=TRIALS {
                 let t = at(k as f64).clamp(span[0].next_up(), span[1].next_down());
                 let Some(progress) = shape.progress(t) else {
-                    return Err(Fault::new("no-tangent", "the curve has no sideways direction")
-                        .expected("a tangent that is not along the normal of the plane")
-                        .found(format!("none at t = {t}"))
-                        .related(key, "is the curve")
-                        .in_field(Self::CURVE));
+                    return Err(CallError::new(
+                        "no-tangent",
+                        "the curve has no sideways direction",
+                    )
+                    .expected("a tangent that is not along the normal of the plane")
+                    .found(format!("none at t = {t}"))
+                    .related(key, "is the curve")
+                    .in_field(Self::CURVE));
                 };
                 if progress < worst.0 {
                     worst = (progress, t);
@@ -55,7 +60,7 @@ impl<T: Real> Build<T> for OffsetCurve<T> {
         if worst.0 <= 0.0 {
             let (d, t) = (distance.re(), worst.1);
             let radius = d.abs() / (1.0 - worst.0);
-            return Err(Fault::new("cusp", "the offset exceeds the radius of curvature")
+            return Err(CallError::new("cusp", "the offset exceeds the radius of curvature")
                 .expected(format!("a distance less than {radius} on that side"))
                 .found(format!("{} where t = {t}", d.abs()))
                 .help("offset by less, or to the other side, or only a part of the curve")

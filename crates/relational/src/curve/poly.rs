@@ -1,7 +1,9 @@
+//! Curves and snakes end to end as one.
+
 use crate::arguments::{Snake, common_surface};
 use moldloft_num::trace::{Key, Piece, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 
 /// Curves end to end: piece k of N is run from t = (k - 1) / N to k / N, or between the breaks
 /// given.
@@ -25,7 +27,7 @@ pub struct PolyCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for PolyCurve<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         chain(self.curves, self.breaks, None, context, [Self::CURVES, Self::BREAKS])
     }
 }
@@ -52,7 +54,7 @@ pub struct PolySnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for PolySnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let items: Vec<_> = self.snakes.iter().map(|s| (s.curve.key, &s.surface)).collect();
         let Some(_) = items.first() else { return Err(too_few("snake", Self::SNAKES)) };
         let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::SNAKES))?;
@@ -61,8 +63,8 @@ impl<T: Real> Build<T> for PolySnake<T> {
     }
 }
 
-fn too_few(noun: &str, field: FieldId) -> Fault {
-    Fault::new("too-few-items", format!("a chain needs at least 1 {noun}"))
+fn too_few(noun: &str, field: FieldId) -> CallError {
+    CallError::new("too-few-items", format!("a chain needs at least 1 {noun}"))
         .expected(format!("at least 1 {noun}"))
         .found("0")
         .in_field(field)
@@ -74,7 +76,7 @@ fn chain<T: Real>(
     surface: Option<SurfaceRef<T>>,
     context: &Context,
     [pieces, at]: [FieldId; 2],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     if curves.is_empty() {
         return Err(too_few("curve", pieces));
     }
@@ -99,13 +101,13 @@ pub fn shares<T: Real>(
     count: usize,
     breaks: Option<Vec<T>>,
     field: FieldId,
-) -> Result<Vec<T>, Fault> {
+) -> Result<Vec<T>, CallError> {
     let Some(breaks) = breaks else {
         return Ok((0..=count).map(|k| T::from(k as f64 / count as f64)).collect());
     };
     if breaks.len() + 1 != count {
         let text = format!("{count} pieces meet at {} parameters", count - 1);
-        return Err(Fault::new("wrong-length", text)
+        return Err(CallError::new("wrong-length", text)
             .expected(format!("{} numbers between 0 and 1", count - 1))
             .found(breaks.len().to_string())
             .in_field(field));
@@ -119,7 +121,7 @@ pub fn shares<T: Real>(
     };
     if let Some(k) = (1..=count).find(descends) {
         let at = k.min(count - 1);
-        return Err(Fault::new("not-ascending", "the breaks do not ascend between 0 and 1")
+        return Err(CallError::new("not-ascending", "the breaks do not ascend between 0 and 1")
             .expected("numbers that ascend, greater than 0 and less than 1")
             .found(format!("{} after {}", ends[k].re(), ends[k - 1].re()))
             .in_item(at.saturating_sub(1))
@@ -137,13 +139,13 @@ fn check_joint<T: Real>(
     on_surface: bool,
     tolerance: f64,
     field: FieldId,
-) -> Result<(), Fault> {
+) -> Result<(), CallError> {
     let (before, after) = (&curves[k - 1], &curves[k]);
     let gap_of = |s: f64, t: f64| before.end(s).re().distance(after.end(t).re());
     let gap = gap_of(1.0, 0.0);
     let fault = |text: String, found: String| {
-        Fault::new("gap", text)
-            .expected("each piece to begin where the one before ends")
+        CallError::new("gap", text)
+            .expected("pieces that start where the previous one ends")
             .found(found)
             .related(before.key, "ends on one side of the gap")
             .related(after.key, "begins on the other")
@@ -156,9 +158,9 @@ fn check_joint<T: Real>(
         let found = format!("a gap of {gap}, with a tolerance of {tolerance}");
         let fault = fault(text, found);
         return Err(if gap_of(1.0, 1.0) <= tolerance {
-            fault.help(format!("piece {} ends there: let it run the other way", k + 1))
+            fault.help(format!("piece {} ends there: reverse it", k + 1))
         } else if gap_of(0.0, 0.0) <= tolerance && k == 1 {
-            fault.help("piece 1 begins there: let it run the other way")
+            fault.help("piece 1 begins there: reverse it")
         } else {
             fault.help("let neighbouring pieces end in common points")
         });

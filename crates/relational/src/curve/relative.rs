@@ -1,7 +1,9 @@
+//! Copies of curves: moved to new ends, scaled, turned.
+
 use super::Ended;
 use crate::affine::{Affine, Mapped};
-use moldloft_num::{Axis, Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 use std::sync::Arc;
 
 /// A curve moved to new ends: C(t) = c(t) + (1 - t) (P1 - c(0)) + t (P2 - c(1)).
@@ -17,14 +19,14 @@ use std::sync::Arc;
 pub struct RelCurve<T: Real> {
     /// The curve it is relative to.
     curve: CurveRef<T>,
-    /// Where it begins.
+    /// Start.
     p1: Point<T>,
-    /// Where it ends.
+    /// End.
     p2: Point<T>,
 }
 
 impl<T: Real> Build<T> for RelCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, p1, p2 } = self;
         let nesting = curve.depth;
         let shape = Moved::new(curve, p1.xyz, p2.xyz);
@@ -74,7 +76,7 @@ impl<T: Real> Curve<T> for Moved<T> {
         self.curve.breaks()
     }
 
-    fn law(&self) -> Option<Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }
 }
@@ -91,9 +93,9 @@ impl<T: Real> Curve<T> for Moved<T> {
 pub struct CopyCurve<T: Real> {
     /// The curve to copy.
     curve: CurveRef<T>,
-    /// A point that goes to `to`.
+    /// A point that is moved to `to`.
     from: Point<T>,
-    /// Where `from` goes.
+    /// The image of `from`.
     to: Point<T>,
     /// Scale along x.
     #[field(default = 1)]
@@ -107,7 +109,7 @@ pub struct CopyCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopyCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, from, to, sx, sy, sz } = self;
         let nesting = curve.depth;
         let map = Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]);
@@ -134,7 +136,7 @@ pub struct RotatCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for RotatCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let nesting = self.curve.depth;
         let map = Affine::turned(self.line, self.angle);
         Ok(Value::Curve(CurveRef::new(Mapped { curve: self.curve, map }, nesting)))

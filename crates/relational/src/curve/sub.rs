@@ -1,7 +1,9 @@
+//! Parts of curves and snakes between beads and rings; divisions of a part are those of the whole.
+
 use crate::arguments::{Bead, Ring, common_curve};
 use moldloft_num::trace::{Mark, Root, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3, find_root};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, Value};
 use moldloft_spline::BSplineCurve;
 use std::sync::Arc;
 
@@ -15,14 +17,14 @@ use std::sync::Arc;
                BCurve c({A, B, C, D}); AbsBead b(c, 0.9); AbsBead d(c, 0.2); SubCurve part(b, d);"
 )]
 pub struct SubCurve<T: Real> {
-    /// Where it begins.
+    /// Start.
     bead1: Bead<T>,
-    /// Where it ends, on the same curve.
+    /// End, on the same curve.
     bead2: Bead<T>,
 }
 
 impl<T: Real> Build<T> for SubCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         part(self.bead1, self.bead2, Self::BEAD2)
     }
 }
@@ -37,14 +39,14 @@ impl<T: Real> Build<T> for SubCurve<T> {
                AbsRing r(s, 0.9); AbsRing q(s, 0.25); SubSnake part(r, q);"
 )]
 pub struct SubSnake<T: Real> {
-    /// Where it begins.
+    /// Start.
     ring1: Ring<T>,
-    /// Where it ends, on the same snake.
+    /// End, on the same snake.
     ring2: Ring<T>,
 }
 
 impl<T: Real> Build<T> for SubSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         part(self.ring1.0, self.ring2.0, Self::RING2)
     }
 }
@@ -72,7 +74,7 @@ pub struct BSubCurve<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSubCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         redistributed(self.beads, self.degree, [Self::BEADS, Self::DEGREE])
     }
 }
@@ -97,7 +99,7 @@ pub struct BSubSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSubSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let beads = self.rings.into_iter().map(|ring| ring.0).collect();
         redistributed(beads, self.degree, [Self::RINGS, Self::DEGREE])
     }
@@ -128,12 +130,12 @@ fn like<T: Real>(curve: &CurveRef<T>, shape: impl Curve<T> + 'static) -> CurveRe
     }
 }
 
-fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>, Fault> {
+fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>, CallError> {
     let along = common_curve([&from, &to], field)?;
     let marks = [&from, &to].map(|bead| Mark { t: bead.t, point: bead.key });
     let trace = match (along.trace(), along.key) {
         (Trace::Point(point), _) => Trace::Point(point),
-        // A nameless curve is no root that others could share.
+        // A nameless curve is not a root that others could share.
         (Trace::Own(_), None) => Trace::Own([from.key, to.key]),
         (trace, key) => {
             let root = key.map_or(Root::Curve(moldloft_num::trace::Key(u32::MAX)), Root::Curve);
@@ -142,7 +144,7 @@ fn part<T: Real>(from: Bead<T>, to: Bead<T>, field: FieldId) -> Result<Value<T>,
     };
     // Parts of parts are parts of the whole, so that nesting does not grow.
     let ((curve, a), (_, b)) = (whole(&from), whole(&to));
-    let law = Law::Straight([a, b]);
+    let law = SubParameter::Straight([a, b]);
     let mut found = like(&curve, Run { curve: curve.clone(), law, trace });
     found.part_of = Some(Arc::new((curve, [a, b])));
     Ok(Value::Curve(found))
@@ -152,7 +154,7 @@ fn redistributed<T: Real>(
     beads: Vec<Bead<T>>,
     degree: usize,
     [list, number]: [FieldId; 2],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let [first, rest @ ..] = beads.as_slice() else { return Err(too_few(0, list)) };
     let Some(last) = rest.last() else { return Err(too_few(1, list)) };
     for (k, bead) in rest.iter().enumerate() {
@@ -166,30 +168,33 @@ fn redistributed<T: Real>(
     let law = BSplineCurve::uniform(degree.min(beads.len() - 1), coefficients)
         .map_err(|error| crate::faults::of_spline(error, list, number))?;
     let trace = Trace::Own([first.key, last.key]);
-    Ok(Value::Curve(like(&curve, Run { curve: curve.clone(), law: Law::Spline(law), trace })))
+    Ok(Value::Curve(like(
+        &curve,
+        Run { curve: curve.clone(), law: SubParameter::Spline(law), trace },
+    )))
 }
 
-fn too_few(found: usize, field: FieldId) -> Fault {
-    Fault::new("too-few-items", "a law needs at least 2 beads")
+fn too_few(found: usize, field: FieldId) -> CallError {
+    CallError::new("too-few-items", "a law needs at least 2 beads")
         .expected("at least 2 beads")
         .found(found.to_string())
         .in_field(field)
 }
 
 /// The parameter of the curve at that of its run.
-enum Law<T> {
+enum SubParameter<T> {
     /// From the first to the second.
     Straight([T; 2]),
     /// The x of a spline.
     Spline(BSplineCurve<T>),
 }
 
-impl<T: Real> Law<T> {
+impl<T: Real> SubParameter<T> {
     /// The parameter and its derivatives.
     fn at(&self, t: T, order: Order) -> [T; 3] {
         match self {
-            Law::Straight([from, to]) => [between(*from, *to, t), *to - *from, T::zero()],
-            Law::Spline(law) => law.jet(t, order).map(|p| p.x),
+            SubParameter::Straight([from, to]) => [between(*from, *to, t), *to - *from, T::zero()],
+            SubParameter::Spline(law) => law.jet(t, order).map(|p| p.x),
         }
     }
 }
@@ -197,7 +202,7 @@ impl<T: Real> Law<T> {
 /// A curve run by a law.
 struct Run<T: Real> {
     curve: CurveRef<T>,
-    law: Law<T>,
+    law: SubParameter<T>,
     trace: Trace<T>,
 }
 
@@ -219,11 +224,11 @@ impl<T: Real> Curve<T> for Run<T> {
     fn breaks(&self) -> Vec<f64> {
         let of_curve = self.curve.breaks();
         let mut breaks = match &self.law {
-            Law::Straight([from, to]) => {
+            SubParameter::Straight([from, to]) => {
                 let (from, to) = (from.re(), to.re());
                 of_curve.into_iter().map(|b| (b - from) / (to - from)).collect()
             }
-            Law::Spline(law) => {
+            SubParameter::Spline(law) => {
                 let mut breaks = law.breaks();
                 let mut ends = vec![0.0];
                 ends.extend(&breaks);

@@ -1,9 +1,11 @@
+//! The locus of a point whose bead runs along its curve.
+
 use crate::arguments::Bead;
 use crate::chebyshev::{DEEPEST, MOST_PIECES, NODES, Piece, Way, nodes};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, MovingPoint, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, MovingPoint, Value};
 
-/// The way of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
+/// The locus of a point when a bead that it depends on sweeps its curve: C(t) is where `point` is with
 /// `bead` at the parameter t1 + t (t2 - t1).
 ///
 /// Everything between bead and point is evaluated anew at each place. The curve is a chain of
@@ -24,16 +26,16 @@ pub struct ProcCurve<T: Real> {
     bead: Bead<T>,
     /// The point that follows.
     point: MovingPoint<T>,
-    /// Where the bead begins.
+    /// Start of the bead.
     #[field(default = 0)]
     t1: T,
-    /// Where it ends.
+    /// End.
     #[field(default = 1)]
     t2: T,
 }
 
 impl<T: Real> Build<T> for ProcCurve<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { bead, point, t1, t2 } = self;
         let at = |t: f64| {
             let place = t1 * (1.0 - t) + t2 * t;
@@ -60,8 +62,8 @@ impl<T: Real> Build<T> for ProcCurve<T> {
 pub const ACCURACY: f64 = 1e-12;
 
 /// The fault of a `noun` that has no value with the bead at `t`.
-pub fn no_locus(noun: &str, t: f64, fault: &Fault, field: FieldId) -> Fault {
-    let whole = Fault::new("no-locus", format!("the {noun} has no place with the bead at {t}"))
+pub fn no_locus(noun: &str, t: f64, fault: &CallError, field: FieldId) -> CallError {
+    let whole = CallError::new("no-locus", format!("the {noun} has no place with the bead at {t}"))
         .expected(format!("a {noun} wherever the bead is"))
         .found(fault.message.clone())
         .help("sweep only a part of the curve: give t1 and t2")
@@ -84,8 +86,8 @@ pub fn stretches<T: Real>(bead: &Bead<T>, [t1, t2]: [T; 2]) -> Vec<f64> {
 /// Pieces so short that they cannot be halved again stay as they are, which keeps a kink.
 pub fn halved<P>(
     ends: &[f64],
-    mut piece: impl FnMut(f64, f64) -> Result<(P, bool), Fault>,
-) -> Result<Vec<P>, Fault> {
+    mut piece: impl FnMut(f64, f64) -> Result<(P, bool), CallError>,
+) -> Result<Vec<P>, CallError> {
     let mut todo: Vec<(f64, f64, u32)> = ends.windows(2).map(|w| (w[0], w[1], 0)).collect();
     todo.reverse();
     let mut pieces = Vec::new();

@@ -1,26 +1,34 @@
+//! Beads and rings at a length along curves, and copies of beads and magnets.
+
 use crate::arguments::{Bead, Magnet, Ring, Snake, Start};
 use moldloft_num::{Order, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, FieldId, Kind, Point, SurfaceRef, Value,
+};
 use moldloft_spline::inv_arclen;
 
-fn on<T: Real>(curve: CurveRef<T>, t: T) -> Result<Value<T>, Fault> {
+fn on<T: Real>(curve: CurveRef<T>, t: T) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::on_curve(curve, t))))
 }
 
 /// The bead at a signed length along a curve.
-fn at_length<T: Real>(start: Start<T>, length: T, fields: [FieldId; 2]) -> Result<Value<T>, Fault> {
+fn at_length<T: Real>(
+    start: Start<T>,
+    length: T,
+    fields: [FieldId; 2],
+) -> Result<Value<T>, CallError> {
     let Start { curve, t } = start;
     let speed = |k: i32| curve.jet(T::from(f64::from(k) / 16.0), Order::First)[1].re().norm();
     let size = (0..=16).map(speed).fold(0.0, f64::max);
     if size == 0.0 {
-        return Err(Fault::new("no-length", "the curve has no length")
+        return Err(CallError::new("no-length", "the curve has no length")
             .expected("a curve with length")
-            .related(curve.key, "stands still")
+            .related(curve.key, "has a zero tangent")
             .in_field(fields[0]));
     }
     let found = inv_arclen(&*curve, t, length, 1e-12 * size);
     let found = found.map_err(|error| {
-        Fault::new("beyond-end", error.to_string())
+        CallError::new("beyond-end", error.to_string())
             .expected(format!("a length up to {} on that side", error.available))
             .found(error.asked.to_string())
             .related(curve.key, "is too short")
@@ -46,7 +54,7 @@ pub struct ArcLenBead<T: Real> {
 }
 
 impl<T: Real> Build<T> for ArcLenBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         at_length(self.start, self.length, [Self::START, Self::LENGTH])
     }
 }
@@ -69,11 +77,11 @@ pub struct ArcLenRing<T: Real> {
 }
 
 impl<T: Real> Build<T> for ArcLenRing<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         if self.start.curve.surface.is_none() {
-            return Err(Fault::new("wrong-class", "expected a snake or a ring on one")
+            return Err(CallError::new("wrong-class", "expected a snake or a ring on one")
                 .expected("a snake, or a ring on one")
-                .found("a curve that lies on no surface")
+                .found("a curve that is not on a surface")
                 .in_field(Self::START));
         }
         at_length(self.start, self.length, [Self::START, Self::LENGTH])
@@ -89,14 +97,14 @@ impl<T: Real> Build<T> for ArcLenRing<T> {
                Line l(A, C); AbsBead b(c, 0.25); CopyBead d(b, l);"
 )]
 pub struct CopyBead<T: Real> {
-    /// The bead whose parameter is taken.
+    /// The bead whose parameter is copied.
     bead: Bead<T>,
-    /// The curve it is taken to.
+    /// The target curve.
     curve: CurveRef<T>,
 }
 
 impl<T: Real> Build<T> for CopyBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         on(self.curve, self.bead.t)
     }
 }
@@ -111,14 +119,14 @@ impl<T: Real> Build<T> for CopyBead<T> {
                AbsMagnet p(S, 0.25, 0.375); CopyMagnet q(p, T);"
 )]
 pub struct CopyMagnet<T: Real> {
-    /// The magnet whose parameters are taken.
+    /// The magnet whose parameters are copied.
     magnet: Magnet<T>,
-    /// The surface they are taken to.
+    /// The target surface.
     surface: SurfaceRef<T>,
 }
 
 impl<T: Real> Build<T> for CopyMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let [u, v] = self.magnet.uv;
         Ok(Value::Point(Box::new(Point::on_surface(self.surface, u, v))))
     }
@@ -134,14 +142,14 @@ impl<T: Real> Build<T> for CopyMagnet<T> {
                UVSnake t(S, \"v\", 0.3); AbsRing r(s, 0.3); CopyRing q(r, t);"
 )]
 pub struct CopyRing<T: Real> {
-    /// The ring whose parameter is taken.
+    /// The ring whose parameter is copied.
     ring: Ring<T>,
-    /// The snake it is taken to.
+    /// The target snake.
     snake: Snake<T>,
 }
 
 impl<T: Real> Build<T> for CopyRing<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         on(self.snake.curve, self.ring.0.t)
     }
 }

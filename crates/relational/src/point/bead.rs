@@ -1,10 +1,12 @@
+//! Beads: points on curves by their parameter.
+
 use crate::arguments::Bead;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A point on a curve at a given parameter: X = C(t).
 ///
-/// Outside [0, 1] it lies on the natural continuation of the curve's formula. On a snake it is a
+/// Outside [0, 1] it is on the natural continuation of the curve's formula. On a snake it is a
 /// ring: it knows its place on the surface too.
 #[derive(Kind)]
 #[kind(
@@ -13,21 +15,21 @@ use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
     example = "AbsPoint A(0, 0, 0); AbsPoint B(1, 2, 0); Line l(A, B); AbsBead b(l, 0.25);"
 )]
 pub struct AbsBead<T: Real> {
-    /// The curve it lives on.
+    /// The curve it is on.
     curve: CurveRef<T>,
     /// Its parameter.
     t: T,
 }
 
 impl<T: Real> Build<T> for AbsBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Point(Box::new(Point::on_curve(self.curve, self.t))))
     }
 }
 
 /// A point on the curve of another bead, at a fixed difference of parameter: X = C(t + dt).
 ///
-/// What stays the same when the other bead moves is the difference of parameters, not the length
+/// When the other bead moves, the difference of parameters stays the same, not the length
 /// of the curve between them.
 #[derive(Kind)]
 #[kind(
@@ -44,7 +46,7 @@ pub struct RelBead<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelBead<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Bead { curve, t, .. } = self.bead;
         Ok(Value::Point(Box::new(Point::on_curve(curve, t + self.dt))))
     }

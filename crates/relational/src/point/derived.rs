@@ -1,20 +1,22 @@
+//! Points off surfaces, on tangents, turned, copied, blended, and centroids.
+
 use crate::affine::Affine;
 use crate::arguments::{Bead, Magnet};
 use crate::normal::normal;
 use moldloft_num::{Axis, Order, Real, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, Found, FoundStatus, Kind, Point, SolidRef,
-    SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, Kind, Point, SearchReport, SearchStatus,
+    SolidRef, SurfaceRef, Value,
 };
 use moldloft_spline::{arclen, curve_integral};
 
-fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
+fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::free(xyz))))
 }
 
 /// A point off a surface: X = S(u, v) + d n, with n the unit normal along S_u x S_v.
 ///
-/// At a pole the normal is the limit along the parameter line that leads there.
+/// At a pole the normal is the limit along the parameter line that ends there.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -24,14 +26,14 @@ fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
                OffsetPoint q(p, 0.75);"
 )]
 pub struct OffsetPoint<T: Real> {
-    /// Where on the surface.
+    /// The magnet on the surface.
     magnet: Magnet<T>,
     /// The distance, on the side of the natural normal if positive.
     distance: T,
 }
 
 impl<T: Real> Build<T> for OffsetPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let n = normal(&self.magnet).map_err(|fault| fault.in_field(Self::MAGNET))?;
         let [u, v] = self.magnet.uv;
         free(self.magnet.surface.jet(u, v, Order::Zero).p + n * self.distance)
@@ -41,13 +43,13 @@ impl<T: Real> Build<T> for OffsetPoint<T> {
 /// The unit tangent of a curve at a bead.
 ///
 /// # Errors
-/// `no-tangent`, in `field`, where the curve stands still.
-pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, Fault> {
+/// `no-tangent`, in `field`, where the curve has a zero tangent.
+pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, CallError> {
     bead.curve.jet(bead.t, Order::First)[1].normalized().ok_or_else(|| {
-        Fault::new("no-tangent", "the curve has no tangent there")
-            .expected("a place where the curve moves on")
+        CallError::new("no-tangent", "the curve has no tangent there")
+            .expected("a place with a non-zero tangent")
             .found(format!("no speed at t = {}", bead.t.re()))
-            .related(bead.key, "lies there")
+            .related(bead.key, "is there")
             .in_field(field)
     })
 }
@@ -61,14 +63,14 @@ pub fn tangent<T: Real>(bead: &Bead<T>, field: FieldId) -> Result<Vec3<T>, Fault
                AbsBead b(c, 0.25); TanPoint p(b, 1.5);"
 )]
 pub struct TanPoint<T: Real> {
-    /// Where on the curve.
+    /// The bead on the curve.
     bead: Bead<T>,
     /// The distance, in the direction of increasing parameter if positive.
     distance: T,
 }
 
 impl<T: Real> Build<T> for TanPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let along = tangent(&self.bead, Self::BEAD)?;
         free(self.bead.curve.jet(self.bead.t, Order::Zero)[0] + along * self.distance)
     }
@@ -93,7 +95,7 @@ pub struct RotatPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for RotatPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(self.line.rotated(self.point.xyz, self.angle))
     }
 }
@@ -110,9 +112,9 @@ impl<T: Real> Build<T> for RotatPoint<T> {
 pub struct CopyPoint<T: Real> {
     /// The point to copy.
     point: Point<T>,
-    /// A point that goes to `to`.
+    /// A point that is moved to `to`.
     from: Point<T>,
-    /// Where `from` goes.
+    /// The image of `from`.
     to: Point<T>,
     /// Scale along x.
     #[field(default = 1)]
@@ -126,7 +128,7 @@ pub struct CopyPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopyPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { point, from, to, sx, sy, sz } = self;
         free(Affine::scaled(from.xyz, to.xyz, [sx, sy, sz]).point(point.xyz))
     }
@@ -152,12 +154,12 @@ pub struct BlendPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for BlendPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { points, weights } = self;
         let count = points.len();
         let weights = weights.unwrap_or_else(|| vec![T::from(1.0 / count as f64); count]);
         if weights.len() != count {
-            return Err(Fault::new("wrong-length", "each point needs one weight")
+            return Err(CallError::new("wrong-length", "each point needs one weight")
                 .expected(format!("{count} weights"))
                 .found(weights.len().to_string())
                 .in_field(Self::WEIGHTS));
@@ -169,8 +171,8 @@ impl<T: Real> Build<T> for BlendPoint<T> {
         }
         let mut blend = Point::free(sum);
         if (whole - 1.0).abs() > 1e-9 {
-            blend = blend.with_found(Found {
-                status: FoundStatus::Unbalanced { sum: whole },
+            blend = blend.with_found(SearchReport {
+                status: SearchStatus::Unbalanced { sum: whole },
                 residual: (whole - 1.0).abs(),
                 iterations: 0,
                 start: Vec::new(),
@@ -204,7 +206,7 @@ pub struct CentroidPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for CentroidPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         // (size, size times centroid) of all.
         let (mut size, mut moment) = (T::zero(), Vec3::zero());
         let mut first = None;
@@ -215,28 +217,31 @@ impl<T: Real> Build<T> for CentroidPoint<T> {
                 Value::Curve(curve) => ("curves", of_curve(curve)),
                 Value::Surface(surface) => ("surfaces", of_surface(surface)),
                 Value::Solid(solid) => ("solids", of_solid(solid)),
-                Value::Mesh(mesh) => ("solids", (mesh.volume, mesh.centroid * mesh.volume)),
+                Value::Body(mesh) => ("solids", (mesh.volume, mesh.centroid * mesh.volume)),
                 other => {
-                    return Err(Fault::new("wrong-class", "a centroid is of shapes")
+                    return Err(CallError::new("wrong-class", "a centroid is of shapes")
                         .expected("points, curves, surfaces or solids")
-                        .found(other.class().a())
+                        .found(other.class().with_article())
                         .in_item(k)
                         .in_field(Self::OBJECTS));
                 }
             };
             if *first.get_or_insert(kind) != kind {
-                return Err(Fault::new("mixed-classes", "a centroid is of shapes of one class")
-                    .expected(first.unwrap_or(kind))
-                    .found(format!("{kind} as well"))
-                    .help("take the centroids of each class, and blend them")
-                    .in_item(k)
-                    .in_field(Self::OBJECTS));
+                return Err(CallError::new(
+                    "mixed-classes",
+                    "a centroid is of shapes of one class",
+                )
+                .expected(first.unwrap_or(kind))
+                .found(format!("{kind} as well"))
+                .help("take the centroids of each class, and blend them")
+                .in_item(k)
+                .in_field(Self::OBJECTS));
             }
             size += s;
             moment += m;
         }
         if size.re() <= 0.0 {
-            return Err(Fault::new("no-size", "the shapes have no size to weigh them by")
+            return Err(CallError::new("no-size", "the shapes have no size to weigh them by")
                 .expected("curves with length, or surfaces with area")
                 .in_field(Self::OBJECTS));
         }

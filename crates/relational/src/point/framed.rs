@@ -1,5 +1,7 @@
+//! Points in the axes of frames, Cartesian and polar.
+
 use moldloft_num::{Frame, Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 
 /// The position at an offset, given in the axes of a frame, from a point; from the frame's origin
 /// when there is no point.
@@ -7,7 +9,7 @@ fn placed<T: Real>(
     point: Option<Point<T>>,
     frame: Option<Frame<T>>,
     offset: Vec3<T>,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let frame = frame.unwrap_or_else(Frame::world);
     let origin = point.map_or(frame.origin, |p| p.xyz);
     let xyz = Frame { origin, ..frame }.world_from(offset);
@@ -47,7 +49,7 @@ pub struct FramePoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for FramePoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { point, frame, a, b, c, r#type } = self;
         let offset = match r#type {
             0 => Vec3::new(a, b, c),
@@ -87,7 +89,7 @@ pub struct PolarPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for PolarPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         placed(self.point, self.frame, spherical(self.r, self.theta, self.phi))
     }
 }

@@ -1,7 +1,9 @@
-use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Mirror, Point, Value};
+//! Points by coordinates, by offsets and by mirroring.
 
-fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, Fault> {
+use moldloft_num::{Real, Vec3};
+use moldloft_registry::{Build, CallError, Context, Kind, MirrorArgument, Point, Value};
+
+fn free<T: Real>(xyz: Vec3<T>) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::free(xyz))))
 }
 
@@ -20,7 +22,7 @@ pub struct AbsPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for AbsPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(Vec3::new(self.x, self.y, self.z))
     }
 }
@@ -47,7 +49,7 @@ pub struct RelPoint<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(self.point.xyz + Vec3::new(self.dx, self.dy, self.dz))
     }
 }
@@ -63,12 +65,12 @@ impl<T: Real> Build<T> for RelPoint<T> {
 pub struct MirrPoint<T: Real> {
     /// The point to mirror.
     point: Point<T>,
-    /// What to mirror it in.
-    mirror: Mirror<T>,
+    /// The mirror: a plane, line or point.
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Build<T> for MirrPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         free(self.mirror.image(self.point.xyz))
     }
 }

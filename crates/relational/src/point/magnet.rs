@@ -1,10 +1,12 @@
+//! Magnets: points on surfaces by their parameters.
+
 use crate::arguments::Magnet;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Value};
 
 /// A point on a surface at given parameters: X = S(u, v).
 ///
-/// Outside [0, 1] it lies on the natural continuation of the surface's formula.
+/// Outside [0, 1] it is on the natural continuation of the surface's formula.
 #[derive(Kind)]
 #[kind(
     class = Magnet,
@@ -13,7 +15,7 @@ use moldloft_registry::{Build, Context, Fault, Kind, Point, SurfaceRef, Value};
                Line l(A, B); Line m(C, D); RuledSurf S(l, m); AbsMagnet p(S, 0.25, 0.5);"
 )]
 pub struct AbsMagnet<T: Real> {
-    /// The surface it lives on.
+    /// The surface it is on.
     surface: SurfaceRef<T>,
     /// Its first parameter.
     u: T,
@@ -22,7 +24,7 @@ pub struct AbsMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for AbsMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Point(Box::new(Point::on_surface(self.surface, self.u, self.v))))
     }
 }
@@ -49,7 +51,7 @@ pub struct RelMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Magnet { surface, uv: [u, v], .. } = self.magnet;
         Ok(Value::Point(Box::new(Point::on_surface(surface, u + self.du, v + self.dv))))
     }

@@ -1,6 +1,8 @@
+//! Rings: points on snakes by their parameter.
+
 use crate::arguments::{Bead, Ring, Snake};
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, Value};
 
 /// A point on a snake at a given parameter: X = S(w(t)).
 ///
@@ -21,7 +23,7 @@ pub struct AbsRing<T: Real> {
 }
 
 impl<T: Real> Build<T> for AbsRing<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Point(Box::new(Point::on_curve(self.snake.curve, self.t))))
     }
 }
@@ -43,7 +45,7 @@ pub struct RelRing<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelRing<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Ring(Bead { curve, t, .. }) = self.ring;
         Ok(Value::Point(Box::new(Point::on_curve(curve, t + self.dt))))
     }

@@ -1,5 +1,9 @@
-use moldloft_num::{Composed, Law, LawJet, Order, Real, inv_law_in};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, RelabelRef, Value};
+//! Reparametrizations from others: by arc length, copied, inverted.
+
+use moldloft_num::{
+    Composed, Order, Real, Reparametrization, ReparametrizationJet, inv_reparametrization_in,
+};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, ReparametrizationRef, Value};
 use moldloft_spline as spline;
 use std::sync::Arc;
 
@@ -30,12 +34,12 @@ const LENGTH_ACCURACY: f64 = 1e-13;
 const PLACES: usize = 16;
 
 impl<T: Real> Build<T> for ArcLenRelabel<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let curve = self.curve;
         let rough = spline::arclen(&*curve, T::zero(), T::one(), 1e-6).re();
         let slope = |t: f64| curve.jet(T::from(t), Order::First)[1].re().norm();
         if !rough.is_finite() || slope(0.0).min(slope(1.0)) <= NO_SLOPE * rough || rough == 0.0 {
-            return Err(Fault::new("zero-slope", "the curve stands still at an end")
+            return Err(CallError::new("zero-slope", "zero tangent at an end")
                 .expected("a curve that moves at t = 0 and t = 1")
                 .found(format!("the speeds {} and {}", slope(0.0), slope(1.0)))
                 .related(curve.key, "is the curve")
@@ -57,7 +61,7 @@ impl<T: Real> Build<T> for ArcLenRelabel<T> {
             lengths.push(lengths[lengths.len() - 1] + step);
         }
         let law = ByLength { curve, places, lengths, accuracy };
-        Ok(Value::Relabel(RelabelRef::new(law, context.nesting)))
+        Ok(Value::Relabel(ReparametrizationRef::new(law, context.nesting)))
     }
 }
 
@@ -116,7 +120,7 @@ impl<T: Real> ByLength<T> {
         correction - correction.re() + x
     }
 
-    fn inside(&self, t: T, order: Order) -> LawJet<T> {
+    fn inside(&self, t: T, order: Order) -> ReparametrizationJet<T> {
         let r = self.parameter(t);
         if order == Order::Zero {
             return [r, T::zero(), T::zero()];
@@ -137,7 +141,11 @@ impl<T: Real> ByLength<T> {
 }
 
 /// Outside [0, 1] the straight continuation of what is inside.
-fn continued<T: Real>(t: T, order: Order, inside: impl Fn(T, Order) -> LawJet<T>) -> LawJet<T> {
+fn continued<T: Real>(
+    t: T,
+    order: Order,
+    inside: impl Fn(T, Order) -> ReparametrizationJet<T>,
+) -> ReparametrizationJet<T> {
     let end = match t.re() {
         x if x < 0.0 => 0.0,
         x if x > 1.0 => 1.0,
@@ -147,8 +155,8 @@ fn continued<T: Real>(t: T, order: Order, inside: impl Fn(T, Order) -> LawJet<T>
     [r + slope * (t - end), slope, T::zero()]
 }
 
-impl<T: Real> Law<T> for ByLength<T> {
-    fn jet(&self, t: T, order: Order) -> LawJet<T> {
+impl<T: Real> Reparametrization<T> for ByLength<T> {
+    fn jet(&self, t: T, order: Order) -> ReparametrizationJet<T> {
         continued(t, order, |t, order| self.inside(t, order))
     }
 
@@ -173,15 +181,15 @@ impl<T: Real> Law<T> for ByLength<T> {
                BCurve c({A, B, C}, relabel = cosine); CopyRelabel r(c); Line l(A, C, relabel = r);"
 )]
 pub struct CopyRelabel<T: Real> {
-    /// The curve whose law is taken over.
+    /// The curve whose relabel is copied.
     curve: CurveRef<T>,
 }
 
 impl<T: Real> Build<T> for CopyRelabel<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         Ok(Value::Relabel(match self.curve.law() {
-            Some(law) => RelabelRef::shared(law, context.nesting),
-            None => RelabelRef::new(spline::Relabel::identity(), 0),
+            Some(law) => ReparametrizationRef::shared(law, context.nesting),
+            None => ReparametrizationRef::new(spline::ReparametrizationForm::identity(), 0),
         }))
     }
 }
@@ -196,23 +204,23 @@ impl<T: Real> Build<T> for CopyRelabel<T> {
 )]
 pub struct InvRelabel<T: Real> {
     /// The relabel to undo.
-    relabel: RelabelRef<T>,
+    relabel: ReparametrizationRef<T>,
 }
 
 impl<T: Real> Build<T> for InvRelabel<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let law = self.relabel;
         for end in [0.0, 1.0] {
             let [value, slope, _] = law.jet(T::from(end), Order::First).map(Real::re);
             if value != end {
-                return Err(Fault::new("wrong-ends", "a partial relabel cannot be undone")
+                return Err(CallError::new("wrong-ends", "a partial relabel cannot be undone")
                     .expected(format!("the value {end} at t = {end}"))
                     .found(value.to_string())
                     .related(law.key, "is the relabel")
                     .in_field(Self::RELABEL));
             }
             if slope < NO_SLOPE {
-                return Err(Fault::new("zero-slope", "this relabel cannot be undone")
+                return Err(CallError::new("zero-slope", "this relabel cannot be undone")
                     .expected("a slope at both ends")
                     .found(format!("the slope {slope} at t = {end}"))
                     .related(law.key, "is the relabel")
@@ -220,18 +228,18 @@ impl<T: Real> Build<T> for InvRelabel<T> {
                     .in_field(Self::RELABEL));
             }
         }
-        Ok(Value::Relabel(RelabelRef::new(Inverse { law }, context.nesting)))
+        Ok(Value::Relabel(ReparametrizationRef::new(Inverse { law }, context.nesting)))
     }
 }
 
 struct Inverse<T: Real> {
-    law: RelabelRef<T>,
+    law: ReparametrizationRef<T>,
 }
 
-impl<T: Real> Law<T> for Inverse<T> {
-    fn jet(&self, t: T, order: Order) -> LawJet<T> {
+impl<T: Real> Reparametrization<T> for Inverse<T> {
+    fn jet(&self, t: T, order: Order) -> ReparametrizationJet<T> {
         continued(t, order, |t, order| {
-            let x = inv_law_in(&*self.law, t);
+            let x = inv_reparametrization_in(&*self.law, t);
             if order == Order::Zero {
                 return [x, T::zero(), T::zero()];
             }
@@ -263,16 +271,16 @@ impl<T: Real> Law<T> for Inverse<T> {
 pub struct ComposeRelabel<T: Real> {
     /// Relabels, the one that sees t first.
     #[field(min_items = 1)]
-    relabels: Vec<RelabelRef<T>>,
+    relabels: Vec<ReparametrizationRef<T>>,
 }
 
 impl<T: Real> Build<T> for ComposeRelabel<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let laws = self.relabels.iter().map(|r| r.law().clone());
         let law = laws.reduce(|first, second| Arc::new(Composed { first, second }));
         Ok(Value::Relabel(match law {
-            Some(law) => RelabelRef::shared(law, context.nesting),
-            None => RelabelRef::new(spline::Relabel::identity(), 0),
+            Some(law) => ReparametrizationRef::shared(law, context.nesting),
+            None => ReparametrizationRef::new(spline::ReparametrizationForm::identity(), 0),
         }))
     }
 }
@@ -280,15 +288,20 @@ impl<T: Real> Build<T> for ComposeRelabel<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use moldloft_num::inv_law;
+    use moldloft_num::inv_reparametrization;
 
     #[test]
     fn continuations_are_straight() {
-        let law = RelabelRef::new(spline::Relabel::<f64>::geometric(4.0).unwrap(), 0);
+        let law = ReparametrizationRef::new(
+            spline::ReparametrizationForm::<f64>::geometric(4.0).unwrap(),
+            0,
+        );
         let inverse = Inverse { law: law.clone() };
         let slope = 1.0 / law.jet(1.0, Order::First)[1];
         let jet = inverse.jet(1.5, Order::Second);
         assert!((jet[0] - (1.0 + 0.5 * slope)).abs() < 1e-15 && jet[2] == 0.0);
-        assert!((inv_law(&inverse, 0.3) - law.jet(0.3, Order::Zero)[0]).abs() < 1e-14);
+        assert!(
+            (inv_reparametrization(&inverse, 0.3) - law.jet(0.3, Order::Zero)[0]).abs() < 1e-14
+        );
     }
 }

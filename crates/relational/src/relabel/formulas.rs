@@ -1,5 +1,9 @@
+//! Reparametrizations by formulas: B-spline, cosine, geometric, hyperbolic tangent.
+
 use moldloft_num::Real;
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, RelabelRef, Value};
+use moldloft_registry::{
+    Build, CallError, Class, Context, FromValue, Kind, ReparametrizationRef, Value,
+};
 use moldloft_spline as spline;
 use moldloft_spline::{Dense, RelabelError};
 use std::sync::Arc;
@@ -9,14 +13,14 @@ pub struct DenseAt(Dense);
 
 impl<T: Real> FromValue<T> for DenseAt {
     const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let text = Arc::<str>::from_value(value)?;
         Ok(DenseAt(match &*text {
             "both" => Dense::Both,
             "start" => Dense::Start,
             "end" => Dense::End,
             other => {
-                return Err(Fault::new("unknown-end", format!("there is no end \"{other}\""))
+                return Err(CallError::new("unknown-end", format!("unknown end \"{other}\""))
                     .expected("\"both\", \"start\" or \"end\"")
                     .found(format!("\"{other}\"")));
             }
@@ -25,36 +29,39 @@ impl<T: Real> FromValue<T> for DenseAt {
 }
 
 fn law<T: Real>(
-    law: Result<spline::Relabel<T>, RelabelError>,
-    place: impl Fn(Fault, &RelabelError) -> Fault,
-) -> Result<Value<T>, Fault> {
+    law: Result<spline::ReparametrizationForm<T>, RelabelError>,
+    place: impl Fn(CallError, &RelabelError) -> CallError,
+) -> Result<Value<T>, CallError> {
     match law {
-        Ok(law) => Ok(Value::Relabel(RelabelRef::new(law, 0))),
+        Ok(law) => Ok(Value::Relabel(ReparametrizationRef::new(law, 0))),
         Err(error) => {
             let message = error.to_string();
             let fault = match &error {
-                RelabelError::Ends { first, last } => Fault::new("wrong-ends", message)
+                RelabelError::Ends { first, last } => CallError::new("wrong-ends", message)
                     .expected("0 at the start and 1 at the end")
                     .found(format!("{first} and {last}")),
                 RelabelError::NotMonotone { value, before, .. } => {
-                    Fault::new("not-monotone", message)
+                    CallError::new("not-monotone", message)
                         .expected(format!("a value greater than {before}"))
                         .found(value.to_string())
                 }
-                RelabelError::ZeroSlope { at } => Fault::new("zero-slope", message)
+                RelabelError::ZeroSlope { at } => CallError::new("zero-slope", message)
                     .expected("values that ascend everywhere inside")
                     .found(format!("no slope at t = {at}"))
-                    .help("set neighbouring values apart"),
-                RelabelError::Range { value, min, max, .. } => Fault::new("out-of-range", message)
-                    .expected(format!("a number from {min} to {max}"))
-                    .found(value.to_string()),
-                RelabelError::Unordered { .. } => {
-                    Fault::new("not-monotone", message).expected("parameters in ascending order")
+                    .help("separate neighbouring values"),
+                RelabelError::Range { value, min, max, .. } => {
+                    CallError::new("out-of-range", message)
+                        .expected(format!("a number from {min} to {max}"))
+                        .found(value.to_string())
                 }
-                RelabelError::Lengths { parameters, values } => Fault::new("wrong-length", message)
-                    .expected("two or more parameters, and as many values")
-                    .found(format!("{parameters} and {values}")),
-                RelabelError::Knots(_) => Fault::new("no-spline", message),
+                RelabelError::Unordered { .. } => CallError::new("not-monotone", message)
+                    .expected("parameters in ascending order"),
+                RelabelError::Lengths { parameters, values } => {
+                    CallError::new("wrong-length", message)
+                        .expected("two or more parameters, and as many values")
+                        .found(format!("{parameters} and {values}"))
+                }
+                RelabelError::Knots(_) => CallError::new("no-spline", message),
             };
             Err(place(fault, &error))
         }
@@ -88,11 +95,11 @@ pub struct Relabel<T: Real> {
 }
 
 impl<T: Real> Build<T> for Relabel<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let degree = self.degree.min(self.values.len().saturating_sub(1)).max(1);
         let made = match self.partial {
-            0 => spline::Relabel::spline(degree, self.values),
-            _ => spline::Relabel::partial(degree, self.values),
+            0 => spline::ReparametrizationForm::spline(degree, self.values),
+            _ => spline::ReparametrizationForm::partial(degree, self.values),
         };
         law(made, |fault, error| match error {
             RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(Self::VALUES),
@@ -113,7 +120,7 @@ impl<T: Real> Build<T> for Relabel<T> {
     example = "CosRelabel r(); CosRelabel s(\"start\", 0.8);"
 )]
 pub struct CosRelabel<T: Real> {
-    /// Where it is dense: "both", "start" or "end".
+    /// Dense end: "both", "start" or "end".
     #[field(default = "both")]
     dense: DenseAt,
     /// Share w of the cosine, 0 to 1.
@@ -122,8 +129,8 @@ pub struct CosRelabel<T: Real> {
 }
 
 impl<T: Real> Build<T> for CosRelabel<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        law(spline::Relabel::cosine(self.dense.0, self.weight), |fault, _| {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        law(spline::ReparametrizationForm::cosine(self.dense.0, self.weight), |fault, _| {
             fault.in_field(Self::WEIGHT)
         })
     }
@@ -140,8 +147,10 @@ pub struct GeoRelabel<T: Real> {
 }
 
 impl<T: Real> Build<T> for GeoRelabel<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        law(spline::Relabel::geometric(self.ratio), |fault, _| fault.in_field(Self::RATIO))
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        law(spline::ReparametrizationForm::geometric(self.ratio), |fault, _| {
+            fault.in_field(Self::RATIO)
+        })
     }
 }
 
@@ -158,14 +167,14 @@ pub struct TanhRelabel<T: Real> {
     /// Strength d, 0 to 100; 0 changes nothing.
     #[field(min = 0, max = 100)]
     strength: T,
-    /// Where it is dense: "both", "start" or "end".
+    /// Dense end: "both", "start" or "end".
     #[field(default = "both")]
     dense: DenseAt,
 }
 
 impl<T: Real> Build<T> for TanhRelabel<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
-        law(spline::Relabel::tanh(self.dense.0, self.strength), |fault, _| {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
+        law(spline::ReparametrizationForm::tanh(self.dense.0, self.strength), |fault, _| {
             fault.in_field(Self::STRENGTH)
         })
     }
@@ -191,10 +200,10 @@ pub struct TableRelabel<T: Real> {
 }
 
 impl<T: Real> Build<T> for TableRelabel<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let ends = [0.0, 1.0].map(Some);
         let run = [self.parameters.first(), self.parameters.last()].map(|x| x.map(|x| x.re()));
-        let table = spline::Relabel::table(self.parameters, self.values);
+        let table = spline::ReparametrizationForm::table(self.parameters, self.values);
         law(table, |fault, error| match error {
             RelabelError::NotMonotone { index, .. } => fault.in_item(*index).in_field(Self::VALUES),
             RelabelError::Unordered { index } => fault.in_item(*index).in_field(Self::PARAMETERS),

@@ -1,10 +1,10 @@
 //! Arguments of searches: a shape, or a point on it that says where to begin.
 
 use moldloft_num::{Plane, Real, Vec3};
-use moldloft_registry::{Class, CurveRef, Fault, FieldRef, FromValue, SurfaceRef, Value};
+use moldloft_registry::{CallError, Class, CurveRef, FieldRef, FromValue, SurfaceRef, Value};
 
-fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, Fault> {
-    Err(Fault::wrong_class(class, value.class()))
+fn wrong<T: Real, R>(class: Class, value: &Value<T>) -> Result<R, CallError> {
+    Err(CallError::wrong_class(class, value.class()))
 }
 
 /// A curve, or a bead on it.
@@ -16,7 +16,7 @@ pub struct Along<T: Real> {
     pub start: Option<f64>,
 }
 
-fn along<T: Real>(value: &Value<T>, class: Class) -> Result<Along<T>, Fault> {
+fn along<T: Real>(value: &Value<T>, class: Class) -> Result<Along<T>, CallError> {
     match value {
         Value::Curve(curve) => Ok(Along { curve: curve.clone(), start: None }),
         Value::Point(p) => match &p.on_curve {
@@ -29,7 +29,7 @@ fn along<T: Real>(value: &Value<T>, class: Class) -> Result<Along<T>, Fault> {
 
 impl<T: Real> FromValue<T> for Along<T> {
     const CLASS: Class = Class::Along;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         along(value, Class::Along)
     }
 }
@@ -40,7 +40,7 @@ pub struct AlongSnake<T: Real>(pub Along<T>);
 
 impl<T: Real> FromValue<T> for AlongSnake<T> {
     const CLASS: Class = Class::AlongSnake;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let found = along(value, Class::AlongSnake)?;
         if found.curve.surface.is_some() {
             Ok(AlongSnake(found))
@@ -79,7 +79,7 @@ fn onto<T: Real>(value: &Value<T>) -> Option<Onto<T>> {
 
 impl<T: Real> FromValue<T> for Onto<T> {
     const CLASS: Class = Class::Onto;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         onto(value).map_or_else(|| wrong(Class::Onto, value), Ok)
     }
 }
@@ -101,7 +101,7 @@ pub enum Target<T: Real> {
 
 impl<T: Real> FromValue<T> for Target<T> {
     const CLASS: Class = Class::Target;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         if let Some(onto) = onto(value) {
             return Ok(Target::Surface(onto));
         }

@@ -5,19 +5,25 @@ use super::equations::{Between, FootOnCurve, LevelOf, OnLevel, Pierced};
 use super::outcome::{diverged, found, no_intersection, tangent};
 use moldloft_locate::implicit::refined;
 use moldloft_locate::roots::{curve_curve, curve_level, curve_surface};
-use moldloft_locate::{PlainCurve, PlainSurface, Status, nearest_on_curve, nearest_on_surface};
+use moldloft_locate::{
+    LocateStatus, PlainCurve, PlainSurface, nearest_on_curve, nearest_on_surface,
+};
 use moldloft_num::{Order, Plane, Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, Found, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, SearchReport, Value};
 use std::sync::Arc;
 
 const ANOTHER: &str = "to choose another one, give a bead near it instead of the curve";
 
-fn bead<T: Real>(along: Along<T>, (t, found): (T, Found)) -> Result<Value<T>, Fault> {
+fn bead<T: Real>(along: Along<T>, (t, found): (T, SearchReport)) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::on_curve(along.curve, t).with_found(found))))
 }
 
 /// The parameter at which the curve crosses a level.
-fn on_level<T: Real>(along: &Along<T>, level: LevelOf<T>, name: &str) -> Result<(T, Found), Fault> {
+fn on_level<T: Real>(
+    along: &Along<T>,
+    level: LevelOf<T>,
+    name: &str,
+) -> Result<(T, SearchReport), CallError> {
     let plain = PlainCurve(&*along.curve);
     let field = level.plain_field();
     let solution = curve_level(&plain, &level.plain(&field), along.start)
@@ -34,7 +40,7 @@ pub(super) fn crossing<T: Real>(
     point: Option<Vec3<T>>,
     field: FieldId,
     context: &Context,
-) -> Result<(T, Found), Fault> {
+) -> Result<(T, SearchReport), CallError> {
     match target {
         Target::Plane(plane) => {
             let point = point.unwrap_or(plane.point);
@@ -42,7 +48,7 @@ pub(super) fn crossing<T: Real>(
         }
         Target::Point(centre) => {
             let Some(point) = point else {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "missing-argument",
                     "a sphere about a point needs a radius",
                 )
@@ -52,7 +58,7 @@ pub(super) fn crossing<T: Real>(
             };
             let radius = (point - *centre).norm();
             if radius.re() <= 0.0 {
-                return Err(Fault::new("coincident-points", "the sphere has no radius")
+                return Err(CallError::new("coincident-points", "the sphere has no radius")
                     .expected("a point away from the centre")
                     .found("the centre itself")
                     .in_field(field));
@@ -91,7 +97,7 @@ pub(super) fn crossing<T: Real>(
 pub(super) fn piercing<T: Real>(
     along: &Along<T>,
     onto: &super::Onto<T>,
-) -> Result<(T, Found, [T; 2]), Fault> {
+) -> Result<(T, SearchReport, [T; 2]), CallError> {
     let (curve, surface) = (PlainCurve(&*along.curve), PlainSurface(&*onto.surface));
     let start = match (along.start, onto.from()) {
         (Some(t), Some([u, v])) => Some([t, u, v]),
@@ -116,16 +122,20 @@ pub(super) fn piercing<T: Real>(
 }
 
 /// The foot of a point on a curve. With `ends` a foot at an end is as good as any.
-fn foot<T: Real>(along: &Along<T>, point: Vec3<T>, ends: bool) -> Result<(T, Found), Fault> {
+fn foot<T: Real>(
+    along: &Along<T>,
+    point: Vec3<T>,
+    ends: bool,
+) -> Result<(T, SearchReport), CallError> {
     let plain = PlainCurve(&*along.curve);
     let start = if ends { None } else { along.start };
     let mut solution = nearest_on_curve(&plain, point.re(), start);
-    let clamped = solution.report.status == Status::EdgeClamped;
-    if solution.report.status == Status::Diverged {
+    let clamped = solution.report.status == LocateStatus::EdgeClamped;
+    if solution.report.status == LocateStatus::Diverged {
         return Err(diverged(&solution.report));
     }
     if ends && clamped {
-        solution.report.status = Status::Ok;
+        solution.report.status = LocateStatus::Ok;
     }
     let at_end = solution.at[0] == 0.0 || solution.at[0] == 1.0;
     let t = if clamped || at_end && solution.report.residual > 0.0 {
@@ -137,7 +147,7 @@ fn foot<T: Real>(along: &Along<T>, point: Vec3<T>, ends: bool) -> Result<(T, Fou
     Ok((t, found(&solution.report, ANOTHER)))
 }
 
-fn axis_plane<T: Real>(axis: &str, value: T, field: FieldId) -> Result<LevelOf<T>, Fault> {
+fn axis_plane<T: Real>(axis: &str, value: T, field: FieldId) -> Result<LevelOf<T>, CallError> {
     let k = axis_number(axis, field)?;
     let mut normal = [0.0; 3];
     normal[k] = 1.0;
@@ -146,9 +156,9 @@ fn axis_plane<T: Real>(axis: &str, value: T, field: FieldId) -> Result<LevelOf<T
 }
 
 /// 0, 1, 2 for "x", "y", "z".
-pub(super) fn axis_number(axis: &str, field: FieldId) -> Result<usize, Fault> {
+pub(super) fn axis_number(axis: &str, field: FieldId) -> Result<usize, CallError> {
     ["x", "y", "z"].iter().position(|name| *name == axis).ok_or_else(|| {
-        Fault::new("unknown-axis", format!("there is no axis \"{axis}\""))
+        CallError::new("unknown-axis", format!("unknown axis \"{axis}\""))
             .expected("\"x\", \"y\" or \"z\"")
             .found(format!("\"{axis}\""))
             .in_field(field)
@@ -171,7 +181,7 @@ macro_rules! bead_and_ring {
         }
 
         impl<T: Real> Build<T> for $bead<T> {
-            fn build(self, $context: &Context) -> Result<Value<T>, Fault> {
+            fn build(self, $context: &Context) -> Result<Value<T>, CallError> {
                 let $along = &self.curve;
                 let $this = &self;
                 let found = $body?;
@@ -191,7 +201,7 @@ macro_rules! bead_and_ring {
         }
 
         impl<T: Real> Build<T> for $ring<T> {
-            fn build(self, $context: &Context) -> Result<Value<T>, Fault> {
+            fn build(self, $context: &Context) -> Result<Value<T>, CallError> {
                 let $along = &self.snake.0;
                 let $this = &self;
                 let found = $body?;
@@ -232,7 +242,7 @@ bead_and_ring!(
      iteration; without one, of all such points the one nearest to t = 0.5 is taken.",
     "curve axis value", "snake axis value",
     [
-        /// Which coordinate: "x", "y" or "z".
+        /// The coordinate: "x", "y" or "z".
         axis: Arc<str>,
         /// Its value.
         value: T,

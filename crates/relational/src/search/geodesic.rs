@@ -12,7 +12,7 @@ use crate::snake::OnSurface;
 use moldloft_num::trace::Trace;
 use moldloft_num::{CurveFormula, Jet, Order, Real, SurfJet, Vec3, solve_dense};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, Found, FoundStatus, Kind, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, Kind, SearchReport, SearchStatus, SurfaceRef, Value,
 };
 
 /// Numbers of spans between nodes that are tried until the path no longer changes.
@@ -31,7 +31,7 @@ const MOST_STEPS: usize = 60;
 /// How far outside of the surface a path may run, in u and v.
 const OUTSIDE: f64 = 1e-9;
 
-/// The shortest way on a surface between two magnets, or more exactly a geodesic: a curve that turns
+/// The shortest path on a surface between two magnets, or more exactly a geodesic: a curve that turns
 /// neither left nor right on the surface. It is run evenly, so t is the share of its length.
 ///
 /// Of several geodesics it is the one that Newton's method leads to from the straight line of the
@@ -51,11 +51,11 @@ const OUTSIDE: f64 = 1e-9;
                AbsMagnet b(R, 0.9, 0.9); GeoSnake g(a, b); GeoSnake round(a, b, turns_v = 1);"
 )]
 pub struct GeoSnake<T: Real> {
-    /// Where it begins.
+    /// Start.
     m1: Magnet<T>,
-    /// Where it ends, on the same surface.
+    /// End, on the same surface.
     m2: Magnet<T>,
-    /// How often it runs over the seam u = 0 forwards, or less than 0 backwards. Not given: 0, or 1 or
+    /// Number of forward crossings of the seam u = 0; negative: backward. Not given: 0, or 1 or
     /// -1 where that is shorter.
     #[field(min = -10, max = 10)]
     turns_u: Option<i32>,
@@ -65,7 +65,7 @@ pub struct GeoSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for GeoSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, turns_u, turns_v } = self;
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
         let fields = [Self::M1, Self::M2];
@@ -75,8 +75,8 @@ impl<T: Real> Build<T> for GeoSnake<T> {
         let ways = ways(&sheet, plain, [turns_u, turns_v])?;
         let (turns, (gap, iterations, nodes)) = shortest(&sheet, plain, &ways)?;
         let path = Path::new(&sheet, [m1.uv, m2.uv], turns, &nodes)?;
-        let found = Found {
-            status: FoundStatus::Ok,
+        let found = SearchReport {
+            status: SearchStatus::Ok,
             residual: gap,
             iterations: iterations as u32,
             start: plain.as_flattened().to_vec(),
@@ -108,22 +108,21 @@ fn ways<T: Real>(
     sheet: &Sheet<T>,
     [from, to]: [[f64; 2]; 2],
     asked: [Option<i32>; 2],
-) -> Result<Vec<[f64; 2]>, Fault> {
+) -> Result<Vec<[f64; 2]>, CallError> {
     let mut each = [vec![0.0], vec![0.0]];
     for a in 0..2 {
         match asked[a] {
             Some(turns) if turns != 0 && !sheet.round[a] => {
                 let letter = ["u", "v"][a];
-                return Err(Fault::new("no-seam", format!("the surface has no seam {letter} = 0"))
-                    .expected(format!(
-                        "a surface whose edges {letter} = 0 and {letter} = 1 are one"
-                    ))
-                    .found(format!("{turns} turns over it"))
-                    .help(
-                        "close the surface by a full turn, or by curves that end where they begin",
-                    )
-                    .related(sheet.surface.key, "is open")
-                    .in_field([GeoSnake::<T>::TURNS_U, GeoSnake::<T>::TURNS_V][a]));
+                return Err(CallError::new(
+                    "no-seam",
+                    format!("the surface has no seam {letter} = 0"),
+                )
+                .expected(format!("a surface whose edges {letter} = 0 and {letter} = 1 are one"))
+                .found(format!("{turns} turns over it"))
+                .help("close the surface by a full turn, or by curves that end where they begin")
+                .related(sheet.surface.key, "is open")
+                .in_field([GeoSnake::<T>::TURNS_U, GeoSnake::<T>::TURNS_V][a]));
             }
             Some(turns) => each[a] = vec![f64::from(turns)],
             None if sheet.round[a] && to[a] != from[a] => {
@@ -147,7 +146,7 @@ fn shortest<T: Real>(
     sheet: &Sheet<T>,
     [from, to]: [[f64; 2]; 2],
     ways: &[[f64; 2]],
-) -> Result<([f64; 2], Solved), Fault> {
+) -> Result<([f64; 2], Solved), CallError> {
     let mut best: Option<(f64, [f64; 2], Solved)> = None;
     let mut refused = None;
     for &turns in ways {
@@ -183,8 +182,8 @@ fn length<T: Real>(sheet: &Sheet<T>, places: &[[f64; 2]]) -> f64 {
     places.windows(2).map(|w| at(&w[0]).distance(at(&w[1]))).sum()
 }
 
-fn no_convergence() -> Fault {
-    Fault::new("no-convergence", "no geodesic was found between the magnets")
+fn no_convergence() -> CallError {
+    CallError::new("no-convergence", "no geodesic was found between the magnets")
         .expected("magnets with a smooth stretch of the surface between them")
         .found("an iteration from the straight line in u and v that came to no end")
         .help("put magnets between them, and join the geodesics by PolySnake")
@@ -299,10 +298,10 @@ fn solved<T: Real>(
     sheet: &Sheet<T>,
     [from, to]: [[f64; 2]; 2],
     turned: bool,
-) -> Result<Solved, Fault> {
+) -> Result<Solved, CallError> {
     let at = |w: [f64; 2]| sheet.jet(w.map(T::from), Order::Zero).p.re();
     if from == to || (!turned && at(from).distance(at(to)) == 0.0) {
-        return Err(Fault::new("coincident-points", "the geodesic has no length")
+        return Err(CallError::new("coincident-points", "the geodesic has no length")
             .expected("two magnets in different places")
             .found("one place")
             .in_field(GeoSnake::<T>::M2));
@@ -350,7 +349,7 @@ fn solved<T: Real>(
                 (all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max));
             format!("{low:.4} .. {high:.4}")
         };
-        return Err(Fault::new("leaves-surface", "the geodesic leaves the surface")
+        return Err(CallError::new("leaves-surface", "the geodesic leaves the surface")
             .expected("a geodesic with u and v in 0 .. 1")
             .found(format!("u in {}, v in {}", span(0), span(1)))
             .help("move the magnets away from the edge, or make the surface larger"));
@@ -428,7 +427,7 @@ impl<T: Real> Path<T> {
         [from, last]: [[T; 2]; 2],
         turns: [f64; 2],
         plain: &[[f64; 2]],
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, CallError> {
         let n = plain.len() - 1;
         let ends = [from, [last[0] + turns[0], last[1] + turns[1]]];
         let places = derived(sheet, ends, plain).ok_or_else(super::outcome::tangent)?;

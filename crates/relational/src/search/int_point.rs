@@ -9,7 +9,9 @@ use moldloft_locate::implicit::{Implicit, refined, solve};
 use moldloft_locate::march::Other;
 use moldloft_locate::{PlainSurface, nearest_on_surface};
 use moldloft_num::{Jet, Order, Plane, Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldRef, Found, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, FieldRef, Kind, Point, SearchReport, SurfaceRef, Value,
+};
 
 /// The point that three planes, surfaces or zero sets of fields have in common.
 ///
@@ -45,7 +47,7 @@ enum Shape<T: Real> {
 }
 
 impl<T: Real> Build<T> for IntPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let mut shapes = Vec::with_capacity(3);
         let mut starts = Vec::new();
         for (k, target) in [self.shape1, self.shape2, self.shape3].into_iter().enumerate() {
@@ -59,7 +61,7 @@ impl<T: Real> Build<T> for IntPoint<T> {
                 Target::Curve(_) | Target::Point(_) => {
                     let found =
                         if matches!(target, Target::Curve(_)) { "a curve" } else { "a point" };
-                    return Err(Fault::new(
+                    return Err(CallError::new(
                         "wrong-class",
                         "common points are those of planes, surfaces and fields",
                     )
@@ -83,19 +85,19 @@ impl<T: Real> Build<T> for IntPoint<T> {
     }
 }
 
-fn parallel() -> Fault {
-    Fault::new("parallel-planes", "the planes have no one point in common")
+fn parallel() -> CallError {
+    CallError::new("parallel-planes", "the planes have no one point in common")
         .expected("three planes of which no two are parallel, nor all to one line")
-        .found("normals that lie in one plane")
+        .found("coplanar normals")
         .help("turn one of them")
 }
 
 /// The common point without a surface: of three planes by elimination, with fields by Newton's
 /// method from `near`.
-fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, Fault> {
+fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, CallError> {
     let fields = shapes.iter().any(|s| matches!(s, Shape::Field(_)));
     let Some(mut x) = near.or_else(|| (!fields).then(Vec3::zero)) else {
-        return Err(Fault::new("missing-argument", "fields have no middle to begin at")
+        return Err(CallError::new("missing-argument", "fields have no middle to begin at")
             .expected("a point near the common point")
             .found("nothing")
             .in_field(IntPoint::<T>::NEAR));
@@ -105,7 +107,7 @@ fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, 
         Shape::Plane(plane) => (plane.distance(x), plane.normal),
         Shape::Surface(_) => (T::zero(), Vec3::zero()),
     };
-    let step = |x: Vec3<T>| -> Result<Vec3<T>, Fault> {
+    let step = |x: Vec3<T>| -> Result<Vec3<T>, CallError> {
         let all = [0, 1, 2].map(|k| at(&shapes[k], x));
         let n = all.map(|(_, g)| g.re());
         let size = n[0].norm() * n[1].norm() * n[2].norm();
@@ -136,7 +138,7 @@ fn planes<T: Real>(shapes: &[Shape<T>], near: Option<Vec3>) -> Result<Point<T>, 
             break;
         }
     }
-    Err(Fault::new("no-intersection", "the search for the common point came to no end")
+    Err(CallError::new("no-intersection", "the search for the common point came to no end")
         .expected("shapes that have a point in common near the start")
         .found(format!("a last step of {last:.3e}"))
         .help("give a point nearer to it"))
@@ -147,7 +149,7 @@ fn common<T: Real, const N: usize>(
     shapes: &[Shape<T>],
     starts: &[Option<[f64; 2]>],
     near: Option<Vec3>,
-) -> Result<Point<T>, Fault> {
+) -> Result<Point<T>, CallError> {
     let surfaces: Vec<PlainSurface<'_, T>> = shapes
         .iter()
         .filter_map(|s| match s {
@@ -188,7 +190,7 @@ fn common<T: Real, const N: usize>(
     let solution = three
         .point(start, near)
         .map_err(|report| no_intersection(&report, "first shape", "two others"))?;
-    let report: Found = found(&solution.report, ANOTHER);
+    let report: SearchReport = found(&solution.report, ANOTHER);
     let system = Common { shapes };
     let q: [T; N] = refined(&system, solution.at, T::zero()).ok_or_else(tangent)?;
     let Shape::Surface(first) = &shapes[0] else { return Err(tangent()) };

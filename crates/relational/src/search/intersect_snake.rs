@@ -6,12 +6,13 @@ use super::outcome::no_intersection;
 use super::pieces::{Stop, at_seam, fitted, laid};
 use crate::arguments::Magnet;
 use moldloft_locate::implicit::{Implicit, refined, solve};
-use moldloft_locate::march::{Branch, Crossing, End, Other, Station, Unknowns};
-use moldloft_locate::{PlainSurface, Report, Status};
+use moldloft_locate::march::{Branch, Crossing, End, Other, TracePoint, Unknowns};
+use moldloft_locate::{LocateReport, LocateStatus, PlainSurface};
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Plane, Real, Surface, Vec3, slope_scale};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, Found, FoundStatus, Kind, Point, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, Kind, Point, SearchReport, SearchStatus,
+    SurfaceRef, Value,
 };
 
 /// The curve along which a surface meets a plane or another surface, as a snake of the first; its
@@ -42,16 +43,16 @@ pub struct IntSnake<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
     target: Target<T>,
-    /// Where it begins: a magnet or ring of the intersection.
+    /// Start: a magnet or ring of the intersection.
     start: Option<Magnet<T>>,
-    /// Where it ends.
+    /// End.
     end: Option<Magnet<T>>,
     /// For a plane: the parallel plane through this point is meant.
     point: Option<Point<T>>,
 }
 
 impl<T: Real> Build<T> for IntSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, target, start, end, point } = self;
         let (shape, found) = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
         let nesting = context.nesting;
@@ -60,7 +61,7 @@ impl<T: Real> Build<T> for IntSnake<T> {
 }
 
 /// The curve in space along which a surface meets a plane, another surface or the zero set of a
-/// field, as [`IntSnake`], for where it is no matter on which surface it lies.
+/// field, as [`IntSnake`], where the surface it is on does not matter.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -74,16 +75,16 @@ pub struct IntCurve<T: Real> {
     surface: Onto<T>,
     /// The plane, the other surface (or a magnet of it), or the field of which it is the zero set.
     target: Target<T>,
-    /// Where it begins: a magnet or ring of the intersection.
+    /// Start: a magnet or ring of the intersection.
     start: Option<Magnet<T>>,
-    /// Where it ends.
+    /// End.
     end: Option<Magnet<T>>,
     /// For a plane: the parallel plane through this point is meant.
     point: Option<Point<T>>,
 }
 
 impl<T: Real> Build<T> for IntCurve<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, target, start, end, point } = self;
         let (shape, found) = cut(&surface, target, [start, end], point, Self::FIELDS, context)?;
         Ok(Value::Curve(CurveRef::new(InSpace(shape), context.nesting).with_found(found)))
@@ -131,7 +132,7 @@ fn cut<T: Real>(
     point: Option<Point<T>>,
     fields: Fields,
     context: &Context,
-) -> Result<(Cut<T>, Found), Fault> {
+) -> Result<(Cut<T>, SearchReport), CallError> {
     let (other, second_start) = match target {
         Target::Plane(plane) => {
             let point = point.map_or(plane.point, |p| p.xyz);
@@ -143,7 +144,7 @@ fn cut<T: Real>(
         }
         Target::Field(field) => (Second::Field(field), None),
         Target::Curve(_) | Target::Point(_) => {
-            return Err(Fault::new(
+            return Err(CallError::new(
                 "wrong-class",
                 "a surface is cut by a plane, a surface or a field",
             )
@@ -161,10 +162,10 @@ fn cut<T: Real>(
                 magnet.surface.same(&surface.surface)
             };
             if !same {
-                return Err(Fault::new("wrong-surface", "the end lies on another surface")
+                return Err(CallError::new("wrong-surface", "the end is on another surface")
                     .expected("a magnet or ring of the surface that is cut")
                     .found("one of another surface")
-                    .related(magnet.key, "lies on another surface")
+                    .related(magnet.key, "is on another surface")
                     .related(magnet.surface.key, "is its surface")
                     .in_field(field));
             }
@@ -236,18 +237,15 @@ fn edge_point<T: Real>(
     }
 }
 
-fn touching(x: Vec3) -> Fault {
-    Fault::new(
-        "tangent-contact",
-        "the shapes touch without crossing: there is no intersection curve",
-    )
-    .expected("shapes that cross at an angle")
-    .found(format!("a touch at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z))
-    .help("move one of them until they cross")
+fn touching(x: Vec3) -> CallError {
+    CallError::new("tangent-contact", "the shapes touch without crossing: no intersection curve")
+        .expected("shapes that cross at an angle")
+        .found(format!("a touch at ({:.6}, {:.6}, {:.6})", x.x, x.y, x.z))
+        .help("move one of them until they cross")
 }
 
-fn lost(why: &str) -> Fault {
-    Fault::new("tangent-contact", "the intersection cannot be followed: the shapes touch there")
+fn lost(why: &str) -> CallError {
+    CallError::new("tangent-contact", "the intersection cannot be followed: the shapes touch there")
         .expected("shapes that cross at an angle all along")
         .found(why.to_owned())
         .help("move one of them, or give `start` and `end` before the place of contact")
@@ -261,7 +259,7 @@ fn traced<T: Real>(
     ends: [Option<Magnet<T>>; 2],
     fields: Fields,
     context: &Context,
-) -> Result<(Cut<T>, Found), Fault> {
+) -> Result<(Cut<T>, SearchReport), CallError> {
     let first = &onto.surface;
     let plain = PlainSurface(&**first);
     let plain_second = second.plain();
@@ -272,7 +270,7 @@ fn traced<T: Real>(
     };
     let given = onto.from().or_else(|| ends[0].as_ref().map(|m| m.uv.map(|x| x.re())));
     let seed = given.and_then(|uv| crossing.near(uv, second_start));
-    let mut status = FoundStatus::Ok;
+    let mut status = SearchStatus::Ok;
     let mut alternatives = Vec::new();
     let branch = match seed.and_then(|q| crossing.branch(q)) {
         Some(branch) => branch,
@@ -301,8 +299,8 @@ fn traced<T: Real>(
                         s.jet(p, r, Order::Zero).p.distance(x)
                     }
                 };
-                let report = Report {
-                    status: Status::NoSolution,
+                let report = LocateReport {
+                    status: LocateStatus::NoSolution,
                     residual,
                     iterations: 0,
                     start: from.into_iter().collect(),
@@ -314,7 +312,7 @@ fn traced<T: Real>(
                 );
             };
             if given.is_some() {
-                status = FoundStatus::Fallback;
+                status = SearchStatus::Fallback;
             } else if all.len() > 1 {
                 let middle = |b: &Branch| b.stations[b.stations.len() / 2];
                 let own = all[chosen].stations.clone();
@@ -323,7 +321,7 @@ fn traced<T: Real>(
                     .flat_map(|(_, b)| &b.stations)
                     .map(|s| own.iter().map(|o| o.x.distance(s.x)).fold(f64::INFINITY, f64::min))
                     .fold(f64::INFINITY, f64::min);
-                status = FoundStatus::Multiple { count: all.len(), chosen, next };
+                status = SearchStatus::Multiple { count: all.len(), chosen, next };
                 for (k, b) in all.iter().enumerate().filter(|(k, _)| *k != chosen) {
                     let _ = k;
                     let s = middle(b);
@@ -335,7 +333,7 @@ fn traced<T: Real>(
     };
     let begin = branch.stations[0].q;
     let shape = set_up(first, second.clone(), &crossing, branch, onto, (&ends, fields), context)?;
-    let found = Found {
+    let found = SearchReport {
         status,
         residual: 0.0,
         iterations: shape.pieces.len() as u32,
@@ -356,7 +354,7 @@ fn set_up<T: Real>(
     onto: &Onto<T>,
     (ends, fields): (&[Option<Magnet<T>>; 2], Fields),
     context: &Context,
-) -> Result<Cut<T>, Fault> {
+) -> Result<Cut<T>, CallError> {
     // Stations of the given ends.
     let mut places = [None, None];
     for (k, magnet) in ends.iter().enumerate() {
@@ -382,7 +380,7 @@ fn set_up<T: Real>(
             Some(place) => places[k] = Some(place),
             None => {
                 let which = ["start", "end"][k];
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "open-end",
                     format!("the {which} is not on the intersection"),
                 )
@@ -396,10 +394,13 @@ fn set_up<T: Real>(
     }
     let closed = branch.closed();
     if closed && places[0].is_none() && places[1].is_some() {
-        return Err(Fault::new("missing-argument", "a closed branch with an end needs a start")
-            .expected("a magnet or ring where it starts")
-            .found("an end only")
-            .in_field(fields.ends[0]));
+        return Err(CallError::new(
+            "missing-argument",
+            "a closed branch with an end needs a start",
+        )
+        .expected("a magnet or ring where it starts")
+        .found("an end only")
+        .in_field(fields.ends[0]));
     }
     let mut reversed = false;
     let whole = closed && places[1].is_none();
@@ -442,7 +443,7 @@ fn set_up<T: Real>(
                 s.rate = s.rate.map(|r| -r);
             }
         }
-        let turned = |station: Station| {
+        let turned = |station: TracePoint| {
             let mut s = station;
             if reversed {
                 s.tangent = -s.tangent;
@@ -610,7 +611,7 @@ fn with_joints<T: Real>(
     }
     // A station may be at a joint already; a branch along one does not cross it.
     for stop in stops.iter_mut().filter(|stop| stop.joint.is_none()) {
-        let Station { q, rate, .. } = stop.station;
+        let TracePoint { q, rate, .. } = stop.station;
         let crosses = |&&(k, x): &&(usize, f64)| {
             (q[k] - x).abs() <= 1e-12 && rate[k].abs() * crossing.size > 1e-3
         };
@@ -629,11 +630,11 @@ fn middle<T: Real>(first: &SurfaceRef<T>) -> Vec3<T> {
 /// station is not the first again.
 fn nearest_station(
     crossing: &Crossing<'_>,
-    stations: &[Station],
+    stations: &[TracePoint],
     m: Vec3,
-) -> Option<(usize, Station)> {
+) -> Option<(usize, TracePoint)> {
     let n = stations.len();
-    let along = |s: &Station| (s.x - m).dot(s.tangent);
+    let along = |s: &TracePoint| (s.x - m).dot(s.tangent);
     let k = (0..n).min_by(|&a, &b| {
         stations[a].x.distance(m).total_cmp(&stations[b].x.distance(m)).then(a.cmp(&b))
     })?;
@@ -674,7 +675,7 @@ fn closed_start<T: Real>(
     first: &SurfaceRef<T>,
     second: &Second<T>,
     [u, v]: [T; 2],
-    station: &Station,
+    station: &TracePoint,
 ) -> Option<(Vec3<T>, Vec3<T>)> {
     let j = first.jet(u, v, Order::First);
     let normal = match second {
@@ -694,13 +695,13 @@ fn closed_start<T: Real>(
     Some((j.p, d))
 }
 
-fn cut_after(branch: &mut Branch, station: &Station) {
+fn cut_after(branch: &mut Branch, station: &TracePoint) {
     let at = position(branch, station);
     branch.stations.truncate(at + 1);
     push_apart(branch, *station);
 }
 
-fn cut_before(branch: &mut Branch, station: &Station) {
+fn cut_before(branch: &mut Branch, station: &TracePoint) {
     let at = position(branch, station);
     branch.stations.drain(..=at);
     let near = branch.stations.first().is_some_and(|s| {
@@ -715,7 +716,7 @@ fn cut_before(branch: &mut Branch, station: &Station) {
 }
 
 /// The last station before the given one.
-fn position(branch: &Branch, station: &Station) -> usize {
+fn position(branch: &Branch, station: &TracePoint) -> usize {
     let away = |i: &usize| {
         let (a, b) = (&branch.stations[*i], &branch.stations[*i + 1]);
         let chord = b.x - a.x;
@@ -726,7 +727,7 @@ fn position(branch: &Branch, station: &Station) -> usize {
     (0..last).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
 }
 
-fn push_apart(branch: &mut Branch, station: Station) {
+fn push_apart(branch: &mut Branch, station: TracePoint) {
     let count = branch.stations.len();
     let last = branch.stations[count - 1];
     let before =

@@ -6,24 +6,29 @@ use super::equations::{FootOnSurface, Moving, OnRay, Rays};
 use super::outcome::{diverged, found, no_intersection, tangent};
 use moldloft_locate::implicit::refined;
 use moldloft_locate::roots::line_surface;
-use moldloft_locate::{PlainSurface, Status, nearest_on_surface};
+use moldloft_locate::{LocateStatus, PlainSurface, nearest_on_surface};
 use moldloft_num::{Order, Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Found, Kind, Mirror, Point, Value};
+use moldloft_registry::{
+    Build, CallError, Context, Kind, MirrorArgument, Point, SearchReport, Value,
+};
 use std::sync::Arc;
 
 pub(super) const ANOTHER: &str =
     "to choose another one, give a magnet near it instead of the surface";
 
 /// Along which lines a mirror projects: `None` is along the surface's normals.
-pub(super) fn rays<T: Real>(mirror: &Mirror<T>) -> Rays<T> {
+pub(super) fn rays<T: Real>(mirror: &MirrorArgument<T>) -> Rays<T> {
     match mirror {
-        Mirror::Plane(plane) => Rays::Along(plane.normal),
-        Mirror::Line(line) => Rays::Along(line.direction),
-        Mirror::Point(point) => Rays::From(*point),
+        MirrorArgument::Plane(plane) => Rays::Along(plane.normal),
+        MirrorArgument::Line(line) => Rays::Along(line.direction),
+        MirrorArgument::Point(point) => Rays::From(*point),
     }
 }
 
-fn magnet<T: Real>(onto: Onto<T>, ([u, v], found): ([T; 2], Found)) -> Result<Value<T>, Fault> {
+fn magnet<T: Real>(
+    onto: Onto<T>,
+    ([u, v], found): ([T; 2], SearchReport),
+) -> Result<Value<T>, CallError> {
     Ok(Value::Point(Box::new(Point::on_surface(onto.surface, u, v).with_found(found))))
 }
 
@@ -33,21 +38,25 @@ pub(super) fn foot<T: Real>(
     onto: &Onto<T>,
     point: Vec3<T>,
     edges: bool,
-) -> Result<([T; 2], Found), Fault> {
+) -> Result<([T; 2], SearchReport), CallError> {
     let plain = PlainSurface(&*onto.surface);
     let start = if edges { None } else { onto.from() };
     let mut solution = nearest_on_surface(&plain, point.re(), start);
-    if solution.report.status == Status::Diverged {
+    if solution.report.status == LocateStatus::Diverged {
         return Err(diverged(&solution.report));
     }
     let uv = foot_refined(onto, point, solution.at)?;
-    if edges && solution.report.status == Status::EdgeClamped {
-        solution.report.status = Status::Ok;
+    if edges && solution.report.status == LocateStatus::EdgeClamped {
+        solution.report.status = LocateStatus::Ok;
     }
     Ok((uv, found(&solution.report, ANOTHER)))
 }
 
-fn foot_refined<T: Real>(onto: &Onto<T>, point: Vec3<T>, at: [f64; 2]) -> Result<[T; 2], Fault> {
+fn foot_refined<T: Real>(
+    onto: &Onto<T>,
+    point: Vec3<T>,
+    at: [f64; 2],
+) -> Result<[T; 2], CallError> {
     let j = onto.surface.jet(T::from(at[0]), T::from(at[1]), Order::First);
     let away = (j.p - point).re();
     // Held where the distance still falls beyond the edge.
@@ -66,13 +75,13 @@ pub(super) fn on_ray<T: Real>(
     onto: &Onto<T>,
     point: Vec3<T>,
     rays: Rays<T>,
-) -> Result<([T; 2], Found), Fault> {
+) -> Result<([T; 2], SearchReport), CallError> {
     let plain = PlainSurface(&*onto.surface);
     let point = Moving::Fixed(point);
     let system = OnRay { surface: &onto.surface, point: &point, rays };
     let [p, d] = system.ray::<T>(T::zero()).map(Vec3::re);
     if d.norm() == 0.0 {
-        return Err(Fault::new("zero-length-axis", "the projection has no direction")
+        return Err(CallError::new("zero-length-axis", "the projection has no direction")
             .expected("a point away from the one that is projected")
             .found("the point itself"));
     }
@@ -91,7 +100,7 @@ pub(super) fn on_ray<T: Real>(
 /// perpendicular), along a direction, or away from a point.
 ///
 /// From a magnet it is what Newton's method leads to; without one the nearest of all. A foot that
-/// would lie beyond an edge is held at the edge and reported.
+/// beyond an edge is clamped to the edge and reported.
 #[derive(Kind)]
 #[kind(
     class = Magnet,
@@ -108,11 +117,11 @@ pub struct ProjMagnet<T: Real> {
     surface: Onto<T>,
     /// Along what: a plane's normal, a line's direction, or away from a point. Not given: along
     /// the surface's own normal.
-    mirror: Option<Mirror<T>>,
+    mirror: Option<MirrorArgument<T>>,
 }
 
 impl<T: Real> Build<T> for ProjMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let place = match &self.mirror {
             None => foot(&self.surface, self.point.xyz, false),
             Some(mirror) => on_ray(&self.surface, self.point.xyz, rays(mirror)),
@@ -138,7 +147,7 @@ pub struct ProxMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for ProxMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let place = foot(&self.surface, self.point.xyz, true)?;
         magnet(self.surface, place)
     }
@@ -163,7 +172,7 @@ pub struct IntMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for IntMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (_, found, uv) =
             piercing(&self.curve, &self.surface).map_err(|fault| fault.in_field(Self::SURFACE))?;
         magnet(self.surface, (uv, found))
@@ -192,11 +201,11 @@ pub struct XYZMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for XYZMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (a, b) =
             (axis_number(&self.axis1, Self::AXIS1)?, axis_number(&self.axis2, Self::AXIS2)?);
         if a == b {
-            return Err(Fault::new("same-axis", "the two coordinates are the same one")
+            return Err(CallError::new("same-axis", "the two coordinates are the same one")
                 .expected("two different axes")
                 .found(format!("\"{}\" twice", self.axis1))
                 .in_field(Self::AXIS2));
@@ -238,11 +247,11 @@ pub struct TanMagnet<T: Real> {
 }
 
 impl<T: Real> Build<T> for TanMagnet<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let crate::arguments::Magnet { surface, uv: [u, v], .. } = self.magnet;
         let j = surface.jet(u, v, Order::First);
         let singular = || {
-            Fault::new("singular-normal", "the surface has no tangent plane at the magnet")
+            CallError::new("singular-normal", "the surface has no tangent plane at the magnet")
                 .expected("a magnet away from poles and cusps")
                 .found(format!("(u, v) = ({}, {})", u.re(), v.re()))
                 .in_field(Self::MAGNET)

@@ -1,18 +1,20 @@
 //! From reports of searches to what a value carries, and to faults.
 
-use moldloft_locate::{Report, Status};
-use moldloft_registry::{Fault, Found, FoundStatus};
+use moldloft_locate::{LocateReport, LocateStatus};
+use moldloft_registry::{CallError, SearchReport, SearchStatus};
 
 /// The report as the value carries it. `advice` says how to choose another solution.
-pub fn found(report: &Report, advice: &'static str) -> Found {
+pub fn found(report: &LocateReport, advice: &'static str) -> SearchReport {
     let status = match report.status {
-        Status::Fallback => FoundStatus::Fallback,
-        Status::EdgeClamped => FoundStatus::EdgeClamped,
-        Status::Tangent => FoundStatus::Tangent,
-        Status::Multiple { count, chosen, next } => FoundStatus::Multiple { count, chosen, next },
-        Status::Ok | Status::NoSolution | Status::Diverged => FoundStatus::Ok,
+        LocateStatus::Fallback => SearchStatus::Fallback,
+        LocateStatus::EdgeClamped => SearchStatus::EdgeClamped,
+        LocateStatus::Tangent => SearchStatus::Tangent,
+        LocateStatus::Multiple { count, chosen, next } => {
+            SearchStatus::Multiple { count, chosen, next }
+        }
+        LocateStatus::Ok | LocateStatus::NoSolution | LocateStatus::Diverged => SearchStatus::Ok,
     };
-    Found {
+    SearchReport {
         status,
         residual: report.residual,
         iterations: report.iterations,
@@ -24,9 +26,9 @@ pub fn found(report: &Report, advice: &'static str) -> Found {
 }
 
 /// The fault that two things do not meet; the names say which.
-pub fn no_intersection(report: &Report, one: &str, other: &str) -> Fault {
+pub fn no_intersection(report: &LocateReport, one: &str, other: &str) -> CallError {
     let at: Vec<String> = report.last.iter().map(|x| format!("{x:.6}")).collect();
-    let fault = Fault::new("no-intersection", format!("the {one} does not meet the {other}"))
+    let fault = CallError::new("no-intersection", format!("the {one} does not meet the {other}"))
         .expected(format!("a {one} that crosses the {other} within its parameter range"));
     let fault = if report.residual.is_finite() {
         fault.found(format!("a gap of {:.6e} at ({})", report.residual, at.join(", ")))
@@ -37,16 +39,16 @@ pub fn no_intersection(report: &Report, one: &str, other: &str) -> Fault {
 }
 
 /// The fault of a derivative at a contact: it is infinite.
-pub fn tangent() -> Fault {
-    Fault::new("tangent-contact", "the shapes touch, so the place has no finite derivative")
+pub fn tangent() -> CallError {
+    CallError::new("tangent-contact", "the shapes touch, so the place has no finite derivative")
         .expected("shapes that cross at an angle")
         .found("shapes that are tangent to each other")
         .help("move one of them until they cross, or take the nearest point instead (Prox…)")
 }
 
 /// The fault of an iteration that came to nothing.
-pub fn diverged(report: &Report) -> Fault {
-    Fault::new("no-convergence", "the search for the nearest point came to no end")
+pub fn diverged(report: &LocateReport) -> CallError {
+    CallError::new("no-convergence", "the search for the nearest point came to no end")
         .found(format!("a residual of {:.3e}", report.residual))
         .help("give a start near the place that is meant")
 }

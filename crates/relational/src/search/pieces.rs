@@ -3,7 +3,7 @@
 use super::cut::{
     Both, Guide, NODES, Piece, RUN, guess, node, on_guide, polynomial, powers_of, to_powers,
 };
-use moldloft_locate::march::{Crossing, Station, Unknowns};
+use moldloft_locate::march::{Crossing, TracePoint, Unknowns};
 use moldloft_num::{Order, Real, Vec3};
 
 /// The speed along a piece may be off by this share of it: lengths are exact to rounding then, so
@@ -24,23 +24,23 @@ const CHECKS: [f64; 3] = [-0.95, -0.1, 0.9];
 /// of an unknown and its value there.
 #[derive(Clone, Copy)]
 pub(super) struct Stop {
-    pub station: Station,
+    pub station: TracePoint,
     pub joint: Option<(usize, f64)>,
 }
 
-impl From<Station> for Stop {
-    fn from(station: Station) -> Self {
+impl From<TracePoint> for Stop {
+    fn from(station: TracePoint) -> Self {
         Self { station, joint: None }
     }
 }
 
 /// True for the two stations at a seam: one place, an unknown of which is 0 here and 1 there.
-pub(super) fn at_seam(a: &Station, b: &Station) -> bool {
+pub(super) fn at_seam(a: &TracePoint, b: &TracePoint) -> bool {
     (0..4).any(|k| (a.q[k] - b.q[k]).abs() > 0.5)
 }
 
 /// The cubic of both ends' places and tangents.
-fn cubic(a: &Station, b: &Station) -> Guide {
+fn cubic(a: &TracePoint, b: &TracePoint) -> Guide {
     let half = 0.5 * a.x.distance(b.x);
     let (s, t) = (a.tangent * half, b.tangent * half);
     let chord = b.x - a.x;

@@ -4,13 +4,13 @@ use super::arguments::{Onto, Target};
 use super::magnets::foot;
 use moldloft_num::{Order, Real, Vec3, slope_scale, solve_dense};
 use moldloft_registry::{
-    Build, Class, Context, Fault, FieldRef, FromValue, Kind, Mirror, Point, Value,
+    Build, CallError, Class, Context, FieldRef, FromValue, Kind, MirrorArgument, Point, Value,
 };
 
 /// A mirror, or a surface.
 pub enum MirrorOrSurface<T: Real> {
     /// A plane, line or point.
-    Mirror(Mirror<T>),
+    MirrorArgument(MirrorArgument<T>),
     /// A surface, or a magnet of it.
     Surface(Onto<T>),
     /// The zero set of an implicit function.
@@ -19,13 +19,13 @@ pub enum MirrorOrSurface<T: Real> {
 
 impl<T: Real> FromValue<T> for MirrorOrSurface<T> {
     const CLASS: Class = Class::Target;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         match Target::from_value(value)? {
             Target::Surface(onto) => Ok(Self::Surface(onto)),
             Target::Field(field) => Ok(Self::Field(field)),
-            Target::Plane(plane) => Ok(Self::Mirror(Mirror::Plane(plane))),
-            Target::Point(point) => Ok(Self::Mirror(Mirror::Point(point))),
-            Target::Curve(_) => Mirror::from_value(value).map(Self::Mirror),
+            Target::Plane(plane) => Ok(Self::MirrorArgument(MirrorArgument::Plane(plane))),
+            Target::Point(point) => Ok(Self::MirrorArgument(MirrorArgument::Point(point))),
+            Target::Curve(_) => MirrorArgument::from_value(value).map(Self::MirrorArgument),
         }
     }
 }
@@ -33,10 +33,10 @@ impl<T: Real> FromValue<T> for MirrorOrSurface<T> {
 /// The foot of the perpendicular from a point to a plane, line, surface or the zero set of a field; for a
 /// mirror that is a point, that point.
 ///
-/// On the zero set of a field it is the foot that the way down the field leads to.
+/// On the zero set of a field it is the foot found by descent along the field.
 ///
 /// On a surface it is the nearest foot; from a magnet of the surface the one that descent from
-/// there leads to. A foot that would lie beyond an edge is held at the edge and reported.
+/// there leads to. A foot beyond an edge is clamped to the edge and reported.
 #[derive(Kind)]
 #[kind(
     class = Point,
@@ -48,14 +48,14 @@ impl<T: Real> FromValue<T> for MirrorOrSurface<T> {
 pub struct ProjPoint<T: Real> {
     /// The point to project.
     point: Point<T>,
-    /// What to project it to.
+    /// The target of the projection.
     mirror: MirrorOrSurface<T>,
 }
 
 impl<T: Real> Build<T> for ProjPoint<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let point = match self.mirror {
-            MirrorOrSurface::Mirror(mirror) => Point::free(mirror.foot(self.point.xyz)),
+            MirrorOrSurface::MirrorArgument(mirror) => Point::free(mirror.foot(self.point.xyz)),
             MirrorOrSurface::Surface(onto) => {
                 let ([u, v], found) = foot(&onto, self.point.xyz, false)?;
                 Point::free(onto.surface.jet(u, v, Order::Zero).p).with_found(found)
@@ -76,7 +76,7 @@ const NEAR: f64 = 1e-13;
 pub(super) fn foot_on_level<T: Real>(
     field: &FieldRef<T>,
     point: Vec3<T>,
-) -> Result<Vec3<T>, Fault> {
+) -> Result<Vec3<T>, CallError> {
     let p = point.re();
     let mut x = p;
     let mut done = false;
@@ -99,7 +99,7 @@ pub(super) fn foot_on_level<T: Real>(
         }
     }
     let lost = |x: Vec3| {
-        Fault::new("no-solution", "the way down the field leads to no foot of the point")
+        CallError::new("no-solution", "descent along the field finds no foot of the point")
             .expected("a field with a surface near the point")
             .found(format!("({}, {}, {}) after {STEPS} steps", x.x, x.y, x.z))
     };

@@ -11,8 +11,8 @@ use moldloft_locate::{OUTSIDE, PlainSurface, Range, newton};
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, CurveJet, Order, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, FieldRef, Found, FoundStatus, Kind, Mirror,
-    SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, FieldRef, Kind, MirrorArgument, SearchReport,
+    SearchStatus, SurfaceRef, Value,
 };
 use std::sync::OnceLock;
 
@@ -33,7 +33,7 @@ const TABLE_ACCURACY: f64 = 1e-13;
 /// normals, along a direction, or away from a point.
 ///
 /// The foot of the start of the curve is found first, near the magnet if one is given; from there
-/// the projection follows the curve without a jump. Each point of it lies on the surface and is
+/// the projection follows the curve without a jump. Each point of it is on the surface and is
 /// the projection to rounding. Where the projection leaves the surface or grazes it, there is no
 /// snake.
 #[derive(Kind)]
@@ -52,14 +52,14 @@ pub struct ProjSnake<T: Real> {
     surface: Onto<T>,
     /// Along what: a plane's normal, a line's direction, or away from a point. Not given: along
     /// the surface's own normals.
-    mirror: Option<Mirror<T>>,
+    mirror: Option<MirrorArgument<T>>,
     /// Magnets at the two ends, which other snakes end in too, so that patches join there.
     #[field(default)]
     ends: Option<Vec<Magnet<T>>>,
 }
 
 impl<T: Real> Build<T> for ProjSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, surface, mirror, ends } = self;
         let rays = mirror.as_ref().map(rays);
         let (path, found) = projected(curve, surface, rays, [Self::CURVE, Self::SURFACE])?;
@@ -85,14 +85,14 @@ impl<T: Real> Build<T> for ProjSnake<T> {
 pub struct ProjCurve<T: Real> {
     /// The curve to project.
     curve: CurveRef<T>,
-    /// What to project it to.
+    /// The target of the projection.
     mirror: MirrorOrSurface<T>,
 }
 
 impl<T: Real> Build<T> for ProjCurve<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         match self.mirror {
-            MirrorOrSurface::Mirror(mirror) => {
+            MirrorOrSurface::MirrorArgument(mirror) => {
                 let shape = OntoMirror { curve: self.curve, mirror };
                 Ok(Value::Curve(CurveRef::new(shape, context.nesting)))
             }
@@ -149,7 +149,7 @@ impl<T: Real> Curve<T> for OntoField<T> {
 
 struct OntoMirror<T: Real> {
     curve: CurveRef<T>,
-    mirror: Mirror<T>,
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Curve<T> for OntoMirror<T> {
@@ -169,9 +169,9 @@ fn end_keys<T: Real>(
     magnets: &[Magnet<T>],
     tolerance: f64,
     field: FieldId,
-) -> Result<[Option<Key>; 2], Fault> {
+) -> Result<[Option<Key>; 2], CallError> {
     let [first, last] = magnets else {
-        return Err(Fault::new("wrong-length", "a snake has two ends")
+        return Err(CallError::new("wrong-length", "a snake has two ends")
             .expected("two magnets")
             .found(magnets.len().to_string())
             .in_field(field));
@@ -183,7 +183,7 @@ fn end_keys<T: Real>(
         let gap = x.distance(m);
         if gap > tolerance {
             let which = ["beginning", "end"][k];
-            return Err(Fault::new(
+            return Err(CallError::new(
                 "open-end",
                 format!("the magnet is not at the {which} of the snake"),
             )
@@ -223,14 +223,14 @@ fn projected<T: Real>(
     onto: Onto<T>,
     rays: Option<Rays<T>>,
     [of, on]: [FieldId; 2],
-) -> Result<(Path<T>, Found), Fault> {
+) -> Result<(Path<T>, SearchReport), CallError> {
     let begin = curve.end(0.0);
     let (uv, mut found) = match rays {
         None => foot(&onto, begin, false),
         Some(rays) => on_ray(&onto, begin, rays),
     }
     .map_err(|fault| fault.in_field(on))?;
-    if found.status == FoundStatus::EdgeClamped {
+    if found.status == SearchStatus::EdgeClamped {
         return Err(leaves(0.0, of));
     }
     let corners = [0.0, 0.5, 1.0].map(|t| curve.end(t).re());
@@ -277,16 +277,16 @@ fn projected<T: Real>(
     Ok((path, found))
 }
 
-fn leaves(t: f64, field: FieldId) -> Fault {
-    Fault::new("leaves-surface", "the projection of the curve leaves the surface")
+fn leaves(t: f64, field: FieldId) -> CallError {
+    CallError::new("leaves-surface", "the projection of the curve leaves the surface")
         .expected("a curve whose projection lies on the surface from end to end")
         .found(format!("the edge of the surface at t = {t:.6} of the curve"))
         .help("use a part of the curve (SubCurve), or a larger surface")
         .in_field(field)
 }
 
-fn grazes(t: f64, field: FieldId) -> Fault {
-    Fault::new("grazing-projection", "the projection grazes the surface")
+fn grazes(t: f64, field: FieldId) -> CallError {
+    CallError::new("grazing-projection", "the projection grazes the surface")
         .expected("lines of projection that cross the surface at an angle")
         .found(format!("a line tangent to it at t = {t:.6} of the curve"))
         .help("project away from a point, along another direction, or from nearer to the surface")

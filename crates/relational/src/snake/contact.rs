@@ -1,9 +1,11 @@
+//! The curves along which a fillet touches its surfaces.
+
 use super::edge_trace;
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
-/// Where a fillet touches one of its two surfaces: a snake of that surface, and the fillet's edge.
+/// The contact line of a fillet with one of its two surfaces: a snake of that surface, and the fillet's edge.
 ///
 /// It runs as the fillet's u does. A part of the surface that ends in it (`SubSurf`, `TrimSurf`) has the
 /// fillet's vertices there, by identity: rings at t = 0 and 1 are the corners. Over the seam of a closed
@@ -29,18 +31,19 @@ pub struct ContactSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for ContactSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { fillet, side } = self;
         let touches = fillet.contacts.as_ref().and_then(|both| both.get(side.wrapping_sub(1)));
         let Some(curve) = touches.cloned() else {
-            return Err(Fault::new("no-contact", "the surface is no fillet between two others")
-                .expected("a RollFillet or a FilletSurf, and the side 1 or 2")
-                .found(if fillet.contacts.is_some() { "another side" } else { "another surface" })
-                .help(
-                    "of the image of a fillet, take the contacts of the original and their images",
-                )
-                .related(fillet.key, "touches nothing")
-                .in_field(Self::FILLET));
+            return Err(CallError::new(
+                "no-contact",
+                "the surface is not a fillet between two others",
+            )
+            .expected("a RollFillet or a FilletSurf, and the side 1 or 2")
+            .found(if fillet.contacts.is_some() { "another side" } else { "another surface" })
+            .help("of the image of a fillet, take the contacts of the original and their images")
+            .related(fillet.key, "touches nothing")
+            .in_field(Self::FILLET));
         };
         let trace = edge_trace(&fillet, if side == 1 { 0 } else { 2 });
         let surface = curve.surface.as_deref().cloned().expect("a contact lies on a surface");

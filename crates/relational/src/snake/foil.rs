@@ -1,8 +1,10 @@
+//! Foil sections in the parameter plane of a surface.
+
 use super::through::{flat, snake};
 use crate::arguments::{Magnet, common_surface};
 use crate::foil::foil_kind;
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Value};
 
 foil_kind!(
     /// A foil section in the parameter plane of a surface, between 3, 4 or 5 magnets, as a foil curve.
@@ -23,13 +25,13 @@ foil_kind!(
     FoilSnake {
         /// Three, four or five magnets of one surface.
         magnets (MAGNETS): Magnet<T>,
-        /// How lengths are measured in the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
+        /// Metric of the parameter plane: {uu, uv, vv}; {1, 0, 1} when not given.
         metric (METRIC): Option<Vec3<T>>,
     }
 );
 
 impl<T: Real> Build<T> for FoilSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (magnets, arguments) = self.parts();
         let items: Vec<_> = magnets.iter().map(|m| (m.key, &m.surface)).collect();
         let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::MAGNETS))?;

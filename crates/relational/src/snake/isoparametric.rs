@@ -1,8 +1,10 @@
+//! Edges and parameter lines of surfaces as snakes.
+
 use crate::curve::Segment;
 use crate::snake::OnSurface;
 use moldloft_num::trace::{Edge, Mark, Piece, Root, Trace};
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use std::sync::Arc;
 
 /// What a snake along edge `k` (0..4: v = 0, u = 1, v = 1, u = 0) of a surface runs along.
@@ -39,7 +41,7 @@ fn own_edge<T: Real>(surface: &SurfaceRef<T>, k: u8) -> Trace<T> {
                EdgeSnake s(2, S);"
 )]
 pub struct EdgeSnake<T: Real> {
-    /// Which edge: 1 is v = 0, 2 is u = 1, 3 is v = 1, 4 is u = 0.
+    /// The edge: 1 is v = 0, 2 is u = 1, 3 is v = 1, 4 is u = 0.
     #[field(min = 1, max = 4)]
     edge: usize,
     /// The surface.
@@ -47,14 +49,14 @@ pub struct EdgeSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for EdgeSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let ends = match self.edge {
             1 => [(0.0, 0.0), (1.0, 0.0)],
             2 => [(1.0, 0.0), (1.0, 1.0)],
             3 => [(0.0, 1.0), (1.0, 1.0)],
             4 => [(0.0, 0.0), (0.0, 1.0)],
             other => {
-                return Err(Fault::new("out-of-range", format!("there is no edge {other}"))
+                return Err(CallError::new("out-of-range", format!("no edge {other}"))
                     .expected("an edge from 1 to 4")
                     .found(other.to_string())
                     .in_field(Self::EDGE));
@@ -88,17 +90,19 @@ pub struct UVSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for UVSnake<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, parameter, value } = self;
         let held = |t: f64| {
             let t = T::from(t);
             match &*parameter {
                 "u" => Ok(Vec3::new(value, t, T::zero())),
                 "v" => Ok(Vec3::new(t, value, T::zero())),
-                other => Err(Fault::new("unknown-parameter", format!("there is no \"{other}\""))
-                    .expected("\"u\" or \"v\"")
-                    .found(format!("\"{other}\""))
-                    .in_field(Self::PARAMETER)),
+                other => {
+                    Err(CallError::new("unknown-parameter", format!("there is no \"{other}\""))
+                        .expected("\"u\" or \"v\"")
+                        .found(format!("\"{other}\""))
+                        .in_field(Self::PARAMETER))
+                }
             }
         };
         let path = Segment { from: held(0.0)?, to: held(1.0)? };

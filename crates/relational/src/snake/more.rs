@@ -1,19 +1,21 @@
+//! Arcs, interpolating splines, NURBS and conics in the parameter plane of a surface.
+
 use super::through::{flat, snake};
 use crate::arguments::{EndRule, Magnet, Snake, common_surface};
 use crate::curve::{Moved, Oblique, clamped_ends, spline};
 use crate::faults;
 use moldloft_num::trace::Trace;
-use moldloft_num::{Curve, CurveJet, Law, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, SurfaceRef, Value};
+use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::InterpolatingSpline;
 
 /// The places of magnets, and the surface that they all lie on; they are the list in `field`.
 fn places<T: Real>(
     magnets: &[Magnet<T>],
     field: FieldId,
-) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), Fault> {
+) -> Result<(SurfaceRef<T>, Vec<Vec3<T>>), CallError> {
     if magnets.len() < 2 {
-        return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
+        return Err(CallError::new("too-few-items", "a snake needs at least 2 magnets")
             .expected("at least 2 magnets")
             .found(magnets.len().to_string())
             .in_field(field));
@@ -27,7 +29,7 @@ fn places<T: Real>(
 fn three<T: Real>(
     m: [&Magnet<T>; 3],
     fields: [FieldId; 3],
-) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), Fault> {
+) -> Result<(SurfaceRef<T>, [Vec3<T>; 3]), CallError> {
     let items = m.map(|m| (m.key, &m.surface));
     let surface = common_surface(&items, |fault, k| fault.in_field(fields[k]))?;
     Ok((surface, m.map(|m| flat(m.uv))))
@@ -50,17 +52,17 @@ pub struct ArcSnake<T: Real> {
     m2: Magnet<T>,
     /// Third magnet, on the same surface.
     m3: Magnet<T>,
-    /// Which of the six types.
+    /// One of the six types.
     #[field(default = 1, min = 1, max = 6)]
     r#type: u32,
 }
 
 impl<T: Real> Build<T> for ArcSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, m3, r#type } = self;
         let (surface, places) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let Some(arc) = moldloft_spline::Arc::of_type(r#type, places) else {
-            return Err(Fault::new("out-of-range", format!("there is no arc of type {}", r#type))
+            return Err(CallError::new("out-of-range", format!("unknown arc type {}", r#type))
                 .expected("a type from 1 to 6")
                 .found(r#type.to_string())
                 .in_field(Self::TYPE));
@@ -103,7 +105,7 @@ pub struct CSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for CSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let level = |slope: Option<Vec3<T>>| slope.map(|d| Vec3::new(d.x, d.y, T::zero()));
         let ends =
@@ -145,7 +147,7 @@ pub struct NURBSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for NURBSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (surface, places) = places(&self.magnets, Self::MAGNETS)?;
         let names = [0, places.len() - 1].map(|k| self.magnets[k].key);
         let fields = [Self::MAGNETS, Self::DEGREE, Self::KNOTS, Self::WEIGHTS];
@@ -169,14 +171,14 @@ impl<T: Real> Build<T> for NURBSnake<T> {
 pub struct ConicSnake<T: Real> {
     /// Centre, or vertex of a parabola.
     m1: Magnet<T>,
-    /// Where the angle is 0 on an ellipse or hyperbola, on the same surface.
+    /// The point of angle 0 on an ellipse or hyperbola, on the same surface.
     m2: Magnet<T>,
     /// The end of the conjugate half diameter, on the same surface.
     m3: Magnet<T>,
-    /// Where the snake begins.
+    /// Start of the snake.
     #[field(angle, default = 0)]
     a1: T,
-    /// Where it ends; a full turn when not given.
+    /// End; a full turn when not given.
     #[field(angle, default = std::f64::consts::TAU)]
     a2: T,
     /// 1 for an ellipse, 2 for a hyperbola, 3 for a parabola.
@@ -185,7 +187,7 @@ pub struct ConicSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for ConicSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2, m3, a1, a2, r#type } = self;
         let (surface, [centre, p, q]) = three([&m1, &m2, &m3], [Self::M1, Self::M2, Self::M3])?;
         let path = Oblique { centre, first: p - centre, second: q - centre, a1, a2, kind: r#type };
@@ -207,14 +209,14 @@ impl<T: Real> Build<T> for ConicSnake<T> {
 pub struct RelSnake<T: Real> {
     /// The snake it is relative to.
     snake: Snake<T>,
-    /// Where it begins, on the same surface.
+    /// Start, on the same surface.
     m1: Magnet<T>,
-    /// Where it ends, on the same surface.
+    /// End, on the same surface.
     m2: Magnet<T>,
 }
 
 impl<T: Real> Build<T> for RelSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { snake: Snake { curve, surface }, m1, m2 } = self;
         let items = [(curve.key, &surface), (m1.key, &m1.surface), (m2.key, &m2.surface)];
         let fields = [Self::SNAKE, Self::M1, Self::M2];
@@ -236,14 +238,14 @@ impl<T: Real> Build<T> for RelSnake<T> {
                LineSnake s(p, q); CopySnake t(s, T);"
 )]
 pub struct CopySnake<T: Real> {
-    /// The snake whose path is taken.
+    /// The snake whose path is copied.
     snake: Snake<T>,
-    /// The surface it is taken to.
+    /// The target surface.
     surface: SurfaceRef<T>,
 }
 
 impl<T: Real> Build<T> for CopySnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Snake { curve, .. } = self.snake;
         let nesting = curve.depth;
         snake(self.surface, Path(curve), [None, None], nesting)
@@ -266,7 +268,7 @@ impl<T: Real> Curve<T> for Path<T> {
         Trace::own()
     }
 
-    fn law(&self) -> Option<std::sync::Arc<dyn Law<T>>> {
+    fn law(&self) -> Option<std::sync::Arc<dyn Reparametrization<T>>> {
         self.0.law()
     }
 }

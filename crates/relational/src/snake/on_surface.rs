@@ -1,3 +1,5 @@
+//! The curve on a surface of a path in its parameter plane.
+
 use moldloft_num::trace::Trace;
 use moldloft_num::{Curve, CurveJet, Order, Real};
 use moldloft_registry::SurfaceRef;

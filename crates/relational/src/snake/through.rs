@@ -1,10 +1,12 @@
+//! Snakes through magnets: straight and B-spline in the parameter plane.
+
 use crate::arguments::{Magnet, common_surface};
 use crate::curve::Segment;
 use crate::faults;
 use crate::snake::OnSurface;
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{Curve, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::BSplineCurve;
 
 /// The snake of a path on a surface between two point objects, which holds on to shapes nested
@@ -14,7 +16,7 @@ pub(super) fn snake<T: Real>(
     path: impl Curve<T> + 'static,
     ends: [Option<Key>; 2],
     nesting: u32,
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let shape = OnSurface { surface: surface.clone(), path, trace: Trace::Own(ends) };
     Ok(Value::Curve(CurveRef::snake(shape, surface, nesting)))
 }
@@ -35,14 +37,14 @@ pub(super) fn flat<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
                AbsMagnet p(S, 0.2, 0.1); AbsMagnet q(S, 0.9, 0.8); LineSnake s(p, q);"
 )]
 pub struct LineSnake<T: Real> {
-    /// Where it begins.
+    /// Start.
     m1: Magnet<T>,
-    /// Where it ends, on the same surface.
+    /// End, on the same surface.
     m2: Magnet<T>,
 }
 
 impl<T: Real> Build<T> for LineSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { m1, m2 } = self;
         let items = [(m1.key, &m1.surface), (m2.key, &m2.surface)];
         let fields = [Self::M1, Self::M2];
@@ -75,10 +77,10 @@ pub struct BSnake<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSnake<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { magnets, degree } = self;
         let [first, .., last] = magnets.as_slice() else {
-            return Err(Fault::new("too-few-items", "a snake needs at least 2 magnets")
+            return Err(CallError::new("too-few-items", "a snake needs at least 2 magnets")
                 .expected("at least 2 magnets")
                 .found(magnets.len().to_string())
                 .in_field(Self::MAGNETS));

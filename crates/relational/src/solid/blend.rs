@@ -1,7 +1,9 @@
+//! Solids by transfinite blending of six faces.
+
 use super::layers::on;
 use moldloft_num::trace::{Faces, Turn};
 use moldloft_num::{Box3, Jet, Order, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SolidRef, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, SolidRef, SurfaceRef, Value};
 
 /// A solid between six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1: their transfinite blend, the three
 /// ruled solids less the three of edges plus that of the corners (Gordon and Hall 1973).
@@ -27,17 +29,20 @@ pub struct BlendSolid<T: Real> {
     /// The six faces u = 0, u = 1, v = 0, v = 1, w = 0, w = 1.
     #[field(min_items = 6)]
     surfaces: Vec<SurfaceRef<T>>,
-    /// How each surface is turned, 0 to 7; all 0 if not given.
+    /// Orientation of each surface, 0 to 7; all 0 if not given.
     turns: Option<Vec<usize>>,
 }
 
 impl<T: Real> Build<T> for BlendSolid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let six = |found: usize, what: &str, field: FieldId| {
-            Fault::new("wrong-length", format!("a solid has 6 faces, but here are {found} {what}"))
-                .expected(format!("6 {what}"))
-                .found(found.to_string())
-                .in_field(field)
+            CallError::new(
+                "wrong-length",
+                format!("a solid has 6 faces, but here are {found} {what}"),
+            )
+            .expected(format!("6 {what}"))
+            .found(found.to_string())
+            .in_field(field)
         };
         let surfaces: [SurfaceRef<T>; 6] = self
             .surfaces
@@ -47,7 +52,7 @@ impl<T: Real> Build<T> for BlendSolid<T> {
         let given: [usize; 6] =
             given.try_into().map_err(|t: Vec<_>| six(t.len(), "turns", Self::TURNS))?;
         if let Some(k) = given.iter().position(|&t| t > 7) {
-            return Err(Fault::new("out-of-range", format!("there is no turn {}", given[k]))
+            return Err(CallError::new("out-of-range", format!("no turn {}", given[k]))
                 .expected("a number from 0 to 7")
                 .found(given[k].to_string())
                 .in_item(k)
@@ -109,7 +114,7 @@ impl<T: Real> Blend<T> {
         worst
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self) -> Result<(), CallError> {
         let corner = |c: usize| {
             let at = [0, 1, 2].map(|axis| T::from((c >> axis & 1) as f64));
             [4 + (c >> 2), 2 + (c >> 1 & 1)].map(|face| self.face(face, at).re())
@@ -129,7 +134,7 @@ impl<T: Real> Blend<T> {
         }
         let name = |face: usize| format!("{} = {}", ["u", "v", "w"][face / 2], face % 2);
         let message = format!("the faces {} and {} do not meet", name(a), name(b));
-        let fault = Fault::new("open-edge", message)
+        let fault = CallError::new("open-edge", message)
             .expected("faces that meet along all edges")
             .found(format!("a gap of {gap:.3e} at (u, v, w) = ({u}, {v}, {w})"))
             .related(self.surfaces[a].key, "is the one face")

@@ -1,7 +1,9 @@
-use crate::lifted::slope;
+//! Faces of solids as surfaces.
+
+use crate::third_derivatives::slope;
 use moldloft_num::trace::{Edges, Face, Key};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, SolidRef, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, SolidRef, SurfaceRef, Value};
 
 /// A face of a solid as a surface: 1 is u = 0, 2 is u = 1, 3 is v = 0, 4 is v = 1, 5 is w = 0, 6 is
 /// w = 1. Its parameters are the solid's other two, in order.
@@ -25,7 +27,7 @@ pub struct FaceSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for FaceSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let shape = OfSolid { solid: self.solid, face: self.face - 1 };
         Ok(Value::Surface(SurfaceRef::new(shape, context.nesting)))
     }

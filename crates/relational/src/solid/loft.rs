@@ -1,9 +1,11 @@
+//! Solids between and through surfaces.
+
 use super::layers::{edges_of, on};
 use crate::arguments::EndRule;
 use crate::faults;
-use moldloft_num::trace::{Faces, Law, Layers, Turn};
+use moldloft_num::trace::{Faces, LayerLaw, Layers, Turn};
 use moldloft_num::{Curve, Jet, Order, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SolidRef, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, SolidRef, SurfaceRef, Value};
 use moldloft_spline::{InterpolatingSpline, InterpolationError, KnotVector};
 use smallvec::SmallVec;
 
@@ -28,7 +30,7 @@ pub struct RuledSolid<T: Real> {
 }
 
 impl<T: Real> Build<T> for RuledSolid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let knots = KnotVector::clamped_uniform(1, 2).expect("two knots at each end");
         let solid = Loft { layers: vec![self.s1, self.s2], across: Across::Blend(knots) };
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
@@ -60,7 +62,7 @@ pub struct BLoftSolid<T: Real> {
 }
 
 impl<T: Real> Build<T> for BLoftSolid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let count = several(&self.surfaces, Self::SURFACES)?;
         let knots = KnotVector::clamped_uniform(self.degree.min(count - 1), count)
             .map_err(|error| faults::of_spline(error.into(), Self::SURFACES, Self::DEGREE))?;
@@ -98,11 +100,11 @@ pub struct CLoftSolid<T: Real> {
 const TRIALS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 impl<T: Real> Build<T> for CLoftSolid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surfaces, ends } = self;
         several(&surfaces, Self::SURFACES)?;
         if matches!(ends, EndRule::Clamped | EndRule::Periodic) {
-            return Err(Fault::new("unknown-ends", "a solid is neither clamped nor periodic")
+            return Err(CallError::new("unknown-ends", "a solid is neither clamped nor periodic")
                 .expected("\"notaknot\", \"natural\", \"bessel\" or \"quadratic\"")
                 .in_field(Self::ENDS));
         }
@@ -124,11 +126,11 @@ impl<T: Real> Build<T> for CLoftSolid<T> {
     }
 }
 
-fn several<T: Real>(surfaces: &[SurfaceRef<T>], field: FieldId) -> Result<usize, Fault> {
+fn several<T: Real>(surfaces: &[SurfaceRef<T>], field: FieldId) -> Result<usize, CallError> {
     if surfaces.len() >= 2 {
         return Ok(surfaces.len());
     }
-    Err(Fault::new("too-few-items", "a solid needs at least 2 surfaces")
+    Err(CallError::new("too-few-items", "a solid needs at least 2 surfaces")
         .expected("at least 2 surfaces")
         .found(surfaces.len().to_string())
         .in_field(field))
@@ -216,8 +218,8 @@ impl<T: Real> SolidFormula for Loft<T> {
         faces.layers = Some(Layers {
             surfaces: self.layers.iter().map(|s| (s.key, edges_of(s))).collect(),
             law: match &self.across {
-                Across::Blend(knots) => Law::Blend(knots.degree()),
-                Across::Spline(ends) => Law::Spline(*ends as usize),
+                Across::Blend(knots) => LayerLaw::Blend(knots.degree()),
+                Across::Spline(ends) => LayerLaw::Spline(*ends as usize),
             },
         });
         faces

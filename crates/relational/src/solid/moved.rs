@@ -1,8 +1,10 @@
+//! Solids of surfaces that are translated or swept.
+
 use super::layers::{edges_of, on};
 use crate::surface::{Mode, Moving};
-use moldloft_num::trace::{Face, Faces, Law, Layers, Turn};
+use moldloft_num::trace::{Face, Faces, LayerLaw, Layers, Turn};
 use moldloft_num::{Jet, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SolidRef, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SolidRef, SurfaceRef, Value};
 
 /// A surface moved along a curve without turning: X(u, v, w) = S(u, v) + C(w) - C(0).
 #[derive(Kind)]
@@ -21,7 +23,7 @@ pub struct TranSolid<T: Real> {
 }
 
 impl<T: Real> Build<T> for TranSolid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let solid = Moved { surface: self.surface, curve: self.curve };
         Ok(Value::Solid(SolidRef::new(solid, context.nesting)))
     }
@@ -66,7 +68,7 @@ pub struct SweepSolid<T: Real> {
     surface: SurfaceRef<T>,
     /// The curve along which it is carried.
     path: CurveRef<T>,
-    /// How the frame moves: "minimal", "up" or "fixed".
+    /// Motion of the frame: "minimal", "up" or "fixed".
     #[field(default = "minimal")]
     frame: std::sync::Arc<str>,
     /// The direction that stays upright with frame = "up"; z if not given.
@@ -74,7 +76,7 @@ pub struct SweepSolid<T: Real> {
 }
 
 impl<T: Real> Build<T> for SweepSolid<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, path, frame, up } = self;
         let mode = Mode::of(&frame, up, [Self::FRAME, Self::UP])?;
         let moving = Moving::new(path, mode, Self::PATH)?;
@@ -149,6 +151,6 @@ fn faces<T: Real>(surface: &SurfaceRef<T>, curve: &CurveRef<T>, how: u8) -> Face
     }
     faces.faces[4] = on(surface, Turn::default());
     faces.layers =
-        Some(Layers { surfaces: vec![(surface.key, edges)], law: Law::Along(curve.key, how) });
+        Some(Layers { surfaces: vec![(surface.key, edges)], law: LayerLaw::Along(curve.key, how) });
     faces
 }

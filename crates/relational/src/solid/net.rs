@@ -1,7 +1,9 @@
+//! B-spline solids of nets of points.
+
 use crate::faults;
 use moldloft_num::trace::Faces;
 use moldloft_num::{Jet, Order, Real, SolidFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Point, SolidRef, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Point, SolidRef, Value};
 use moldloft_spline::KnotVector;
 
 /// A B-spline solid of a net of points: X(u, v, w) = sum N_i(u) N_j(v) N_k(w) P_ijk, with clamped
@@ -43,14 +45,14 @@ pub struct BSolid<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSolid<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { points, nu, nv, nw, degree_u, degree_v, degree_w } = self;
         let size = [nu, nv, nw];
         let count = nu.checked_mul(nv).and_then(|n| n.checked_mul(nw));
         if count != Some(points.len()) || size.iter().any(|&n| n < 2) {
             let message =
                 format!("a net of {nu} x {nv} x {nw} points is not {} points", points.len());
-            return Err(Fault::new("wrong-length", message)
+            return Err(CallError::new("wrong-length", message)
                 .expected(format!("{nu} x {nv} x {nw} points, at least 2 each way"))
                 .found(points.len().to_string())
                 .in_field(Self::POINTS));

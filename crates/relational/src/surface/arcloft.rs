@@ -1,8 +1,10 @@
+//! Lofts of circular arcs through three curves.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::{Arc, ArcError};
 
 /// Circular arcs by three curves: at each u the arc of the type, as for `Arc`, whose three points are
@@ -28,7 +30,7 @@ pub struct ArcLoftSurf<T: Real> {
     c2: CurveRef<T>,
     /// The curve of the third points.
     c3: CurveRef<T>,
-    /// Which of the six types of `Arc`.
+    /// One of the six types of `Arc`.
     #[field(default = 1, min = 1, max = 6)]
     r#type: u32,
 }
@@ -37,7 +39,7 @@ pub struct ArcLoftSurf<T: Real> {
 const TRIALS: usize = 64;
 
 impl<T: Real> Build<T> for ArcLoftSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { c1, c2, c3, r#type } = self;
         let loft = ArcLoft { masters: Masters::new(vec![c1, c2, c3], Self::C1)?, kind: r#type };
         let at = |k: usize| k as f64 / TRIALS as f64;
@@ -49,7 +51,7 @@ impl<T: Real> Build<T> for ArcLoftSurf<T> {
             } else {
                 format!("between u = {} and u = {}", at(first), at(last))
             };
-            return Err(Fault::new("collinear-points", format!("{what} {range}"))
+            return Err(CallError::new("collinear-points", format!("{what} {range}"))
                 .expected(expected)
                 .found(format!("no such arc at {} of {} parameters", bad.len(), TRIALS + 1))
                 .help("move the second curve out of the line of the others")
@@ -74,9 +76,7 @@ impl<T: Real> ArcLoft<T> {
             return None;
         }
         match Arc::of_type(self.kind, [p, q, r])? {
-            Err(ArcError::AtCentre) => {
-                Some(("a point lies at the centre", "points off the centre"))
-            }
+            Err(ArcError::AtCentre) => Some(("a point is at the centre", "points off the centre")),
             Err(ArcError::Collinear) => {
                 Some(("the three points are in line", "points that span a plane"))
             }

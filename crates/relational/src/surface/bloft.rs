@@ -1,8 +1,10 @@
+//! B-spline lofts: attracted by their master curves.
+
 use super::linear::Blend;
 use super::masters::Masters;
 use crate::faults;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::KnotVector;
 
 /// A surface attracted by its master curves: S(u, v) = sum N_i(v) C_i(u), with N_i the B-splines
@@ -28,7 +30,7 @@ pub struct BLoftSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for BLoftSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { curves, degree } = self;
         let count = curves.len();
         let masters = Masters::new(curves, Self::CURVES)?;

@@ -1,8 +1,12 @@
+//! B-spline and NURBS surfaces of nets of points.
+
 use super::free_knots::{FreeKnots, FreeNet};
 use crate::faults;
 use moldloft_num::trace::{Edges, Key};
 use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Point, Scalar, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, FieldId, Kind, Point, Scalar, SurfaceRef, Value,
+};
 use moldloft_spline::{BSplineSurface, KnotVector};
 
 /// A B-spline surface of a net of points: S(u, v) = sum N_i(u) N_j(v) P_ij, with clamped uniform
@@ -36,7 +40,7 @@ pub struct BSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for BSurf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { points, nu, nv, degree_u, degree_v } = self;
         let fields = NetFields {
             points: Self::POINTS,
@@ -90,18 +94,21 @@ pub struct NURBSurf<T: Real> {
 }
 
 impl<T: Scalar> Build<T> for NURBSurf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { points, nu, nv, degree_u, degree_v, weights, knots_u, knots_v } = self;
         if let Some(weights) = &weights {
             if weights.len() != points.len() {
-                return Err(Fault::new("wrong-length", "there must be a weight for each point")
-                    .expected(format!("{} weights", points.len()))
-                    .found(weights.len().to_string())
-                    .in_field(Self::WEIGHTS));
+                return Err(CallError::new(
+                    "wrong-length",
+                    "there must be a weight for each point",
+                )
+                .expected(format!("{} weights", points.len()))
+                .found(weights.len().to_string())
+                .in_field(Self::WEIGHTS));
             }
             if let Some(k) = weights.iter().position(|w| w.re() <= 0.0) {
                 let found = weights[k].re();
-                return Err(Fault::new("out-of-range", format!("weight {} is {found}", k + 1))
+                return Err(CallError::new("out-of-range", format!("weight {} is {found}", k + 1))
                     .expected("positive weights")
                     .found(found.to_string())
                     .in_item(k)
@@ -194,9 +201,9 @@ impl<T: Real> Net<T> {
         [knots_u, knots_v]: [Option<Vec<f64>>; 2],
         weights: Option<Vec<T>>,
         fields: NetFields,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, CallError> {
         if nu.checked_mul(nv) != Some(points.len()) || nu < 2 || nv < 2 {
-            return Err(Fault::new(
+            return Err(CallError::new(
                 "wrong-length",
                 format!("a net of {nu} x {nv} points is not {} points", points.len()),
             )
@@ -211,7 +218,7 @@ impl<T: Real> Net<T> {
             };
             let found = given.len();
             if found != n + degree + 1 {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "wrong-length",
                     format!("{found} knots do not serve {n} points of degree {degree}"),
                 )

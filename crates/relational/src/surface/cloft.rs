@@ -1,10 +1,12 @@
+//! Interpolating lofts: through their master curves. A grid of points builds the loft of each column once.
+
 use super::chunk::{Chunk, LANES, Part, Plane, widest};
 use super::masters::{Masters, Points};
 use crate::arguments::EndRule;
 use crate::faults;
 use moldloft_num::trace::Edges;
 use moldloft_num::{Curve, CurveJet, Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, FieldId, Kind, SurfaceRef, Value};
 use moldloft_spline::{End, Ends, InterpolatingSpline, InterpolationError, PiecewiseCubic};
 
 /// A surface that passes through its master curves: S(u, v) is the interpolating spline through
@@ -67,7 +69,7 @@ pub struct XLoftSurf<T: Real> {
 const TRIALS: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 
 impl<T: Real> Build<T> for CLoftSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { curves, degree, ends, start, end } = self;
         let count = curves.len();
         if degree == 2 && count > 3 {
@@ -104,28 +106,29 @@ fn slopes<T: Real>(
     start: Option<Vec3<T>>,
     end: Option<Vec3<T>>,
     fields: [FieldId; 2],
-) -> Result<Option<[Vec3<T>; 2]>, Fault> {
+) -> Result<Option<[Vec3<T>; 2]>, CallError> {
     match (ends, start, end) {
         (EndRule::Clamped, Some(start), Some(end)) => Ok(Some([start, end])),
-        (EndRule::Clamped, start, _) => {
-            Err(Fault::new("missing-argument", "clamped ends need the slopes `start` and `end`")
-                .expected("start = {x, y, z}, end = {x, y, z}")
-                .in_field(fields[usize::from(start.is_some())]))
-        }
+        (EndRule::Clamped, start, _) => Err(CallError::new(
+            "missing-argument",
+            "clamped ends need the slopes `start` and `end`",
+        )
+        .expected("start = {x, y, z}, end = {x, y, z}")
+        .in_field(fields[usize::from(start.is_some())])),
         (_, None, None) => Ok(None),
-        (_, start, _) => Err(Fault::new("unused-argument", "slopes are for clamped ends only")
+        (_, start, _) => Err(CallError::new("unused-argument", "slopes are for clamped ends only")
             .help("add ends = \"clamped\", or leave the slopes out")
             .in_field(fields[usize::from(start.is_none())])),
     }
 }
 
 impl<T: Real> Build<T> for XLoftSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { axis, curves, ends } = self;
         if matches!(ends, EndRule::Clamped | EndRule::Periodic) {
             let found = if ends == EndRule::Clamped { "\"clamped\"" } else { "\"periodic\"" };
             let message = format!("an explicit loft has no {found} ends");
-            return Err(Fault::new("unknown-ends", message)
+            return Err(CallError::new("unknown-ends", message)
                 .expected("\"notaknot\", \"natural\", \"bessel\" or \"quadratic\"")
                 .found(found)
                 .in_field(Self::ENDS));
@@ -144,8 +147,8 @@ impl<T: Real> Build<T> for XLoftSurf<T> {
                 ));
             };
             let values: Vec<String> = points.iter().map(|p| p[axis - 1].re().to_string()).collect();
-            let message = format!("{name} does not go one way from curve to curve at u = {u}");
-            return Err(Fault::new("not-monotone", message)
+            let message = format!("{name} is not monotone from curve to curve at u = {u}");
+            return Err(CallError::new("not-monotone", message)
                 .expected(format!(
                     "{name} increasing, or decreasing, from the first curve to the last"
                 ))
@@ -204,7 +207,7 @@ impl<T: Real> Loft<T> {
                 let share = |p: &Vec3<S>| (p[axis] - first) / (last - first);
                 let mut knots: Vec<S> = points.iter().map(share).collect();
                 if first.re() == last.re() {
-                    // Which two masters are wrong is told by the knots.
+                    // Which two masters are wrong is identified by the knots.
                     knots = points.iter().map(|p| p[axis] - first).collect();
                 }
                 InterpolatingSpline::with_knots(&knots, points, ends)
@@ -300,7 +303,7 @@ impl<T: Real> Surface<T> for Loft<T> {
     }
 
     /// The knots across the masters move with u, so no line v = const is one at which only
-    /// derivatives jump; of those lines none is told.
+    /// derivatives jump; of those lines none is reported.
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.masters.breaks(), Vec::new()]
     }

@@ -4,13 +4,15 @@ use super::corners;
 use super::masters::along;
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Box3, Jet, Real, SurfaceFormula, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, FieldId, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, FieldId, Kind, Point, SurfaceRef, Value,
+};
 
 /// A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing
 /// parameter: the bilinear Coons patch P_u + P_v - P_uv (Coons 1967).
 ///
 /// Of three curves the edge u = 0 is the point where the first and the third begin. Curves that do
-/// not meet at the corners are refused, never turned round.
+/// not meet at the corners are errors; they are never reversed.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -27,7 +29,7 @@ pub struct BlendSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for BlendSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let boundary = Boundary::new(self.curves, Self::CURVES)?;
         let patch = Patch { boundary, lift: None };
         Ok(Value::Surface(SurfaceRef::new(patch, context.nesting)))
@@ -35,7 +37,7 @@ impl<T: Real> Build<T> for BlendSurf<T> {
 }
 
 /// A patch between four curves that passes through a point in its middle: the Coons patch plus
-/// 16 u (1 - u) v (1 - v) times the way from its own middle to the point.
+/// 16 u (1 - u) v (1 - v) times the vector from its own middle to the point.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -49,12 +51,12 @@ pub struct BlendCenter<T: Real> {
     /// The four (or three) boundary curves.
     #[field(min_items = 3)]
     curves: Vec<CurveRef<T>>,
-    /// Where the surface is at u = v = 0.5.
+    /// The point at u = v = 0.5.
     centre: Point<T>,
 }
 
 impl<T: Real> Build<T> for BlendCenter<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let boundary = Boundary::new(self.curves, Self::CURVES)?;
         let half = T::from(0.5);
         let lift = Some((self.centre.xyz - boundary.coons(half, half)) * T::from(16.0));
@@ -77,9 +79,9 @@ const MEETING: f64 = 1e-9;
 impl<T: Real> Boundary<T> {
     /// # Errors
     /// `wrong-length` and `open-corner`, in field `field`.
-    pub fn new(curves: Vec<CurveRef<T>>, field: FieldId) -> Result<Self, Fault> {
+    pub fn new(curves: Vec<CurveRef<T>>, field: FieldId) -> Result<Self, CallError> {
         if !(3..=4).contains(&curves.len()) {
-            return Err(Fault::new("wrong-length", "a patch has 3 or 4 sides")
+            return Err(CallError::new("wrong-length", "a patch has 3 or 4 sides")
                 .expected("3 or 4 curves")
                 .found(curves.len().to_string())
                 .in_field(field));

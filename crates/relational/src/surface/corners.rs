@@ -1,7 +1,7 @@
 //! Whether the sides of a patch meet at its corners.
 
 use moldloft_num::Vec3;
-use moldloft_registry::{Fault, FieldId};
+use moldloft_registry::{CallError, FieldId};
 
 /// A corner: side `a` at its end `s` is side `b` at its end `t`.
 type Corner = [(usize, usize); 2];
@@ -25,7 +25,7 @@ pub fn check(
     distance: impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
     place: impl Fn(Vec3<f64>) -> String,
     field: FieldId,
-) -> Result<(), Fault> {
+) -> Result<(), CallError> {
     let corners = of(ends.len());
     let meets = |mask: u32, [(a, s), (b, t)]: Corner| {
         let at = |side: usize, end: usize| ends[side][end ^ (mask >> side & 1) as usize];
@@ -36,7 +36,7 @@ pub fn check(
         let which = if end == 0 { "begins" } else { "ends" };
         format!("side {} {which} at {}", side + 1, place(ends[side][end]))
     };
-    let fault = Fault::new("open-corner", format!("sides {} and {} do not meet", a + 1, b + 1))
+    let fault = CallError::new("open-corner", format!("sides {} and {} do not meet", a + 1, b + 1))
         .expected("the edges v = 0, u = 1, v = 1, u = 0, each in increasing parameter")
         .found(format!("{}, but {}", says(a, s), says(b, t)))
         .in_item(b)
@@ -46,7 +46,7 @@ pub fn check(
         Some(mask) => {
             let sides = (0..ends.len()).filter(|k| mask >> k & 1 == 1);
             let list = sides.map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ");
-            fault.help(format!("they do when these sides run the other way: {list}"))
+            fault.help(format!("they do when these sides are reversed: {list}"))
         }
         None => fault.help("let neighbouring sides end in common points"),
     })

@@ -1,15 +1,17 @@
+//! Developable surfaces between two curves, by rulings of equal tangent planes.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use super::rulings::{Pairing, pair};
 use crate::arguments::Named;
 use crate::curve::Segment;
-use crate::lifted::tangent;
+use crate::third_derivatives::tangent;
 use moldloft_locate::implicit::{Implicit, jets};
 use moldloft_num::trace::{Edge, Edges};
-use moldloft_num::{Jet, Order, Real, Vec3, find_root, lift_law};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_num::{Jet, Order, Real, Vec3, find_root, lift_reparametrization};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
-/// A developable surface between two curves, a plate that is bent without stretching: straight
+/// A developable surface between two curves, a plate bent without stretching: straight
 /// rulings from C1(s) to C2(t) along which the tangent plane is one, det[C1'(s), C2'(t), C2(t) - C1(s)]
 /// = 0; S(u, v) = (1 - v) C1(s(u)) + v C2(t(u)).
 ///
@@ -39,7 +41,7 @@ pub struct DevSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for DevSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { c1, c2, along } = self;
         let (a, b) = match along.among(&["both", "c1", "c2"], Self::ALONG)? {
             "both" => (1.0, 1.0),
@@ -82,7 +84,7 @@ struct Plate<T: Real> {
 }
 
 impl<T: Real> Plate<T> {
-    fn new(masters: Masters<T>, pairing: Pairing, a: f64, b: f64) -> Result<Self, Fault> {
+    fn new(masters: Masters<T>, pairing: Pairing, a: f64, b: f64) -> Result<Self, CallError> {
         // u and w of a pair (s, t): s - t = (a + b) w.
         let of = |[s, t]: [f64; 2]| {
             let w = (s - t) / (a + b);
@@ -106,9 +108,9 @@ impl<T: Real> Plate<T> {
         if let Some((at, _)) = pairing.phases.iter().find(|(_, phase)| stays(phase).is_some()) {
             let (curve, end) = if a == 0.0 { (1, at[0]) } else { (2, at[1]) };
             let which = if end < 0.5 { "start" } else { "end" };
-            return Err(Fault::new("fan-needed", format!("the plate has a fan about the {which} of curve {curve}"))
+            return Err(CallError::new("fan-needed", format!("the plate has a fan about the {which} of curve {curve}"))
                 .expected("rulings that move along that curve from end to end")
-                .found(format!("a cone about its {which}, where u would stand still"))
+                .found(format!("a cone about its {which}, where u would be degenerate"))
                 .help("leave `along` out, and build the neighbour on an EdgeSnake of this surface; or move the ends of the curves")
                 .related(masters.curves()[curve - 1].key, "has the fan at its end")
                 .in_field(DevSurf::<T>::ALONG));
@@ -163,7 +165,7 @@ impl<T: Real> Plate<T> {
                 let equation = Tangency { curves: self.masters.curves(), a: self.a, b: self.b };
                 let plain = self.solve(&equation, u.re());
                 let w = match jets(&equation, [plain], u.value(), J::ORDER) {
-                    Some(jet) => lift_law(&jet.map(|[w]| w), u),
+                    Some(jet) => lift_reparametrization(&jet.map(|[w]| w), u),
                     None => J::from(plain),
                 };
                 [u + w * self.a, u - w * self.b]

@@ -1,10 +1,12 @@
+//! Developable surfaces laid flat, lengths and angles kept.
+
 use super::column::{Column, Columns};
 use super::inherited;
 use crate::curve::Segment;
-use crate::lifted::{bends, tangents};
+use crate::third_derivatives::{bends, tangents};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Frame, Jet, Order, Real, Vec3, gauss_points};
-use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 
 /// A developable surface laid flat: the plate before it is bent, with all lengths and angles as on the
 /// surface, at equal parameters.
@@ -25,7 +27,7 @@ use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
 pub struct ExpandedSurf<T: Real> {
     /// The surface to lay flat.
     surface: SurfaceRef<T>,
-    /// Where it is laid.
+    /// The frame in which it is laid.
     frame: Option<Frame<T>>,
 }
 
@@ -37,7 +39,7 @@ const PARTS: usize = 12;
 const FLAT: f64 = 1e-4;
 
 impl<T: Real> Build<T> for ExpandedSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, frame } = self;
         let frame = frame.unwrap_or_else(Frame::world);
         let mut places = vec![0.0];
@@ -69,9 +71,9 @@ impl<T: Real> Build<T> for ExpandedSurf<T> {
 }
 
 /// Refuses a surface that cannot be laid flat.
-fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), Fault> {
+fn check<T: Real>(surface: &SurfaceRef<T>, places: &[f64]) -> Result<(), CallError> {
     let fault = |message: String, found: String| {
-        Err(Fault::new("not-developable", message)
+        Err(CallError::new("not-developable", message)
             .expected("straight lines u = const with one tangent plane along each")
             .found(found)
             .help("make the plate by DevSurf, or expand a narrower part of the surface")
@@ -196,7 +198,7 @@ impl<T: Real> Column for Plate<T> {
         let plain = u.re();
         let k = self.stations.partition_point(|s| s.u <= plain).clamp(1, self.stations.len() - 1);
         let at = self.carried(&self.stations[k - 1], plain);
-        // What of u is no plain number is small: the midpoint rule is exact to its square.
+        // What of u is not a plain number is small: the midpoint rule is exact to its square.
         let du = u - plain;
         let angle_at =
             |share: f64| J::fixed(at.angle) + du * share * self.turning(du * (0.5 * share) + plain);

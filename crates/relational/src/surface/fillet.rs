@@ -1,10 +1,12 @@
+//! Fillets between snakes, tangent to their surfaces.
+
 use super::column::{Bezier, Column, Columns};
 use super::masters::{Points, along};
 use super::ribbon::{Along, ribbon, unit};
 use crate::arguments::Snake;
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Real, Vec3};
-use moldloft_registry::{Build, Class, Context, Fault, FromValue, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, SurfaceRef, Value};
 use std::sync::Arc;
 
 /// A fillet between two snakes, tangent to their surfaces: for each u a cubic from the first snake
@@ -41,10 +43,10 @@ pub struct FilletSurf<T: Real> {
     /// 1 for common tangent planes, 2 for common curvature across, too.
     #[field(default = 1, min = 1, max = 2)]
     continuity: usize,
-    /// How it leaves the first surface: "perpendicular", "chord", "u" or "v".
+    /// Direction at the first surface: "perpendicular", "chord", "u" or "v".
     #[field(default = "perpendicular")]
     direction1: Direction,
-    /// How it meets the second surface: "perpendicular", "chord", "u" or "v".
+    /// Direction at the second surface: "perpendicular", "chord", "u" or "v".
     #[field(default = "perpendicular")]
     direction2: Direction,
     /// 1 when the edges u = 0 and u = 1 are one line.
@@ -65,7 +67,7 @@ pub enum Direction {
 
 impl<T: Real> FromValue<T> for Direction {
     const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, Fault> {
+    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
         let text = Arc::<str>::from_value(value)?;
         Ok(match &*text {
             "perpendicular" => Direction::Perpendicular,
@@ -73,8 +75,8 @@ impl<T: Real> FromValue<T> for Direction {
             "u" => Direction::Line(0),
             "v" => Direction::Line(1),
             _ => {
-                let message = format!("there is no direction \"{text}\"");
-                return Err(Fault::new("unknown-direction", message)
+                let message = format!("unknown direction \"{text}\"");
+                return Err(CallError::new("unknown-direction", message)
                     .expected("\"perpendicular\", \"chord\", \"u\" or \"v\"")
                     .found(format!("\"{text}\"")));
             }
@@ -86,7 +88,7 @@ impl<T: Real> FromValue<T> for Direction {
 const TRIALS: usize = 16;
 
 impl<T: Real> Build<T> for FilletSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { snake1, snake2, m1, m2, continuity, direction1, direction2, closed } = self;
         let contacts = [snake1.curve.clone(), snake2.curve.clone()];
         let side = |snake, length, direction| Side { snake, length, direction, sign: 1.0 };
@@ -143,7 +145,7 @@ impl<T: Real> Fillet<T> {
     }
 
     /// Chooses the signs so that the fillet sets out toward the other snake, on the whole.
-    fn settle(&mut self) -> Result<(), Fault> {
+    fn settle(&mut self) -> Result<(), CallError> {
         let mut sums = [0.0; 2];
         for u in Self::trials() {
             let (ends, chord, directions) = self.plain(u);
@@ -153,10 +155,10 @@ impl<T: Real> Fillet<T> {
                     let (what, help) = if ends[k].normal.re().norm() == 0.0 {
                         ("the surface has no tangent plane", "move the snake off its pole")
                     } else {
-                        ("there is no such direction", "choose another direction")
+                        ("no such direction", "choose another direction")
                     };
                     let message = format!("{what} at u = {u} of snake {}", k + 1);
-                    return Err(Fault::new("no-tangent", message)
+                    return Err(CallError::new("no-tangent", message)
                         .expected("a tangent along which the fillet may leave")
                         .found(format!("none at ({}, {}, {})", at.x, at.y, at.z))
                         .help(help)
@@ -173,7 +175,7 @@ impl<T: Real> Fillet<T> {
         Ok(())
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self) -> Result<(), CallError> {
         let mut widest = 0.0_f64;
         for u in Self::trials() {
             let (_, chord, directions) = self.plain(u);
@@ -187,10 +189,10 @@ impl<T: Real> Fillet<T> {
                 if cosine < -1e-9 {
                     let angle = cosine.max(-1.0).acos().to_degrees();
                     let message = format!("the fillet turns back at snake {}, u = {u}", k + 1);
-                    return Err(Fault::new("fillet-turns-back", message)
-                        .expected("a tangent within 90 degrees of the way to the other snake")
+                    return Err(CallError::new("fillet-turns-back", message)
+                        .expected("a tangent within 90 degrees of the direction to the other snake")
                         .found(format!("{angle:.1} degrees"))
-                        .help("move the snakes apart, let both run the same way, or choose another direction")
+                        .help("move the snakes apart, run both in the same direction, or choose another direction")
                         .in_field([FilletSurf::<T>::SNAKE1, FilletSurf::<T>::SNAKE2][k]));
                 }
             }
@@ -202,7 +204,7 @@ impl<T: Real> Fillet<T> {
                 let speed = slope(&points, v).dot(chord) / length;
                 if speed < -1e-9 * length {
                     let message = format!("the fillet turns back at u = {u}, v = {v}");
-                    return Err(Fault::new("fillet-turns-back", message)
+                    return Err(CallError::new("fillet-turns-back", message)
                         .expected("a fillet that goes from snake 1 to snake 2")
                         .found(format!("a speed of {speed:.3e} along the chord of {length:.3e}"))
                         .help("lower m1 or m2")
@@ -211,11 +213,14 @@ impl<T: Real> Fillet<T> {
             }
         }
         if widest == 0.0 {
-            return Err(Fault::new("coincident-points", "both snakes of the fillet are one line")
-                .expected("two snakes with a way from the one to the other")
-                .found("no distance between them")
-                .help("choose another snake for one of the two")
-                .in_field(FilletSurf::<T>::SNAKE2));
+            return Err(CallError::new(
+                "coincident-points",
+                "both snakes of the fillet are one line",
+            )
+            .expected("two snakes with a path from one to the other")
+            .found("no distance between them")
+            .help("choose another snake for one of the two")
+            .in_field(FilletSurf::<T>::SNAKE2));
         }
         if !self.closed {
             return Ok(());
@@ -226,7 +231,7 @@ impl<T: Real> Fillet<T> {
             first.iter().zip(&last).map(|(p, q): (&Vec3<T>, &Vec3<T>)| p.re().distance(q.re()));
         let gap = gap.fold(0.0, f64::max);
         if gap > 1e-9 * size.max(first[0].re().norm()) {
-            return Err(Fault::new("not-closed", "the edges u = 0 and u = 1 are not one line")
+            return Err(CallError::new("not-closed", "the edges u = 0 and u = 1 are not one line")
                 .expected("equal ends and tangents at both ends of the snakes")
                 .found(format!("control points {gap:.3e} apart"))
                 .help("choose directions that do not depend on the snakes' own tangents: \"u\", \"v\" or \"chord\"")

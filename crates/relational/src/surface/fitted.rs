@@ -4,8 +4,8 @@ use super::free_knots::{FreeKnots, FreeNet};
 use crate::curve::fitted::{clamped, near_enough, no_fit, report};
 use crate::faults;
 use moldloft_num::{Order, Real, Surface, Vec3};
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, Scalar, SurfaceRef, Value};
-use moldloft_spline::{KnotVector, MovingSpline};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, Scalar, SurfaceRef, Value};
+use moldloft_spline::{KnotVector, SplineWithKnotDerivatives};
 
 /// A B-spline surface fitted to another by least squares: with clamped uniform knots and the corners
 /// of the surface.
@@ -43,9 +43,9 @@ pub struct BFitSurf<T: Real> {
 }
 
 impl<T: Scalar> Build<T> for BFitSurf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, degree_u, degree_v, nu, nv, accuracy } = self;
-        let knots = |degree: usize, n: usize, k: usize| -> Result<FreeKnots<T>, Fault> {
+        let knots = |degree: usize, n: usize, k: usize| -> Result<FreeKnots<T>, CallError> {
             let number = [Self::NU, Self::NV][k];
             let of = [Self::DEGREE_U, Self::DEGREE_V][k];
             let knots = KnotVector::clamped_uniform(degree, n)
@@ -88,11 +88,12 @@ pub struct NUBFitSurf<T: Real> {
 }
 
 impl<T: Scalar> Build<T> for NUBFitSurf<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, degree_u, degree_v, knots_u, knots_v, accuracy } = self;
-        let knots = |degree: usize, knots: &[T], field: FieldId| -> Result<FreeKnots<T>, Fault> {
-            Ok(FreeKnots { degree, knots: clamped(degree, knots, field)? })
-        };
+        let knots =
+            |degree: usize, knots: &[T], field: FieldId| -> Result<FreeKnots<T>, CallError> {
+                Ok(FreeKnots { degree, knots: clamped(degree, knots, field)? })
+            };
         let knots =
             [knots(degree_u, &knots_u, Self::KNOTS_U)?, knots(degree_v, &knots_v, Self::KNOTS_V)?];
         fit(&surface, knots, accuracy, [Self::KNOTS_U, Self::KNOTS_V, Self::ACCURACY])
@@ -109,7 +110,7 @@ fn fit<T: Real>(
     knots: [FreeKnots<T>; 2],
     accuracy: Option<T>,
     fields: [FieldId; 3],
-) -> Result<Value<T>, Fault> {
+) -> Result<Value<T>, CallError> {
     let points = [0, 1].map(|k| knots[k].knots.len() - knots[k].degree - 1);
     let places = points.map(|n| {
         let count = (SAMPLES * n).max(24);
@@ -119,8 +120,13 @@ fn fit<T: Real>(
     let mut samples = vec![Vec3::zero(); us.len() * vs.len()];
     surface.grid(us, vs, &mut samples, None);
     let along = |k: usize, row: &[(f64, Vec3<T>)]| {
-        MovingSpline::fitted(knots[k].degree, Some(knots[k].knots.clone()), points[k], row)
-            .map_err(|error| no_fit(error).in_field(fields[k]))
+        SplineWithKnotDerivatives::fitted(
+            knots[k].degree,
+            Some(knots[k].knots.clone()),
+            points[k],
+            row,
+        )
+        .map_err(|error| no_fit(error).in_field(fields[k]))
     };
     // rows[j] are the control points of the fit along u at v_j.
     let mut rows = Vec::with_capacity(vs.len());

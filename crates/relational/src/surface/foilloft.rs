@@ -1,9 +1,11 @@
+//! Lofts of foil sections.
+
 use super::column::{Column, Columns};
 use super::masters::Masters;
 use crate::foil::{Arguments, foil_kind};
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Real};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::foil::Profile;
 
 foil_kind!(
@@ -36,7 +38,7 @@ foil_kind!(
 const TRIALS: usize = 32;
 
 impl<T: Real> Build<T> for FoilLoftSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let (curves, section) = self.parts();
         let masters = Masters::new(curves, Self::CURVES)?;
         let at = |u: f64| section.lifted(&masters.at(T::from(u)));

@@ -7,7 +7,7 @@ use moldloft_num::{Box3, Order, Real, Surface};
 const TRIALS: usize = 16;
 
 /// How far apart places of one line, or of a pole, may be as a share of the surface's size.
-const ALIKE: f64 = 1e-12;
+const SAME_PARAMETER: f64 = 1e-12;
 
 /// The edges of `own`, which closes and has poles where `parent` does, if it really does so there.
 pub fn edges<T: Real>(parent: &dyn Surface<T>, own: &dyn Surface<T>) -> Edges<T> {
@@ -21,7 +21,8 @@ pub fn edges<T: Real>(parent: &dyn Surface<T>, own: &dyn Surface<T>) -> Edges<T>
     let mut edges = Edges::own();
     for (k, edge) in parent.edges().edges.iter().enumerate() {
         let same = |other: usize, step: usize| {
-            (0..=TRIALS).all(|i| place(k, i).distance(place(other, i * step)) <= ALIKE * size)
+            (0..=TRIALS)
+                .all(|i| place(k, i).distance(place(other, i * step)) <= SAME_PARAMETER * size)
         };
         match edge {
             Edge::SameAs(other) if same(usize::from(*other), 1) => {

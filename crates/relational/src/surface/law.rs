@@ -2,7 +2,7 @@
 
 use crate::faults;
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Fault, FieldId};
+use moldloft_registry::{CallError, FieldId};
 use moldloft_spline::BSplineCurve;
 
 /// A law along a parameter: the first coordinate of the clamped uniform B-spline of degree 3 or less
@@ -13,11 +13,11 @@ use moldloft_spline::BSplineCurve;
 pub fn law<T: Real>(
     values: Option<Vec<T>>,
     field: FieldId,
-) -> Result<Option<BSplineCurve<T>>, Fault> {
+) -> Result<Option<BSplineCurve<T>>, CallError> {
     let Some(mut values) = values else { return Ok(None) };
     match values[..] {
         [] => {
-            return Err(Fault::new("too-few-items", "a law needs at least 1 number")
+            return Err(CallError::new("too-few-items", "a law needs at least 1 number")
                 .expected("at least 1 number")
                 .found("0")
                 .in_field(field));

@@ -2,7 +2,9 @@
 
 use moldloft_num::trace::Key;
 use moldloft_num::{Axis, Order, Real, SurfJet, Surface, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Mirror, Point, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, Kind, MirrorArgument, Point, SurfaceRef, Value,
+};
 
 /// An affine map: p goes to `to` + A (p - `from`).
 enum Linear<T: Real> {
@@ -11,7 +13,7 @@ enum Linear<T: Real> {
     /// A shift and a stretch along the three axes.
     Stretch { from: Vec3<T>, to: Vec3<T>, factors: Vec3<T> },
     /// A reflection in a plane, line or point.
-    Reflection(Mirror<T>),
+    Reflection(MirrorArgument<T>),
 }
 
 impl<T: Real> Linear<T> {
@@ -112,7 +114,7 @@ impl<T: Real> Surface<T> for Image<T> {
 
 /// The mirror image of a surface in a plane, line or point, point by point.
 ///
-/// A plane or point turns the natural normal round; panels keep the side of the original's all the
+/// A plane or point reverses the natural normal; panels keep the side of the original's all the
 /// same.
 #[derive(Kind)]
 #[kind(
@@ -125,12 +127,12 @@ impl<T: Real> Surface<T> for Image<T> {
 pub struct MirrSurf<T: Real> {
     /// The surface to mirror.
     surface: SurfaceRef<T>,
-    /// What to mirror it in.
-    mirror: Mirror<T>,
+    /// The mirror: a plane, line or point.
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Build<T> for MirrSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let image = Image { surface: self.surface, map: Linear::Reflection(self.mirror) };
         Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
     }
@@ -158,7 +160,7 @@ pub struct RotatSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for RotatSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let (c, s) = super::revolved::cos_sin(self.angle);
         let image = Image { surface: self.surface, map: Linear::Turn(self.line, c, s) };
         Ok(Value::Surface(SurfaceRef::new(image, context.nesting)))
@@ -167,7 +169,7 @@ impl<T: Real> Build<T> for RotatSurf<T> {
 
 /// A copy of a surface, shifted and stretched: p goes to `to` + diag(sx, sy, sz) (p - `from`).
 ///
-/// A negative product of the three factors turns the natural normal round; panels keep the side of
+/// A negative product of the three factors reverses the natural normal; panels keep the side of
 /// the original's all the same.
 #[derive(Kind)]
 #[kind(
@@ -180,9 +182,9 @@ impl<T: Real> Build<T> for RotatSurf<T> {
 pub struct CopySurf<T: Real> {
     /// The surface to copy.
     surface: SurfaceRef<T>,
-    /// The point that goes to `to`.
+    /// The point that is moved to `to`.
     from: Point<T>,
-    /// Where it goes.
+    /// Its image.
     to: Point<T>,
     /// Stretch along x.
     #[field(default = 1)]
@@ -196,12 +198,12 @@ pub struct CopySurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for CopySurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, from, to, sx, sy, sz } = self;
         let factors = Vec3::new(sx, sy, sz);
         let zeros = factors.re().to_array().iter().filter(|f| **f == 0.0).count();
         if zeros > 1 {
-            return Err(Fault::new("no-area", "two factors of 0 leave no surface")
+            return Err(CallError::new("no-area", "two factors of 0 leave no surface")
                 .expected("at most one factor of 0")
                 .found(format!("{zeros} factors of 0"))
                 .in_field(Self::SX));
@@ -214,7 +216,7 @@ impl<T: Real> Build<T> for CopySurf<T> {
 
 /// A surface projected to a plane, along its normal: each point goes to its foot.
 ///
-/// The image of a surface that stands on the plane is folded flat; where it does, panels overlap.
+/// The image of a surface perpendicular to the plane degenerates; panels overlap there.
 #[derive(Kind)]
 #[kind(
     class = Surface,
@@ -227,14 +229,14 @@ pub struct ProjSurf<T: Real> {
     /// The surface to project.
     surface: SurfaceRef<T>,
     /// The plane to project it to.
-    mirror: Mirror<T>,
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Build<T> for ProjSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, mirror } = self;
-        if !matches!(mirror, Mirror::Plane(_)) {
-            return Err(Fault::new(
+        if !matches!(mirror, MirrorArgument::Plane(_)) {
+            return Err(CallError::new(
                 "no-area",
                 "a surface projected to a line or point has no area",
             )
@@ -248,7 +250,7 @@ impl<T: Real> Build<T> for ProjSurf<T> {
 
 struct Foot<T: Real> {
     surface: SurfaceRef<T>,
-    mirror: Mirror<T>,
+    mirror: MirrorArgument<T>,
 }
 
 impl<T: Real> Surface<T> for Foot<T> {
@@ -307,7 +309,7 @@ pub struct RelSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for RelSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, p00, p10, p11, p01 } = self;
         let places = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let points = [p00, p10, p11, p01];

@@ -2,7 +2,7 @@
 
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
 use moldloft_num::{Jet, Order, Real, Uni1, Vec3};
-use moldloft_registry::{CurveRef, Fault, FieldId};
+use moldloft_registry::{CallError, CurveRef, FieldId};
 use smallvec::SmallVec;
 
 /// A short list of positions: those of a few masters stay on the stack.
@@ -14,11 +14,11 @@ pub struct Masters<T: Real>(Vec<CurveRef<T>>);
 impl<T: Real> Masters<T> {
     /// # Errors
     /// `too-few-items`, in field `field`, for fewer than two curves.
-    pub fn new(curves: Vec<CurveRef<T>>, field: FieldId) -> Result<Self, Fault> {
+    pub fn new(curves: Vec<CurveRef<T>>, field: FieldId) -> Result<Self, CallError> {
         if curves.len() >= 2 {
             return Ok(Self(curves));
         }
-        Err(Fault::new("too-few-items", "a loft needs at least 2 curves")
+        Err(CallError::new("too-few-items", "a loft needs at least 2 curves")
             .expected("at least 2 curves")
             .found(curves.len().to_string())
             .in_field(field))

@@ -1,15 +1,17 @@
+//! Parallel surfaces. A distance beyond a radius of curvature is refused.
+
 use super::inherited;
 use super::ribbon::unit;
 use crate::faults::{digits, parameter};
-use crate::lifted::{bends, tangents};
+use crate::third_derivatives::{bends, tangents};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, Surface, SurfaceFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 
 /// A surface at a distance from another along its natural normal: S(u, v) + d n(u, v), with
 /// n = S_u x S_v / |S_u x S_v|; on the other side for a negative distance.
 ///
-/// At a pole the normal is the limit along the parameter line that leads there. The offset is refused
+/// At a pole the normal is the limit along the parameter line that ends there. The offset is an error
 /// where the distance exceeds a radius of curvature on that side, since it is folded there, and where
 /// the surface has no normal.
 #[derive(Kind)]
@@ -21,14 +23,14 @@ use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
                RuledSurf S(l, m); OffsetSurf plate(S, 0.25); OffsetSurf inside(S, -0.5);"
 )]
 pub struct OffsetSurf<T: Real> {
-    /// The surface it runs beside.
+    /// The surface that is offset.
     surface: SurfaceRef<T>,
     /// The distance, on the side of the natural normal if positive.
     distance: T,
 }
 
 impl<T: Real> Build<T> for OffsetSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, distance } = self;
         check(&surface, distance.re())?;
         Ok(Value::Surface(parallel(surface, distance, context)))
@@ -64,14 +66,14 @@ fn trials(breaks: &[f64]) -> Vec<f64> {
 }
 
 /// Refuses a distance beyond a radius of curvature, and places without a normal.
-fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), Fault> {
+fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), CallError> {
     let [us, vs] = surface.breaks().map(|b| trials(&b));
     let mut worst: Option<(f64, f64, f64)> = None;
     for (u, v) in us.iter().flat_map(|&u| vs.iter().map(move |&v| (u, v))) {
         let normal: Vec3<T> = normal(&**surface, T::from(u), T::from(v));
         if normal.re().norm() == 0.0 {
             let at = surface.jet(T::from(u), T::from(v), Order::Zero).p.re();
-            return Err(Fault::new(
+            return Err(CallError::new(
                 "no-normal",
                 format!("the surface has no normal at ({}, {})", parameter(u), parameter(v)),
             )
@@ -91,7 +93,7 @@ fn check<T: Real>(surface: &SurfaceRef<T>, distance: f64) -> Result<(), Fault> {
     match worst {
         Some((share, u, v)) if share <= 0.0 => {
             let radius = distance.abs() / (1.0 - share);
-            Err(Fault::new("cusp", "the offset exceeds the radius of curvature")
+            Err(CallError::new("cusp", "the offset exceeds the radius of curvature")
                 .expected(format!("a distance less than {} on that side", digits(radius)))
                 .found(format!(
                     "{} where (u, v) = ({}, {})",

@@ -1,15 +1,17 @@
+//! Surfaces side by side as one.
+
 use crate::arguments::Named;
 use crate::snake::edge_trace;
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
 use moldloft_num::{Order, Real, SurfJet, Surface};
-use moldloft_registry::{Build, Context, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, SurfaceRef, Value};
 use smallvec::SmallVec;
 
 /// Surfaces side by side as one: piece k of N is run from u = (k - 1) / N to k / N (from v, with
 /// `along` = "v"), or between the breaks given.
 ///
 /// Each piece begins where the one before ends: edge u = 1 of the one is edge u = 0 of the other,
-/// point by point at equal v, within the model's tolerance. A piece is never turned round. Meshes join
+/// point by point at equal v, within the model's tolerance. A piece is never reversed. Meshes join
 /// along the pieces' own edges.
 #[derive(Kind)]
 #[kind(
@@ -33,10 +35,10 @@ pub struct PolySurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for PolySurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surfaces, along, breaks } = self;
         if surfaces.is_empty() {
-            return Err(Fault::new("too-few-items", "a join needs at least 1 surface")
+            return Err(CallError::new("too-few-items", "a join needs at least 1 surface")
                 .expected("at least 1 surface")
                 .found("0")
                 .in_field(Self::SURFACES));
@@ -72,7 +74,7 @@ impl<T: Real> Sides<T> {
         self.surfaces[k].jet(T::from(u), T::from(v), Order::Zero).p.re()
     }
 
-    fn check_seam(&self, k: usize, tolerance: f64) -> Result<(), Fault> {
+    fn check_seam(&self, k: usize, tolerance: f64) -> Result<(), CallError> {
         // The widest gap between an end of one piece and an end of the next, and where.
         let gap = |from: f64, to: f64, turned: bool| {
             let mut widest = (0.0f64, 0.0);
@@ -93,7 +95,7 @@ impl<T: Real> Sides<T> {
         }
         let [along, across] = if self.by_u { ["u", "v"] } else { ["v", "u"] };
         let text = format!("piece {} does not begin where piece {k} ends", k + 1);
-        let fault = Fault::new("gap", text)
+        let fault = CallError::new("gap", text)
             .expected(format!(
                 "edge {along} = 1 of piece {k} to be edge {along} = 0 of piece {}",
                 k + 1
@@ -105,9 +107,9 @@ impl<T: Real> Sides<T> {
             .in_field(PolySurf::<T>::SURFACES);
         let meets = |from: f64, to: f64, turned: bool| gap(from, to, turned).0 <= tolerance;
         Err(if meets(1.0, 0.0, true) {
-            fault.help(format!("they meet when {across} of piece {} runs the other way", k + 1))
+            fault.help(format!("they meet when {across} of piece {} is reversed", k + 1))
         } else if meets(1.0, 1.0, false) || meets(1.0, 1.0, true) {
-            fault.help(format!("piece {} ends there: let its {along} run the other way", k + 1))
+            fault.help(format!("piece {} ends there: reverse its {along}", k + 1))
         } else {
             fault.help("make the pieces from a common curve")
         })

@@ -1,7 +1,9 @@
+//! Surfaces of revolution.
+
 use super::masters::{along, is_closed};
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Axis, Jet, Order, Real, SurfaceFormula, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A curve turned about a line: S(u, v) is C(u) turned by a1 + v (a2 - a1), right-handed about the
@@ -30,7 +32,7 @@ pub struct RevSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for RevSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { curve, line, a1, a2 } = self;
         let sweep = a2 - a1;
         // Degrees come through a product, so a full turn is one to rounding.

@@ -1,7 +1,7 @@
 //! The tangent planes of a surface along a snake on it.
 
 use crate::arguments::Snake;
-use crate::lifted::{bends, tangent, tangents};
+use crate::third_derivatives::{bends, tangent, tangents};
 use moldloft_num::{Jet, Order, Real, Vec3, lift_curve};
 
 /// A point of a snake with the tangent plane of its surface.

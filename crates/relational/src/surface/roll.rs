@@ -1,16 +1,22 @@
+//! Rolling-ball fillets between two surfaces: a spine, and arcs about it.
+
 use super::column::{Column, Columns};
 use super::law::law;
 use super::offset::{beside, curvatures, parallel};
-use crate::lifted::tangent;
 use crate::seam;
 use crate::search::{IntSnake, Onto};
 use crate::snake::OnSurface;
+use crate::third_derivatives::tangent;
 use moldloft_locate::implicit::{Implicit, jets, solve};
 use moldloft_locate::{PlainSurface, nearest_on_surface};
 use moldloft_num::trace::{Edge, Edges, Trace};
-use moldloft_num::{Bi1, CurveFormula, Jet, Order, Real, Surface, SurfaceFormula, Vec3, lift_law};
+use moldloft_num::{
+    Bi1, CurveFormula, Jet, Order, Real, Surface, SurfaceFormula, Vec3, lift_reparametrization,
+};
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Scalar, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, Kind, Point, Scalar, SurfaceRef, Value,
+};
 use moldloft_spline::{Arc, BSplineCurve};
 use std::sync;
 
@@ -45,7 +51,7 @@ pub struct RollFillet<T: Real> {
     /// The radius of the ball.
     #[field(min = 0)]
     radius: T,
-    /// Where the ball lies: 1 on the side of the natural normal of the first surface, -1 on the other.
+    /// Side of the ball: 1 on the side of the natural normal of the first surface, -1 on the other.
     #[field(default = 1, min = -1, max = 1)]
     side1: i32,
     /// The same for the second surface.
@@ -63,11 +69,11 @@ const STATIONS: usize = 48;
 const BEYOND: f64 = 0.05;
 
 impl<T: Scalar> Build<T> for RollFillet<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface1, surface2, radius, side1, side2, radii } = self;
         for (field, side) in [(Self::SIDE1, side1), (Self::SIDE2, side2)] {
             if side == 0 {
-                return Err(Fault::new("out-of-range", "a ball lies on one side or on the other")
+                return Err(CallError::new("out-of-range", "a ball is on one side or the other")
                     .expected("1 or -1")
                     .found("0")
                     .in_field(field));
@@ -79,7 +85,7 @@ impl<T: Scalar> Build<T> for RollFillet<T> {
             _ => (least <= 0.0).then_some((least, Self::RADII)),
         };
         if let Some((found, field)) = too_small {
-            return Err(Fault::new("out-of-range", format!("a ball of radius {found}"))
+            return Err(CallError::new("out-of-range", format!("a ball of radius {found}"))
                 .expected("a radius greater than 0")
                 .found(found.to_string())
                 .in_field(field));
@@ -114,7 +120,7 @@ fn spine<T: Scalar>(
     onto: [&Onto<T>; 2],
     distances: [T; 2],
     context: &Context,
-) -> Result<CurveRef<T>, Fault> {
+) -> Result<CurveRef<T>, CallError> {
     let row = <IntSnake<f64> as StaticRow>::row();
     let mut args = vec![Value::Unset; row.fields.len()];
     for (k, name) in ["surface", "target"].into_iter().enumerate() {
@@ -131,7 +137,7 @@ fn spine<T: Scalar>(
         let found = fault.found.clone().unwrap_or_else(|| fault.message.clone());
         if fault.id == "tangent-contact" {
             // Offsets that are folded touch one another where they turn.
-            return Fault::new("fillet-turns-back", "the way of the ball's centre turns back")
+            return CallError::new("fillet-turns-back", "the path of the ball's centre reverses")
                 .expected("a radius less than the radius of curvature of both surfaces where it rolls")
                 .found(format!("{radius}, and {found}"))
                 .help("choose a smaller radius, or give magnets where the ball is meant to roll")
@@ -139,7 +145,7 @@ fn spine<T: Scalar>(
                 .related(onto[1].surface.key, "is the second surface")
                 .in_field(RollFillet::<T>::RADIUS);
         }
-        Fault::new("no-ball", message)
+        CallError::new("no-ball", message)
             .expected("surfaces that a ball of that radius touches both, on the sides that are meant")
             .found(found)
             .help("choose the sides (side1, side2), give magnets near the places of contact, or another radius")
@@ -149,7 +155,7 @@ fn spine<T: Scalar>(
     })?;
     match met {
         Value::Curve(curve) => Ok(curve),
-        other => Err(Fault::wrong_class(moldloft_registry::Class::Curve, other.class())),
+        other => Err(CallError::wrong_class(moldloft_registry::Class::Curve, other.class())),
     }
 }
 
@@ -301,7 +307,7 @@ impl<T: Real> Rolled<T> {
         Some(q)
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self) -> Result<(), CallError> {
         let outside = |k: usize, q: f64| {
             !self.ball.round[k / 2][k % 2] && !(-BEYOND..=1.0 + BEYOND).contains(&q)
         };
@@ -311,7 +317,7 @@ impl<T: Real> Rolled<T> {
             let varies = self.ball.radii.is_some();
             let field = if varies { RollFillet::<T>::RADII } else { RollFillet::<T>::RADIUS };
             let Some(q) = self.contact(t) else {
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "no-ball",
                     format!("no ball touches both surfaces at u = {t}"),
                 )
@@ -324,7 +330,7 @@ impl<T: Real> Rolled<T> {
                 && let Some(k) = (0..4).find(|&k| outside(k, q[k]))
             {
                 let which = k / 2;
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "no-ball",
                     format!("the ball leaves surface {} at u = {t}", which + 1),
                 )
@@ -342,7 +348,7 @@ impl<T: Real> Rolled<T> {
                 let least = bends.into_iter().flatten().map(share).fold(f64::INFINITY, f64::min);
                 if least <= 0.0 {
                     let most = radius / (1.0 - least);
-                    return Err(Fault::new(
+                    return Err(CallError::new(
                         "fillet-turns-back",
                         format!("the fillet turns back at u = {t}"),
                     )
@@ -377,7 +383,7 @@ impl<T: Real> Rolled<T> {
     fn places<J: Jet<T>>(&self, u: J) -> Option<[[J; 2]; 2]> {
         let plain = self.contact(u.re())?;
         let jet = jets(&self.ball, plain, u.value(), J::ORDER)?;
-        let [a, b, c, d] = std::array::from_fn(|k| lift_law(&jet.map(|q| q[k]), u));
+        let [a, b, c, d] = std::array::from_fn(|k| lift_reparametrization(&jet.map(|q| q[k]), u));
         let round = self.ball.round;
         Some([seam::wrapped(round[0], [a, b]), seam::wrapped(round[1], [c, d])])
     }

@@ -1,7 +1,9 @@
+//! Ruled surfaces between two curves.
+
 use super::linear::Blend;
 use super::masters::Masters;
 use moldloft_num::Real;
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use moldloft_spline::KnotVector;
 
 /// Straight rulings between two curves: S(u, v) = (1 - v) C1(u) + v C2(u).
@@ -20,7 +22,7 @@ pub struct RuledSurf<T: Real> {
 }
 
 impl<T: Real> Build<T> for RuledSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let masters = Masters::new(vec![self.c1, self.c2], Self::C1)?;
         let knots = KnotVector::clamped_uniform(1, 2).expect("two knots at each end");
         Ok(Value::Surface(SurfaceRef::new(Blend { masters, knots }, context.nesting)))

@@ -2,7 +2,7 @@
 
 use super::develop::Phase;
 use moldloft_num::{Order, Real, Vec3, find_root};
-use moldloft_registry::{CurveRef, Fault};
+use moldloft_registry::{CallError, CurveRef};
 
 /// Steps of each curve's parameter in which pairs are searched for.
 const STEPS: usize = 128;
@@ -65,7 +65,7 @@ struct Search<'c, T: Real> {
 ///
 /// # Errors
 /// `no-rulings` and `rulings-cross`.
-pub fn pair<T: Real>(curves: [&CurveRef<T>; 2]) -> Result<Pairing, Fault> {
+pub fn pair<T: Real>(curves: [&CurveRef<T>; 2]) -> Result<Pairing, CallError> {
     let places = curves.map(|curve| {
         let at = |k: usize| {
             let [p, d, _] = curve.jet(T::from(k as f64 / STEPS as f64), Order::First);
@@ -170,11 +170,11 @@ impl<T: Real> Search<'_, T> {
     }
 
     /// The fault of a way that leads no further than a level (0: of fans only).
-    fn broken(&self, level: usize, crossed: Option<[f64; 2]>) -> Fault {
+    fn broken(&self, level: usize, crossed: Option<[f64; 2]>) -> CallError {
         let [a, b] = self.curves;
         let fault = match crossed {
-            Some([s, t]) => Fault::new("rulings-cross", "the rulings cross between the curves")
-                .expected("curves between which a plate passes without folding back")
+            Some([s, t]) => CallError::new("rulings-cross", "the rulings cross between the curves")
+                .expected("curves that a plate can connect without folding back")
                 .found(format!(
                     "a ruling from s = {s:.4} to t = {t:.4} past the edge of regression"
                 ))
@@ -185,7 +185,7 @@ impl<T: Real> Search<'_, T> {
                 } else {
                     format!("none that go on from u = {:.4}", (level as f64 - 1.0) * RISE)
                 };
-                Fault::new("no-rulings", "there are no rulings of a developable surface")
+                CallError::new("no-rulings", "no rulings of a developable surface")
                     .expected("places of both curves with a common tangent plane")
                     .found(at)
                     .help(

@@ -1,3 +1,5 @@
+//! Parts of surfaces between snakes and magnets.
+
 use super::corners;
 use super::masters::along;
 use crate::arguments::{Side, Snake, common_surface};
@@ -6,7 +8,7 @@ use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{
     Bi1, Jet, Order, Real, SurfJet, Surface, Vec3, lift_curve, line_crossings, surface_jet_of,
 };
-use moldloft_registry::{Build, Context, Fault, FieldId, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, FieldId, Kind, SurfaceRef, Value};
 
 /// The part of a surface between snakes and magnets on it: S(u, v) = P(w(u, v)), with P the surface
 /// and w a patch of its parameter plane.
@@ -41,10 +43,10 @@ pub struct SubSurf<T: Real> {
 const MEETING: f64 = 1e-6;
 
 impl<T: Real> Build<T> for SubSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let sides = self.sides;
         if !(2..=4).contains(&sides.len()) {
-            return Err(Fault::new("wrong-length", "a sub-surface has 2, 3 or 4 sides")
+            return Err(CallError::new("wrong-length", "a sub-surface has 2, 3 or 4 sides")
                 .expected("2, 3 or 4 snakes and magnets")
                 .found(sides.len().to_string())
                 .in_field(Self::SIDES));
@@ -56,7 +58,7 @@ impl<T: Real> Build<T> for SubSurf<T> {
         let items: Vec<_> = sides.iter().map(|side| (keys(side), side.surface())).collect();
         let surface = common_surface(&items, |fault, k| fault.in_item(k).in_field(Self::SIDES))?;
         if sides.iter().all(|side| matches!(side, Side::Magnet(_))) {
-            return Err(Fault::new("no-area", "a sub-surface needs a side with length")
+            return Err(CallError::new("no-area", "a sub-surface needs a side with length")
                 .expected("at least one snake")
                 .found("magnets only")
                 .in_field(Self::SIDES));
@@ -108,7 +110,7 @@ fn end<T: Real>(side: &Side<T>, t: f64) -> Vec3<T> {
     place(side, T::from(t))
 }
 
-fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), Fault> {
+fn check_corners<T: Real>(sides: &[Side<T>], field: FieldId) -> Result<(), CallError> {
     let ends: Vec<[Vec3<f64>; 2]> =
         sides.iter().map(|side| [0.0, 1.0].map(|t| end(side, t).re())).collect();
     let apart = |p: Vec3<f64>, q: Vec3<f64>| (p.x - q.x).abs().max((p.y - q.y).abs());
@@ -199,7 +201,7 @@ impl<T: Real> Patch<T> {
     }
 
     /// Refuses a patch whose parameter plane is folded: det(w_u, w_v) must not change its sign.
-    fn check_folds(&self) -> Result<(), Fault> {
+    fn check_folds(&self) -> Result<(), CallError> {
         let mut all = Vec::with_capacity((TRIALS + 1) * (TRIALS + 1));
         let at = |k: usize| T::from(k as f64 / TRIALS as f64);
         let sides: Vec<_> = (0..=TRIALS)
@@ -220,7 +222,7 @@ impl<T: Real> Patch<T> {
         else {
             return Ok(());
         };
-        // Turned against the run of the surface is no fold: then all signs are negative.
+        // Turned against the run of the surface is not a fold: then all signs are negative.
         let sum: f64 = all.iter().map(|x| x.0).sum();
         let (worst, best) = if sum < 0.0 { (high, -low.0) } else { (low, high.0) };
         let against = if sum < 0.0 { -worst.0 } else { worst.0 };
@@ -229,13 +231,13 @@ impl<T: Real> Patch<T> {
         }
         let (u, v) = (worst.1, worst.2);
         let at = self.inside(T::from(u), T::from(v)).re();
-        Err(Fault::new("folded-patch", format!("the sub-surface is folded at u = {u}, v = {v}"))
-            .expected("sides that run round an area without crossing each other")
+        Err(CallError::new("folded-patch", format!("the sub-surface is folded at u = {u}, v = {v}"))
+            .expected("sides that bound an area without crossing each other")
             .found(format!(
                 "a Jacobian of {against:.3e} there, at (u, v) = ({}, {}) of the surface, and up to {best:.3e} elsewhere",
                 at.x, at.y
             ))
-            .help("let opposite sides run the same way, and none cross another")
+            .help("run opposite sides in the same direction, without crossings")
             .in_field(SubSurf::<T>::SIDES))
     }
 }

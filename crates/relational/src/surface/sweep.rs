@@ -1,10 +1,12 @@
+//! Curves swept along paths by a moving frame.
+
 use super::law::law;
 use super::masters::{along, is_closed};
-use crate::lifted::tangent;
+use crate::third_derivatives::tangent;
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Order, Real, SurfJet, Surface, Uni1, Uni2, Vec3, surface_jet_of};
 use moldloft_registry::{
-    Build, Context, CurveRef, Fault, FieldId, Kind, Scalar, SurfaceRef, Value,
+    Build, CallError, Context, CurveRef, FieldId, Kind, Scalar, SurfaceRef, Value,
 };
 use moldloft_spline::{BSplineCurve, KnotVector};
 
@@ -33,7 +35,7 @@ pub struct SweepSurf<T: Real> {
     profile: CurveRef<T>,
     /// The curve along which it is carried.
     path: CurveRef<T>,
-    /// How the frame moves: "minimal", "up" or "fixed".
+    /// Motion of the frame: "minimal", "up" or "fixed".
     #[field(default = "minimal")]
     frame: std::sync::Arc<str>,
     /// The direction that stays upright with frame = "up"; z if not given.
@@ -46,7 +48,7 @@ pub struct SweepSurf<T: Real> {
 }
 
 impl<T: Scalar> Build<T> for SweepSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { profile, path, frame, up, twist, scale } = self;
         let mode = Mode::of(&frame, up, [Self::FRAME, Self::UP])?;
         let moving = Moving::new(path, mode, Self::PATH)?;
@@ -76,17 +78,17 @@ impl<T: Real> Mode<T> {
     ///
     /// # Errors
     /// `unknown-frame` and `unused-argument`.
-    pub fn of(frame: &str, up: Option<Vec3<T>>, fields: [FieldId; 2]) -> Result<Self, Fault> {
+    pub fn of(frame: &str, up: Option<Vec3<T>>, fields: [FieldId; 2]) -> Result<Self, CallError> {
         match frame {
             "minimal" if up.is_none() => Ok(Mode::Minimal),
             "fixed" if up.is_none() => Ok(Mode::Fixed),
             "minimal" | "fixed" => {
-                Err(Fault::new("unused-argument", "`up` is for frame = \"up\" only")
+                Err(CallError::new("unused-argument", "`up` is for frame = \"up\" only")
                     .help("add frame = \"up\", or leave `up` out")
                     .in_field(fields[1]))
             }
             "up" => Ok(Mode::Up(up.unwrap_or(Vec3::of(0.0, 0.0, 1.0)))),
-            other => Err(Fault::new("unknown-frame", format!("there is no frame \"{other}\""))
+            other => Err(CallError::new("unknown-frame", format!("unknown frame \"{other}\""))
                 .expected("\"minimal\", \"up\" or \"fixed\"")
                 .found(format!("\"{other}\""))
                 .in_field(fields[0])),
@@ -114,7 +116,7 @@ const CORNER: f64 = 1e-4;
 impl<T: Real> Moving<T> {
     /// # Errors
     /// `zero-tangent`, `corner-in-path` and `no-frame`, in field `field`.
-    pub fn new(path: CurveRef<T>, mode: Mode<T>, field: FieldId) -> Result<Self, Fault> {
+    pub fn new(path: CurveRef<T>, mode: Mode<T>, field: FieldId) -> Result<Self, CallError> {
         let zero = Vec3::zero();
         let mut moving = Self { path, mode, nodes: Vec::new(), first: [zero; 3] };
         moving.check().map_err(|fault| fault.in_field(field))?;
@@ -130,14 +132,14 @@ impl<T: Real> Moving<T> {
         Ok(moving)
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self) -> Result<(), CallError> {
         let unit = |v: f64| {
             let d = self.path.jet(T::from(v), Order::First)[1].re();
             d.normalized().filter(|t| t.is_finite()).ok_or_else(|| {
-                Fault::new("zero-tangent", format!("the path has no tangent at v = {v}"))
-                    .expected("a path that moves on everywhere")
+                CallError::new("zero-tangent", format!("the path has no tangent at v = {v}"))
+                    .expected("a path with a non-zero tangent everywhere")
                     .found("a derivative of zero")
-                    .help("move points of the path that coincide apart")
+                    .help("separate the coincident points of the path")
             })
         };
         for k in 0..=32 {
@@ -147,7 +149,7 @@ impl<T: Real> Moving<T> {
                 && up.re().cross(t).norm() <= 1e-6 * up.re().norm()
             {
                 let message = format!("the path runs along the upright direction at v = {v}");
-                return Err(Fault::new("no-frame", message)
+                return Err(CallError::new("no-frame", message)
                     .expected("a tangent that is not parallel to `up`")
                     .found(format!("the tangent ({}, {}, {})", t.x, t.y, t.z))
                     .help("take another `up`, or frame = \"minimal\""));
@@ -158,7 +160,7 @@ impl<T: Real> Moving<T> {
             let (before, after) = (unit(v - 1e-7)?, unit(v + 1e-7)?);
             if before.distance(after) > CORNER {
                 let angle = before.dot(after).clamp(-1.0, 1.0).acos().to_degrees();
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "corner-in-path",
                     format!("the path has a corner at v = {v}"),
                 )

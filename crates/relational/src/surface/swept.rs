@@ -1,10 +1,14 @@
+//! The surface that a curve describes while the bead it depends on runs along its curve.
+
 use super::column::{Column, Columns};
 use crate::arguments::Bead;
 use crate::chebyshev::{NODES, Piece, Way, nodes};
 use crate::curve::swept::{ACCURACY, halved, no_locus, stretches};
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Order, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, MovingCurve, SurfaceRef, Value};
+use moldloft_registry::{
+    Build, CallError, Context, CurveRef, Kind, MovingCurve, SurfaceRef, Value,
+};
 
 /// The surface that a curve describes when a bead that it depends on sweeps its curve: S(u, v) is the
 /// place u of `curve` with `bead` at the parameter t1 + v (t2 - t1).
@@ -27,10 +31,10 @@ pub struct ProcSurf<T: Real> {
     bead: Bead<T>,
     /// The curve that follows.
     curve: MovingCurve<T>,
-    /// Where the bead begins.
+    /// Start of the bead.
     #[field(default = 0)]
     t1: T,
-    /// Where it ends.
+    /// End.
     #[field(default = 1)]
     t2: T,
 }
@@ -39,7 +43,7 @@ pub struct ProcSurf<T: Real> {
 const PROBES: [f64; 6] = [0.0, 0.17, 0.39, 0.61, 0.83, 1.0];
 
 impl<T: Real> Build<T> for ProcSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { bead, curve, t1, t2 } = self;
         let at = |t: f64| {
             let place = t1 * (1.0 - t) + t2 * t;

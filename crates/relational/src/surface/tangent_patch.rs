@@ -1,9 +1,11 @@
+//! Patches between four curves that are tangent to the surfaces of their neighbours.
+
 use super::coons::Boundary;
 use super::ribbon::{Along, ribbon, unit};
 use crate::arguments::Snake;
 use moldloft_num::trace::Edges;
 use moldloft_num::{Jet, Real, SurfaceFormula, Uni1, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 
 /// A patch between four curves, its edges v = 0, u = 1, v = 1 and u = 0, each in increasing parameter,
 /// that is tangent to the surfaces of those that are snakes, unless they are listed as `free`.
@@ -41,11 +43,11 @@ const IN_PLANE: f64 = 1e-6;
 const TRIALS: usize = 16;
 
 impl<T: Real> Build<T> for TanBoundary<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { sides, free } = self;
         let free = free.unwrap_or_default();
         if let Some(k) = free.iter().position(|side| !(1..=sides.len()).contains(side)) {
-            return Err(Fault::new("out-of-range", format!("there is no side {}", free[k]))
+            return Err(CallError::new("out-of-range", format!("no side {}", free[k]))
                 .expected(format!("a number from 1 to {}", sides.len()))
                 .found(free[k].to_string())
                 .in_item(k)
@@ -93,7 +95,7 @@ const NEIGHBOURS: [([usize; 2], bool); 4] =
     [([3, 1], true), ([0, 2], false), ([3, 1], false), ([0, 2], true)];
 
 impl<T: Real> Patch<T> {
-    fn new(boundary: Boundary<T>, snakes: Vec<Option<Snake<T>>>) -> Result<Self, Fault> {
+    fn new(boundary: Boundary<T>, snakes: Vec<Option<Snake<T>>>) -> Result<Self, CallError> {
         let zero = Vec3::zero();
         let free = || Across::Free;
         let leaving = [0, 1, 2, 3].map(|k| {
@@ -120,18 +122,18 @@ impl<T: Real> Patch<T> {
     }
 
     /// The components of both neighbours' slopes where they leave edge `k`.
-    fn components(&self, k: usize, snake: &Snake<T>) -> Result<[[T; 2]; 2], Fault> {
+    fn components(&self, k: usize, snake: &Snake<T>) -> Result<[[T; 2]; 2], CallError> {
         for i in 0..=TRIALS {
             let t = i as f64 / TRIALS as f64;
             let at = ribbon(snake, T::from(t));
             let still = at.along.re().norm() == 0.0;
             if still || at.normal.re().norm() == 0.0 {
                 let what = if still {
-                    "the snake stands still"
+                    "zero tangent of the snake"
                 } else {
                     "its surface has no tangent plane"
                 };
-                return Err(Fault::new(
+                return Err(CallError::new(
                     "no-tangent",
                     format!("{what} at t = {t} of side {}", k + 1),
                 )
@@ -158,7 +160,7 @@ impl<T: Real> Patch<T> {
                     k + 1
                 );
                 let key = self.boundary.curves.get(other).and_then(|c| c.key);
-                return Err(Fault::new("not-tangent", message)
+                return Err(CallError::new("not-tangent", message)
                     .expected("a side that leaves in the tangent plane there")
                     .found(format!("an angle of {angle:.3} degrees with it"))
                     .help(format!("begin side {} with a tangent to the surface (TanPoint), make it a snake of the same surface, or list side {} as free", other + 1, k + 1))

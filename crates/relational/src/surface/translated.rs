@@ -1,3 +1,5 @@
+//! Curves moved along others without turning.
+
 use super::masters::{along, is_closed};
 use moldloft_num::trace::{Edge, Edges};
 use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};

@@ -1,10 +1,13 @@
+//! Parts of surfaces within loops of snakes, as triangles whose borders divide as their neighbours do.
+
 use crate::arguments::{Snake, common_surface};
 use crate::curve::Segment;
 use crate::snake::{OnSurface, edge_trace};
 use moldloft_mesh::planar_triangles;
 use moldloft_num::{Order, Real, Vec3};
 use moldloft_registry::{
-    Border, Build, Context, CurveRef, Facets, Fault, Hem, Hemmed, Kind, SurfaceRef, Value,
+    Border, BorderCurve, Build, CallError, Context, CurveRef, Kind, SurfaceRef, TriangleBody,
+    TriangulatedBorder, Value,
 };
 use std::sync::Arc;
 
@@ -12,14 +15,14 @@ use std::sync::Arc;
 ///
 /// Snakes that follow one another make a loop; one may run backwards, and a closed snake is a loop by
 /// itself. The first loop is the outer one and the others are holes in it; with `whole = 1` the outer
-/// one is the boundary of the surface and all loops are holes. Inside stand the points of the surface's
+/// one is the boundary of the surface and all loops are holes. The interior contains points of the surface's
 /// own nu x nv divisions that are not too near the border; the triangles between are Delaunay's (in
-/// parameters scaled to lengths). All vertices lie on the surface.
+/// parameters scaled to lengths). All vertices are on the surface.
 ///
 /// Along its snakes, and with `whole = 1` along the surface's edges, it joins its neighbours: patches,
 /// fillets and other trimmed surfaces whose edges run along the same snakes have its vertices there,
 /// by identity. Divisions flow over such edges from the one to the other; `rim` states those of each
-/// snake, and a contradiction is told.
+/// snake, and a contradiction is reported.
 ///
 /// Where a sub-surface serves (`SubSurf`: two, three or four sides), prefer it: it has a net of panels.
 #[derive(Kind)]
@@ -46,7 +49,7 @@ pub struct TrimSurf<T: Real> {
     /// Divisions of each snake. Not given: as its neighbours have them, or 12.
     #[field(min = 1, max = 10_000)]
     rim: Option<usize>,
-    /// Divisions of the surface along u, whose points stand inside.
+    /// Divisions along u of the surface's grid inside the border.
     #[field(default = 12, min = 1, max = 1000)]
     nu: usize,
     /// Divisions of the surface along v.
@@ -61,7 +64,7 @@ const MEETING: f64 = 1e-6;
 const MARGIN: f64 = 0.35;
 
 impl<T: Real> Build<T> for TrimSurf<T> {
-    fn build(self, context: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, context: &Context) -> Result<Value<T>, CallError> {
         let Self { surface, loops, whole, rim, nu, nv } = self;
         let mut items = vec![(surface.key, &surface)];
         items.extend(loops.iter().map(|s| (s.curve.key, &s.surface)));
@@ -73,7 +76,7 @@ impl<T: Real> Build<T> for TrimSurf<T> {
         if whole == 1 {
             let hem = |k: usize, n: usize| {
                 let snake = edge(&surface, k, context.nesting);
-                Hem { curve: snake, stated: None, usual: n as u32 }
+                BorderCurve { curve: snake, stated: None, usual: n as u32 }
             };
             hems.extend([hem(0, nu), hem(1, nv), hem(2, nu), hem(3, nv)]);
             cycles.push(vec![(0, false), (1, false), (2, true), (3, true)]);
@@ -82,20 +85,20 @@ impl<T: Real> Build<T> for TrimSurf<T> {
         for cycle in chained(&loops)? {
             cycles.push(cycle.into_iter().map(|(k, back)| (k + before, back)).collect());
         }
-        let usual = rim.unwrap_or(USUAL) as u32;
+        let usual = rim.unwrap_or(DEFAULT_DIVISIONS) as u32;
         let stated = rim.map(|n| n as u32);
-        hems.extend(loops.into_iter().map(|s| Hem { curve: s.curve, stated, usual }));
+        hems.extend(loops.into_iter().map(|s| BorderCurve { curve: s.curve, stated, usual }));
         let trimmed = Trimmed { scale: scale(&surface), surface, hems, cycles, inside: [nu, nv] };
         let even = |n: u32| (0..=n).map(|k| T::from(f64::from(k) / f64::from(n))).collect();
         let at: Vec<Vec<T>> = trimmed.hems.iter().map(|hem| even(hem.usual)).collect();
         let (mut facets, _) = trimmed.facets(&at)?;
         facets.border = Some(Border(Arc::new(trimmed)));
-        Ok(Value::Mesh(Arc::new(facets)))
+        Ok(Value::Body(Arc::new(facets)))
     }
 }
 
 /// Divisions of a snake when nothing else determines them.
-const USUAL: usize = 12;
+const DEFAULT_DIVISIONS: usize = 12;
 
 /// Edge `k` of a surface as a snake without a name.
 fn edge<T: Real>(surface: &SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef<T> {
@@ -114,7 +117,7 @@ fn edge<T: Real>(surface: &SurfaceRef<T>, k: usize, nesting: u32) -> CurveRef<T>
 /// A surface and what is kept of it.
 struct Trimmed<T: Real> {
     surface: SurfaceRef<T>,
-    hems: Vec<Hem<T>>,
+    hems: Vec<BorderCurve<T>>,
     /// The hems of each loop in order, and whether each runs against it.
     cycles: Vec<Vec<(usize, bool)>>,
     scale: [f64; 2],
@@ -122,19 +125,19 @@ struct Trimmed<T: Real> {
     inside: [usize; 2],
 }
 
-impl<T: Real> Hemmed<T> for Trimmed<T> {
-    fn hems(&self) -> &[Hem<T>] {
+impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
+    fn curves(&self) -> &[BorderCurve<T>] {
         &self.hems
     }
 
-    fn divided(&self, at: &[Vec<T>]) -> Option<(Facets<T>, Vec<Vec<u32>>)> {
+    fn divided(&self, at: &[Vec<T>]) -> Option<(TriangleBody<T>, Vec<Vec<u32>>)> {
         self.facets(at).ok()
     }
 }
 
 impl<T: Real> Trimmed<T> {
     /// The triangles with vertices at these parameters of the hems, and which these vertices are.
-    fn facets(&self, at: &[Vec<T>]) -> Result<(Facets<T>, Vec<Vec<u32>>), Fault> {
+    fn facets(&self, at: &[Vec<T>]) -> Result<(TriangleBody<T>, Vec<Vec<u32>>), CallError> {
         let mut rims: Vec<Vec<u32>> = at.iter().map(|ts| vec![0; ts.len()]).collect();
         let mut first = 0;
         let mut cycles = Vec::with_capacity(self.cycles.len());
@@ -142,7 +145,7 @@ impl<T: Real> Trimmed<T> {
             let mut places: Vec<Place<T>> = Vec::new();
             let total: usize = cycle.iter().map(|&(hem, _)| at[hem].len() - 1).sum();
             if total < 3 {
-                return Err(Fault::new("gap", "a loop needs an area")
+                return Err(CallError::new("gap", "a loop needs an area")
                     .expected("three vertices or more")
                     .found(total.to_string())
                     .help("give the snakes more divisions")
@@ -198,7 +201,7 @@ fn scale<T: Real>(surface: &SurfaceRef<T>) -> [f64; 2] {
 }
 
 /// The snakes of each loop in order, and whether each runs against it.
-fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Fault> {
+fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, CallError> {
     let place = |s: &Snake<T>, t: f64| {
         let [w, ..] = s.path(T::from(t), Order::Zero);
         [w.x, w.y]
@@ -208,7 +211,7 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Faul
     };
     let gap = |k: usize, text: String, a: Place<T>, b: Place<T>| {
         let says = |p: Place<T>| format!("(u, v) = ({}, {})", p[0].re(), p[1].re());
-        Err(Fault::new("gap", text)
+        Err(CallError::new("gap", text)
             .expected("snakes that follow one another until they close")
             .found(format!("{} and {}", says(a), says(b)))
             .help("let neighbouring snakes begin and end in common magnets")
@@ -225,7 +228,7 @@ fn chained<T: Real>(snakes: &[Snake<T>]) -> Result<Vec<Vec<(usize, bool)>>, Faul
             Some((_, _, at)) if meet(*at, from) => false,
             Some((_, _, at)) if meet(*at, to) => true,
             Some((_, _, at)) => {
-                let text = format!("snake {} does not go on where snake {k} ends", k + 1);
+                let text = format!("snake {} does not start where snake {k} ends", k + 1);
                 return gap(k, text, *at, from);
             }
             // The first of a loop runs so that it ends where the next one goes on.
@@ -304,7 +307,10 @@ fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
 
 impl<T: Real> Region<T> {
     /// The region within loops, and which of them were turned round for it.
-    fn new(mut cycles: Vec<Vec<Place<T>>>, scale: [f64; 2]) -> Result<(Self, Vec<bool>), Fault> {
+    fn new(
+        mut cycles: Vec<Vec<Place<T>>>,
+        scale: [f64; 2],
+    ) -> Result<(Self, Vec<bool>), CallError> {
         let mut reversed = Vec::with_capacity(cycles.len());
         let flat_of = |cycle: &[Place<T>]| -> Vec<[f64; 2]> {
             cycle.iter().map(|p| flat(p, scale)).collect()
@@ -319,7 +325,7 @@ impl<T: Real> Region<T> {
         }
         let polygons: Vec<Vec<[f64; 2]>> = cycles.iter().map(|c| flat_of(c)).collect();
         let fault = |message: String, found: String| {
-            Err(Fault::new("crossed-loops", message)
+            Err(CallError::new("crossed-loops", message)
                 .expected("loops that neither cross themselves nor others, all inside the first")
                 .found(found)
                 .help(
@@ -352,7 +358,7 @@ impl<T: Real> Region<T> {
         Ok((Self { cycles, scale }, reversed))
     }
 
-    fn facets(&self, surface: &SurfaceRef<T>, [nu, nv]: [usize; 2]) -> Facets<T> {
+    fn facets(&self, surface: &SurfaceRef<T>, [nu, nv]: [usize; 2]) -> TriangleBody<T> {
         let mut places: Vec<Place<T>> = Vec::new();
         let mut loops: Vec<Vec<usize>> = Vec::new();
         for cycle in &self.cycles {
@@ -384,7 +390,7 @@ impl<T: Real> Region<T> {
         let xyz: Vec<Vec3<T>> =
             places.iter().map(|&[u, v]| surface.jet(u, v, Order::Zero).p).collect();
         let triangles = triangles.into_iter().map(|t| t.map(|k| k as u32)).collect();
-        let mut facets = Facets::new(xyz, triangles);
+        let mut facets = TriangleBody::new(xyz, triangles);
         // It is a sheet: its middle is that of its area, its volume that of the cone from the origin.
         let (mut moment, mut size) = (Vec3::zero(), T::zero());
         let mut volume = T::zero();

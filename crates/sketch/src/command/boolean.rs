@@ -54,7 +54,7 @@ impl Session {
         }
         if parts[0].0.name.eq_ignore_ascii_case(&parts[1].0.name) {
             return Err(CommandError::text(
-                format!("{verb} wants two objects, not {} twice", parts[0].0.name),
+                format!("{verb} needs two different objects, not {} twice", parts[0].0.name),
                 "COPY makes another",
             ));
         }
@@ -96,7 +96,7 @@ impl Session {
         if fit.faces.is_empty() {
             return Err(CommandError::new(
                 701,
-                format!("{verb} of {} and {} leaves nothing", parts[0].0.name, parts[1].0.name),
+                format!("{verb} of {} and {} is empty", parts[0].0.name, parts[1].0.name),
                 "MOVE one of them, or CHECK the dimensions",
             ));
         }

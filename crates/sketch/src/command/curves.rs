@@ -63,7 +63,7 @@ impl Session {
                     let text = format!("{} lines meet at point {m}", ends.len());
                     return Err(CommandError::text(
                         text,
-                        format!("name their ends: CORNER {m} a b"),
+                        format!("give the end points: CORNER {m} a b"),
                     ));
                 };
                 vec![a, m, b]
@@ -248,7 +248,7 @@ fn curve_fault(name: &str, fault: &CurveFault) -> CommandError {
         ),
         CurveFault::TooLarge { largest } => CommandError::new(
             310,
-            format!("{name} is too large: its tangent point falls beyond a line"),
+            format!("{name} is too large: its tangent point is beyond the end of a line"),
             format!("at most {} fits", plain(super::dims::rounded(*largest))),
         ),
         CurveFault::Undetermined => CommandError::new(

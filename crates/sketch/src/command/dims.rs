@@ -41,7 +41,9 @@ impl Session {
             None => {
                 return Err(CommandError::new(
                     105,
-                    format!("points {p} and {q} are no principal line, so the axis is unknown"),
+                    format!(
+                        "points {p} and {q} are not on a principal line, so the axis is unknown"
+                    ),
                     format!("DIMENSION X {p} {q}, or Y, or Z"),
                 ));
             }
@@ -91,7 +93,7 @@ impl Session {
             let zero = number.as_ref().is_ok_and(|x| *x == 0.0);
             if zero {
                 self.out.push(Reply::note(format!(
-                    "points {p} and {q} lie in one {axis} plane already"
+                    "points {p} and {q} are in one {axis} plane already"
                 )));
                 return Ok(());
             }
@@ -99,7 +101,7 @@ impl Session {
             let path: Vec<String> = path.iter().map(|r| r.text(&object.drawing)).collect();
             return Err(CommandError::new(
                 396,
-                format!("points {p} and {q} lie in one {axis} plane, by {}", path.join(", ")),
+                format!("points {p} and {q} are in one {axis} plane, by {}", path.join(", ")),
                 "dimension two different planes, or retype a line of the path",
             ));
         }
@@ -122,7 +124,7 @@ impl Session {
                 }
                 (Some(m), Some(a)) => {
                     let text = format!(
-                        "planes {} apart already via {}; you asked {}, which differs by {}",
+                        "planes {} apart already via {}; the requested {} differs by {}",
                         plain(m),
                         chain_text(&way),
                         plain(a),
@@ -398,9 +400,9 @@ impl Session {
         let names = names.chain(object.variables.values().map(|v| v.name.as_str()));
         let next = match moldloft_diag::nearest(&name, names) {
             Some(near) => format!("did you mean {near}?"),
-            None => "LIST DIMENSIONS and LIST VARIABLES show what there is".to_owned(),
+            None => "LIST DIMENSIONS and LIST VARIABLES list them".to_owned(),
         };
-        Err(CommandError::text(format!("there is no dimension or variable {name}"), next))
+        Err(CommandError::text(format!("unknown dimension or variable {name}"), next))
     }
 
     /// Changes or adds a dimension, unless that makes a new fault.
@@ -467,7 +469,7 @@ impl Session {
             None => {
                 return Err(CommandError::text(
                     format!("there is no dimension {name}"),
-                    "LIST DIMENSIONS shows what there is",
+                    "LIST DIMENSIONS lists them",
                 ));
             }
         }
@@ -504,7 +506,7 @@ impl Session {
         let Some(Dimension { measure: Measure::Along { p, q, .. }, .. }) = dimension else {
             return Err(CommandError::text(
                 format!("there is no dimension {name} along an axis"),
-                "LIST DIMENSIONS shows what there is",
+                "LIST DIMENSIONS lists them",
             ));
         };
         std::mem::swap(p, q);

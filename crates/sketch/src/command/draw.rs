@@ -300,7 +300,7 @@ impl Session {
                     if object.faces.remove(&id).is_none() {
                         return Err(CommandError::text(
                             format!("there is no face {id}"),
-                            "LIST FACES shows what there is",
+                            "LIST FACES lists them",
                         ));
                     }
                 }
@@ -323,7 +323,7 @@ impl Session {
                         let word = kind.to_ascii_lowercase();
                         return Err(CommandError::text(
                             format!("there is no {word} {name}"),
-                            format!("LIST {kind}S shows what there is"),
+                            format!("LIST {kind}S lists them"),
                         ));
                     }
                 }
@@ -395,7 +395,7 @@ impl Session {
         if n.to_array().iter().any(|x| x.abs() <= small) && self.active()?.drawing.section.is_none()
         {
             self.out.push(Reply::warning(
-                "one family of planes is seen edge-on: depths are hard to tell apart",
+                "one family of planes is seen edge-on: depths are poorly determined",
             ));
         }
         Ok(())
@@ -454,7 +454,7 @@ impl Session {
             } else if !set && aligns.len() == before {
                 return Err(CommandError::text(
                     format!("points {first} and {q} are not aligned on {axis}"),
-                    "WHY shows what ties them",
+                    "WHY lists the dimensions that determine them",
                 ));
             }
         }
@@ -471,7 +471,7 @@ pub(super) fn line_type(drawing: &Drawing, args: &mut Args) -> Result<Option<Fre
     let free = drawing.letters.free(&word, drawing.section).ok_or_else(|| {
         CommandError::new(
             406,
-            format!("{word} is no line type"),
+            format!("{word} is not a line type"),
             "types are X, Y, Z, H, P, F, O, XY, XZ, YZ",
         )
     })?;
@@ -493,7 +493,7 @@ pub(super) fn require_point(object: &Object, p: PointId) -> Result<(), CommandEr
     let (code, text) = if object.drawing.points.is_empty() {
         (101, format!("object {} has no points yet", object.name))
     } else {
-        (0, format!("there is no point {p} in {}", object.name))
+        (0, format!("no point {p} in {}", object.name))
     };
     Err(CommandError::new(code, text, "draw it with POINT, or see LIST POINTS"))
 }
@@ -504,7 +504,7 @@ pub(super) fn require_line(object: &Object, id: LineId) -> Result<Line, CommandE
         let (code, text) = if object.drawing.lines.is_empty() {
             (102, format!("object {} has no lines", object.name))
         } else {
-            (0, format!("there is no line {id} in {}", object.name))
+            (0, format!("no line {id} in {}", object.name))
         };
         CommandError::new(code, text, "draw it with LINE, or see LIST LINES")
     })

@@ -63,7 +63,7 @@ impl Session {
         if file.trim().is_empty() || file.contains('\0') {
             return Err(CommandError::new(
                 600,
-                format!("cannot write \"{file}\": it is no name of a file"),
+                format!("cannot write \"{file}\": it is not a file name"),
                 "SAVE object AS name.skt",
             ));
         }
@@ -87,7 +87,7 @@ impl Session {
             from_json(&text).map_err(|why| {
                 CommandError::new(
                     399,
-                    format!("{file} is no sketch: {why}"),
+                    format!("{file} is not a sketch: {why}"),
                     "SAVE writes files that can be read",
                 )
             })?
@@ -127,7 +127,7 @@ impl Session {
         let strokes = crate::format::dxf::dxf_lines(&text).map_err(|why| {
             CommandError::new(
                 399,
-                format!("{file} is no DXF drawing: {why}"),
+                format!("{file} is not a DXF drawing: {why}"),
                 "EXPORT DXF writes one",
             )
         })?;

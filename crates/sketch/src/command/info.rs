@@ -85,7 +85,7 @@ impl Session {
             ),
             TypeFault::Coincident { p, q } => CommandError::new(
                 300,
-                format!("points {p} and {q} lie in the same three planes, so they coincide"),
+                format!("points {p} and {q} are in the same three planes, so they coincide"),
                 format!("WELD {p} {q}, or retype a line between them"),
             ),
             TypeFault::Loose { point } => CommandError::new(
@@ -279,7 +279,7 @@ impl Session {
         let Some(d) = object.dimensions.get(&name.to_ascii_lowercase()) else {
             return Err(CommandError::text(
                 format!("there is no dimension {name}"),
-                "LIST DIMENSIONS shows what there is",
+                "LIST DIMENSIONS lists them",
             ));
         };
         let text = match (d.role, &d.measure) {
@@ -321,7 +321,7 @@ impl Session {
         let Some(e) = view.estimate() else {
             return Err(CommandError::new(
                 101,
-                "there is nothing to estimate, or far too much",
+                "nothing to estimate, or too many points",
                 "draw points and lines",
             ));
         };
@@ -521,7 +521,7 @@ impl Session {
             let Some(face) = object.faces.get(&id) else {
                 return Err(CommandError::text(
                     format!("there is no face {id}"),
-                    "LIST FACES shows what there is",
+                    "LIST FACES lists them",
                 ));
             };
             let text: Vec<String> = face.outer.iter().map(ToString::to_string).collect();

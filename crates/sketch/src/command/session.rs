@@ -509,7 +509,7 @@ impl Session {
             let names = self.state.objects.values().map(|o| o.name.as_str());
             let next = match moldloft_diag::nearest(name, names) {
                 Some(near) => format!("did you mean {near}?"),
-                None => "LIST OBJECTS shows what there is".to_owned(),
+                None => "LIST OBJECTS lists them".to_owned(),
             };
             CommandError::new(110, format!("there is no object {name}"), next)
         })
@@ -628,7 +628,7 @@ impl Session {
             done += 1;
         }
         if done == 0 {
-            let what = if back { "there is nothing to undo" } else { "there is nothing to redo" };
+            let what = if back { "nothing to undo" } else { "nothing to redo" };
             return Err(CommandError::text(what, "HISTORY lists the commands"));
         }
         let word = if back { "undone" } else { "done again" };

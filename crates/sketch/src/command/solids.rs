@@ -113,7 +113,7 @@ impl Session {
             return Err(CommandError::new(
                 701,
                 format!("two lines cross at {at} without a point"),
-                "SPLIT both and WELD the points, or mend the dimensions",
+                "SPLIT both and WELD the points, or correct the dimensions",
             ));
         }
         if !fitted.open.is_empty() {
@@ -184,8 +184,10 @@ impl Session {
             for inner in &fit.internal {
                 let text: Vec<String> =
                     inner.iter().filter_map(|k| ids.get(*k)).map(ToString::to_string).collect();
-                self.out
-                    .push(Reply::note(format!("internal polygon {} is no face", text.join(" "))));
+                self.out.push(Reply::note(format!(
+                    "internal polygon {} is not a face",
+                    text.join(" ")
+                )));
             }
             if !fit.branching.is_empty() {
                 self.out.push(Reply::warning(format!(
@@ -233,7 +235,7 @@ impl Session {
         let Some(Question::Solid { object, faces }) = &self.question else {
             return Err(CommandError::new(
                 702,
-                "there is nothing to choose",
+                "nothing to choose",
                 "GENERATE FACES offers what fits",
             ));
         };
@@ -403,7 +405,7 @@ impl Session {
         let Some(normal) = object.drawing.section else {
             return Err(CommandError::new(
                 113,
-                format!("{} is no cross section", object.name),
+                format!("{} is not a cross section", object.name),
                 "SKETCH name 2D starts one",
             ));
         };
@@ -427,7 +429,7 @@ impl Session {
         if number.as_ref().is_ok_and(|x| *x == 0.0 || !x.is_finite()) {
             return Err(CommandError::new(
                 300,
-                "an extrusion by nothing has no volume",
+                "an extrusion of length 0 has no volume",
                 "give a length",
             ));
         }
@@ -468,7 +470,7 @@ impl Session {
         if object.drawing.section.is_none() {
             return Err(CommandError::new(
                 113,
-                format!("{} is no cross section", object.name),
+                format!("{} is not a cross section", object.name),
                 "SKETCH name 2D starts one",
             ));
         }
@@ -495,7 +497,7 @@ impl Session {
         if low < -1e-9 * size && high > 1e-9 * size {
             return Err(CommandError::new(
                 701,
-                "the section lies on both sides of the line",
+                "the section is on both sides of the line",
                 "revolve about a line on its border",
             ));
         }
@@ -534,7 +536,7 @@ impl Session {
         let wrong = || {
             CommandError::new(
                 191,
-                "MERGE wants: MERGE A [B] [INTO] C",
+                "usage: MERGE A [B] [INTO] C",
                 "name the objects to unite, then the one to make",
             )
         };
@@ -674,7 +676,7 @@ impl Session {
                     if quarters.fract() != 0.0 || quarters.abs() > 1e6 {
                         return Err(CommandError::text(
                             format!(
-                                "{angle} degrees are no quarter turns: lines would lose their types"
+                                "{angle} degrees is not a multiple of 90: line types would be lost"
                             ),
                             "turn by 90, 180 or 270",
                         ));

@@ -209,7 +209,7 @@ fn compile(program: &Program, id: ExprId, ops: &mut Vec<Op>) -> Result<(), Strin
             let name = program.slice(program[callee].span).to_ascii_lowercase();
             let Some(k) = FUNCTIONS.iter().position(|f| *f == name) else {
                 return Err(format!(
-                    "there is no function `{name}` here; there are {}",
+                    "unknown function `{name}` here; there are {}",
                     FUNCTIONS.join(", ")
                 ));
             };

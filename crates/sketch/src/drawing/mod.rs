@@ -73,7 +73,7 @@ impl Source {
 pub struct Line {
     /// Where it starts.
     pub p: PointId,
-    /// Where it ends.
+    /// End.
     pub q: PointId,
     /// Its type; `None` while unknown.
     pub free: Option<Free>,

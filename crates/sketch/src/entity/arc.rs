@@ -2,7 +2,7 @@
 
 use moldloft_num::trace::Trace;
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// An arc of a circle or ellipse by two conjugate half-diameters:
 /// C(t) = M + (S - M) cos(t sweep) + (Q - M) sin(t sweep).
@@ -30,7 +30,7 @@ pub struct ConjugateArc<T: Real> {
 }
 
 impl<T: Real> Build<T> for ConjugateArc<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let centre = self.centre.xyz;
         let end = self.end.and_then(|p| p.key);
         let arc = Swept {

@@ -1,7 +1,7 @@
 //! Bodies bounded by triangles.
 
 use moldloft_num::{Real, Vec3};
-use moldloft_registry::{Build, Context, Facets, Fault, Kind, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, TriangleBody, Value};
 use std::sync::Arc;
 
 /// A body bounded by triangles. The solid of a sketch is one.
@@ -32,18 +32,21 @@ pub struct MeshBody<T: Real> {
 }
 
 impl<T: Real> Build<T> for MeshBody<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let (n, count) = (self.points.len(), self.triangles.len());
         if count % 3 != 0 {
-            return Err(Fault::new("wrong-count", format!("{count} corners make no triangles"))
-                .expected("three corners for each triangle")
-                .found(format!("{count} corners"))
-                .in_field(Self::TRIANGLES));
+            return Err(CallError::new(
+                "wrong-count",
+                format!("{count} corners make no triangles"),
+            )
+            .expected("three corners for each triangle")
+            .found(format!("{count} corners"))
+            .in_field(Self::TRIANGLES));
         }
         let wrong = |v: &u32| *v == 0 || *v as usize > n;
         if let Some(at) = self.triangles.iter().position(wrong) {
             let v = self.triangles[at];
-            return Err(Fault::new("out-of-range", format!("there is no vertex {v}"))
+            return Err(CallError::new("out-of-range", format!("there is no vertex {v}"))
                 .expected(format!("a whole number from 1 to {n}"))
                 .found(v.to_string())
                 .in_field(Self::TRIANGLES)
@@ -51,10 +54,10 @@ impl<T: Real> Build<T> for MeshBody<T> {
         }
         let triangles: Vec<[u32; 3]> =
             self.triangles.chunks(3).map(|t| [t[0] - 1, t[1] - 1, t[2] - 1]).collect();
-        let mut body = Facets::new(self.points, triangles);
+        let mut body = TriangleBody::new(self.points, triangles);
         body.volume = self.volume.unwrap_or(body.volume);
         body.area = self.area.unwrap_or(body.area);
         body.centroid = self.centroid.unwrap_or(body.centroid);
-        Ok(Value::Mesh(Arc::new(body)))
+        Ok(Value::Body(Arc::new(body)))
     }
 }

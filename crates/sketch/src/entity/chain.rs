@@ -2,7 +2,7 @@
 
 use moldloft_num::trace::{Key, Trace};
 use moldloft_num::{CurveFormula, Jet, Real, Vec3};
-use moldloft_registry::{Build, Context, CurveRef, Fault, Kind, Point, Value};
+use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A chain of cubic Bézier pieces, each over an equal part of t; neighbours share a point.
 ///
@@ -19,13 +19,16 @@ pub struct CubicChain<T: Real> {
 }
 
 impl<T: Real> Build<T> for CubicChain<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let n = self.points.len();
         if n % 3 != 1 {
-            return Err(Fault::new("wrong-count", format!("{n} points make no chain of cubics"))
-                .expected("4, 7, 10, … points: 3 n + 1 for n pieces")
-                .found(format!("{n} points"))
-                .in_field(Self::POINTS));
+            return Err(CallError::new(
+                "wrong-count",
+                format!("{n} points make no chain of cubics"),
+            )
+            .expected("4, 7, 10, … points: 3 n + 1 for n pieces")
+            .found(format!("{n} points"))
+            .in_field(Self::POINTS));
         }
         let ends = [self.points.first(), self.points.last()].map(|p| p.and_then(|p| p.key));
         let points = self.points.into_iter().map(|p| p.xyz).collect();

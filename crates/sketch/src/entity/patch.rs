@@ -2,7 +2,7 @@
 
 use moldloft_num::trace::{Edge, Edges, Key};
 use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
-use moldloft_registry::{Build, Context, Fault, Kind, Point, SurfaceRef, Value};
+use moldloft_registry::{Build, CallError, Context, Kind, Point, SurfaceRef, Value};
 
 /// A face by its corners, as a surface for magnets, snakes and projections.
 ///
@@ -22,7 +22,7 @@ pub struct FacePatch<T: Real> {
 }
 
 impl<T: Real> Build<T> for FacePatch<T> {
-    fn build(self, _: &Context) -> Result<Value<T>, Fault> {
+    fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let at: Vec<Vec3<T>> = self.corners.iter().map(|p| p.xyz).collect();
         let keys: Vec<Option<Key>> = self.corners.iter().map(|p| p.key).collect();
         let (corners, names) = match at[..] {
@@ -36,11 +36,11 @@ impl<T: Real> Build<T> for FacePatch<T> {
 }
 
 /// The rectangle around a polygon in its plane.
-fn around<T: Real>(at: &[Vec3<T>]) -> Result<[Vec3<T>; 4], Fault> {
+fn around<T: Real>(at: &[Vec3<T>]) -> Result<[Vec3<T>; 4], CallError> {
     let flat = || {
-        Fault::new("no-plane", "the corners span no plane")
+        CallError::new("no-plane", "the corners span no plane")
             .expected("corners of a plane polygon, the first two of them apart")
-            .help("give corners that do not lie on one line")
+            .help("give corners that are not collinear")
             .in_field(FacePatch::<T>::CORNERS)
     };
     let n = at.len();

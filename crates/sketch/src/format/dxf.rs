@@ -8,7 +8,7 @@ pub type Stroke = [[f64; 2]; 2];
 /// The straight lines of a DXF text: LINE, LWPOLYLINE and POLYLINE, seen from above.
 ///
 /// # Errors
-/// Says where the text is no DXF.
+/// Says where the text is not a DXF.
 pub fn dxf_lines(text: &str) -> Result<Vec<Stroke>, String> {
     let mut lines = text.lines();
     let mut strokes = Vec::new();
@@ -24,11 +24,11 @@ pub fn dxf_lines(text: &str) -> Result<Vec<Stroke>, String> {
         if code.is_empty() && lines.clone().all(|l| l.trim().is_empty()) {
             break;
         }
-        let code: i32 = code.parse().map_err(|_| format!("line {number} is no group code"))?;
+        let code: i32 = code.parse().map_err(|_| format!("line {number} is not a group code"))?;
         let value = lines.next().ok_or("the last group has no value")?.trim();
         number += 1;
         let coordinate = || {
-            let x: f64 = value.parse().map_err(|_| format!("line {number} is no number"))?;
+            let x: f64 = value.parse().map_err(|_| format!("line {number} is not a number"))?;
             if x.is_finite() { Ok(x) } else { Err(format!("line {number} is not finite")) }
         };
         match code {

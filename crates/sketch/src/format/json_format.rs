@@ -184,7 +184,7 @@ pub fn from_json(text: &str) -> Result<String, String> {
             return Err("only version 1 is known".to_owned());
         }
         for line in twin.get("script").map_or(&[][..], Json::items) {
-            out.push_str(line.text().ok_or("a line of the script is no text")?);
+            out.push_str(line.text().ok_or("a line of the script is not text")?);
             out.push('\n');
         }
     }

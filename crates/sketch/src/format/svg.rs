@@ -153,7 +153,7 @@ fn planes(object: &Object, data: &ObjectData, size: f64, items: &mut Vec<Item>) 
             items.push(Item::Text { at: to, shift: [2.0, 4.0], text, colour });
         }
     }
-    // Dimensions on several axes between the same points are told one below the other.
+    // Dimensions on several axes between the same points are reported one below the other.
     let mut told: BTreeMap<(crate::PointId, crate::PointId), f64> = BTreeMap::new();
     for (key, dimension) in &object.dimensions {
         let Measure::Along { axis, p, q } = dimension.measure else { continue };

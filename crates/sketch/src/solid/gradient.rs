@@ -25,7 +25,7 @@ pub struct Gradient {
 /// as if it stood there by itself.
 ///
 /// # Errors
-/// The first name that is no dimension or variable with a value; an empty one when there is no solid.
+/// The first name that is not a dimension or variable with a value; an empty one when there is no solid.
 pub fn gradient(object: &Object, planes: &Planes, by: &[String]) -> Result<Gradient, String> {
     let estimate = || Estimate::of(&object.drawing, planes, object.reference()?.point);
     let plain = solve(object, planes, &BTreeMap::<String, f64>::new(), &estimate);

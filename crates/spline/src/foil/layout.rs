@@ -1,3 +1,5 @@
+//! Where a foil lies in space: from points to chord, thickness and mean-line directions.
+
 use super::{FoilError, Station};
 use moldloft_num::{Jet, Real, Vec3};
 

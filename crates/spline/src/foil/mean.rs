@@ -1,3 +1,5 @@
+//! Mean lines of foils: parabolic, four- and five-digit, and those of uniform load.
+
 use moldloft_num::{Jet, Real, find_root};
 
 /// A mean line, in units of its greatest height.

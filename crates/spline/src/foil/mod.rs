@@ -75,8 +75,8 @@ pub enum FoilError {
 impl fmt::Display for FoilError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Family { name } => write!(f, "there is no foil family \"{name}\""),
-            Self::Mean { name } => write!(f, "there is no mean line \"{name}\""),
+            Self::Family { name } => write!(f, "unknown foil family \"{name}\""),
+            Self::Mean { name } => write!(f, "unknown mean line \"{name}\""),
             Self::Range { name, value, min, max } => {
                 write!(f, "expected {name} from {min} to {max}, found {value}")
             }

@@ -1,3 +1,5 @@
+//! Thickness forms of the NACA 6- and 6A-series by conformal mapping (Theodorsen 1931).
+
 use super::tables::{FAMILIES, Family};
 use super::thickness::Thickness;
 use crate::{End, Ends, InterpolatingSpline};

@@ -1,3 +1,5 @@
+//! Foil sections against published ordinates and closed forms.
+
 use super::*;
 use moldloft_num::{Curve, Dual, Order};
 

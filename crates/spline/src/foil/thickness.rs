@@ -1,3 +1,5 @@
+//! Thickness forms of foils: four-digit, modified, 16-series, and those of propellers.
+
 use super::FoilError;
 use super::six_series::{Blended, STEPS};
 use crate::{End, Ends, InterpolatingSpline};
@@ -150,7 +152,7 @@ impl<T: Real> Thickness<T> {
             return wrong(last, "is not at x = 1, the tail");
         }
         if let Some(k) = (1..=last).find(|&k| ordinates[k].x.re() <= ordinates[k - 1].x.re()) {
-            return wrong(k, "does not lie behind the one before");
+            return wrong(k, "is not behind the one before");
         }
         let knots: Vec<T> = (0..=last)
             .map(|k| match k {
@@ -174,7 +176,7 @@ impl<T: Real> Thickness<T> {
                 at: ordinates[highest].x.re(),
                 cambered: true,
             }),
-            Err(_) => wrong(last, "makes no spline with the others"),
+            Err(_) => wrong(last, "does not form a spline with the others"),
         }
     }
 

@@ -276,7 +276,7 @@ impl<'a> Parser<'a> {
         self.object(start, after_gap);
     }
 
-    /// Takes what is no object, up to its `;` or to the end of its line.
+    /// Takes what is not an object, up to its `;` or to the end of its line.
     fn unknown(&mut self, start: usize, after_gap: bool) {
         let rest = &self.bytes[start..];
         let length = rest.iter().position(|byte| matches!(byte, b';' | b'\n'));
@@ -448,7 +448,7 @@ impl<'a> Parser<'a> {
         self.at += 1;
         let matches = open.last().is_some_and(|list| list.closer == byte);
         if !matches {
-            let message = format!("this `{}` closes nothing", char::from(byte));
+            let message = format!("unmatched `{}`", char::from(byte));
             let mut diagnostic =
                 Diagnostic::error("unexpected-token", message).at(self.span(start));
             if let Some(list) = open.last() {
@@ -535,7 +535,7 @@ impl<'a> Parser<'a> {
     fn check_word(&mut self, word: &str, span: Span) -> bool {
         let odd = word.chars().find(|c| c.is_control());
         if let Some(odd) = odd {
-            let message = format!("`{}` has no meaning here", odd.escape_debug());
+            let message = format!("`{}` is not a valid character", odd.escape_debug());
             self.report(Diagnostic::error("bad-character", message).at(span));
         }
         odd.is_none()
@@ -608,7 +608,7 @@ impl<'a> Parser<'a> {
                 self.model.trailer = Some(span);
                 let first_line = self.text[start..].lines().next().map_or(0, str::len) as u32;
                 let place = Span { end: span.start + first_line, ..span };
-                let message = "what follows `EndModel` is not part of the model";
+                let message = "text after `EndModel` is not part of the model";
                 self.report(Diagnostic::warning("text-after-end", message).at(place));
             }
         } else if !self

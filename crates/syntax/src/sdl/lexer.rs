@@ -305,15 +305,15 @@ impl Lexer<'_> {
         let shown: String = run.chars().take(12).flat_map(char::escape_debug).collect();
         let first = run.chars().next().unwrap_or(' ');
         let help = match first {
-            '“' | '”' | '„' => Some("texts stand between straight quotes `\"`"),
+            '“' | '”' | '„' => Some("a string is enclosed in straight quotes `\"`"),
             '−' | '–' | '—' => Some("the minus sign is the hyphen `-`"),
             '×' | '·' => Some("multiply with `*`"),
-            '\'' => Some("texts stand between double quotes `\"`"),
+            '\'' => Some("a string is enclosed in double quotes `\"`"),
             '%' => Some("the rest of a division is `mod(a, b)`"),
             c if c.is_alphabetic() => Some("names are made of the letters A to Z, digits and `_`"),
             _ => None,
         };
-        let message = format!("`{shown}` has no meaning here");
+        let message = format!("`{shown}` is not a valid character");
         self.out.diagnostics.push(
             Diagnostic::error("bad-character", message).at(self.span(start)).maybe_help(help),
         );

@@ -48,7 +48,7 @@ impl Program<'_> {
         self.random.pick(&self.curves).clone()
     }
 
-    /// Different curves: a loft of one curve alone is no surface, and the speed of a snake that
+    /// Different curves: a loft of one curve alone is not a surface, and the speed of a snake that
     /// turns on it has a kink.
     pub fn curves<const N: usize>(&mut self) -> [String; N] {
         let mut left = self.curves.clone();

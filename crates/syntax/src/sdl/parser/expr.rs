@@ -437,7 +437,7 @@ impl Parser {
                 match (name, first_named) {
                     (Some(name), None) => first_named = Some(name),
                     (None, Some(named)) => {
-                        let message = "an argument without a name stands after named ones";
+                        let message = "positional argument after named ones";
                         let diagnostic = Diagnostic::error("positional-after-named", message)
                             .at(self.program[value].span)
                             .note_at(named.span, "the first named argument");

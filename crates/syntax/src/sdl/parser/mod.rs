@@ -281,7 +281,7 @@ impl Parser {
                 Diagnostic::error("unclosed-bracket", message).expected(format!("`{closer}`"));
             diagnostic.at(self.span(token)).found(found)
         } else {
-            let message = format!("{found} cannot stand here");
+            let message = format!("unexpected {}", found.trim_start_matches("the "));
             let diagnostic = Diagnostic::error("unexpected-token", message).expected(expected);
             diagnostic.at(self.span(token)).found(found)
         };
@@ -328,7 +328,7 @@ impl Parser {
         }
         self.end_is_reported |= token.kind == Kind::End;
         let found = self.describe(token);
-        let message = format!("{found} cannot stand here");
+        let message = format!("unexpected {}", found.trim_start_matches("the "));
         let diagnostic = Diagnostic::error("unexpected-token", message).at(self.span(token));
         self.report(diagnostic.expected(expected).found(found));
         Reported

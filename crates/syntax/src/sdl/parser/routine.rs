@@ -11,7 +11,7 @@ impl Parser {
         let outer = (self.in_routine, self.loops);
         let nested = self.nesting > 1;
         if nested {
-            let message = "subroutines and functions stand at the top of a file, not inside blocks";
+            let message = "subroutines and functions are declared at the top level of a file, not inside blocks";
             self.report(Diagnostic::error("misplaced-routine", message).at(self.span(word)));
         }
         let result =

@@ -15,9 +15,7 @@ impl Parser {
                 Kind::RBrace if open.is_some() => break,
                 Kind::RBrace => {
                     let place = self.span(self.token());
-                    self.report(
-                        Diagnostic::error("unexpected-token", "this `}` closes nothing").at(place),
-                    );
+                    self.report(Diagnostic::error("unexpected-token", "unmatched `}`").at(place));
                     self.next();
                 }
                 Kind::Semi => {
@@ -120,7 +118,7 @@ impl Parser {
                 self.next();
                 if self.loops == 0 {
                     let word = self.program.slice(self.span(token));
-                    let message = format!("`{word}` stands outside of any loop");
+                    let message = format!("`{word}` outside a loop");
                     self.report(Diagnostic::error("stray-jump", message).at(self.span(token)));
                 }
                 self.expect_semi("`;`")?;
@@ -129,7 +127,7 @@ impl Parser {
             Kind::Return => {
                 self.next();
                 if !self.in_routine {
-                    let message = "`return` stands outside of any subroutine or function";
+                    let message = "`return` outside a subroutine or function";
                     self.report(Diagnostic::error("stray-jump", message).at(self.span(token)));
                 }
                 let ends = self.token().new_line
@@ -223,7 +221,7 @@ impl Parser {
             let place = self.span(self.token());
             let diagnostic = Diagnostic::error(
                 "unexpected-token",
-                "`=` assigns and cannot stand in a condition",
+                "`=` assigns; it is not allowed in a condition",
             )
             .at(place)
             .expected("`==` or another comparison")
@@ -311,7 +309,7 @@ impl Parser {
         self.eat(Kind::Semi);
         let span = self.span_from(word.start);
         if self.nesting > 1 || self.in_routine {
-            let message = "`load` stands at the top of a file, not inside blocks";
+            let message = "`load` is allowed only at the top level of a file, not inside blocks";
             self.report(Diagnostic::error("misplaced-load", message).at(span));
         }
         Ok(self.push_stmt(StmtKind::Load(TextId(path.payload)), span))
@@ -451,7 +449,7 @@ impl Parser {
                 _ => break,
             }
         }
-        let diagnostic = Diagnostic::error("not-assignable", "nothing can be assigned to this")
+        let diagnostic = Diagnostic::error("not-assignable", "cannot assign to this")
             .at(self.program[target].span)
             .expected("a variable, or a part of one by `[…]` and `.x`")
             .found("the result of a call");

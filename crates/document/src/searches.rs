@@ -1,0 +1,221 @@
+//! Nearest points and intersections of a model's curves and surfaces, for many points at once.
+//!
+//! Shapes are prepared for searches once, and kept by the name of their object as long as it has the
+//! same shape. Answers do not depend on what is kept.
+
+use moldloft_locate::branches::{Branches, CutSurface};
+use moldloft_locate::march::Crossing;
+use moldloft_locate::roots::{all_curve_curve, all_curve_surface, all_on_level};
+use moldloft_locate::{Level, Nearest, NearestCurve, NearestSurface, Root, Roots, by_place};
+use moldloft_num::{Plane, Vec3};
+use moldloft_registry::{CurveRef, SurfaceRef, Value};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Points that a thread answers at a time.
+const CHUNK: usize = 256;
+
+/// Prepared shapes that are kept.
+const KEPT: usize = 64;
+
+/// Distance over the size of the coordinates within which two curves meet.
+const MEETING: f64 = 1e-8;
+
+/// Shapes prepared for searches.
+#[derive(Default)]
+pub struct Searches {
+    kept: Mutex<Kept>,
+}
+
+/// By the name of the object, each with the shape that it was made from.
+#[derive(Default)]
+struct Kept {
+    surfaces: HashMap<String, (SurfaceRef<f64>, Arc<NearestSurface>)>,
+    curves: HashMap<String, (CurveRef<f64>, Arc<NearestCurve>)>,
+    cuts: HashMap<String, (SurfaceRef<f64>, Arc<CutSurface>)>,
+}
+
+/// Nearest points, in the order of the points given.
+pub enum NearestPoints {
+    /// Of a curve.
+    Curve(Vec<Nearest<1>>),
+    /// Of a surface.
+    Surface(Vec<Nearest<2>>),
+}
+
+/// What something is intersected with.
+pub enum With {
+    /// A plane.
+    Plane(Plane<f64>),
+    /// A curve.
+    Curve(CurveRef<f64>),
+    /// A surface, prepared by [`Searches::cut`].
+    Surface(SurfaceRef<f64>, Arc<CutSurface>),
+}
+
+/// Where two things meet.
+pub enum Meeting {
+    /// In points.
+    Points(CommonPoints),
+    /// In curves; true when both are surfaces with parameters.
+    Branches(Branches, bool),
+}
+
+/// Isolated common points.
+pub struct CommonPoints {
+    /// The parameters of the first at each, `widths[0]` of them.
+    pub ours: Vec<Vec<f64>>,
+    /// The parameters of the second at each, `widths[1]` of them.
+    pub theirs: Vec<Vec<f64>>,
+    /// Numbers of parameters.
+    pub widths: [usize; 2],
+    /// Where they are.
+    pub xyz: Vec<Vec3>,
+    /// True where the two touch.
+    pub tangent: Vec<bool>,
+    /// True when there are no others.
+    pub complete: bool,
+}
+
+impl CommonPoints {
+    fn of<const N: usize>(roots: &Roots<N>, ours: &[usize], theirs: &[usize]) -> Meeting {
+        let part = |which: &[usize]| -> Vec<Vec<f64>> {
+            let row = |r: &Root<N>| which.iter().map(|&k| r.at[k]).collect();
+            roots.roots.iter().map(row).collect()
+        };
+        Meeting::Points(Self {
+            ours: part(ours),
+            theirs: part(theirs),
+            widths: [ours.len(), theirs.len()],
+            xyz: roots.roots.iter().map(|r| r.xyz).collect(),
+            tangent: roots.roots.iter().map(|r| r.tangent).collect(),
+            complete: roots.complete,
+        })
+    }
+}
+
+impl Searches {
+    /// The points of a curve or surface that are nearest to given ones; `None` for anything else.
+    /// After `cancel` is set the answer is incomplete.
+    pub fn nearest(
+        &self,
+        name: &str,
+        value: &Value<f64>,
+        points: &[Vec3],
+        cancel: &AtomicBool,
+    ) -> Option<NearestPoints> {
+        match value {
+            Value::Surface(surface) => {
+                let prepare = |s: &SurfaceRef<f64>| NearestSurface::new(&**s);
+                let found =
+                    self.prepared(name, surface, |k| &mut k.surfaces, SurfaceRef::same, prepare);
+                let answer = |p: Vec3| found.nearest(&**surface, p);
+                Some(NearestPoints::Surface(answered(points, cancel, answer)))
+            }
+            Value::Curve(curve) => {
+                let prepare = |c: &CurveRef<f64>| NearestCurve::new(&**c);
+                let found = self.prepared(name, curve, |k| &mut k.curves, CurveRef::same, prepare);
+                let answer = |p: Vec3| found.nearest(&**curve, p);
+                Some(NearestPoints::Curve(answered(points, cancel, answer)))
+            }
+            _ => None,
+        }
+    }
+
+    /// A surface prepared for intersections.
+    pub fn cut(&self, name: &str, surface: &SurfaceRef<f64>) -> Arc<CutSurface> {
+        let prepare = |s: &SurfaceRef<f64>| CutSurface::new(&**s);
+        self.prepared(name, surface, |kept| &mut kept.cuts, SurfaceRef::same, prepare)
+    }
+
+    /// Where a curve or surface meets something; `None` for anything else.
+    pub fn intersection(&self, name: &str, value: &Value<f64>, with: &With) -> Option<Meeting> {
+        Some(match (value, with) {
+            (Value::Surface(surface), With::Curve(curve)) => {
+                // Ours are u and v, theirs is t.
+                CommonPoints::of(&all_curve_surface(&**curve, &**surface), &[1, 2], &[0])
+            }
+            (Value::Surface(surface), With::Plane(plane)) => {
+                let cut = self.cut(name, surface);
+                let crossing = Crossing::with_plane(&**surface, *plane);
+                Meeting::Branches(crossing.branches_in(&cut, None), false)
+            }
+            (Value::Surface(surface), With::Surface(other, second)) => {
+                let cut = self.cut(name, surface);
+                let crossing = Crossing::with_surface(&**surface, &**other);
+                Meeting::Branches(crossing.branches_in(&cut, Some(second)), true)
+            }
+            (Value::Curve(curve), With::Plane(plane)) => {
+                let offset = plane.normal.dot(plane.point);
+                let level = Level::Plane { normal: plane.normal, offset };
+                CommonPoints::of(&all_on_level(&**curve, &level), &[0], &[])
+            }
+            (Value::Curve(curve), With::Curve(other)) => {
+                let roots = all_curve_curve(&**curve, &**other);
+                let size = roots.roots.iter().map(|r| r.xyz.norm()).fold(1.0, f64::max);
+                // Where curves do not meet, the search gives the place where they come nearest.
+                let met = |r: &Root<2>| r.residual <= MEETING * size;
+                let kept = roots.roots.iter().copied().filter(met).collect();
+                CommonPoints::of(&Roots { roots: kept, ..roots }, &[0], &[1])
+            }
+            (Value::Curve(curve), With::Surface(other, _)) => {
+                CommonPoints::of(&all_curve_surface(&**curve, &**other), &[0], &[1, 2])
+            }
+            _ => return None,
+        })
+    }
+
+    /// The prepared shape of an object: that of an earlier call, when the object is still the same.
+    fn prepared<S: Clone, P>(
+        &self,
+        name: &str,
+        shape: &S,
+        of: fn(&mut Kept) -> &mut HashMap<String, (S, Arc<P>)>,
+        same: fn(&S, &S) -> bool,
+        prepare: impl FnOnce(&S) -> P,
+    ) -> Arc<P> {
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((kept, prepared)) = of(&mut lock()).get(name)
+            && same(kept, shape)
+        {
+            return prepared.clone();
+        }
+        let made = Arc::new(prepare(shape));
+        let mut kept = lock();
+        let map = of(&mut kept);
+        if map.len() >= KEPT {
+            map.clear();
+        }
+        map.insert(name.to_owned(), (shape.clone(), made.clone()));
+        made
+    }
+}
+
+/// Answers of many points, in their order.
+fn answered<const N: usize>(
+    points: &[Vec3],
+    cancel: &AtomicBool,
+    answer: impl Fn(Vec3) -> Nearest<N> + Sync,
+) -> Vec<Nearest<N>> {
+    let chunk = |points: &[Vec3]| -> Vec<Nearest<N>> {
+        if cancel.load(Ordering::Relaxed) {
+            return Vec::new();
+        }
+        points.iter().map(|p| answer(*p)).collect()
+    };
+    if points.len() <= CHUNK {
+        return chunk(points);
+    }
+    // Neighbours share what is near them.
+    let order = by_place(points);
+    let sorted: Vec<Vec3> = order.iter().map(|&k| points[k as usize]).collect();
+    let found: Vec<Nearest<N>> = sorted.par_chunks(CHUNK).flat_map_iter(chunk).collect();
+    let Some(&first) = found.first() else { return found };
+    let mut all = vec![first; points.len()];
+    for (k, answer) in order.into_iter().zip(found) {
+        all[k as usize] = answer;
+    }
+    all
+}

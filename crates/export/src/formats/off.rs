@@ -1,0 +1,20 @@
+//! Panels as OFF, which programs of computational geometry read.
+
+use super::Format;
+use crate::{Export, Failure};
+use moldloft_io::off;
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "off",
+    suffix: "off",
+    about: "Object File Format, text",
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let mesh = export.panels()?;
+    Ok(export.main_file(off::write(&mesh)?))
+}

@@ -1,0 +1,168 @@
+//! Faults of calls: what is wrong, and with which argument.
+
+use crate::Class;
+use moldloft_num::trace::Key;
+
+/// A field of a row: the constants that `#[derive(Kind)]` emits for a struct, `Self::RADIUS` for its field
+/// `radius`. There is no other way to name an argument in a fault, so a field that moves takes its faults
+/// along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldId(u16);
+
+impl FieldId {
+    /// For the derive macro and for rows: nothing else knows a position.
+    pub(crate) const fn at(position: usize) -> Self {
+        FieldId(position as u16)
+    }
+
+    /// The position in the row.
+    pub fn position(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// An argument of a call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// That of a field.
+    Field(FieldId),
+    /// The one with this number among the named arguments, as they are written.
+    Named(usize),
+    /// The first that is too many.
+    Extra,
+}
+
+/// Which argument a fault is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArgumentPlace {
+    /// The argument.
+    pub argument: Argument,
+    /// The item of a list argument, from 0.
+    pub item: Option<usize>,
+}
+
+/// Why a call failed: the data of a diagnostic, before it knows its place in the text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CallError(Box<CallErrorData>);
+
+/// The parts of a [`CallError`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct CallErrorData {
+    /// Stable kebab-case id.
+    pub id: &'static str,
+    /// One self-contained line.
+    pub message: String,
+    /// What was expected.
+    pub expected: Option<String>,
+    /// What was found.
+    pub found: Option<String>,
+    /// The remedy.
+    pub help: Vec<String>,
+    /// The argument it is about.
+    pub place: Option<ArgumentPlace>,
+    /// The item of an argument that is not known yet.
+    item: Option<usize>,
+    /// Other objects it is about, each with what is to be said of it.
+    pub related: Vec<(Key, String)>,
+}
+
+impl CallError {
+    /// A fault with an id and a message.
+    pub fn new(id: &'static str, message: impl Into<String>) -> Self {
+        CallError(Box::new(CallErrorData {
+            id,
+            message: message.into(),
+            expected: None,
+            found: None,
+            help: Vec::new(),
+            place: None,
+            item: None,
+            related: Vec::new(),
+        }))
+    }
+
+    /// A value of the wrong class.
+    pub fn wrong_class(expected: Class, found: Class) -> Self {
+        let fault = Self::new(
+            "wrong-class",
+            format!("expected {}, found {}", expected.with_article(), found.with_article()),
+        )
+        .expected(expected.with_article())
+        .found(found.with_article());
+        // Arrays of points and shapes with parameters are easily taken for each other.
+        match (expected, found) {
+            (Class::Curve | Class::Surface, Class::Vectors) => fault
+                .help("put a spline through the points first: makecc(c) or makelc(c), makecs(s)"),
+            (Class::Vectors, Class::Curve | Class::Snake) => {
+                fault.help("take points of it first: distc(curve, uniform(0, 1, 50))")
+            }
+            (Class::Vectors, Class::Surface) => fault.help(
+                "take points of it first: dists(surface, uniform(0, 1, 50), uniform(0, 1, 30))",
+            ),
+            _ => fault,
+        }
+    }
+
+    /// Says what was expected.
+    pub fn expected(mut self, text: impl Into<String>) -> Self {
+        self.0.expected = Some(text.into());
+        self
+    }
+
+    /// Says what was found.
+    pub fn found(mut self, text: impl Into<String>) -> Self {
+        self.0.found = Some(text.into());
+        self
+    }
+
+    /// Adds a remedy.
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.0.help.push(text.into());
+        self
+    }
+
+    /// Points to another object, if it has a name: "`label`" stands beside its declaration.
+    pub fn related(mut self, object: Option<Key>, label: impl Into<String>) -> Self {
+        self.0.related.extend(object.map(|key| (key, label.into())));
+        self
+    }
+
+    /// Says which argument it is about, unless that is known already.
+    pub fn in_field(self, field: FieldId) -> Self {
+        self.in_argument(Argument::Field(field))
+    }
+
+    /// Says which argument it is about, unless that is known already.
+    pub fn in_argument(mut self, argument: Argument) -> Self {
+        let item = self.0.item.take();
+        self.0.place.get_or_insert(ArgumentPlace { argument, item });
+        self
+    }
+
+    /// Says which item of a list argument it is about; the field is added by [`Self::in_field`].
+    pub fn in_item(mut self, item: usize) -> Self {
+        self.0.place = None;
+        self.0.item = Some(item);
+        self
+    }
+
+    /// The position of the field that it is about.
+    pub fn field(&self) -> Option<usize> {
+        match self.0.place?.argument {
+            Argument::Field(field) => Some(field.position()),
+            _ => None,
+        }
+    }
+
+    /// The item of a list argument that it is about.
+    pub fn item(&self) -> Option<usize> {
+        self.0.place.map_or(self.0.item, |place| place.item)
+    }
+}
+
+impl std::ops::Deref for CallError {
+    type Target = CallErrorData;
+    fn deref(&self) -> &CallErrorData {
+        &self.0
+    }
+}

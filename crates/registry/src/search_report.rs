@@ -1,0 +1,139 @@
+//! Reports of searches that a value carries, and the remarks that follow from them. They depend on the model only.
+
+use moldloft_num::Vec3;
+use std::fmt;
+
+/// A warning about a value: it is there, but the user should know something of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// Id of the diagnostic.
+    pub id: &'static str,
+    /// What there is to know.
+    pub message: String,
+    /// How to get rid of it; may be empty.
+    pub advice: &'static str,
+}
+
+/// How a construction that may go more or less well (a projection, an intersection, a fit) came to
+/// its result. Carried by the point or curve; every word of it depends on the model only.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SearchReport {
+    /// How the search ended.
+    pub status: SearchStatus,
+    /// What is left of the equations, in the unit of length.
+    pub residual: f64,
+    /// Steps of the iteration.
+    pub iterations: u32,
+    /// The parameters that the search began with.
+    pub start: Vec<f64>,
+    /// The parameters it ended with.
+    pub last: Vec<f64>,
+    /// Solutions that were not taken: their parameters and places.
+    pub alternatives: Vec<(Vec<f64>, Vec3)>,
+    /// How to choose another solution, or to get rid of the remark.
+    pub advice: &'static str,
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SearchStatus {
+    /// From the start that was given, or the only solution.
+    Ok,
+    /// The iteration from the start failed; the nearest of all solutions was taken.
+    Fallback,
+    /// At an end or an edge, because the unbounded solution lies beyond it.
+    EdgeClamped,
+    /// The shapes touch: the solution is not well determined.
+    Tangent,
+    /// A weighted sum whose weights do not add up to 1.
+    Unbalanced {
+        /// What they add up to.
+        sum: f64,
+    },
+    /// One of several, without a start that would say which.
+    Multiple {
+        /// How many there are.
+        count: usize,
+        /// Which was taken, from 0.
+        chosen: usize,
+        /// Distance in space to the next of the others.
+        next: f64,
+    },
+}
+
+impl SearchStatus {
+    /// Its word in the language and in Python.
+    pub fn word(self) -> &'static str {
+        match self {
+            SearchStatus::Ok => "ok",
+            SearchStatus::Fallback => "fallback",
+            SearchStatus::EdgeClamped => "edge-clamped",
+            SearchStatus::Tangent => "tangent",
+            SearchStatus::Unbalanced { .. } => "unbalanced",
+            SearchStatus::Multiple { .. } => "multiple",
+        }
+    }
+}
+
+impl fmt::Display for SearchStatus {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+fn list(parameters: &[f64]) -> String {
+    let all: Vec<String> = parameters.iter().map(|x| format!("{x:.6}")).collect();
+    match all.as_slice() {
+        [one] => one.clone(),
+        many => format!("({})", many.join(", ")),
+    }
+}
+
+impl SearchReport {
+    /// The warning about it; `None` when there is nothing to say.
+    pub fn remark(&self) -> Option<Remark> {
+        let (id, message) = self.message()?;
+        Some(Remark { id, message, advice: self.advice })
+    }
+
+    fn message(&self) -> Option<(&'static str, String)> {
+        let at = list(&self.last);
+        Some(match self.status {
+            SearchStatus::Ok => return None,
+            SearchStatus::Fallback => (
+                "start-failed",
+                format!(
+                    "no convergence from the start {}; the nearest solution, at {at}, was used",
+                    list(&self.start)
+                ),
+            ),
+            SearchStatus::EdgeClamped => {
+                ("edge-clamped", format!("the solution is beyond the edge; it was clamped to {at}"))
+            }
+            SearchStatus::Tangent => (
+                "tangent-contact",
+                format!("the shapes touch at {at}; a small change may part them"),
+            ),
+            SearchStatus::Unbalanced { sum } => {
+                ("weight-sum", format!("the weights sum to {sum}: the point depends on the origin"))
+            }
+            SearchStatus::Multiple { count, chosen, next } => {
+                let others: Vec<String> =
+                    self.alternatives.iter().take(3).map(|(p, _)| list(p)).collect();
+                let more = if self.alternatives.len() > 3 { ", …" } else { "" };
+                let message = format!(
+                    "there are {count} solutions; number {} at {at} was taken, others are at {}{more} \
+                     (the next {next:.3e} away)",
+                    chosen + 1,
+                    others.join(", ")
+                );
+                ("several-solutions", message)
+            }
+        })
+    }
+
+    /// True when there is something to warn of.
+    pub fn warns(&self) -> bool {
+        self.status != SearchStatus::Ok
+    }
+}

@@ -1,0 +1,177 @@
+//! Bodies bounded by triangles and open sheets of them, with borders that can be divided anew, and their measures.
+
+use crate::CurveRef;
+use moldloft_num::{Real, Vec3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Places where a body is not quite what was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flaw {
+    /// What is wrong, such as "blunt": the member of the body by which the places are asked for.
+    pub name: &'static str,
+    /// The warning about it.
+    pub remark: crate::Remark,
+    /// Where it is; not empty.
+    pub places: Vec<Vec3>,
+}
+
+/// Triangles of a body that belong together, such as those of one implicit surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Its name; in meshes it follows the body's.
+    pub name: String,
+    /// What it is a piece of, such as "cylinder".
+    pub kind: String,
+    /// Index of a palette colour, 0 to 15, when it has one of its own.
+    pub colour: Option<u8>,
+    /// What it is called besides, such as its material.
+    pub tags: Vec<String>,
+    /// Distance below which two of its points count as one, when it has one of its own.
+    pub tolerance: Option<f64>,
+    /// Its triangles.
+    pub triangles: Range<usize>,
+}
+
+/// A curve that the border of a sheet runs along, from its begin to its end.
+#[derive(Clone, Debug)]
+pub struct BorderCurve<T: Real> {
+    /// The curve.
+    pub curve: CurveRef<T>,
+    /// Its divisions, where they are stated.
+    pub stated: Option<u32>,
+    /// Its divisions when nothing else determines them.
+    pub usual: u32,
+}
+
+/// A sheet of triangles whose border runs along curves, so that it can be made anew with the
+/// divisions that its neighbours have there.
+pub trait TriangulatedBorder<T: Real>: Send + Sync {
+    /// The curves of the border.
+    fn curves(&self) -> &[BorderCurve<T>];
+
+    /// The sheet whose border has vertices at these parameters of each curve, ascending from 0 to 1,
+    /// and for each curve which of its vertices these are; `None` when such a border crosses itself.
+    fn divided(&self, at: &[Vec<T>]) -> Option<(TriangleBody<T>, Vec<Vec<u32>>)>;
+}
+
+/// The way to make a sheet anew.
+#[derive(Clone)]
+pub struct Border<T: Real>(pub Arc<dyn TriangulatedBorder<T>>);
+
+impl<T: Real> PartialEq for Border<T> {
+    fn eq(&self, o: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &o.0)
+    }
+}
+
+impl<T: Real> std::fmt::Debug for Border<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_list().entries(self.0.curves()).finish()
+    }
+}
+
+/// A body bounded by triangles, or an open sheet of them, with its measures.
+///
+/// For implicit modelling it is the closed mesh from which a set can be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleBody<T: Real> {
+    /// The vertices.
+    pub points: Vec<Vec3<T>>,
+    /// Corners of the triangles, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangles by what they are pieces of, in order and without gaps; none when the body is one.
+    pub groups: Vec<Group>,
+    /// Polylines that belong to the body without being surface.
+    pub wires: Vec<Vec<Vec3<T>>>,
+    /// Points that belong to the body without being surface or line.
+    pub dots: Vec<Vec3<T>>,
+    /// Enclosed volume; of no meaning for an open sheet.
+    pub volume: T,
+    /// Area of all triangles.
+    pub area: T,
+    /// Centre of the volume, or of the area where there is none.
+    pub centroid: Vec3<T>,
+    /// For a sheet that joins its neighbours.
+    pub border: Option<Border<T>>,
+    /// Where it is not quite what was asked for.
+    pub flaws: Vec<Flaw>,
+}
+
+impl<T: Real> TriangleBody<T> {
+    /// The triangles with the measures that follow from them (divergence theorem; the sums run about
+    /// the mean of the vertices, so that distant bodies keep their digits).
+    ///
+    /// # Panics
+    /// When a corner is not a vertex.
+    pub fn new(points: Vec<Vec3<T>>, triangles: Vec<[u32; 3]>) -> Self {
+        let n = points.len().max(1) as f64;
+        let middle = points.iter().fold(Vec3::<f64>::zero(), |s, p| s + p.re()) / n;
+        let middle = middle.map(T::from);
+        let (mut volume, mut area) = (T::zero(), T::zero());
+        let (mut moment, mut sheet) = (Vec3::zero(), Vec3::zero());
+        for t in &triangles {
+            let [a, b, c] = t.map(|v| points[v as usize] - middle);
+            let normal = (b - a).cross(c - a) * T::from(0.5);
+            let part = a.dot(normal) / 3.0;
+            volume += part;
+            moment += (a + b + c) * (part * 0.25);
+            let size = normal.norm();
+            area += size;
+            sheet += (a + b + c) * (size / 3.0);
+        }
+        let size = area.re() * area.re().abs().sqrt();
+        let centroid = if volume.re().abs() > 1e-12 * size {
+            middle + moment / volume
+        } else if area.re() > 0.0 {
+            middle + sheet / area
+        } else {
+            middle
+        };
+        let (groups, wires, dots) = Default::default();
+        let (border, flaws) = (None, Vec::new());
+        Self { points, triangles, groups, wires, dots, volume, area, centroid, border, flaws }
+    }
+
+    /// True when vertices and measures are the same bits and the triangles the same.
+    pub fn same(&self, o: &Self) -> bool {
+        let all = |a: &[Vec3<T>], b: &[Vec3<T>]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.bits_eq(*b))
+        };
+        self.triangles == o.triangles
+            && self.groups == o.groups
+            && self.flaws == o.flaws
+            && all(&self.dots, &o.dots)
+            && self.wires.len() == o.wires.len()
+            && self.wires.iter().zip(&o.wires).all(|(a, b)| all(a, b))
+            && self.points.len() == o.points.len()
+            && self.points.iter().zip(&o.points).all(|(a, b)| a.bits_eq(*b))
+            && self.volume.bits_eq(o.volume)
+            && self.area.bits_eq(o.area)
+            && self.centroid.bits_eq(o.centroid)
+            && self.border == o.border
+    }
+
+    /// True when every number in it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.points.iter().all(|p| p.is_finite()) && self.volume.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_distant_tetrahedron() {
+        let far = Vec3::of(1e6, -2e6, 3e6);
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let points: Vec<Vec3> = points.iter().map(|&p| Vec3::from(p) + far).collect();
+        let body = TriangleBody::new(points, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+        assert!((body.volume - 1.0 / 6.0).abs() < 1e-9);
+        assert!((body.area - (1.5 + 0.75f64.sqrt())).abs() < 1e-9);
+        assert!((body.centroid - far).distance(Vec3::of(0.25, 0.25, 0.25)) < 1e-6);
+        let sheet = TriangleBody::new(body.points[..3].to_vec(), vec![[0, 1, 2]]);
+        assert!((sheet.centroid - far).distance(Vec3::of(1.0 / 3.0, 1.0 / 3.0, 0.0)) < 1e-6);
+    }
+}

@@ -1,0 +1,7 @@
+//! Lexers, parsers and formatters: corpus, random programs, damaged texts.
+
+mod corpus;
+mod ebnf;
+mod mutations;
+mod programs;
+mod random;
