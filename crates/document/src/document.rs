@@ -135,7 +135,7 @@ impl Document {
         let lower = name.to_ascii_lowercase();
         let model_file = lower.ends_with(".ms2")
             || (!lower.ends_with(".sdl") && text.trim_start().starts_with("MultiSurf"));
-        let at = (self.modules.len() > 0).then_some(0);
+        let at = (!self.modules.is_empty()).then_some(0);
         if sketch_file::is_sketch(&lower) {
             let (program, _) = moldloft_syntax::sdl::parse("", file);
             self.modules.add(name, program, &self.registry, at);

@@ -286,7 +286,7 @@ fn mentions(m: &Module) -> Vec<Mention> {
 
 impl Document {
     fn main_module(&self) -> Option<&Module> {
-        (self.modules.len() > 0).then(|| &**self.modules.get(0))
+        (!self.modules.is_empty()).then(|| &**self.modules.get(0))
     }
 
     fn mention_at(&self, offset: u32) -> Option<Mention> {

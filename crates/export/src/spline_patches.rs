@@ -56,7 +56,7 @@ pub fn spline_patches(
     }
     let size = mesh.bounds().diagonal();
     let allowed = tolerance.unwrap_or(1e-5 * size);
-    if !(allowed > 0.0) {
+    if allowed.is_nan() || allowed <= 0.0 {
         let message = format!("a tolerance is a positive number, not {allowed}");
         return Err(Diagnostic::error("bad-tolerance", message).into());
     }

@@ -271,7 +271,7 @@ pub fn write(rows: &[Vec3], columns: usize, layout: &PointLayout) -> String {
             out.extend(rows[rows.len() - lower..].iter().map(row));
         }
         _ => {
-            let whole = [0..rows.len()];
+            let whole = std::iter::once(0..rows.len()).collect::<Vec<_>>();
             let fit = layout.blocks.last().is_some_and(|block| block.end == rows.len());
             let blocks = if fit { &layout.blocks[..] } else { &whole[..] };
             for (k, block) in blocks.iter().enumerate() {

@@ -127,7 +127,7 @@ impl<const C: usize> Columns<C> {
         for j in (0..C).rev() {
             for k in j + 1..C {
                 let known = x[k];
-                x[j] = x[j] - known * self.r[j][k];
+                x[j] -= known * self.r[j][k];
             }
             x[j] = x[j] * (1.0 / self.r[j][j]);
         }

@@ -17,7 +17,7 @@ use crate::{
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{CallError, FieldId, Row};
-use moldloft_spline::{KnotVector, MovingSpline};
+use moldloft_spline::{KnotVector, SplineWithKnotDerivatives};
 
 /// All kinds and functions of this crate, in the order of the reference.
 ///
@@ -232,7 +232,7 @@ pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, Fai
 impl<T: Real> Intent<T> {
     /// The faired spline within the tolerances of the points themselves, which it passes through
     /// before it is faired.
-    pub fn near(&self, points: &[Vec3<T>]) -> Result<MovingSpline<T>, FairError> {
+    pub fn near(&self, points: &[Vec3<T>]) -> Result<SplineWithKnotDerivatives<T>, FairError> {
         let marks = indices(&self.breaks, points.len())?;
         let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
         crate::error::check_finite(&plain)?;
@@ -258,7 +258,8 @@ impl<T: Real> Intent<T> {
         let tolerances = vec![self.tolerance; points.len()];
         let (made, _) = fair_data_with(&data, &options, points, &tolerances, &at)?;
         let (knots, control) = data.layout.space.open_form(&made.knots, &made.points);
-        MovingSpline::new(self.degree, Some(knots), control, None).map_err(|_| FairError::Singular)
+        SplineWithKnotDerivatives::new(self.degree, Some(knots), control, None)
+            .map_err(|_| FairError::Singular)
     }
 
     /// The faired spline of points.

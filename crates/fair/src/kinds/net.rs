@@ -11,7 +11,7 @@ use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, Value, many,
 };
-use moldloft_spline::MovingSpline;
+use moldloft_spline::SplineWithKnotDerivatives;
 use std::sync::Arc;
 
 /// The points of one curve of a network.
@@ -282,12 +282,13 @@ fn through<T: Real>(
     at: &[T],
     breaks: &[usize],
     closed: bool,
-) -> Result<MovingSpline<T>, FairError> {
+) -> Result<SplineWithKnotDerivatives<T>, FairError> {
     let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
     let layout = Layout::new(degree, &real, breaks, closed)?;
     let (control, knots) = layout.through_moving(points, at)?;
     let (knots, control) = layout.space.open_form(&knots, &control);
-    MovingSpline::new(degree, Some(knots), control, None).map_err(|_| FairError::Singular)
+    SplineWithKnotDerivatives::new(degree, Some(knots), control, None)
+        .map_err(|_| FairError::Singular)
 }
 
 /// One curve of a faired network.

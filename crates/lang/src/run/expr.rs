@@ -138,10 +138,6 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         }
     }
 
-    fn truth(&mut self, m: &Module, id: ExprId) -> Result<bool, Diagnostic> {
-        Ok(self.number(m, id)?.re() != 0.0)
-    }
-
     /// The value with every object in it replaced by its own value, evaluated now.
     pub fn read(&mut self, value: Value<T>, span: Span) -> Evaluated<T> {
         match value {

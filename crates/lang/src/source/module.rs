@@ -67,6 +67,11 @@ impl Modules {
         self.modules.len()
     }
 
+    /// True before the first module is parsed.
+    pub fn is_empty(&self) -> bool {
+        self.modules.is_empty()
+    }
+
     /// The model-wide number of a name; a new one for a new name.
     pub fn name(&mut self, text: &str) -> Name {
         if let Some(&name) = self.texts.get(text) {
