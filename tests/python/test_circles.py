@@ -67,13 +67,18 @@ def _uses(source: Path) -> dict[tuple[str, ...], set[tuple[str, ...]]]:
 
     uses: dict[tuple[str, ...], set[tuple[str, ...]]] = {m: set() for m in modules}
     for module, text in modules.items():
-        paths = [p for found in re.finditer(r"\buse ([^;]+);", text) for p in _paths(found.group(1))]
+        paths = [
+            p for found in re.finditer(r"\buse ([^;]+);", text) for p in _paths(found.group(1))
+        ]
         paths += re.findall(r"\b(?:crate|super)(?:::\w+)+", re.sub(r"\buse [^;]+;", "", text))
         for path in paths:
             full = absolute(module, path)
             if full is None:
                 continue
-            target = next((exported[full[:k]] for k in range(len(full), 0, -1) if full[:k] in exported), module_of(full))
+            target = next(
+                (exported[full[:k]] for k in range(len(full), 0, -1) if full[:k] in exported),
+                module_of(full),
+            )
             if target and module and target != module:
                 uses[module].add(target)
     return uses

@@ -947,7 +947,8 @@ def _left(tol: ArrayLike | None, made: _Prepared) -> ArrayLike | None:
             f"{off[k]:.3e} off point {k + 1}: more control points, or a larger tolerance",
             index=k,
         )
-    return each - off
+    limits: NDArray[np.float64] = each - off
+    return limits
 
 
 def _spread(tol: ArrayLike | None, made: _Prepared, n: int) -> list[float]:
