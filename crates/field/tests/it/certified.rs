@@ -288,7 +288,11 @@ fn bodies_that_touch_in_a_point_come_out_apart() {
     let f = facet(&(at(0.0) | at(2.0)), &over, &Options::new(Resolution::Depth(5))).unwrap();
     crate::common::sound(&f);
     assert_eq!((f.bodies(), f.blunt.len()), (2, 0));
-    assert!(f.touching().iter().any(|p| p.distance(v(1.0, 0.01, 0.02)) < 1e-3), "{:?}", f.touching());
+    assert!(
+        f.touching().iter().any(|p| p.distance(v(1.0, 0.01, 0.02)) < 1e-3),
+        "{:?}",
+        f.touching()
+    );
     assert!((f.moments().volume() / (8.0 / 3.0 * PI) - 1.0).abs() < 1e-6);
     // Overlapping ones are one body.
     let f = facet(&(at(0.0) | at(1.9)), &over, &Options::new(Resolution::Depth(5))).unwrap();
