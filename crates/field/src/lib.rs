@@ -29,7 +29,8 @@ pub use expr::blend::{
 pub use expr::form::Form;
 pub use expr::interval::Interval;
 pub use expr::oracle::{Affine, Constant, Oracle};
-pub use expr::primitive::{Binary, Primitive, twist};
+pub use expr::primitive::{Binary, Primitive};
+pub use expr::remap::twist;
 pub use facet::memo::FacetMemo;
 pub use facet::sheets::{Dot, Mixed, Sheet, Wire, facet_mixed, solid_part};
 pub use facet::shells::Shell;

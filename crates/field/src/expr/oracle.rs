@@ -101,57 +101,6 @@ impl<T: Real> Oracle<T> for Constant {
     }
 }
 
-/// A primitive from outside whose coordinates are replaced by primitives.
-pub(crate) struct Remapped<T: Real> {
-    pub(crate) oracle: Arc<dyn Oracle<T>>,
-    pub(crate) map: Affine<T>,
-    pub(crate) coordinates: [crate::Primitive<T>; 3],
-}
-
-impl<T: Real> Remapped<T> {
-    /// The image of a point, and the gradients of its coordinates.
-    fn image(&self, p: Vec3<T>) -> (Vec3<T>, [Vec3<T>; 3]) {
-        let [x, y, z] = [0, 1, 2].map(|k| self.coordinates[k].gradient(p));
-        (self.map.apply(Vec3::new(x.value, y.value, z.value)), [x.slope, y.slope, z.slope])
-    }
-
-    /// The box that the image of a box lies in.
-    fn image_range(&self, over: &Box3) -> Box3 {
-        let at = [0, 1, 2].map(|k| self.coordinates[k].re().range(over));
-        let at = self.map.re().range(&at);
-        Box3 {
-            low: Vec3::new(at[0].low, at[1].low, at[2].low),
-            high: Vec3::new(at[0].high, at[1].high, at[2].high),
-        }
-    }
-}
-
-impl<T: Real> Field<T> for Remapped<T> {
-    fn value(&self, p: Vec3<T>) -> T {
-        let [x, y, z] = [0, 1, 2].map(|k| self.coordinates[k].value(p));
-        self.oracle.value(self.map.apply(Vec3::new(x, y, z)))
-    }
-    fn value_and_gradient(&self, p: Vec3<T>) -> (T, Vec3<T>) {
-        let (image, [x, y, z]) = self.image(p);
-        let (value, g) = self.oracle.value_and_gradient(image);
-        let g = self.map.pull_back(g);
-        (value, x * g.x + y * g.y + z * g.z)
-    }
-}
-
-impl<T: Real> Oracle<T> for Remapped<T> {
-    fn range(&self, over: &Box3) -> Interval {
-        self.oracle.range(&self.image_range(over))
-    }
-    fn re(&self) -> Arc<dyn Oracle<f64>> {
-        Arc::new(Remapped {
-            oracle: self.oracle.re(),
-            map: self.map.re(),
-            coordinates: [0, 1, 2].map(|k| self.coordinates[k].re()),
-        })
-    }
-}
-
 /// An affine map of space, here from the world to where a primitive was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine<T> {

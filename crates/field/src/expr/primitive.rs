@@ -330,38 +330,6 @@ impl<T: Real> Primitive<T> {
         }
     }
 
-    /// The primitive with its coordinates replaced: f(x', y', z') of three primitives.
-    ///
-    /// A twist, a bend, a taper or a repetition is such a replacement; its inverse moves the solid.
-    pub fn remapped(&self, coordinates: &[Self; 3]) -> Self {
-        let [x, y, z] = coordinates;
-        self.rebuilt(
-            &|c| c,
-            &|op| match op {
-                Op::Plane { normal, offset } => {
-                    let term = |n: T, p: &Self| (n.re() != 0.0 || !n.is_constant()).then(|| p * n);
-                    let terms = [term(normal.x, x), term(normal.y, y), term(normal.z, z)];
-                    let sum = terms.into_iter().flatten().reduce(|a, b| a + b);
-                    sum.unwrap_or_else(|| Self::real(T::zero())) + *offset
-                }
-                Op::User { oracle, map } => {
-                    let inner = super::oracle::Remapped {
-                        oracle: oracle.clone(),
-                        map: *map,
-                        coordinates: coordinates.clone(),
-                    };
-                    Self::user(Arc::new(inner))
-                }
-                Op::Real(c) => Self::real(*c),
-                _ => unreachable!("leaves only"),
-            },
-            &|form| match form {
-                Form::Real(_) => form.clone(),
-                _ => Form::General,
-            },
-        )
-    }
-
     /// What it was made as.
     pub fn form(&self) -> &Form<T> {
         &self.0.form
@@ -485,13 +453,6 @@ impl<T: Real> Primitive<T> {
             &|form| form.re(),
         )
     }
-}
-
-/// The coordinates of a twist about the z axis by `rate` radians for each unit of z.
-pub fn twist<T: Real>(rate: T) -> [Primitive<T>; 3] {
-    let [x, y, z] = Primitive::axes();
-    let (cos, sin) = ((&z * rate).cos(), (&z * rate).sin());
-    [&x * &cos + &y * &sin, &y * &cos - &x * &sin, z]
 }
 
 impl Primitive<f64> {
