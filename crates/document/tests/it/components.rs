@@ -136,7 +136,7 @@ fn what_is_no_component() {
         ("Component c();", "missing-argument", "one file"),
         ("Component c(\"keel.sdl\", \"bad.sdl\");", "missing-argument", "2 files"),
         ("Component c(3);", "wrong-class", "a file"),
-        ("Component c(\"none.sdl\");", "cannot-read", "no file"),
+        ("Component c(\"none.sdl\");", "cannot-read", "unknown file"),
         ("Component c(\"keel.sdl\", rot = 3);", "unknown-argument", "`rot`"),
         // A word of the file that is not a name in it, and nothing near: what there is is reported.
         ("Component c(\"keel.sdl\", RelPoint = 3);", "unknown-argument", "`RelPoint`"),

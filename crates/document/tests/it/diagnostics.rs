@@ -288,7 +288,7 @@ fn set_refuses_what_a_run_would() {
     refused("r.dx", 1.0, "not-a-literal", "default");
     refused("A.q", 1.0, "unknown-member", "x, y, z");
     refused("Q.x", 1.0, "unknown-name", "Q.x");
-    refused("c.points", 1.0, "not-a-number", "built on");
+    refused("c.points", 1.0, "not-a-number", "the parents of an object");
     refused("A.z", f64::INFINITY, "not-finite", "inf");
     refused("c.degree", 0.0, "out-of-range", "from 1 to 25");
     refused("c.degree", 1.5, "out-of-range", "whole");

@@ -308,7 +308,7 @@ fn bad_files_are_told_apart() {
         ("BCurve c 11 1 4 * 2 A;", "not-a-list", "A", "list"),
         ("Line n 11 1 4 * A A2; Line n2 11 1 4 * A n;", "unknown-object", "A2", "want of it: n2"),
         ("Line n 11 1 4 bend A B;", "unsupported-relabel", "bend", "without its relabel"),
-        ("AbsBead b 14 1 l =half;", "bad-formula", "=half", "there is no `half`"),
+        ("AbsBead b 14 1 l =half;", "bad-formula", "=half", "unknown name `half`"),
         ("MirrPoint m 14 1 A *W=0;", "unknown-object", "*W=0", "*Y=0"),
         ("CCurve c 11 1 4 * 3 { A A B };", "coincident-points", "A", ""),
     ] {
