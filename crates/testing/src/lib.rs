@@ -16,7 +16,7 @@ mod random;
 
 pub use compare::{Distance, close, close_relative};
 pub use differences::{ridders, ridders_vector, ridders_vectors};
-pub use random::{Lcg, Random};
+pub use random::{Lcg, Random, Xorshift};
 
 /// True in a long run: `MOLDLOFT_SOAK=1`.
 pub fn soak() -> bool {

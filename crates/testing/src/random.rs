@@ -72,6 +72,43 @@ impl Random {
     }
 }
 
+/// Marsaglia's xorshift (J. Stat. Softw. 8 (2003), 14), which the random models of the derivative laws are
+/// drawn with: their seeds are known to be quick. For anything else take [`Random`].
+#[derive(Clone, Debug)]
+pub struct Xorshift(u64);
+
+impl Xorshift {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Xorshift(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    /// A whole number in 0 .. `limit`.
+    ///
+    /// # Panics
+    /// When `limit` is 0.
+    pub fn below(&mut self, limit: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        ((self.0 >> 11) % limit as u64) as usize
+    }
+
+    /// A number of three decimals in [`low`, `high`].
+    pub fn decimal(&mut self, low: f64, high: f64) -> f64 {
+        let x = low + (high - low) * self.below(1 << 20) as f64 / f64::from(1 << 20);
+        (x * 1000.0).round() / 1000.0
+    }
+
+    /// One of `items`.
+    ///
+    /// # Panics
+    /// When there are none.
+    pub fn pick<'a, T>(&mut self, items: &'a [T]) -> &'a T {
+        &items[self.below(items.len())]
+    }
+}
+
 /// The linear congruential generator u <- (1103515245 u + 12345) mod 2^31, which the recorded figures of
 /// fairing are computed with. Weak in its low bits: for anything else take [`Random`].
 #[derive(Clone, Debug)]

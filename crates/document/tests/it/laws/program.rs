@@ -1,14 +1,14 @@
 //! Random models.
 
-use crate::common::Random;
 use crate::laws::recipes;
 use moldloft_document::registry;
 use moldloft_registry::Class;
+use moldloft_testing::Xorshift;
 use std::fmt::Write;
 
 /// A program that grows by random statements.
 pub struct Program<'r> {
-    pub random: &'r mut Random,
+    pub random: &'r mut Xorshift,
     pub text: String,
     pub count: usize,
     pub points: Vec<String>,
@@ -186,7 +186,7 @@ pub fn parts() -> usize {
 
 /// A random model with a share of the kinds of the registry; models of successive seeds have all.
 pub fn model(seed: u64) -> String {
-    let mut random = Random::new(seed);
+    let mut random = Xorshift::new(seed);
     let text = String::from("param float w = 1.25 in [0.5, 2];\nparam float h = 0.5*w + 0.25;\n");
     let mut p = Program {
         random: &mut random,
