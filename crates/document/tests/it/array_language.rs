@@ -15,7 +15,7 @@ fn arrays_are_compared_chosen_and_reduced() {
          assert s[1,2].x == 7 and s[2,1].x == 5 and s[1,2].y == -8 and s[2,3].y == 0;",
         "assert max(3, 1) == 3 and max(3, 1, 7, 2) == 7 and max({1, 5, 2}) == 5;",
         "vector v = max({1, 5, 2}, 3); assert v.x == 3 and v.y == 5 and v.z == 3;",
-        "assert max({1, 5, 2, 4}) == 5 and sum({1, 2, 3, 4}) == 10 and mean({1, 2, 3, 6}) == 3;",
+        "assert max({1, 5, 2, 4}) == 5 and sum({1, 2, 3, 4}) == 10 and average({1, 2, 3, 6}) == 3;",
         // Comparisons are masks.
         "farray a = list(1, 2, 3, 4); farray m = a > 2; assert m[1] == 0 and m[3] == 1 and sum(m) == 2;
          assert any(a > 3) and not any(a > 4) and all(a > 0) and not all(a > 1);",
@@ -39,7 +39,7 @@ fn arrays_are_compared_chosen_and_reduced() {
         "farray y = interp(list(-1, 0.5, 1.5, 9), list(0, 1, 2), list(0, 10, 30));
          assert y[1] == 0 and y[2] == 5 and y[3] == 20 and y[4] == 30;",
         "surface s[2,3]; s[1,] = uniform(1, 3, 3) * {1, 0, 0}; s[2,] = uniform(4, 6, 3) * {1, 0, 0};
-         farray i = sum(s.x, axis = 1); farray j = sum(s.x, axis = 2); farray m = mean(s.x, axis = 1);
+         farray i = sum(s.x, axis = 1); farray j = sum(s.x, axis = 2); farray m = average(s.x, axis = 1);
          assert i.d1 == 3 and i[1] == 5 and i[3] == 9 and j.d1 == 2 and j[2] == 15 and m[2] == 3.5;
          assert sum(max(s.x, axis = 2)) == 9;",
         // Braces are arrays where an operator stands.

@@ -361,7 +361,7 @@ pub fn rows() -> Vec<Row> {
     fn total<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         reduced("sum", args, |a, b| a + b)
     }
-    fn mean<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
+    fn average<T: Real>(args: &[Value<T>], _: &Context) -> Result<Value<T>, CallError> {
         let gathered = crate::value::ops::gathered(&args[0]);
         let count = match (&*gathered, &args[1]) {
             (Value::Numbers(a), Value::Number(axis)) => match a.shape {
@@ -380,7 +380,7 @@ pub fn rows() -> Vec<Row> {
         };
         let unset = || Value::Unset;
         let all = [args[0].clone(), unset(), unset(), unset(), args[1].clone()];
-        Ok(match reduced("mean", &all, |a, b| a + b)? {
+        Ok(match reduced("average", &all, |a, b| a + b)? {
             Value::Number(x) => Value::Number(x / count as f64),
             Value::Numbers(a) => {
                 let items = a.items.iter().map(|x| *x / count as f64).collect();
@@ -413,7 +413,8 @@ pub fn rows() -> Vec<Row> {
         total
     ));
     rows.push(row!(
-        "mean",
+        // `mean` is the mean curvature of a surface.
+        "average",
         "The mean of the numbers of an array.",
         vec![
             argument("a", "A row or grid of numbers."),
@@ -422,8 +423,8 @@ pub fn rows() -> Vec<Row> {
                 ..argument("axis", "1 or 2: the means along that index, a row.")
             },
         ],
-        "assert mean(list(1, 2, 6)) == 3;",
-        mean
+        "assert average(list(1, 2, 6)) == 3;",
+        average
     ));
     rows
 }
