@@ -3,7 +3,6 @@
 
 mod breaks;
 mod entity;
-mod findings;
 mod fit;
 mod fixtures;
 mod interrogate;
@@ -14,4 +13,3 @@ mod knot_removal;
 mod network;
 mod optimum;
 mod rational;
-mod truth;
