@@ -147,7 +147,7 @@ def test_render_traced(cli, tmp_path):
     assert int.from_bytes(whole[16:20]) == 160 and int.from_bytes(whole[20:24]) == 120
     corners = ("--low=-1,-1,-1", "--high=1,1,1")
     cli("render", tee, "--traced", "tee - tee", "-o", "x.png", "--size", "16x16", *corners)
-    assert "is no set" in cli("render", tee, "--traced", "r1", status=1).stderr
+    assert "is not a set" in cli("render", tee, "--traced", "r1", status=1).stderr
     assert "nothere" in cli("render", tee, "--traced", "nothere", status=1).stderr
     assert "both" in cli("render", tee, "--traced", "tee", "--low=0,0,0", status=1).stderr
     assert "is no point" in cli("render", tee, "--traced", "tee", "--low=0,0", status=2).stderr

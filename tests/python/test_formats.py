@@ -63,7 +63,7 @@ def test_the_tables_of_before_are_reads_of_it() -> None:
         assert files.file_name("hull", row.name) == f"hull.{row.suffix or row.name}"
     with pytest.raises(moldloft.Error, match="`nemoh` or `aqwa`"):
         files.format_named("dat")
-    with pytest.raises(moldloft.Error, match="there are: gdf, "):
+    with pytest.raises(moldloft.Error, match="expected one of: gdf, "):
         files.format_named("none")
 
 

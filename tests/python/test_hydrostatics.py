@@ -101,7 +101,7 @@ def test_a_deck_edge_under_water_is_said(barge, cli, model_file):
     done = cli(
         "hydro", path, "--displacement", L * B * T, f"--cg=6,0,{KG}", "--gz", "0,60,7", "--json"
     )
-    assert "open edge of the skin is under water" in done.stderr
+    assert "open edge below the waterline" in done.stderr
     rows = json.loads(done.stdout)
     assert len(rows) == 7 and rows[-1]["freeboard"] < 0
 

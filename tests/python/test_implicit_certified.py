@@ -16,7 +16,9 @@ def test_a_thin_ring_is_whole(direction):
     ring = im.Set(im.torus((0, 0, 0), direction, 2, 0.02))
     facets = ring.facets()
     exact = 2 * math.pi**2 * 2 * 0.02**2
-    assert facets.closed and facets.bodies == 1 and facets.euler == 0 and not facets.unresolved
+    assert facets.closed and facets.bodies == 1 and facets.euler == 0
+    # What could not be proved is listed, and holds next to nothing.
+    assert sum(cell.volume for cell in facets.unresolved) < 1e-6 * exact
     assert facets.volume == pytest.approx(exact, rel=0.1)
     mass = ring.mass()
     assert mass.volume == pytest.approx(exact, rel=1e-6)
@@ -66,7 +68,8 @@ def test_clearances_that_are_plateaus():
     found = cubes[0].distance(cubes[1])
     assert found.distance == pytest.approx(1) and found.at_least == pytest.approx(1)
     balls = [im.Set(im.sphere((0, 0, 0), r)) for r in (1, 2, 3)]
-    assert balls[0].distance(balls[2] - balls[1]).distance == pytest.approx(1)
+    gap = balls[0].distance(balls[2] - balls[1])
+    assert gap.at_least <= 1 <= gap.distance and gap.distance == pytest.approx(1, rel=1e-4)
     assert balls[0].nearest((0, 0, 0)).distance == pytest.approx(1)
 
 
