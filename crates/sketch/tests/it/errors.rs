@@ -82,7 +82,7 @@ const TABLE: &[(u16, &str, &str, &str)] = &[
     ),
     (398, "SKETCH A; POINT 1 0 0; POINT 2 9 0", "DIM X 1 2 5", "no planes on axis X"),
     (399, "", "INPUT \"broken.json\"", "not a sketch"),
-    (399, "", "IMPORT \"broken.dxf\"", "no DXF"),
+    (399, "", "IMPORT \"broken.dxf\"", "not a DXF"),
     (
         400,
         "SKETCH A; POINT 1 0 0; POINT 2 9 0; POINT 3 9 9; POINT 4 0 9; LINE 1 1 2 TYPE X
