@@ -40,7 +40,7 @@ pub const HEX_FACES: [[usize; 4]; 6] =
 
 impl HexMesh {
     /// The mesh of blocks, whose nodes are one where they coincide to 1e-10 of the size; left-handed blocks are
-    /// turned over. What is no face of two cells is boundary.
+    /// turned over. What is not a face of two cells is boundary.
     pub fn of_blocks<T: Real>(blocks: &[VolumeGrid<T>], names: &[FaceNames]) -> Self {
         let size = blocks.iter().map(VolumeGrid::extent).fold(0.0, f64::max);
         let mut nodes =

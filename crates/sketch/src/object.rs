@@ -64,7 +64,7 @@ pub struct Object {
     pub faces: BTreeMap<FaceId, Face>,
     /// Curves by folded name, in order of entry.
     pub curves: IndexMap<String, Curve>,
-    /// What it is made of, when it is no drawing.
+    /// What it is made of, when it is not a drawing.
     pub feature: Option<Arc<Feature>>,
 }
 

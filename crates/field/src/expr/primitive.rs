@@ -383,7 +383,7 @@ impl<T: Real> Primitive<T> {
         }
     }
 
-    /// What tells its node from every other one while it lives.
+    /// What distinguishes its node from every other one while it lives.
     pub(crate) fn identity(&self) -> usize {
         Arc::as_ptr(&self.0) as usize
     }

@@ -213,7 +213,7 @@ impl<T: Real> Build<T> for Attributed<T> {
             Some((tag, value)) if !tag.trim().is_empty() => {
                 Ok((tag.trim().to_owned(), value.trim().to_owned()))
             }
-            _ => Err(CallError::new("wrong-tags", format!("`{}` is no tag", part.trim()))
+            _ => Err(CallError::new("wrong-tags", format!("`{}` is not a tag", part.trim()))
                 .expected("`tag = text`, and more after `;`")
                 .in_field(Self::TAGS)),
         };

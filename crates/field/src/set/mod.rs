@@ -262,7 +262,7 @@ impl<T: Real> Set<T> {
         }
     }
 
-    /// What tells its node and its attributes from others while they live.
+    /// What distinguishes its node and its attributes from others while they live.
     pub(crate) fn identity(&self) -> (usize, usize) {
         let attributes = self.attributes.as_ref().map_or(0, |a| Arc::as_ptr(a) as usize);
         (Arc::as_ptr(&self.node) as usize, attributes)

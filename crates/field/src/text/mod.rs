@@ -23,7 +23,7 @@ use moldloft_num::{Axis, Plane, Vec3};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-/// Why a text is no set or field.
+/// Why a text is not a set or field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextError {
     /// The line, from 1.

@@ -70,7 +70,7 @@ fn volume<T: Real>(layers: &[Value<T>], written: &str) -> Result<StructuredGrid,
     for (k, layer) in layers.iter().enumerate() {
         let Value::Vectors(a) = layer else {
             let found = variables::a(layer);
-            let message = format!("item {} of `{written}` is no layer of a block", k + 1);
+            let message = format!("item {} of `{written}` is not a layer of a block", k + 1);
             return Err(Diagnostic::error("wrong-type", message)
                 .expected("surfaces of one shape")
                 .found(found));

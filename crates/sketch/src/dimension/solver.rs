@@ -3,7 +3,7 @@
 //! They act only on what the axis dimensions leave open. Equations with one unknown are solved first,
 //! then the rest together. Of several solutions the one is taken that the drawing leads to: its own
 //! lengths and angles are changed into those asked for in steps that Newton's method follows, and the
-//! sign of the determinant of the equations, which tells a solution from its mirror image, must stay.
+//! sign of the determinant of the equations, which distinguishes a solution from its mirror image, must stay.
 //! So the same text gives the same branch, whatever values were set before. Derivatives come from one
 //! more step in the scalar itself (implicit function theorem).
 
