@@ -150,7 +150,7 @@ def test_render_traced(cli, tmp_path):
     assert "is not a set" in cli("render", tee, "--traced", "r1", status=1).stderr
     assert "nothere" in cli("render", tee, "--traced", "nothere", status=1).stderr
     assert "both" in cli("render", tee, "--traced", "tee", "--low=0,0,0", status=1).stderr
-    assert "is no point" in cli("render", tee, "--traced", "tee", "--low=0,0", status=2).stderr
+    assert "is not a point" in cli("render", tee, "--traced", "tee", "--low=0,0", status=2).stderr
 
 
 def test_sections_of_a_set(cli, tmp_path):
