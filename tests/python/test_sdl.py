@@ -138,7 +138,7 @@ def test_repl() -> None:
     assert session.run("print 3") == ["3"]
     with pytest.raises(ModelError, match="shapes differ"):
         session.run("c = uniform(0, 1, 4)*{1, 0, 0}")
-    with pytest.raises(Error, match="there is no"):
+    with pytest.raises(Error, match="unknown name"):
         session.run("nothing + 1")
     assert session.variables() == ["c: curve[3]", "i: number"]
     # A line with errors is left out; one can be taken back.

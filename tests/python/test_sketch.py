@@ -247,7 +247,7 @@ def test_the_class(tmp_path):
     assert Sketch.load(twin).objects == s.objects
     assert s.text == path.read_text()
     assert s.picture(200, 150).startswith(b"\x89PNG")
-    with pytest.raises(SketchError, match="no dimension") as caught:
+    with pytest.raises(SketchError, match="unknown dimension") as caught:
         s["NOTHING"] = 1
     assert caught.value.replies[-1].next
     with pytest.raises(UnknownNameError):
