@@ -2,10 +2,10 @@
 
 use crate::WriteError;
 use crate::error::check_positions;
-use crate::text::{put, real, word};
+use crate::text::{put, real};
 use moldloft_mesh::{Mesh, is_triangle};
 
-/// The file. Quads stay quads; the patches stand in comments, each with its run of faces.
+/// The file. Quads stay quads; patches have no names here, for readers differ on comments.
 ///
 /// # Errors
 /// Positions that are not finite.
@@ -26,7 +26,6 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, WriteError> {
         put!(out, "{x} {y} {z}\n");
     }
     for patch in mesh.patches() {
-        put!(out, "# {}\n", word(&patch.info.name));
         for &face in &mesh.faces()[patch.faces.clone()] {
             let [a, b, c, d] = face.map(|v| number[v as usize]);
             if is_triangle(face) {
@@ -50,7 +49,7 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         let used = mesh.faces().iter().flatten().collect::<std::collections::BTreeSet<_>>().len();
         assert_eq!(lines[..2], ["OFF".to_string(), format!("{used} {} 0", mesh.faces().len())]);
-        assert_eq!(lines.len(), 2 + used + mesh.faces().len() + mesh.patches().len());
-        assert!(lines.contains(&"# fore_body") && lines.last().unwrap().starts_with("3 "));
+        assert_eq!(lines.len(), 2 + used + mesh.faces().len());
+        assert!(lines.last().unwrap().starts_with("3 "));
     }
 }
