@@ -69,4 +69,8 @@ impl<T: Real> Curve<T> for Mapped<T> {
     fn joints(&self) -> Vec<f64> {
         self.curve.joints()
     }
+
+    fn image_of(&self) -> Option<moldloft_num::trace::Key> {
+        self.curve.key
+    }
 }

@@ -152,6 +152,10 @@ impl<T: Real> Surface<T> for Blend<T> {
         [self.masters.joints(), self.knots.joints()]
     }
 
+    fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
+        self.masters.edge_made_of(k)
+    }
+
     fn edges(&self) -> Edges<T> {
         if self.knots.degree() == 1 { self.masters.straight_edges() } else { self.masters.edges() }
     }
