@@ -13,6 +13,15 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
+# The packages of the extra `test` by name: `pip install '.[test]'` would build the extension once more.
+define TEST_PACKAGES
+from importlib.metadata import requires
+for line in requires("moldloft"):
+    if 'extra == "test"' in line.replace("'", '"'):
+        print(line.split(";")[0])
+endef
+export TEST_PACKAGES
+
 .PHONY: setup demo test check reference soak clean help
 
 help: ## this list
@@ -29,7 +38,8 @@ $(VENV)/.installed: $(SOURCES)
 
 $(VENV)/.with-tests: $(VENV)/.installed pyproject.toml
 	@echo "installing the packages that the tests need into $(VENV)"
-	@$(PIP) install --editable '.[test]'
+	@$(BIN)/python -c "$$TEST_PACKAGES" > $(VENV)/test-packages.txt
+	@$(PIP) install --requirement $(VENV)/test-packages.txt
 	@echo "building the language server"
 	@cargo build --quiet --release -p moldloft-lsp
 	@cp $${CARGO_TARGET_DIR:-target}/release/moldloft-lsp$(EXE) $(BIN)/
