@@ -45,7 +45,9 @@ impl<const D: usize> State<'_, D> {
     /// What cone `c`'s row is, and its length.
     fn limit(&self, c: usize, x: &[V<D>]) -> (V<D>, f64) {
         let (rows, k) = self.rows_of(c);
-        let s = self.part(c, apply(rows, k, x));
+        let mut s: V<D> = std::array::from_fn(|i| self.p.bounds.offset(k)[i]);
+        axpy(&mut s, 1.0, apply(rows, k, x));
+        let s = self.part(c, s);
         (s, dot(s, s).sqrt())
     }
 
