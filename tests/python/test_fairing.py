@@ -119,7 +119,7 @@ def close(got, wanted, share):
 def test_the_table_by_the_command(cli, tmp_path, name):
     row = TABLE[name]
     closed = ["--closed"] if name == "circle.csv" else []
-    asked = [DATA / name, "--tol", row["tol"], *closed]
+    asked = [DATA / name, "--tol", row["tol"], *closed, "--as", "control"]
     best = told(cli, *asked, "-o", "faired.csv")
     largest, jumps, second = row["input"]
     close(best["largest_jump_before"], largest, 1e-6)
@@ -252,7 +252,8 @@ def test_roles_of_points():
     for role in ("control", "points", "fit"):
         faired = moldloft.fair(points, 1e-3, as_=role)
         assert faired.points.shape == points.shape
-        assert faired.deviation_sampled <= faired.deviation_certified <= 1e-3 * (1 + 1e-12)
+        assert faired.deviation_sampled <= faired.deviation_certified
+        assert faired.deviation_data <= 1e-3 * (1 + 1e-12)
         moved = np.linalg.norm(faired.points - points, axis=1).max()
         assert moved <= 1e-3 * (1 + 1e-12)
         assert faired.after.pieces < faired.before.pieces / 4
@@ -352,7 +353,9 @@ def test_nets_and_networks_keep_what_is_meant():
     free = abs(volume(moldloft.fair(noisy, 2e-4).surface.grid(161, 161)) - volume(before))
     assert drift[0] < 0.05 * free
     grid = np.arange(41 * 17).reshape(41, 17)
-    lines = fairing.network(noisy.reshape(-1, 3), [*grid, *grid.T], 2e-4, motion=(0, 1, 0))
+    lines = fairing.network(
+        noisy.reshape(-1, 3), [*grid, *grid.T], 2e-4, motion=(0, 1, 0), spacing="index"
+    )
     assert lines.deviation_certified <= 2e-4 and lines.shared == 697
     # Two curves that share a point still meet in it.
     a, b = lines.curves[20], lines.curves[41 + 8]
@@ -479,11 +482,11 @@ def test_files_go_and_come(cli, tmp_path, model_file):
     rows = ["NACA 0012", "41. 41.", ""]
     rows += [f"{x:.4f} {y:.4f}" for x, y in upper] + [""] + [f"{x:.4f} {y:.4f}" for x, y in lower]
     path = model_file("\n".join(rows) + "\n", "naca.dat")
-    data = told(cli, path, "--tol", 1e-4, "-o", "out.dat")
+    data = told(cli, path, "--tol", 1e-4, "--as", "control", "-o", "out.dat")
     assert data["points"] == 81
     out = (tmp_path / "out.dat").read_text().splitlines()
     assert out[0] == "NACA 0012" and out[1].split() == ["41.", "41."] and len(out) == 86
-    again = told(cli, "out.dat", "--tol", 0)
+    again = told(cli, "out.dat", "--tol", 0, "--as", "control")
     close(again["measure_after"], data["measure_after"], 1e-12)
     # Blanks, tabs and semicolons, comments and Fortran's exponents.
     for sign in (" ", "\t", "; "):
@@ -596,7 +599,11 @@ FAULTS = {
         ["at least 8 points"],
     ),
     "too few for the degree": (GOOD, ["--tol", "1", "--degree", "8"], ["at least 10 points"]),
-    "repeated point": (GOOD.replace("4, 2", "3, 2"), ["--tol", "1"], [":5:", "coincide"]),
+    "repeated point": (
+        GOOD.replace("4, 2", "3, 2"),
+        ["--tol", "1", "--as", "control"],
+        [":5:", "coincide"],
+    ),
     "nan": (GOOD.replace("5, 4", "5, nan"), ["--tol", "1"], [":6:", "`nan`", "not finite"]),
     "infinity": (GOOD.replace("5, 4", "5, inf"), ["--tol", "1"], [":6:", "not finite"]),
     "no number": (GOOD.replace("5, 4", "5, four"), ["--tol", "1"], [":6:", "found `four`"]),
@@ -797,7 +804,9 @@ def test_data_stay_within_their_tolerance_at_any_spacing():
         faired = moldloft.fair(read, 5e-3, goal=goal)
         assert faired.deviation_data <= 5e-3 * (1 + 1e-12)
         assert np.linalg.norm(faired.points - read, axis=1).max() <= 5e-3 * (1 + 1e-9)
-        assert faired.after.inflections <= 2
+        # Half of the noise's squares ask for its bends: that is said.
+        said = any("inflections more" in note for note in faired.notes)
+        assert faired.after.inflections <= 2 or (goal == ("budget", 0.5) and said)
         again = moldloft.fair(faired.points, 5e-3, goal=goal, original=read)
         assert again.points.tobytes() == faired.points.tobytes()
     # Few control points: within the tolerance of the data, or refused.

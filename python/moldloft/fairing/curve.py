@@ -489,11 +489,10 @@ def fair_curve(
             accuracy,
         )
         through, tangents = list(through), list(tangents)
-        if as_ == "fit" and not own.given and count is None and bound in (None, "data"):
-            return _fair_data(points, tol, asked, (through, tangents, keep, joins), started)
-        free = not (own.given or through or tangents or keep or joins)
-        if as_ == "points" and free and bound is None and spacing not in ("index", "uniform"):
-            return _fair_points(points, tol, asked, started)
+        # Points that move are those of the curve through them.
+        moves = as_ == "points" and bound is None and spacing not in ("index", "uniform")
+        if (as_ == "fit" or moves) and not own.given and count is None and bound in (None, "data"):
+            return _fair_data(points, tol, asked, (through, tangents, keep, joins), as_, started)
     if bound == "data":
         raise FairingError('bound `data` is for optima of data, `as_="fit"`')
     if len(release):
@@ -612,7 +611,7 @@ def _data_measure(measure: str | None, degree: int) -> str:
 
 
 def _fair_data(
-    points: ArrayLike, tol: ArrayLike | None, asked: _Asked, wanted: Any, started: float
+    points: ArrayLike, tol: ArrayLike | None, asked: _Asked, wanted: Any, as_: str, started: float
 ) -> Fairing:
     """Data under tolerances."""
     data, width = points_of(points)
@@ -673,15 +672,19 @@ def _fair_data(
         off = float(told["residuals"][k])
         notes.append(f"point {k + 1} was released: the curve passes {off:.3e} from it")
     faired, before = Spline._of(core), Spline._of(original)
+    rows = faired(told["at"])
+    # What the curve passes through to rounding has not moved by a bit.
+    still = told["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
+    rows[still] = data[still]
     far, certificate = told["deviation"], told["certificate"]
     taken = {*breaks, *release}
     return Fairing(
-        points=narrowed(faired(told["at"]), width),
+        points=narrowed(rows, width),
         spline=faired,
         original=before,
         data=data,
         tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
-        as_="fit",
+        as_=as_,
         mode="optimum",
         measure=measure,
         breaks=tuple(breaks),
@@ -734,75 +737,6 @@ def laid(
         certified = float("nan")
     a, b = first.samples(16).points, second.samples(16).points
     return first, second, certified, float(np.linalg.norm(a - b, axis=1).max())
-
-
-def _fair_points(
-    points: ArrayLike, tol: ArrayLike | None, asked: _Asked, started: float
-) -> Fairing:
-    """Points moved themselves, by divided differences."""
-    from moldloft.fairing.network import network
-
-    data, width = points_of(points)
-    refuse_repeats(data, asked.closed)
-    n = len(data)
-    found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
-    breaks = _chosen(asked.breaks, found, "corner", n)
-    release = _chosen(asked.release, found, "outlier", n)
-    limits = _released(radii(tol, n), release, found, data)
-    still = [_index(k, n) for k in asked.fixed]
-    for k, word in enumerate(_ends(asked.ends if asked.ends is not None else "free", asked.closed)):
-        if word != "free":
-            still.append((0, n - 1)[k])
-    own = [*range(n), 0] if asked.closed else [*range(n)]
-    measure = asked.measure or "third"
-    made = network(
-        data,
-        [own],
-        limits if tol is not None else None,
-        degree=asked.degree,
-        measure=measure,
-        breaks=breaks,
-        fixed=still,
-        motion=asked.motion,
-        spacing=asked.spacing,
-        goal=asked.goal,
-    )
-    first, second, certified, sampled = laid(
-        data, made.points, asked.degree, asked.spacing, asked.closed, breaks
-    )
-    none = np.zeros(0)
-    numbers = Numbers(made.measure_before, made.jumps_before, 0.0, 0, 0, 0.0)
-    after = Numbers(made.measure_after, made.jumps_after, 0.0, 0, 0, 0.0)
-    return Fairing(
-        points=narrowed(made.points, width),
-        spline=second,
-        original=first,
-        data=data,
-        tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
-        as_="points",
-        mode="optimum",
-        measure=measure,
-        breaks=tuple(breaks),
-        before=_counted(numbers, first),
-        after=_counted(after, second),
-        deviation_certified=certified,
-        deviation_sampled=sampled,
-        deviation_control=made.deviation_certified,
-        length=first.length,
-        value=made.value,
-        gap=made.gap,
-        steps=0,
-        stopped=None,
-        active=None,
-        findings=tuple(f for f in found if f.index not in {*breaks, *release}),
-        corrected=tuple(f for f in found if f.index in {*breaks, *release}),
-        jump_lengths_before=np.linalg.norm(first.jumps()[1], axis=1) if n else none,
-        jump_lengths_after=np.linalg.norm(second.jumps()[1], axis=1) if n else none,
-        notes=(),
-        seconds=time.perf_counter() - started,
-        goal=asked.goal[0],
-        used=made.used,
-    )
 
 
 @dataclass

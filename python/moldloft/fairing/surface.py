@@ -679,6 +679,7 @@ def fair_surface(
         "measure": measure,
         "mode": mode,
         "bound": bound,
+        "goal": None,
         "passes": passes,
         "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
         "order": order,

@@ -66,6 +66,8 @@ pub struct DataFit {
     pub iterations: usize,
     /// Tolerances that are reached.
     pub active: usize,
+    /// Inflections beyond those of the curve of least bending, where the goal left no other way.
+    pub bends: usize,
 }
 
 /// Data of which neighbours in one place are one datum.
@@ -325,7 +327,9 @@ pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairErro
             break;
         }
     }
-    let Some((mut log, mut made)) = good else { return Ok(plain) };
+    let Some((mut log, mut made)) = good else {
+        return Ok(DataFit { bends: bends(&plain.points) - most, ..plain });
+    };
     let mut low = log - step;
     for _ in 0..3 {
         let middle = 0.5 * (low + log);
@@ -371,6 +375,7 @@ impl Data {
             active: found.optimum.active,
             points: found.optimum.points,
             original: job.points.clone(),
+            bends: 0,
         }
     }
 

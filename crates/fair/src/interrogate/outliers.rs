@@ -67,8 +67,11 @@ pub const SCORE: f64 = 6.0;
 /// The same for the turn of a knuckle.
 const KNUCKLE_SCORE: f64 = 20.0;
 
-/// Turns beyond this are noses, unless both sides are straight.
+/// Turns beyond this are noses, unless both sides are straight or the turn stands out by `STANDS_OUT`.
 const LARGEST_TURN: f64 = 0.44;
+
+/// How many times the turns beside it a knuckle's is, where a nose could be as sharp.
+const STANDS_OUT: f64 = 6.0;
 
 /// Neighbours on either side.
 const SIDE: usize = 5;
@@ -368,7 +371,8 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
         factor: f64,
         angle: f64,
         straight: bool,
-        sharpest: bool,
+        /// Its turn over the largest beside it.
+        sharpness: f64,
     }
     let turn = |a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>| {
         let (u, v) = (b - a, c - b);
@@ -416,7 +420,7 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
                 factor: 1.0 / columns.r[4][4],
                 angle,
                 straight: others().all(|t| t < 0.02),
-                sharpest: own > 2.0 * others().fold(0.0, f64::max),
+                sharpness: own / others().fold(f64::MIN_POSITIVE, f64::max),
             })
         })
         .collect();
@@ -425,29 +429,35 @@ fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> 
     for h in &all {
         let scale = ((PRIOR * file * file + 3.0 * h.scale * h.scale) / (PRIOR + 3.0)).sqrt();
         let score = h.size / (scale * h.factor);
-        if score <= KNUCKLE_SCORE || !h.sharpest || (h.angle > LARGEST_TURN && !h.straight) {
+        let nose = h.angle > LARGEST_TURN && !h.straight && h.sharpness < STANDS_OUT;
+        if score <= KNUCKLE_SCORE || h.sharpness <= 2.0 || nose {
             continue;
         }
-        // A wrong digit, the point's or a neighbour's, is cured by leaving it out.
-        let cured = [h.index, (h.index + 1) % n, (h.index + n - 1) % n].into_iter().any(|gone| {
-            if !closed && (gone < 2 || gone + 2 >= n) {
-                return false;
-            }
-            let left: Vec<Vec3<f64>> = (0..n).filter(|&j| j != gone).map(|j| points[j]).collect();
-            let m = left.len();
-            let near = (0..8).map(|k| (gone + m + k - 4) % m);
-            let fine = near
-                .filter_map(|j| seen(&left, j, closed))
-                .filter(|s| s.judged)
-                .map(|s| {
-                    let scale =
-                        ((PRIOR * file * file + 6.0 * s.scale * s.scale) / (PRIOR + 6.0)).sqrt();
-                    // Beside a break the neighbours' own scale is large: the file's decides.
-                    s.off / scale.min(3.0 * file)
-                })
-                .fold(0.0, f64::max);
-            fine < SCORE
-        });
+        // A wrong digit turns the polygon half as much beside it, at any spacing; it, the point's or a
+        // neighbour's, is cured by leaving it out.
+        let digit = h.sharpness < STANDS_OUT;
+        let cured = digit
+            && [h.index, (h.index + 1) % n, (h.index + n - 1) % n].into_iter().any(|gone| {
+                if !closed && (gone < 2 || gone + 2 >= n) {
+                    return false;
+                }
+                let left: Vec<Vec3<f64>> =
+                    (0..n).filter(|&j| j != gone).map(|j| points[j]).collect();
+                let m = left.len();
+                let near = (0..8).map(|k| (gone + m + k - 4) % m);
+                let fine = near
+                    .filter_map(|j| seen(&left, j, closed))
+                    .filter(|s| s.judged)
+                    .map(|s| {
+                        let scale = ((PRIOR * file * file + 6.0 * s.scale * s.scale)
+                            / (PRIOR + 6.0))
+                            .sqrt();
+                        // Beside a break the neighbours' own scale is large: the file's decides.
+                        s.off / scale.min(3.0 * file)
+                    })
+                    .fold(0.0, f64::max);
+                fine < SCORE
+            });
         if !cured {
             out.push(DataFinding::Knuckle { index: h.index, angle: h.angle, score });
         }

@@ -193,6 +193,13 @@ pub fn data_report(data: &Data, options: &DataOptions) -> Result<(DataFit, Repor
     if held > 3 && made.active >= held {
         notes.push("the tolerance is reached at every datum: the data ask for more".to_string());
     }
+    if made.bends > 0 {
+        notes.push(format!(
+            "{} inflections more than the curve of least bending: no curve was found that meets the \
+             goal without them; a larger tolerance or budget, or the goal `fairest`",
+            made.bends
+        ));
+    }
     let report = Report {
         deviation: deviation(&job, &made.points),
         points: made.points.clone(),
