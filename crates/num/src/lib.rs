@@ -17,6 +17,7 @@ mod frame;
 mod jet;
 mod linear;
 mod quadrature;
+mod rational;
 mod real;
 mod reparametrization;
 mod roots;
@@ -34,6 +35,7 @@ pub use linear::{Banded, SingularMatrix, determinant, solve_dense, solve_pivotin
 pub use quadrature::{
     GAUSS_2_UNIT, GAUSS_4, GAUSS_8_UNIT, gauss_legendre, gauss_points, integrate,
 };
+pub use rational::{Pace, Rational, Weight};
 pub use real::Real;
 pub use reparametrization::{
     Composed, Reparametrization, ReparametrizationJet, inv_reparametrization,

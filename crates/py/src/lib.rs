@@ -17,6 +17,7 @@ mod formats;
 mod grids;
 mod implicit;
 mod mesh;
+mod nurbs;
 mod reference;
 mod search;
 mod sketch;
@@ -56,6 +57,8 @@ mod _core {
     use crate::implicit::{PyFacets, PyField, PySet};
     #[pymodule_export]
     use crate::mesh::PyMesh;
+    #[pymodule_export]
+    use crate::nurbs::{brep, length_unit, nurbs};
     #[pymodule_export]
     use crate::reference::reference;
     #[pymodule_export]
