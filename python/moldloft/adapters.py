@@ -177,13 +177,13 @@ def to_capytaine(
         path = Path(folder) / "body.gdf"
         names = [tags] if isinstance(tags, str) else list(tags)
         model.write(path, format="gdf", immersed=True, tags=names)
-        mesh = capytaine.load_mesh(str(path), file_format="gdf", name=name)
+        mesh = capytaine.load_mesh(str(path), file_format="gdf")
         lid = None
         if lids:
             both = Path(folder) / "lid.gdf"
             lid_names = names or ["lid"]
             model.write(both, format="gdf", lids=True, tags=lid_names)
-            lid = capytaine.load_mesh(str(both), file_format="gdf", name=f"{name}_lid")
+            lid = capytaine.load_mesh(str(both), file_format="gdf")
     return capytaine.FloatingBody(mesh=mesh, lid_mesh=lid, name=name)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
+from itertools import product
 
 
 @dataclass
@@ -19,9 +20,10 @@ class Case:
     exact: bool | None = True
 
 
-def box(a: float, b: float, c: float, header: str = "") -> str:
-    """A box from the origin, of six faces between lines."""
-    corners = {f"P{i}{j}{k}": (i * a, j * b, k * c) for i in (0, 1) for j in (0, 1) for k in (0, 1)}
+def box(a: float, b: float, c: float, *, shift: float = 0, lift: float = 0) -> str:
+    """A box from (0, shift, lift), of six faces between lines."""
+    places = product((0, 1), repeat=3)
+    corners = {f"P{i}{j}{k}": (i * a, j * b + shift, k * c + lift) for i, j, k in places}
     points = " ".join(f"AbsPoint {n}({x!r}, {y!r}, {z!r});" for n, (x, y, z) in corners.items())
     lines, faces = [], []
     for axis, name in enumerate("xyz"):
@@ -38,8 +40,8 @@ def box(a: float, b: float, c: float, header: str = "") -> str:
                 line = f"l{name}{side}{s}"
                 lines.append(f"Line {line}({ends[0]}, {ends[1]});")
                 names.append(line)
-            faces.append(f"RuledSurf {name}{side}({names[0]}, {names[1]}, color = {axis + 1});")
-    return header + points + " ".join(lines) + " ".join(faces)
+            faces.append(f"RuledSurf {name}{side}({names[0]}, {names[1]}, colour = {axis + 1});")
+    return points + " ".join(lines) + " ".join(faces)
 
 
 def cylinder(r: float, h: float) -> str:
@@ -71,7 +73,7 @@ def torus(big: float, small: float) -> str:
 
 
 def wigley(length: float, beam: float, draft: float) -> str:
-    """Half of a Wigley hull and its deck, mirrored in y = 0 by the model's symmetry."""
+    """Half of a Wigley hull without deck, mirrored in y = 0 by the model's symmetry."""
     b = beam / 2
     rows = []
     # y = b (1 - x^2) (1 - z^2): Bezier values along each direction are 0, 2, 0 and 1, 1, 0.
@@ -82,32 +84,7 @@ def wigley(length: float, beam: float, draft: float) -> str:
     return f"""
         Model info(symmetry = "y");
         NURBSurf hull({{{points}}}, nu = 3, nv = 3, degree_u = 2, degree_v = 2);
-        AbsPoint A({-length / 2!r}, 0, 0); AbsPoint B({length / 2!r}, 0, 0);
-        EdgeSnake rail(hull, 4); Line middle(A, B);
     """
-
-
-def hull(rng: random.Random) -> str:
-    """A lofted hull with deck and transom, symmetric about y = 0."""
-    length, beam, depth = rng.uniform(8, 40), rng.uniform(2, 8), rng.uniform(1, 4)
-    text = 'Model info(symmetry = "y");'
-    masters = []
-    for k in range(5):
-        x = length * k / 4
-        full = 1 - (k / 4) ** rng.uniform(2, 3)
-        keel = -depth * (1 - 0.3 * (k / 4) ** 2)
-        names = [f"p{k}_{j}" for j in range(4)]
-        y = beam / 2 * (full + (0 if k == 4 else 0.05))
-        rows = [(0.0, keel), (0.8 * y, keel), (y, 0.3 * keel), (1.05 * y, 0.4 * depth)]
-        if k == 4:
-            rows = [(0.0, keel), (0.0, 0.6 * keel), (0.0, 0.3 * keel), (0.0, 0.5 * depth)]
-        for name, (yy, zz) in zip(names, rows, strict=True):
-            text += f" AbsPoint {name}({x!r}, {yy!r}, {zz!r});"
-        text += f" BCurve m{k}({{{', '.join(names)}}});"
-        masters.append(f"m{k}")
-    text += f" CLoftSurf hull({{{', '.join(masters)}}}, color = 2);"
-    text += " AbsPoint low(0, 0, 0.4); "
-    return text
 
 
 def random_box(rng: random.Random) -> Case:
@@ -121,7 +98,8 @@ def random_cylinder(rng: random.Random) -> Case:
     from math import pi
 
     r, h = rng.uniform(0.2, 5), rng.uniform(0.2, 9)
-    return Case("cylinder", cylinder(r, h), 2 * pi * r * (r + h), pi * r * r * h, 3)
+    area = 2 * pi * r * (r + h)
+    return Case("cylinder", cylinder(r, h), area, pi * r * r * h, 3, closed=False)
 
 
 def random_torus(rng: random.Random) -> Case:

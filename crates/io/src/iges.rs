@@ -195,6 +195,14 @@ impl File {
         };
         let mut bounds = Vec::new();
         let number = self.surface(surface, &plain);
+        if let [cycle] = &face.loops[..]
+            && doubly_closed(cycle)
+        {
+            // Its loop runs along two seams alone: the face is all of the surface.
+            let fields = [number, 0, 0].map(|x| x.to_string());
+            self.add(144, 0, "00000000", &style, &fields);
+            return;
+        }
         for cycle in &face.loops {
             let (mut inner, mut outer) = (Vec::new(), Vec::new());
             for side in cycle {
@@ -307,6 +315,11 @@ impl File {
         );
         out.into_bytes()
     }
+}
+
+/// True for a loop of which each edge has two sides.
+fn doubly_closed(cycle: &[Side]) -> bool {
+    cycle.iter().all(|a| cycle.iter().filter(|b| a.edge == b.edge).count() == 2)
 }
 
 /// A frame of a plane: origin, two axes and their lengths.

@@ -167,7 +167,11 @@ def _look(path: Path, iges: bool, found: Imported) -> None:
     """What the text says that OCCT passes over: missing units, references to nothing."""
     import re
 
-    text = path.read_bytes().decode("latin-1")
+    try:
+        text = path.read_bytes().decode("latin-1")
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise FileError(f"cannot read `{path}`: {reason}") from error
     if not text.strip():
         raise FileError(f"cannot read `{path}`: the file is empty")
     if iges:
@@ -195,7 +199,6 @@ def _look(path: Path, iges: bool, found: Imported) -> None:
 def _collect(document: Any, found: Imported) -> None:
     from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
     from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED
-    from OCP.TopExp import TopExp
     from OCP.TopoDS import TopoDS
 
     names = _names(document)
@@ -224,7 +227,6 @@ def _collect(document: Any, found: Imported) -> None:
     stated = found.__dict__.pop("_stated", None)
     if stated is not None and stated > len(found.faces):
         found.remarks.append(f"{stated} faces stand in the file, {len(found.faces)} could be read")
-    _ = TopExp
 
 
 def _identifier(label: str, taken: set[str]) -> str:
@@ -326,11 +328,10 @@ def _space_curve(edge: Any) -> Nurbs | None:
     edge = TopoDS.Edge(edge)
     if BRep_Tool.Degenerated_s(edge):
         return None
-    low, high = 0.0, 0.0
-    curve = BRep_Tool.Curve_s(edge, low, high)
+    curve = BRep_Tool.Curve_s(edge, 0.0, 1.0)
     if curve is None:
         return None
-    low, high = BRep_Tool.Range_s(edge, 0.0, 0.0)
+    low, high = BRep_Tool.Range_s(edge)
     trimmed = Geom_TrimmedCurve(curve, low, high)
     spline = GeomConvert.CurveToBSplineCurve_s(trimmed)
     return _clamped(spline, spline.FirstParameter(), spline.LastParameter(), flat=False)
@@ -354,8 +355,8 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
         surface.SetUNotPeriodic()
     if surface.IsVPeriodic():
         surface.SetVNotPeriodic()
-    bounds = BRepTools.UVBounds_s(face, 0.0, 0.0, 0.0, 0.0)
-    whole = surface.Bounds(0.0, 0.0, 0.0, 0.0)
+    bounds = BRepTools.UVBounds_s(face)
+    whole = surface.Bounds()
     u0, u1, v0, v1 = (
         max(bounds[0], whole[0]),
         min(bounds[1], whole[1]),
@@ -376,7 +377,7 @@ def _face(face: Any, edges: Any, name: str) -> ImportedFace:
         while explorer.More():
             edge = explorer.Current()
             explorer.Next()
-            low, high = BRep_Tool.Range_s(edge, face, 0.0, 0.0)
+            low, high = BRep_Tool.Range_s(edge, face)
             path = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
             if path is None:
                 raise Error("an edge has no curve in its parameters")

@@ -166,7 +166,8 @@ impl<'a> Sewing<'a> {
     /// True when the loop runs clockwise in the parameters.
     fn clockwise(&self, cycle: &[OutlineSide]) -> bool {
         let mut polygon = Vec::new();
-        for side in cycle {
+        // A side that is one point has no length there.
+        for side in cycle.iter().filter(|s| s.vertices.iter().any(|v| *v != s.vertices[0])) {
             let mut own: Vec<[f64; 2]> = side.at.iter().map(|&t| place(&side.along, t)).collect();
             if side.backwards {
                 own.reverse();

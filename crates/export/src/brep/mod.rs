@@ -7,6 +7,7 @@
 
 mod edges;
 mod faces;
+mod parents;
 mod polyhedra;
 mod wires;
 
@@ -45,9 +46,10 @@ pub fn brep(document: &mut Document, accuracy: Option<f64>, stem: &str) -> Resul
     if !positions.iter().all(|p| p.is_finite()) {
         return Err(Diagnostic::error("cannot-write", "a position is not a finite number").into());
     }
-    let Some((outlines, bodies)) = panelled.panelling.outlines(document.graph()) else {
+    let Some((mut outlines, bodies)) = panelled.panelling.outlines(document.graph()) else {
         return Err(Diagnostic::error("cannot-write", "a surface has no value").into());
     };
+    outlines.iter_mut().for_each(|outline| parents::on_parent(document, outline));
     let faces = faces::all(&outlines, accuracy)?;
     let mut brep = Sewing::new(&outlines, &faces, positions, accuracy, size).finish()?;
     for name in bodies {
