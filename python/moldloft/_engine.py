@@ -1,4 +1,4 @@
-"""The engine process of the workbench: a foreign model runs here, within limits, and can be ended."""
+"""The engine process of the workbench: a model runs here, within limits, and can be ended."""
 
 from __future__ import annotations
 

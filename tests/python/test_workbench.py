@@ -127,9 +127,7 @@ class Page:
         return await self.ask("push", version=self.version, updates=[update])
 
 
-def workbench(
-    path: Path, play: Callable[[Hub], Awaitable[None]], **options: Any
-) -> None:
+def workbench(path: Path, play: Callable[[Hub], Awaitable[None]], **options: Any) -> None:
     """Runs a play on the hub of a model."""
 
     async def run() -> None:
@@ -171,7 +169,11 @@ def test_two_tabs_see_the_same(model_file: Callable[..., Path]) -> None:
         await one.ask("open")
         await two.ask("open")
         await one.ask("set", values={"w": 3})
-        head = await two.until(lambda: next((h for h in two.heads if h.get("params") and h["params"][0]["value"] == 3), None))
+        head = await two.until(
+            lambda: next(
+                (h for h in two.heads if h.get("params") and h["params"][0]["value"] == 3), None
+            )
+        )
         # The point and the line, not the other point.
         assert sorted(i["name"] for i in head["items"]) == ["B", "l"]
         await one.type(LINE + "AbsPoint C(0, 1, 0);\n")
@@ -181,7 +183,9 @@ def test_two_tabs_see_the_same(model_file: Callable[..., Path]) -> None:
     workbench(model_file(LINE), play)
 
 
-def test_a_file_that_changes_outside_is_followed_or_asked_about(model_file: Callable[..., Path]) -> None:
+def test_a_file_that_changes_outside_is_followed_or_asked_about(
+    model_file: Callable[..., Path],
+) -> None:
     path = model_file(LINE)
 
     async def play(hub: Hub) -> None:
@@ -203,7 +207,9 @@ def test_a_file_that_changes_outside_is_followed_or_asked_about(model_file: Call
     workbench(path, play)
 
 
-def test_an_engine_that_is_killed_loses_nothing(model_file: Callable[..., Path], soak: bool) -> None:
+def test_an_engine_that_is_killed_loses_nothing(
+    model_file: Callable[..., Path], soak: bool
+) -> None:
     async def play(hub: Hub) -> None:
         page = Page(hub)
         await page.ask("open")
@@ -219,15 +225,28 @@ def test_an_engine_that_is_killed_loses_nothing(model_file: Callable[..., Path],
     workbench(model_file(LINE), play)
 
 
-def test_a_model_without_end_is_stopped_and_the_text_can_be_changed(model_file: Callable[..., Path]) -> None:
+def test_a_model_without_end_is_stopped_and_the_text_can_be_changed(
+    model_file: Callable[..., Path],
+) -> None:
     async def play(hub: Hub) -> None:
         page = Page(hub)
         await page.ask("open")
         await page.type(LINE + "int k = 0;\nwhile (k < 1) { k = 0; }\n")
-        said = await page.until(lambda: [h for h in page.heads if any(d["severity"] == "error" for d in h.get("diagnostics", []))] or [m for m in page.said if m.get("state") == "lost"])
+        said = await page.until(
+            lambda: (
+                [
+                    h
+                    for h in page.heads
+                    if any(d["severity"] == "error" for d in h.get("diagnostics", []))
+                ]
+                or [m for m in page.said if m.get("state") == "lost"]
+            )
+        )
         assert said
         await page.type(LINE)
-        await page.until(lambda: page.heads[-1].get("version") == hub.version and page.heads[-1].get("rev"))
+        await page.until(
+            lambda: page.heads[-1].get("version") == hub.version and page.heads[-1].get("rev")
+        )
         assert (await page.ask("evaluate", expressions=["l.length"]))["values"][0]["value"] == 2.0
 
     workbench(model_file(LINE), play, budget=1.5)
@@ -257,7 +276,12 @@ def test_requests_that_are_none_are_refused(model_file: Callable[..., Path]) -> 
         page = Page(hub)
         for kind in ("text", "splice", "close", "nonsense", "__init__"):
             assert (await page.ask(kind, text="gone"))["kind"] == "refused"
-        for updates in ("x", [{}], [{"changes": "x", "clientID": 1}], [{"changes": [9999], "clientID": "a"}]):
+        for updates in (
+            "x",
+            [{}],
+            [{"changes": "x", "clientID": 1}],
+            [{"changes": [9999], "clientID": "a"}],
+        ):
             reply = await page.ask("push", version=0, updates=updates)
             assert reply["ok"] is False
         assert hub.text == LINE
@@ -296,18 +320,39 @@ def server_app(hub: Hub, port: int = 4321) -> Any:
     return server
 
 
-def request(app: Any, method: str = "GET", path: str = "/", body: bytes = b"", kind: str = "http", **headers: str) -> tuple[int, dict[str, str], bytes]:
+def request(
+    app: Any,
+    method: str = "GET",
+    path: str = "/",
+    body: bytes = b"",
+    kind: str = "http",
+    **headers: str,
+) -> tuple[int, dict[str, str], bytes]:
     """What an ASGI application answers to a raw request."""
     given = {"host": "127.0.0.1:4321", **{k.replace("_", "-"): v for k, v in headers.items()}}
     scope = {
-        "type": kind, "method": method, "path": path, "raw_path": path.encode(), "query_string": b"", "root_path": "",
-        "headers": [(k.encode(), v.encode()) for k, v in given.items() if v], "scheme": "http" if kind == "http" else "ws",
-        "client": ("127.0.0.1", 1), "server": ("127.0.0.1", 4321), "http_version": "1.1", "subprotocols": [], "asgi": {"version": "3.0"},
-    }  # fmt: skip
+        "type": kind,
+        "method": method,
+        "path": path,
+        "raw_path": path.encode(),
+        "query_string": b"",
+        "root_path": "",
+        "headers": [(k.encode(), v.encode()) for k, v in given.items() if v],
+        "scheme": "http" if kind == "http" else "ws",
+        "client": ("127.0.0.1", 1),
+        "server": ("127.0.0.1", 4321),
+        "http_version": "1.1",
+        "subprotocols": [],
+        "asgi": {"version": "3.0"},
+    }
     sent: list[dict[str, Any]] = []
 
     async def run() -> None:
-        first = {"type": "websocket.connect"} if kind == "websocket" else {"type": "http.request", "body": body, "more_body": False}
+        first = (
+            {"type": "websocket.connect"}
+            if kind == "websocket"
+            else {"type": "http.request", "body": body, "more_body": False}
+        )
         messages = [first, {"type": "websocket.disconnect", "code": 1000}]
 
         async def receive() -> dict[str, Any]:
@@ -342,7 +387,12 @@ def test_only_this_page_is_served(model_file: Callable[..., Path]) -> None:
         assert request(app, host="localhost:4321")[0] == 200
         for host in ("evil.com", "127.0.0.1.evil.com", "127.0.0.1:9999", "[::1]:4321", ""):
             assert request(app, host=host)[0] == 403, host
-        for origin in ("http://evil.com", "null", "http://127.0.0.1:9999", "https://127.0.0.1:4321"):
+        for origin in (
+            "http://evil.com",
+            "null",
+            "http://127.0.0.1:9999",
+            "https://127.0.0.1:4321",
+        ):
             assert request(app, origin=origin)[0] == 403, origin
             assert request(app, kind="websocket", path="/ws", origin=origin)[0] == 4403, origin
         assert request(app, sec_fetch_site="cross-site")[0] == 403
@@ -376,7 +426,13 @@ def test_the_page_says_what_it_may_do(model_file: Callable[..., Path]) -> None:
         nonce = policy.split("'nonce-")[1].split("'")[0]
         assert nonce.encode() in page and b"__NONCE__" not in page
         # Nothing but the page's own files.
-        for path in ("/assets/../server.py", "/assets/.env", "/model.sdl", "/.git/config", "/assets/"):
+        for path in (
+            "/assets/../server.py",
+            "/assets/.env",
+            "/model.sdl",
+            "/.git/config",
+            "/assets/",
+        ):
             assert request(app, path=path)[0] == 404, path
         script = page.split(b'src="')[1].split(b'"')[0].decode()
         status, head, data = request(app, path=script)
@@ -389,10 +445,16 @@ def test_the_page_says_what_it_may_do(model_file: Callable[..., Path]) -> None:
 HOSTILE = '<img src=x onerror="document.title=1">'
 
 
-def test_a_page_in_a_file_carries_names_as_data(model_file: Callable[..., Path], tmp_path: Path) -> None:
+def test_a_page_in_a_file_carries_names_as_data(
+    model_file: Callable[..., Path], tmp_path: Path
+) -> None:
     from moldloft.workbench.still import still_page
 
-    text = LINE + f"# {HOSTILE} </script><script>alert(1)</script> $& \u2028\nprint({json.dumps(HOSTILE)});\n"
+    text = (
+        LINE
+        + f"# {HOSTILE} </script><script>alert(1)</script> $& \u2028\n"
+        + f"print({json.dumps(HOSTILE)});\n"
+    )
     try:
         page = still_page(model_file(text), values={"w": 3}).decode()
     except Error as error:

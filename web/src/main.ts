@@ -578,7 +578,7 @@ function commands(): Command[] {
     { name: 'Colour: mean curvature', run: () => paint('field', 'mean_curvature') },
     { name: 'Colour: largest curvature', run: () => paint('field', 'largest_curvature') },
     { name: 'Colour: smallest curvature', run: () => paint('field', 'smallest_curvature') },
-    ...['aspect', 'skew', 'warp'].map((m) => ({ name: `Colour: panel ${m}`, run: () => paint('field', m) })),
+    ...['aspect', 'skew', 'warp', 'jump'].map((m) => ({ name: `Colour: panel ${m}`, run: () => paint('field', m) })),
     ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => paint('field', 'derivative', p.name) })),
     ...[['point', 'points', '.'], ['curve', 'curves', ','], ['contour', 'contours', 'C'], ['patch', 'surfaces', ''], ['grid', 'grids', '']].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
     { name: 'Show or hide the mirror image', keys: 'M', run: () => ((view.mirror = !view.mirror), view.settle()) },
@@ -630,7 +630,7 @@ function buildToolbar(): void {
     choice('style', view.style, styles.map(([n, w]) => [n, w]), (v) => setStyle(v as Style)),
     choice('colour', value, [
       ['patches', 'Patches apart'], ['model', 'Colours of the model'], ['zebra', 'Zebra'], ['isophotes', 'Isophotes'], ['highlight', 'Highlight lines'],
-      ...(link.still ? [] : ([['gaussian_curvature', 'Gaussian curvature'], ['mean_curvature', 'Mean curvature'], ['largest_curvature', 'Largest curvature'], ['smallest_curvature', 'Smallest curvature'], ['aspect', 'Panel aspect'], ['skew', 'Panel skewness'], ['warp', 'Panel warp'], ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`])] as [string, string][])),
+      ...(link.still ? [] : ([['gaussian_curvature', 'Gaussian curvature'], ['mean_curvature', 'Mean curvature'], ['largest_curvature', 'Largest curvature'], ['smallest_curvature', 'Smallest curvature'], ['aspect', 'Panel aspect'], ['skew', 'Panel skewness'], ['warp', 'Panel warp'], ['jump', 'Jump of panel area'], ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`])] as [string, string][])),
     ], (v) => (['patches', 'model', 'zebra', 'isophotes', 'highlight'].includes(v) ? paint(v as Paint) : v.startsWith('d:') ? paint('field', 'derivative', v.slice(2)) : paint('field', v))),
     button('•', 'Points (.)', () => layer('point'), view.layers.point),
     button('∿', 'Curves (,)', () => layer('curve'), view.layers.curve),

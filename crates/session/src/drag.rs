@@ -129,7 +129,8 @@ impl Drag {
             let states: Vec<_> =
                 names.iter().map(|n| state(document, n)).collect::<Option<_>>().ok_or("gone")?;
             let directions = self.directions(document, &names)?;
-            let widths: Vec<f64> = states.iter().map(|(_, r)| r.map_or(1.0, |(a, b)| b - a)).collect();
+            let widths: Vec<f64> =
+                states.iter().map(|(_, r)| r.map_or(1.0, |(a, b)| b - a)).collect();
             let rows: Vec<Vec<f64>> = directions
                 .iter()
                 .zip(&widths)
@@ -170,10 +171,8 @@ impl Drag {
         }
         let place = self.rounded(document, &names, grain).unwrap_or(place);
         let reached = size(&left(place));
-        let values: Vec<(String, f64)> = names
-            .iter()
-            .filter_map(|n| Some((n.clone(), state(document, n)?.0)))
-            .collect();
+        let values: Vec<(String, f64)> =
+            names.iter().filter_map(|n| Some((n.clone(), state(document, n)?.0))).collect();
         match refused {
             Some(why) if values.iter().zip(&self.moved).all(|(a, b)| a == b) => Err(why),
             _ => Ok(Reached { place, left: reached, values }),
@@ -200,9 +199,14 @@ impl Drag {
         self.place(document).ok()
     }
 
-    /// The numbers as they were before the drag.
-    pub fn take_back(&self, document: &mut Document) {
-        let _ = document.set(&self.moved);
+    /// The numbers that are not what they were before the drag, and their values.
+    pub fn changed(&self, document: &Document) -> Vec<(String, f64)> {
+        let now = |name: &str| state(document, name).map(|(x, _)| x);
+        let changed = self.moved.iter().filter_map(|(name, before)| {
+            let x = now(name).filter(|x| x != before)?;
+            Some((name.clone(), x))
+        });
+        changed.collect()
     }
 
     fn place(&self, document: &mut Document) -> Result<Vec3, String> {
@@ -270,9 +274,8 @@ pub fn state(document: &Document, name: &str) -> Option<(f64, Option<(f64, f64)>
     }
     let graph = document.graph();
     let dots = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| name.split_at(k));
-    let (object, path) = dots
-        .filter_map(|(o, path)| Some((graph.get(graph.find(o)?)?, &path[1..])))
-        .next()?;
+    let (object, path) =
+        dots.filter_map(|(o, path)| Some((graph.get(graph.find(o)?)?, &path[1..]))).next()?;
     let (field, component) = path.split_once('.').map_or((path, None), |(f, c)| (f, Some(c)));
     let at = object.row.field(field)?;
     let row = &object.row.fields[at];

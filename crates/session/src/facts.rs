@@ -138,7 +138,12 @@ pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>)
 }
 
 /// All about an object.
-pub fn inspected(document: &mut Document, text: &str, name: &str, by: Option<&str>) -> Option<Value> {
+pub fn inspected(
+    document: &mut Document,
+    text: &str,
+    name: &str,
+    by: Option<&str>,
+) -> Option<Value> {
     let declared = document.declaration(name).map(|span| place(document, text, span));
     let settable = own_numbers(document, name);
     let graph = document.graph();
@@ -151,7 +156,10 @@ pub fn inspected(document: &mut Document, text: &str, name: &str, by: Option<&st
         }
         let base = format!("{name}.{}", field.name);
         let mut numbers = Vec::new();
-        for path in settable.iter().filter(|p| **p == base || p.strip_prefix(&*base).is_some_and(|r| r.starts_with('.'))) {
+        for path in settable
+            .iter()
+            .filter(|p| **p == base || p.strip_prefix(&*base).is_some_and(|r| r.starts_with('.')))
+        {
             if let Some((value, range)) = state(document, path) {
                 let range = range.map(|(a, b)| [a, b]);
                 numbers.push(json!({"path": path, "value": value, "range": range}));
@@ -190,8 +198,7 @@ pub fn inspected(document: &mut Document, text: &str, name: &str, by: Option<&st
         "children": object.children.iter().filter_map(called).collect::<Vec<_>>(),
         "declared": declared,
     });
-    let mut expressions: Vec<String> =
-        members.iter().map(|m| format!("{name}.{m}")).collect();
+    let mut expressions: Vec<String> = members.iter().map(|m| format!("{name}.{m}")).collect();
     if is_point {
         expressions.insert(0, name.to_string());
     }

@@ -3,14 +3,21 @@
 use crate::scene::{Item, ItemKind};
 use moldloft_diag::Diagnostic;
 use moldloft_document::Document;
+use moldloft_mesh::{
+    Mesh, MeshError, PatchInfo, PatchQuality, TopologyBuilder, is_triangle, qualities,
+};
 use std::collections::HashMap;
 
 /// The fields that need no parameter; `derivative` is by one.
-pub const FIELDS: [&str; 6] = [
+pub const FIELDS: [&str; 10] = [
     "gaussian_curvature",
     "mean_curvature",
     "largest_curvature",
     "smallest_curvature",
+    "aspect",
+    "skew",
+    "warp",
+    "jump",
     "normal",
     "derivative",
 ];
@@ -59,6 +66,27 @@ pub fn field<'s>(
         let corners = mesh.faces()[patch.faces.clone()].iter().flatten();
         corners.copied().filter(|v| seen.insert(*v)).take(count).collect()
     };
+    if let Some(measure) = measure(field) {
+        let panels = panel_qualities(mesh);
+        let panels =
+            panels.map_err(|e| vec![Diagnostic::error("too-many-panels", e.to_string())])?;
+        // The worst of the panels at each vertex.
+        let of_patch = |(item, patch): (&'s Item, &moldloft_mesh::Patch)| {
+            let mut worst: HashMap<u32, f64> = HashMap::new();
+            for index in patch.faces.clone() {
+                let Some(quality) = &panels[index] else { continue };
+                let (face, value) = (mesh.faces()[index], measure(quality));
+                for &v in if is_triangle(face) { &face[..3] } else { &face[..] } {
+                    let at = worst.entry(v).or_insert(value);
+                    *at = at.max(value);
+                }
+            }
+            let vertices = global(item, patch);
+            let at = |v: &u32| worst.get(v).copied().unwrap_or(f64::NAN) as f32;
+            with_copies(item, 1, vertices.iter().map(at).collect())
+        };
+        return Ok(drawn.map(of_patch).collect());
+    }
     if field == "derivative" {
         let by = by.ok_or_else(|| {
             vec![Diagnostic::error("no-parameter", "a derivative is by a parameter")]
@@ -84,9 +112,29 @@ pub fn field<'s>(
     let of_patch = |(item, patch): (&'s Item, &moldloft_mesh::Patch)| {
         let (components, values) = all.get(&patch.info.name)?;
         let wanted = item.positions.len() / 3 - item.connections.copies.len();
-        (values.len() == wanted * components).then(|| {
-            with_copies(item, *components, values.iter().map(|&x| x as f32).collect())
-        })
+        (values.len() == wanted * components)
+            .then(|| with_copies(item, *components, values.iter().map(|&x| x as f32).collect()))
     };
     Ok(drawn.filter_map(of_patch).collect())
+}
+
+/// A measure of the quality of panels by its name.
+fn measure(name: &str) -> Option<fn(&PatchQuality) -> f64> {
+    Some(match name {
+        "aspect" => |q| q.aspect.max,
+        "skew" => |q| q.skew.max,
+        "warp" => |q| q.warp.max,
+        "jump" => |q| q.jump.max,
+        _ => return None,
+    })
+}
+
+/// The quality of each panel: that of a mesh in which it is a patch of its own.
+fn panel_qualities(mesh: &Mesh) -> Result<Vec<Option<PatchQuality>>, MeshError> {
+    let mut builder = TopologyBuilder::new();
+    builder.add_vertices(mesh.positions().len())?;
+    for &face in mesh.faces() {
+        builder.add_faces(PatchInfo::default(), [face])?;
+    }
+    Ok(qualities(&Mesh::new(builder.build().into(), mesh.positions().to_vec())?))
 }

@@ -53,9 +53,8 @@ impl Local {
                     if block.reversed {
                         corners.swap(1, 3);
                     }
-                    let same = |a: u32, b: u32| {
-                        block.vertices[a as usize] == block.vertices[b as usize]
-                    };
+                    let same =
+                        |a: u32, b: u32| block.vertices[a as usize] == block.vertices[b as usize];
                     corners.dedup_by(|b, a| same(*a, *b));
                     if corners.len() > 1 && same(corners[0], corners[corners.len() - 1]) {
                         corners.pop();
@@ -87,8 +86,7 @@ impl Local {
 /// What is drawn of a patch.
 pub fn drawn(mesh: &Mesh, patch: &Patch) -> DrawnPatch {
     let local = Local::new(mesh, patch);
-    let points: Vec<Vec3> =
-        local.global.iter().map(|&v| mesh.positions()[v as usize]).collect();
+    let points: Vec<Vec3> = local.global.iter().map(|&v| mesh.positions()[v as usize]).collect();
     of_faces(points, &local.faces, &local.global)
 }
 
@@ -114,7 +112,10 @@ pub fn of_faces(mut points: Vec<Vec3>, faces: &[[u32; 4]], identity: &[u32]) -> 
     let own = points.len() as u32;
     for (face, flat) in faces.iter().zip(&flat) {
         let unit = flat.normalized();
-        let corner = |v: u32, points: &mut Vec<Vec3>, normals: &mut Vec<Vec3>, copies: &mut Vec<u32>| {
+        let corner = |v: u32,
+                      points: &mut Vec<Vec3>,
+                      normals: &mut Vec<Vec3>,
+                      copies: &mut Vec<u32>| {
             let Some(unit) = unit.filter(|n| n.dot(normals[v as usize]) < CREASE) else { return v };
             copies.push(v);
             points.push(points[v as usize]);
@@ -195,14 +196,8 @@ mod tests {
     fn cube() -> Mesh {
         let mut builder = TopologyBuilder::new();
         builder.add_vertices(8).unwrap();
-        let faces = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
+        let faces =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         builder.add_faces(PatchInfo::new("cube"), faces.to_vec()).unwrap();
         let at = |k: usize| Vec3::of((k & 1) as f64, (k >> 1 & 1) as f64, (k >> 2) as f64);
         Mesh::new(builder.build().into(), (0..8).map(at).collect()).unwrap()

@@ -165,8 +165,12 @@ impl Scene {
 
     /// Takes the state of the document.
     pub fn update(&mut self, document: &mut Document) {
-        let before: FxHashMap<(KindKey, Arc<str>), usize> =
-            self.items.iter().enumerate().map(|(k, i)| ((i.kind as u8, i.name.clone()), k)).collect();
+        let before: FxHashMap<(KindKey, Arc<str>), usize> = self
+            .items
+            .iter()
+            .enumerate()
+            .map(|(k, i)| ((i.kind as u8, i.name.clone()), k))
+            .collect();
         let mut made = self.patches(document);
         self.objects(document, &before, &mut made);
         if self.contours {
@@ -246,10 +250,11 @@ impl Scene {
                 Some(Value::Curve(curve)) => {
                     let key = (ItemKind::Curve as u8, object.name.clone());
                     let old = before.get(&key).map(|&k| &self.items[k]);
-                    let item = match old.filter(|o| o.clock == object.changed_at && o.stale.is_empty()) {
-                        Some(old) => old.clone(),
-                        None => new(ItemKind::Curve).lines(&[sampled(curve, object)]),
-                    };
+                    let item =
+                        match old.filter(|o| o.clock == object.changed_at && o.stale.is_empty()) {
+                            Some(old) => old.clone(),
+                            None => new(ItemKind::Curve).lines(&[sampled(curve, object)]),
+                        };
                     made.push(Item { clock: object.changed_at, ..item });
                 }
                 Some(Value::Point(point)) if point.xyz.is_finite() => {

@@ -235,15 +235,14 @@ impl Session {
                 frame.put("values", Value::Object(values.collect()));
             }
             Ask::DragEnd { commit } => {
-                let drag = self.drag.take();
-                match drag {
-                    Some(_) if commit => self.commit(frame),
-                    Some(drag) => {
-                        drag.take_back(&mut self.document);
-                        // Numbers as they were spelled.
-                        self.take_text(self.text.clone());
+                if let Some(drag) = self.drag.take() {
+                    let changed = drag.changed(&self.document);
+                    // Numbers that have not changed are spelled as they were.
+                    self.take_text(self.text.clone());
+                    if commit && !changed.is_empty() {
+                        self.set(changed.into_iter().collect())?;
                     }
-                    None => {}
+                    self.commit(frame);
                 }
             }
             Ask::Inspect { name, by } => {
@@ -295,7 +294,8 @@ impl Session {
             }
             Ask::Complete { offset } => {
                 let found = self.document.completions(byte(&self.text, offset) as u32);
-                let one = |c: moldloft_document::Completion| json!([c.word, word(c.kind), c.detail]);
+                let one =
+                    |c: moldloft_document::Completion| json!([c.word, word(c.kind), c.detail]);
                 frame.put("completions", found.into_iter().map(one).collect::<Vec<_>>());
             }
             Ask::Hover { offset } => {
@@ -324,8 +324,8 @@ impl Session {
             }
             Ask::Format => {
                 let formatted = moldloft_syntax::sdl::format(&self.text);
-                let formatted =
-                    formatted.map_err(|_| "the text has errors and is left as it is".to_string())?;
+                let formatted = formatted
+                    .map_err(|_| "the text has errors and is left as it is".to_string())?;
                 self.put_edits(frame, &formatted);
             }
             Ask::Words => {
@@ -367,7 +367,8 @@ impl Session {
 
     fn put_edits(&self, frame: &mut Frame, new: &str) {
         let edit = difference(&self.text, new);
-        let edits = edit.map(|(from, to, insert)| json!({"from": from, "to": to, "insert": insert}));
+        let edits =
+            edit.map(|(from, to, insert)| json!({"from": from, "to": to, "insert": insert}));
         frame.put("edits", edits.into_iter().collect::<Vec<_>>());
     }
 
@@ -434,16 +435,13 @@ impl Session {
                 Some(Quantity::Surface(surface)) => {
                     ContourCutter::new(surface, &object.head).section(&family, value)
                 }
-                Some(Quantity::Body(body)) => {
-                    moldloft_panel::body_section(body, &family, value)
-                }
+                Some(Quantity::Body(body)) => moldloft_panel::body_section(body, &family, value),
                 _ => continue,
             };
             for line in found {
                 let again = line.points.first().filter(|_| line.closed);
                 let points = line.points.iter().chain(again);
-                let flat: Vec<f32> =
-                    points.flat_map(|p| p.to_array().map(|x| x as f32)).collect();
+                let flat: Vec<f32> = points.flat_map(|p| p.to_array().map(|x| x as f32)).collect();
                 let mut part = frame.floats("line", &flat);
                 part["object"] = (&*object.name).into();
                 part["closed"] = line.closed.into();

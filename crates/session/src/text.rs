@@ -76,9 +76,8 @@ pub fn difference(old: &str, new: &str) -> Option<(usize, usize, String)> {
     let most = old.len().min(new.len()) - start;
     let same = |k: &usize| old.as_bytes()[old.len() - 1 - k] == new.as_bytes()[new.len() - 1 - k];
     let end = (0..most).take_while(same).count();
-    let whole = |k: &usize| {
-        old.is_char_boundary(old.len() - k) && new.is_char_boundary(new.len() - k)
-    };
+    let whole =
+        |k: &usize| old.is_char_boundary(old.len() - k) && new.is_char_boundary(new.len() - k);
     let end = (0..=end).rev().find(whole).unwrap_or(0);
     let insert = new[start..new.len() - end].to_string();
     Some((unit(old, start), unit(old, old.len() - end), insert))

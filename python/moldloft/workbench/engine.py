@@ -9,13 +9,13 @@ import struct
 import sys
 from collections.abc import Sequence
 
-__all__ = ["Engine", "EngineLost"]
+__all__ = ["Engine", "EngineLostError"]
 
 _CANCEL = b'{"kind":"cancel"}'
 _LARGEST_FRAME = 1 << 30
 
 
-class EngineLost(Exception):
+class EngineLostError(Exception):
     """The engine process ended, or was ended, before it answered."""
 
 
@@ -83,7 +83,7 @@ class Engine:
 
         Raises
         ------
-        EngineLost
+        EngineLostError
             When there is none.
         """
         await self._send(request)
@@ -95,7 +95,7 @@ class Engine:
             return await asyncio.wait_for(reading, 2.0)
         except asyncio.TimeoutError:
             await self.end()
-            raise EngineLost(f"no answer within {self._budget:g} s") from None
+            raise EngineLostError(f"no answer within {self._budget:g} s") from None
 
     def _reading(self) -> asyncio.Task[bytes]:
         return asyncio.ensure_future(self._receive())
@@ -103,24 +103,24 @@ class Engine:
     async def _send(self, message: bytes) -> None:
         process = self._process
         if process is None or process.stdin is None:
-            raise EngineLost("the engine is not running")
+            raise EngineLostError("the engine is not running")
         try:
             process.stdin.write(struct.pack("<I", len(message)) + message)
             await process.stdin.drain()
         except (BrokenPipeError, ConnectionResetError):
-            raise EngineLost(await self._why()) from None
+            raise EngineLostError(await self._why()) from None
 
     async def _receive(self) -> bytes:
         process = self._process
         if process is None or process.stdout is None:
-            raise EngineLost("the engine is not running")
+            raise EngineLostError("the engine is not running")
         try:
             (length,) = struct.unpack("<I", await process.stdout.readexactly(4))
             if length > _LARGEST_FRAME:
-                raise EngineLost("the engine sent nonsense")
+                raise EngineLostError("the engine sent nonsense")
             return await process.stdout.readexactly(length)
         except (asyncio.IncompleteReadError, ConnectionResetError):
-            raise EngineLost(await self._why()) from None
+            raise EngineLostError(await self._why()) from None
 
     async def _why(self) -> str:
         process, self._process = self._process, None

@@ -1,8 +1,8 @@
 """The hub: who has the text, what waits for the engine, what each tab is sent.
 
-The text is here, not in the engine and not in a page: a page's change counts once the hub has it, and it is on
-disk before the page hears so. The engine is asked one thing at a time; what has become out of date while it
-waited is left out.
+The text is here, not in the engine and not in a page: a page's change counts once the hub has it,
+and it is on disk before the page hears so. The engine is asked one thing at a time; what has become
+out of date while it waited is left out.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ import contextlib
 import json
 import secrets
 import struct
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from moldloft.errors import Error, FileError
 from moldloft.workbench.draft import Draft
-from moldloft.workbench.engine import Engine, EngineLost
+from moldloft.workbench.engine import Engine, EngineLostError
 from moldloft.workbench.text import applied, change_set, encoded, read, write
 
 __all__ = ["Hub", "Tab"]
@@ -31,8 +31,9 @@ NEWEST = {"set", "drag_to", "sync", "hover", "complete", "inspect", "section", "
 
 #: What a page may ask of the engine.
 ASKED = NEWEST | {
-    "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show", "mesh",
-    "hydrostatics", "export", "formats", "definition", "locate", "rename", "format", "words", "ping",
+    "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show",
+    "mesh", "hydrostatics", "export", "formats", "definition", "locate", "rename", "format",
+    "words", "ping",
 }  # fmt: skip
 
 #: After these other tabs have something new, too.
@@ -99,6 +100,7 @@ class Hub:
         self._count = 0
         self._failed: tuple[int, int] = (-1, 0)
         self._tasks: list[asyncio.Task[None]] = []
+        self._sending: set[asyncio.Task[None]] = set()
         self._noted = self.stored.digest
 
     @property
@@ -112,8 +114,9 @@ class Hub:
 
     async def stop(self) -> None:
         """End the engine; the draft stays when something is unsaved."""
-        for task in self._tasks:
+        for task in [*self._tasks, *self._sending]:
             task.cancel()
+        await asyncio.gather(*self._tasks, *self._sending, return_exceptions=True)
         await self.engine.end()
         self.draft.close(keep=self.dirty)
 
@@ -176,10 +179,12 @@ class Hub:
         elif isinstance(kind, str) and kind in ASKED:
             self._ask(tab, kind, message)
         else:
-            await self._to(tab, json.dumps({"kind": "refused", "id": number, "error": "no such request"}))
+            await self._to(
+                tab, json.dumps({"kind": "refused", "id": number, "error": "no such request"})
+            )
 
     async def _push(self, tab: Tab, message: dict[str, Any]) -> None:
-        """Changes of the text. They count when the page knew the newest version, and are on disk then."""
+        """Changes of the text. They count when the page knew the newest version."""
         number, updates = message.get("id", 0), message.get("updates")
         reply = {"kind": "pushed", "id": number, "ok": False, "version": self.version}
         try:
@@ -247,7 +252,9 @@ class Hub:
             return
         self.recovered = False
         await self._to(tab, json.dumps({"kind": "saved", "id": number, "version": self.version}))
-        await self.tell({"kind": "saved", "version": self.version, "dirty": self.dirty}, but=tab.number)
+        await self.tell(
+            {"kind": "saved", "version": self.version, "dirty": self.dirty}, but=tab.number
+        )
 
     async def _watch(self) -> None:
         """Follow the file on disk."""
@@ -301,13 +308,18 @@ class Hub:
         if kind in NEWEST:
             for job in self._jobs:
                 if job.kind == kind and job.tab == tab.number:
-                    asyncio.ensure_future(self._superseded(tab, job.request))
+                    self._later(self._superseded(tab, job.request))
                     if kind == "set":
                         values = {**job.request.get("values", {}), **request.get("values", {})}
                         request["values"] = values
                     job.request = request
                     return
         self._queue(_Job(kind, tab.number, request))
+
+    def _later(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.ensure_future(work)
+        self._sending.add(task)
+        task.add_done_callback(self._sending.discard)
 
     async def _superseded(self, tab: Tab, request: dict[str, Any]) -> None:
         await self._to(tab, json.dumps({"kind": "superseded", "id": request.get("id", 0)}))
@@ -324,8 +336,12 @@ class Hub:
         else:
             tab = self.tabs.get(job.tab)
             if tab is not None:
-                error = {"kind": "refused", "id": job.request.get("id", 0), "error": "too many requests"}
-                asyncio.ensure_future(self._to(tab, json.dumps(error)))
+                error = {
+                    "kind": "refused",
+                    "id": job.request.get("id", 0),
+                    "error": "too many requests",
+                }
+                self._later(self._to(tab, json.dumps(error)))
         self._wake.set()
 
     async def _work(self) -> None:
@@ -336,7 +352,7 @@ class Hub:
             job = self._jobs.pop(0)
             try:
                 await self._carry_out(job)
-            except EngineLost as lost:
+            except EngineLostError as lost:
                 await self._lost(job, str(lost))
 
     async def _carry_out(self, job: _Job) -> None:
@@ -344,7 +360,7 @@ class Hub:
         version = self.version
         if fresh:
             if self._failed[0] == version and self._failed[1] >= 2:
-                raise EngineLost("this text made the engine fail twice: change it to go on")
+                raise EngineLostError("this text made the engine fail twice: change it to go on")
             await self.engine.start(self.text)
         request = job.request
         if job.kind == "text":

@@ -9,8 +9,8 @@ from moldloft.errors import Error
 __all__ = ["page_files"]
 
 _NO_PAGE = (
-    "the page of the workbench is not built: run `make web` in the clone (it needs Node.js 20 or newer), "
-    "or install a released wheel"
+    "the page of the workbench is not built: run `make web` in the clone (it needs Node.js 20 or "
+    "newer), or install a released wheel"
 )
 
 

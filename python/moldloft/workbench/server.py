@@ -1,7 +1,7 @@
 """The server: this machine's browsers only, one page, one socket.
 
-Every request is checked for its Host and Origin, so that no page from elsewhere reaches it under another name;
-the model is behind a token that the page exchanges once for a strict cookie.
+Every request is checked for its Host and Origin, so that no page from elsewhere reaches it under
+another name; the model is behind a token that the page exchanges for a strict cookie.
 """
 
 from __future__ import annotations
@@ -42,6 +42,7 @@ _POLICY = (
     "style-src 'self' 'nonce-{nonce}'; object-src 'none'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'"
 )
+
 
 class Guard:
     """Refuses what does not come from this server's own page.

@@ -73,12 +73,12 @@ def _assembled(name: str, data: str) -> str:
     index = files["/index.html"].decode()
     (script,) = [text.decode() for path, text in files.items() if path.endswith(".js")]
     styles = "\n".join(text.decode() for path, text in files.items() if path.endswith(".css"))
-    index = re.sub(r"\s*<script type=\"module\"[^>]*></script>|\s*<link rel=\"stylesheet\"[^>]*>", "", index)
+    module, style = r"<script type=\"module\"[^>]*></script>", r"<link rel=\"stylesheet\"[^>]*>"
+    index = re.sub(rf"\s*(?:{module}|{style})", "", index)
     data = data.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     script = re.sub(r"</(script)", r"<\\/\1", script, flags=re.I).replace("<!--", "<\\!--")
-    head = (
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n<style>{styles}</style>\n'
-    )
+    policy = f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
+    head = f"{policy}\n<style>{styles}</style>\n"
     body = (
         f'<script type="application/json" id="moldloft-model">{data}</script>\n'
         f'<script type="module">{script}</script>\n'

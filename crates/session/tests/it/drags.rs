@@ -41,7 +41,7 @@ fn a_drag_of_nothing_leaves_the_text_as_it_is() {
     // One that is taken back neither.
     ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
     let drag = json!({"kind": "drag_to", "target": [9, 9, 9], "basis": [[1, 0, 0]]});
-    assert!((number(&ask(&mut s, drag), "P.x") - 9.0).abs() < 1e-12);
+    assert!((number(&ask(&mut s, drag), "P.x") - 9.0).abs() < 1e-9);
     ask(&mut s, json!({"kind": "drag_end", "commit": false}));
     let value = ask(&mut s, json!({"kind": "evaluate", "expressions": ["P.x"]}));
     assert_eq!(value.head["values"][0]["value"], 1.5);
@@ -86,7 +86,8 @@ fn where_the_number_is_an_expression_a_parameter_is_solved_for() {
     // Out of its range it stays at its end.
     ask(&mut s, json!({"kind": "text", "text": text}));
     ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
-    let drag = json!({"kind": "drag_to", "target": [4, 7, 0], "names": ["d"], "basis": [[0, 1, 0]]});
+    let drag =
+        json!({"kind": "drag_to", "target": [4, 7, 0], "names": ["d"], "basis": [[0, 1, 0]]});
     let to = ask(&mut s, drag);
     assert_eq!(number(&to, "d"), 2.0);
     assert!((to.head["left"].as_f64().unwrap() - 5.0).abs() < 1e-9);

@@ -5,8 +5,13 @@ use moldloft_testing::{Random, rounds};
 use serde_json::json;
 use std::collections::BTreeMap;
 
-const EXAMPLES: [&str; 5] =
-    ["sailboat/hull.sdl", "sailboat/yacht.sdl", "wing/wing.sdl", "propeller/propeller.sdl", "implicit/tee.sdl"];
+const EXAMPLES: [&str; 5] = [
+    "sailboat/hull.sdl",
+    "sailboat/yacht.sdl",
+    "wing/wing.sdl",
+    "propeller/propeller.sdl",
+    "implicit/tee.sdl",
+];
 
 /// The same items on a session that begins with the text, but for what a failure has left behind.
 fn agrees_with_a_fresh_start(text: &str, follower: &Viewer) {
@@ -71,7 +76,12 @@ fn random_edits_lose_neither_the_text_nor_the_last_good_scene() {
         let at = random.below(text.len());
         let broken = match random.below(3) {
             0 => format!("{}{}", &text[..at], &text[(at + 3).min(text.len())..]),
-            1 => format!("{}{}{}", &text[..at], random.pick(&["{", ";", "7", "é𝄞", "\n", "hull"]), &text[at..]),
+            1 => format!(
+                "{}{}{}",
+                &text[..at],
+                random.pick(&["{", ";", "7", "é𝄞", "\n", "hull"]),
+                &text[at..]
+            ),
             _ => base.clone(),
         };
         text = if broken.is_char_boundary(at.min(broken.len())) { broken } else { base.clone() };
@@ -142,6 +152,28 @@ fn far_from_the_origin_positions_keep_their_digits() {
 }
 
 #[test]
+fn fields_fit_the_vertices_of_patches() {
+    let mut s = session(&example("sailboat/yacht.sdl"));
+    let v = opened(&mut s, 1);
+    let param = v.facts["params"][0]["name"].clone();
+    for field in moldloft_session::FIELDS {
+        let reply = ask(&mut s, json!({"kind": "field", "field": field, "by": param}));
+        let parts = reply.head["field"].as_array().unwrap_or_else(|| panic!("{}", reply.head));
+        assert!(!parts.is_empty(), "{field}");
+        for part in parts {
+            let vertices = v.items[&part["key"].to_string()].parts["position"].len() / 3;
+            let values = reply.floats(part);
+            assert_eq!(values.len(), vertices * part["components"].as_u64().unwrap() as usize);
+            if field == "aspect" {
+                assert!(values.iter().all(|x| x.is_nan() || *x >= 1.0));
+            }
+        }
+    }
+    let wrong = ask(&mut s, json!({"kind": "field", "field": "colour"}));
+    assert!(wrong.head["error"].as_str().unwrap().contains("colour"));
+}
+
+#[test]
 fn names_come_back_as_they_are() {
     // Model files allow almost anything in a name.
     let text = "AbsPoint P(1, 2, 3); print(\"<img src=x onerror=alert(1)>\");";
@@ -152,9 +184,9 @@ fn names_come_back_as_they_are() {
 
 #[test]
 fn an_inspector_sees_fields_parents_children_values_and_derivatives() {
-    let mut s = session(
-        "param float w = 2 in [1, 3]; AbsPoint A(0, 0, 0); AbsPoint B(w, 0, 0); Line l(A, B);",
-    );
+    let text =
+        "param float w = 2 in [1, 3]; AbsPoint A(0, 0, 0); AbsPoint B(w, 0, 0); Line l(A, B);";
+    let mut s = session(text);
     let about = |s: &mut _, name: &str| {
         ask(s, json!({"kind": "inspect", "name": name, "by": "w"})).head["object"].clone()
     };
@@ -168,7 +200,8 @@ fn an_inspector_sees_fields_parents_children_values_and_derivatives() {
     let b = about(&mut s, "B");
     // x is an expression: not a number that can be typed over.
     assert_eq!(b["fields"][0]["numbers"], json!([]));
-    assert_eq!(about(&mut s, "l")["declared"], json!([78, 79]));
+    let at = text.find("l(").unwrap();
+    assert_eq!(about(&mut s, "l")["declared"], json!([at, at + 1]));
     let missing = ask(&mut s, json!({"kind": "inspect", "name": "Z"}));
     assert!(missing.head["error"].as_str().unwrap().contains("`Z`"));
 }
