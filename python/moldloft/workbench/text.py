@@ -68,7 +68,7 @@ def change_set(old: str, new: str) -> list[Any]:
 
 
 def digest(data: bytes) -> str:
-    """What tells one content from another."""
+    """The hash of a content."""
     return hashlib.sha256(data).hexdigest()
 
 
