@@ -316,6 +316,7 @@ def server_app(hub: Hub, port: int = 4321) -> Any:
         server = Server(hub, 0)
     except Error as error:
         pytest.skip(str(error))
+    server.port = port
     # Nothing listens: applications are called without a socket.
     server._socket.close()
     return server

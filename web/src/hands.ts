@@ -224,6 +224,9 @@ export class Hands {
         snapped = near.object
       }
     }
+    // What was moved before the lock goes back: the place itself is to be on the axis or in the plane.
+    const whole = drag.names.every((n) => drag.own.includes(n))
+    if (whole && (drag.axis !== null || drag.plane !== null)) basis = [unit(0), unit(1), unit(2)]
     const { target } = drag
     if (!drag.own.length) this.offer(drag)
     this.requests.push(async () => {
