@@ -437,8 +437,17 @@ class Spline:
     ) -> Spline: ...
     @staticmethod
     def interpolate(
-        points: NDArray[np.float64], degree: int, spaced: str, closed: bool, breaks: list[int]
+        points: NDArray[np.float64],
+        degree: int,
+        spaced: str,
+        closed: bool,
+        breaks: list[int],
+        direction: tuple[float, float, float],
     ) -> tuple[Spline, NDArray[np.float64], list[int]]: ...
+    @staticmethod
+    def fair_data(
+        points: NDArray[np.float64], options: dict[str, Any]
+    ) -> tuple[Spline, Spline, dict[str, Any]]: ...
     @staticmethod
     def least_squares(
         points: NDArray[np.float64], degree: int, count: int, spaced: str, closed: bool
@@ -558,6 +567,10 @@ class Look:
     ) -> NDArray[np.float64]: ...
     def orthotomic(self, p: list[float], k: float) -> NDArray[np.float64]: ...
 
+def data_findings(
+    points: NDArray[np.float64], closed: bool
+) -> list[tuple[str, int, list[float], str]]: ...
+def detectable(points: NDArray[np.float64], closed: bool) -> NDArray[np.float64]: ...
 def monotone_runs(values: NDArray[np.float64], share: float) -> int: ...
 def divided_differences(
     points: NDArray[np.float64], t: NDArray[np.float64]

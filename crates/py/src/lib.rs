@@ -44,7 +44,10 @@ mod _core {
     #[pymodule_export]
     use crate::engine::{PySession, engine};
     #[pymodule_export]
-    use crate::fair::{Look, Net, Spline, Web, divided_differences, eta_y, monotone_runs};
+    use crate::fair::{
+        Look, Net, Spline, Web, data_findings, detectable, divided_differences, eta_y,
+        monotone_runs,
+    };
     #[pymodule_export]
     use crate::formats::{formats, spline_patch_grid, spline_patch_knots};
     #[pymodule_export]
