@@ -59,6 +59,12 @@ class Format:
         return f"{stem}.{self.suffix or self.name}"
 
     @property
+    def plain_panels(self) -> bool:
+        """Whether the files hold panels and cannot name planes of symmetry: of a symmetric model
+        one side, or the whole when it is asked for."""
+        return self.holds.startswith("panels") and not self.symmetry and not self.writer
+
+    @property
     def panel_code(self) -> bool:
         """Whether a panel code reads the files."""
         return self.immersed
@@ -165,6 +171,8 @@ def markdown() -> str:
     for row in formats().values():
         names = ", ".join(f"`{name}`" for name in (row.name, *row.aliases))
         options = [word for word in ("lids", "immersed") if getattr(row, word)]
+        if row.plain_panels:
+            options += ["whole", "triangles"]
         if row.holds == "surfaces":
             options.append("tolerance")
         planes = row.symmetry or "–"

@@ -160,6 +160,9 @@ impl<T: Real> Afloat<T> {
             let own = centres.iter().find(|(centre, _)| *centre == name);
             rows.push((name, own.and_then(|c| c.1).unwrap_or(value)));
         }
+        if self.earth.waterplane.is_some() {
+            rows.push(("waterplane_product", self.product_moment));
+        }
         rows.push(("weight", self.weight));
         let more = [
             ("tpc", self.tpc),

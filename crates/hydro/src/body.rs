@@ -55,6 +55,22 @@ pub struct Measures<T> {
     pub open: f64,
 }
 
+/// Area, volume and centres of one surface; `None` when it has a place that is not finite.
+pub fn surface_measures<T: Real>(
+    surface: &dyn Surface<T>,
+    accuracy: f64,
+) -> Option<Measures<T>> {
+    let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 6.0).collect();
+    let mut points = vec![Vec3::zero(); steps.len() * steps.len()];
+    surface.grid(&steps, &steps, &mut points, None);
+    if !points.iter().all(|p| p.is_finite()) {
+        return None;
+    }
+    let size = Box3::around(points.iter().map(|p| p.re())).diagonal();
+    let side = Side { surface, reversed: false, open_edges: [false; 4] };
+    Some(Body::new(&[side], [], Vec::new(), size, accuracy)?.measures())
+}
+
 impl<T: Real> Body<T> {
     /// The body that the sides, and panels of other skins, bound. `size` is about its diagonal. `None` when a
     /// surface has a place that is not finite.
@@ -86,7 +102,7 @@ impl<T: Real> Body<T> {
         let size = mesh.bounds().diagonal();
         let at = |v: u32| mesh.positions()[v as usize];
         let panels = mesh.skin_faces().into_iter().map(|f| mesh.faces()[f].map(at));
-        let rims = mesh.open_skin_edges().into_iter().map(|e| e.map(at).to_vec()).collect();
+        let rims = mesh.open_skin_edges().into_iter().map(|(_, e)| e.map(at).to_vec()).collect();
         let no_surface = Self { cells: Vec::new(), rims, size, accuracy };
         let cells = panels.map(|p| Arc::new(Cell::of_panel(p))).collect();
         Self { cells, ..no_surface }

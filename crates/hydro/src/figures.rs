@@ -39,6 +39,16 @@ pub(crate) fn displaced<T: Real>(
     }
 }
 
+/// The figures of the upright body at z = `level`; see [`Hydrostatics`].
+pub fn hydrostatics<T: Real>(
+    body: &Body<T>,
+    level: T,
+    symmetry: Symmetry,
+    density: f64,
+) -> Hydrostatics<T> {
+    floating(body, level, symmetry, density).figures
+}
+
 /// Figures of the part of the body below z = `level`: the skin may be open at the level or above it and, when it
 /// shows one side, in the plane y = 0. Skins whose normals all point inward give the same figures, reported as such.
 pub(crate) fn floating<T: Real>(

@@ -16,12 +16,16 @@ mod equilibrium;
 mod figures;
 mod gauss;
 mod integrals;
+mod measures;
 mod section;
 mod strip;
 
 pub use afloat::{Afloat, Attitude, Water, afloat, bottom, bounds};
-pub use body::{Body, Measures, Side, USUAL_ACCURACY};
+pub use body::{Body, Measures, Side, USUAL_ACCURACY, surface_measures};
 pub use cell::Cell;
+pub use figures::hydrostatics;
+pub use measures::{curve_measures, solid_measures};
+pub use section::section_area;
 pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
 
 #[cfg(test)]

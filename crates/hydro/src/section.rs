@@ -13,7 +13,7 @@ const POINTS: usize = 16;
 
 /// The immersed area of the section at x = `station`, of the modelled part, with its first moment of height about
 /// the water: the integrals of (z - level) dy and of (z - level)^2 / 2 dy along the cut of the skin.
-pub(crate) fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
+pub fn section_area<T: Real>(body: &Body<T>, station: T, level: T) -> [T; 2] {
     let cut = Cut { axis: 0, level: station, epsilon: 1e-13 * body.size() };
     let (mut area, mut moment) = (T::zero(), T::zero());
     let mut found = Vec::new();

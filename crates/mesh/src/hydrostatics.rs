@@ -347,12 +347,12 @@ impl<T: Real> Mesh<T> {
         skin_of(self)
     }
 
-    /// The open edges of these patches, as pairs of vertices.
-    pub fn open_skin_edges(&self) -> Vec<[u32; 2]> {
+    /// The open edges of these patches: the patch, and a pair of vertices.
+    pub fn open_skin_edges(&self) -> Vec<(usize, [u32; 2])> {
         let sides = half_edges(self.topology());
         let skin = |face: usize| self.patches()[self.topology().patch_of(face)].info.tag.is_skin();
         let open = edges(&sides).filter(|e| e.len() == 1 && skin(e[0].face()));
-        open.map(|e| [e[0].from, e[0].to]).collect()
+        open.map(|e| (self.topology().patch_of(e[0].face()), [e[0].from, e[0].to])).collect()
     }
 }
 

@@ -69,6 +69,14 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="cut at z = 0 and write only the part below, in the files of panel codes",
     )
     parser.add_argument(
+        "--whole",
+        action="store_true",
+        help="both sides of a symmetric model, joined, in files of plain panels (STL, OBJ, ...)",
+    )
+    parser.add_argument(
+        "--triangles", action="store_true", help="triangles only, in files of plain panels"
+    )
+    parser.add_argument(
         "--tag",
         metavar="TAG",
         nargs="+",
@@ -152,6 +160,7 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
                 level=options.level, density=options.density, sides=options.sides
             )
         outputs: list[Output] = []
+        halves: list[str] = []
         folder = Path(options.output)
         stem = Path(options.model).stem
         for name in dict.fromkeys(options.to):
@@ -160,7 +169,18 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             row = formats()[name]
             lids = options.lids and row.lids
             immersed = options.immersed and row.immersed
-            outputs += produce(model, name, path, lids=lids, immersed=immersed, tags=options.tag)
+            plain = {"whole": options.whole, "triangles": options.triangles}
+            outputs += produce(
+                model,
+                name,
+                path,
+                lids=lids,
+                immersed=immersed,
+                tags=options.tag,
+                **(plain if row.plain_panels else {}),
+            )
+            if row.plain_panels and model.symmetry and not options.whole:
+                halves.append(name)
         written = commit(folder, outputs) if outputs else []
     # Remarks of the panelling have joined those of the run.
     report(model.diagnostics)
@@ -169,6 +189,7 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
     report(block_problems(model))
     data = facts(model, mesh, floating, written)
     data["closure"] = mesh.closure(level=options.level)
+    data["one_side"] = halves
     if options.json:
         print_json(data)
     else:
@@ -256,6 +277,9 @@ def summary(model: Model, mesh: Mesh, floating: Hydrostatics | None, data: dict[
     if data["files"]:
         lines.append("")
         lines += [f"wrote {file['path']} ({_bytes(file['bytes'])})" for file in data["files"]]
+    if data.get("one_side"):
+        names = ", ".join(data["one_side"])
+        lines.append(f"{names}: one side of the symmetric model; --whole writes both, joined")
     return "\n".join(lines)
 
 

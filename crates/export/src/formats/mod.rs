@@ -9,6 +9,7 @@ mod glb;
 mod hams;
 mod hydrostar;
 mod model_file;
+mod msh;
 mod nemoh;
 mod obj;
 mod off;
@@ -17,6 +18,8 @@ mod ply;
 mod png;
 mod program;
 mod stl;
+mod stl_text;
+mod su2;
 mod svg;
 mod threemf;
 mod volume_p3d;
@@ -41,10 +44,13 @@ pub static FORMATS: &[Format] = &[
     hams::FORMAT,
     aqwa::FORMAT,
     stl::FORMAT,
+    stl_text::FORMAT,
     threemf::FORMAT,
     obj::FORMAT,
     off::FORMAT,
     ply::FORMAT,
+    msh::FORMAT,
+    su2::FORMAT,
     glb::FORMAT,
     vtp::FORMAT,
     vts::FORMAT,

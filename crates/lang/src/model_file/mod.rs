@@ -6,6 +6,7 @@
 
 mod formula;
 pub mod header;
+pub mod units;
 pub(crate) mod names;
 mod panel_attributes;
 mod to_model_file;
@@ -544,6 +545,11 @@ impl ModelFileSource {
     /// The planes in which the model is mirrored, as "y" or "xy".
     pub fn symmetry(&self) -> String {
         self.model.symmetry()
+    }
+
+    /// The header's line of units, empty without one.
+    pub fn units(&self) -> String {
+        self.model.header_value("Units").unwrap_or("").trim().to_string()
     }
 }
 
