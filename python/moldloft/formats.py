@@ -60,8 +60,10 @@ class Format:
 
     @property
     def plain_panels(self) -> bool:
-        """Whether the files hold panels and cannot name planes of symmetry: of a symmetric model
-        one side, or the whole when it is asked for."""
+        """Whether the files hold panels and cannot name planes of symmetry.
+
+        Of a symmetric model they hold one side, or the whole when it is asked for.
+        """
         return self.holds.startswith("panels") and not self.symmetry and not self.writer
 
     @property
@@ -106,6 +108,21 @@ PYTHON_ROWS = (
         symmetry="x, y, xy",
         text=True,
         writer="moldloft.blockmesh:encode",
+    ),
+    Format(
+        "lines-svg",
+        "the lines plan on one sheet as SVG",
+        suffix="lines.svg",
+        holds="drawing",
+        text=True,
+        writer="moldloft.lines_plan:encode_svg",
+    ),
+    Format(
+        "lines-pdf",
+        "the lines plan on one sheet as PDF",
+        suffix="lines.pdf",
+        holds="drawing",
+        writer="moldloft.lines_plan:encode_pdf",
     ),
     Format(
         "offsets",

@@ -164,7 +164,6 @@ class Hydrostatics:
             del kept["derivatives"]
         return kept
 
-
     def unit(self, figure: str) -> str:
         """The unit of a figure, empty where the model states none."""
         return self.units.of(figure)
@@ -255,7 +254,7 @@ class _Rows:
         return [row.as_dict() for row in self.rows]
 
     def csv(self, columns: Sequence[str] | None = None) -> str:
-        """The rows as comma-separated text (RFC 4180), a header with units first; angles in degrees.
+        """The rows as comma-separated text (RFC 4180), units in its header; angles in degrees.
 
         Parameters
         ----------

@@ -467,7 +467,7 @@ class Model:
         by
             Parameters or literals to differentiate the figures by.
         accuracy
-            The largest error asked for, relative to the figure, 1e-12 to 0.1. What was reached is in
+            The relative error asked for, 1e-12 to 0.1. What was reached is in
             ``bounds``.
 
         Examples
@@ -565,7 +565,9 @@ class Model:
         if held and found.stable is False and sides == "both":
             # Upright it capsizes: on to the attitude that it finds, if there is one.
             row = ("displacement", float(displacement), float(trim), float(heel), True, True)
-            found = self._floating([row], given, density, gravity, sides, by, accuracy, of_weights)[0]
+            found = self._floating([row], given, density, gravity, sides, by, accuracy, of_weights)[
+                0
+            ]
         return found
 
     def hydrostatic_table(
@@ -674,7 +676,7 @@ class Model:
         Examples
         --------
         >>> import moldloft
-        >>> m = moldloft.loads("Weight engine({2, 0, 0.5}, mass = 3); Weight fuel({4, 0, 0}, mass = 1);")
+        >>> m = moldloft.loads("Weight a({2, 0, 0.5}, mass = 3); Weight b({4, 0, 0}, mass = 1);")
         >>> m.weights().mass, m.weights().centre
         (4.0, (2.5, 0.0, 0.375))
         """
@@ -734,7 +736,10 @@ class Model:
                 "a mass floats in water of a density\n"
                 'help: give density="salt", "fresh", or mass per volume in the model\'s units'
             )
-        points = [Opening(name, (float(x), float(y), float(z))) for name, (x, y, z) in (openings or {}).items()]
+        points = [
+            Opening(name, (float(x), float(y), float(z)))
+            for name, (x, y, z) in (openings or {}).items()
+        ]
         return Stability(
             self,
             displacement,
@@ -754,8 +759,10 @@ class Model:
         *,
         accuracy: float = 1e-6,
     ) -> NDArray[np.float64]:
-        """Immersed areas of sections below upright levels, ``[station, level]``: Bonjean curves, and at
-        one level the sectional area curve. Both sides of a symmetric model count.
+        """Immersed areas of sections below upright levels, ``[station, level]``.
+
+        Bonjean curves, and at one level the sectional area curve. Both sides of a symmetric model
+        count.
 
         Examples
         --------
@@ -772,8 +779,11 @@ class Model:
         return np.array(areas, dtype=np.float64)[..., 0]
 
     def panel_figures(self, level: float = 0.0) -> dict[str, float]:
-        """What the panels displace below an upright level, what a panel code computes with: ``volume``,
-        ``wetted_area``, ``waterplane_area``. Those of the shape are in :meth:`hydrostatics`."""
+        """What the panels displace below an upright level: what a panel code computes with.
+
+        ``volume``, ``wetted_area`` and ``waterplane_area``; those of the shape are in
+        :meth:`hydrostatics`.
+        """
         names = ("volume", "wetted_area", "waterplane_area")
         return dict(zip(names, self._document.panel_figures(float(level)), strict=True))
 

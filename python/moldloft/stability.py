@@ -17,16 +17,27 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moldloft.errors import Error
+from moldloft.units import Units
 
 if TYPE_CHECKING:
     from moldloft.hydrostatics import Hydrostatics
     from moldloft.models import Model
 
-__all__ = ["Assessment", "Check", "Opening", "Stability", "Wind", "rules"]
+__all__ = [
+    "Assessment",
+    "Check",
+    "CrossCurves",
+    "Opening",
+    "Stability",
+    "Wind",
+    "cross_curves",
+    "rules",
+]
 
 _STEP = math.radians(5.0)
 _ANGLE_ACCURACY = 1e-11
@@ -49,17 +60,14 @@ class Opening:
 
 @dataclass(frozen=True)
 class Wind:
-    """The lateral plane above the water and the data of the weather criterion of the 2008 IS Code, in
-    metres."""
+    """What the weather criterion of the 2008 IS Code needs of the wind, in metres."""
 
     area: float
     """Projected lateral area of the ship and deck cargo above the water, m²."""
     lever: float
-    """Height of its centre over the centre of the lateral area under water, or over half the draught,
-    m."""
+    """Height of its centre over the centre of the lateral area under water, or half the draught."""
     bilge: float = 1.0
-    """Factor k: 1 for a round bilge without bilge keels, 0.7 for a sharp bilge; with bilge keels see
-    ``keel_area``."""
+    """Factor k: 1 for a round bilge without keels, 0.7 for a sharp one; see ``keel_area``."""
     keel_area: float | None = None
     """Area of bilge keels or bar keel, m²: the factor follows from the table of the code."""
     pressure: float = 504.0
@@ -106,7 +114,11 @@ class Stability:
         self.free_trim = free_trim
         self.openings = tuple(openings)
         self._model = model
-        self._options = {"density": density, "gravity": gravity, "accuracy": accuracy}
+        self._options: dict[str, Any] = {
+            "density": density,
+            "gravity": gravity,
+            "accuracy": accuracy,
+        }
         self._rows: dict[float, Hydrostatics] = {}
         self.upright = self.at(0.0)
 
@@ -122,7 +134,12 @@ class Stability:
         if not missing:
             return
         curve = self._model.righting_curve(
-            missing, self.mass, cg=self.cg, trim=self.trim, free_trim=self.free_trim, **self._options
+            missing,
+            self.mass,
+            cg=self.cg,
+            trim=self.trim,
+            free_trim=self.free_trim,
+            **self._options,
         )
         for row in curve.rows:
             if row.status == "not-converged":
@@ -138,8 +155,10 @@ class Stability:
         return math.nan if arm is None else arm
 
     def energy(self, heel: float) -> float:
-        """The height of the centre of gravity over that of buoyancy: its change is the work of
-        heeling over the weight, exactly the area under GZ cos(trim) (Moseley's dynamical stability).
+        """The height of the centre of gravity over that of buoyancy.
+
+        Its change is the work of heeling over the weight: exactly the area under GZ cos(trim)
+        (Moseley's dynamical stability).
         """
         row = self.at(heel)
         normal = _level_axes(heel, row.trim)[2]
@@ -147,8 +166,7 @@ class Stability:
         return _dot(normal, [g - b for g, b in zip(self.cg, centre, strict=True)])
 
     def area(self, low: float, high: float) -> float:
-        """The area under the righting arm between two heels: a difference of energies, without
-        quadrature."""
+        """The area under the righting arm between two heels: a difference of energies."""
         return self.energy(high) - self.energy(low)
 
     def slope(self, heel: float) -> float:
@@ -186,12 +204,14 @@ class Stability:
         return row.gmt is not None and row.gmt > 0 and row.gml is not None and row.gml > 0
 
     def loll(self, most: float = math.pi) -> float | None:
-        """The least positive heel at which an overturning arm becomes a righting one; ``None`` for a
-        body that is stable upright, or finds no such heel up to ``most``."""
+        """The least positive heel at which an overturning arm turns righting.
+
+        ``None`` for a body that is stable upright, or finds no such heel up to ``most``.
+        """
         if self.gmt >= 0:
             return None
         heels = self.grid(0.0, most)
-        for a, b in zip(heels[1:], heels[2:], strict=False):
+        for a, b in pairwise(heels[1:]):
             if self.gz(a) < 0 <= self.gz(b):
                 return _root(self.gz, a, b)
         if self.gz(heels[1]) >= 0:
@@ -213,10 +233,12 @@ class Stability:
         return heels[k], self.gz(heels[k])
 
     def vanishing(self, most: float = math.pi) -> float | None:
-        """The angle of vanishing stability: where the arm falls to zero for the first time after it
-        was positive; ``None`` when it was never positive, or stays so up to ``most``."""
+        """The angle of vanishing stability: where a positive arm first falls to zero.
+
+        ``None`` when it was never positive, or stays so up to ``most``.
+        """
         heels = self.grid(0.0, most)
-        for a, b in zip(heels, heels[1:], strict=False):
+        for a, b in pairwise(heels):
             positive = self.gz(a) > 0 or (a == 0 and self.slope(0.0) > 0)
             if positive and self.gz(b) <= 0:
                 start = a if a > 0 else min(1e-6, b / 2)
@@ -232,8 +254,10 @@ class Stability:
         return (most if end is None else end) - start
 
     def immersed(self, opening: Opening, most: float = math.pi) -> float | None:
-        """The least positive heel at which an opening reaches the water; ``None`` when it never does
-        up to ``most``: one near the centre line may not."""
+        """The least positive heel at which an opening reaches the water.
+
+        ``None`` when it never does up to ``most``: one near the centre line may not.
+        """
 
         def height(heel: float) -> float:
             row = self.at(heel)
@@ -242,21 +266,25 @@ class Stability:
         heels = self.grid(0.0, most, math.radians(2.0))
         if height(0.0) <= 0:
             return 0.0
-        for a, b in zip(heels, heels[1:], strict=False):
+        for a, b in pairwise(heels):
             if height(b) <= 0:
                 return _root(height, a, b)
         return None
 
     def flooding(self, most: float = math.pi) -> tuple[float, str] | None:
-        """The least heel at which an opening reaches the water, and its name; ``None`` when none does,
-        or there is none."""
+        """The least heel at which an opening reaches the water, and its name.
+
+        ``None`` when none does, or there is none.
+        """
         found = [(self.immersed(o, most), o.name) for o in self.openings]
         angles = [(angle, name) for angle, name in found if angle is not None]
         return min(angles) if angles else None
 
     def deck_edge(self, most: float = math.pi / 2) -> float | None:
-        """The heel at which the lowest open edge, such as the sheer, reaches the water; ``None`` for
-        a closed skin."""
+        """The heel at which the lowest open edge, such as the sheer, reaches the water.
+
+        ``None`` for a closed skin.
+        """
         if self.upright.freeboard is None:
             return None
 
@@ -264,13 +292,58 @@ class Stability:
             return self.at(heel).freeboard or 0.0
 
         heels = self.grid(0.0, most, math.radians(2.0))
-        for a, b in zip(heels, heels[1:], strict=False):
+        for a, b in pairwise(heels):
             if height(a) > 0 >= height(b):
                 return _root(height, a, b)
         return None
 
+    def summary(self) -> str:
+        """The main figures of the loading, a line each, with units."""
+        row = self.upright
+        unit = row.units
+        arm = unit.of("gz")
+
+        def line(name: str, text: str) -> str:
+            return f"  {name.ljust(34)}{text}"
+
+        def angle(value: float | None, otherwise: str) -> str:
+            return otherwise if value is None else f"{math.degrees(value):.4f} deg"
+
+        heel, largest = self.largest()
+        flood = self.flooding()
+        lines = [
+            "stability, trim free" if self.free_trim else "stability, trim kept",
+            line("mass", f"{self.mass:.7g} {unit.mass}".rstrip()),
+            line("centre of gravity", "{:.6g}, {:.6g}, {:.6g}".format(*self.cg)),
+            line("GM, transverse and longitudinal", f"{row.gmt:.6g}, {row.gml:.6g} {arm}".rstrip()),
+            line("stable upright", "yes" if self.stable else "no"),
+        ]
+        if not self.stable:
+            lines.append(line("angle of loll", angle(self.loll(), "none up to 180 deg")))
+        lines += [
+            line("largest GZ", f"{largest:.6g} {arm} at {math.degrees(heel):.4f} deg"),
+            line("angle of vanishing stability", angle(self.vanishing(), "none up to 180 deg")),
+            line("range", f"{math.degrees(self.range()):.4f} deg"),
+        ]
+        for low, high in ((0, 30), (0, 40), (30, 40)):
+            area = self.area(math.radians(low), math.radians(high))
+            text = f"{area:.6g} {arm}·rad" if arm else f"{area:.6g}"
+            lines.append(line(f"area {low} to {high} deg", text))
+        edge = self.deck_edge()
+        if edge is not None:
+            lines.append(line("deck edge immersed", angle(edge, "")))
+        if flood is not None:
+            lines.append(line("flooding", f"{math.degrees(flood[0]):.4f} deg, {flood[1]}"))
+        elif self.openings:
+            lines.append(line("flooding", "no opening reaches the water up to 180 deg"))
+        return "\n".join(lines)
+
     def assess(
-        self, rule: str = "is-code-2008", *, wind: Wind | None = None, deck_edge: float | None = None
+        self,
+        rule: str = "is-code-2008",
+        *,
+        wind: Wind | None = None,
+        deck_edge: float | None = None,
     ) -> Assessment:
         """The criteria of a rule, one row for each clause.
 
@@ -285,6 +358,99 @@ class Stability:
             open edge.
         """
         return _assess(self, rule, wind, deck_edge)
+
+
+@dataclass(frozen=True)
+class CrossCurves:
+    """Arms KN over heel for several displaced volumes: GZ = KN - KG sin(heel)."""
+
+    volumes: tuple[float, ...]
+    """The displaced volumes."""
+    heels: tuple[float, ...]
+    """The heels, in radians."""
+    kn: tuple[tuple[float, ...], ...]
+    """The arms, ``[volume][heel]``, from the upright body's lowest height on the centre line."""
+    free_trim: bool
+    """Whether the body trims freely, about the centre of buoyancy of its upright level state."""
+    units: Units
+    """What the numbers are in."""
+
+    def as_list(self) -> list[dict[str, Any]]:
+        """The rows as dictionaries; heels in degrees."""
+        return [
+            {"volume": v, "heel": math.degrees(h), "kn": x}
+            for v, row in zip(self.volumes, self.kn, strict=True)
+            for h, x in zip(self.heels, row, strict=True)
+        ]
+
+    def _table(self) -> tuple[list[str], list[list[float]]]:
+        volume, arm = self.units.of("volume"), self.units.of("kn")
+        unit = f" [{arm}]" if arm else ""
+        head = [f"volume [{volume}]" if volume else "volume"]
+        head += [f"KN{unit} at {math.degrees(h):g} deg" for h in self.heels]
+        return head, [[v, *row] for v, row in zip(self.volumes, self.kn, strict=True)]
+
+    def csv(self) -> str:
+        """The arms as comma-separated text (RFC 4180), a row for each volume."""
+        head, rows = self._table()
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\r\n")
+        writer.writerow(head)
+        writer.writerows(rows)
+        return text.getvalue()
+
+    def write_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write :meth:`csv` to a file, whole or not at all."""
+        from moldloft.files import Output, commit
+
+        path = Path(path)
+        return commit(path.parent, [Output(path.name, self.csv().encode())])[0]
+
+    def __str__(self) -> str:
+        from moldloft.cli.console import table
+
+        head, rows = self._table()
+        trim = "free" if self.free_trim else "kept"
+        return table(head, [[f"{x:.6g}" for x in row] for row in rows], left=0) + f"\ntrim {trim}"
+
+
+def cross_curves(
+    model: Model,
+    volumes: Sequence[float],
+    heels: Sequence[float],
+    *,
+    free_trim: bool = True,
+    accuracy: float = 1e-6,
+) -> CrossCurves:
+    """Cross curves of stability: arms KN at constant displacement.
+
+    Parameters
+    ----------
+    model
+        The model.
+    volumes
+        Displaced volumes.
+    heels
+        In radians.
+    free_trim
+        Whether the body trims freely: the centre of gravity is then over the centre of buoyancy of
+        the upright level state, as is the custom.
+    accuracy
+        Of the integrals, relative.
+    """
+    lowest = model.hydrostatics(level=0.0, accuracy=accuracy)
+    keel = lowest.level - lowest.draft_mid if lowest.draft_mid is not None else 0.0
+    rows = []
+    for volume in volumes:
+        level = model.equilibrium(volume, density=1.0, free=(), accuracy=accuracy)
+        centre = (level.lcb or 0.0, 0.0, keel)
+        curve = model.righting_curve(
+            heels, volume, cg=centre, density=1.0, free_trim=free_trim, accuracy=accuracy
+        )
+        rows.append(tuple(math.nan if row.gz is None else row.gz for row in curve.rows))
+    return CrossCurves(
+        tuple(map(float, volumes)), tuple(map(float, heels)), tuple(rows), free_trim, model.units
+    )
 
 
 def _root(f: Callable[[float], float], low: float, high: float) -> float:
@@ -556,7 +722,7 @@ _PERIOD += [(18.0, 0.038), (20.0, 0.035)]
 def _between(table: Sequence[tuple[float, float]], x: float) -> float:
     if x <= table[0][0]:
         return table[0][1]
-    for (a, p), (b, q) in zip(table, table[1:], strict=False):
+    for (a, p), (b, q) in pairwise(table):
         if x <= b:
             return p + (q - p) * (x - a) / (b - a)
     return table[-1][1]
@@ -578,7 +744,9 @@ def _weather_clause(context: _Context, clause: Mapping[str, Any]) -> Check:
     ratio = kg / draft - 1
     roll = 2 * (0.373 + 0.023 * beam / draft - 0.043 * length / 100) * beam / math.sqrt(gm)
     if not (beam / draft < 3.5 and -0.3 <= ratio <= 0.5 and roll < 20):
-        why = f"B/d {beam / draft:.3g} (below 3.5), KG/d - 1 {ratio:.3g} (-0.3 to 0.5), roll period "
+        why = (
+            f"B/d {beam / draft:.3g} (below 3.5), KG/d - 1 {ratio:.3g} (-0.3 to 0.5), roll period "
+        )
         why += f"{roll:.3g} s (below 20): outside the tables; tests by MSC.1/Circ.1200 are needed"
         return context.without(clause, "m·rad", "not applicable", why)
     tonnes = s._model.tonnes(s.mass)
@@ -600,7 +768,7 @@ def _weather_clause(context: _Context, clause: Mapping[str, Any]) -> Check:
 
     def crossing(lever: float, rising: bool) -> float | None:
         f = over(lever)
-        for a, b in zip(heels, heels[1:], strict=False):
+        for a, b in pairwise(heels):
             if (f(a) < 0 <= f(b)) if rising else (f(a) >= 0 > f(b)):
                 return _root(f, a, b)
         return None
@@ -610,9 +778,7 @@ def _weather_clause(context: _Context, clause: Mapping[str, Any]) -> Check:
         return context.without(clause, "m·rad", "fail", "the wind lever exceeds the righting arms")
     edge = context.deck_edge if context.deck_edge is not None else s.deck_edge()
     flood = s.flooding()
-    end = min(
-        math.radians(50), second or math.pi, flood[0] if flood is not None else math.pi
-    )
+    end = min(math.radians(50), second or math.pi, flood[0] if flood is not None else math.pi)
     start = calm - swing
     a = gust * (first - start) - (s.energy(first) - s.energy(start)) * unit
     b = (s.energy(end) - s.energy(first)) * unit - gust * (end - first)
@@ -642,7 +808,9 @@ def _weather_clause(context: _Context, clause: Mapping[str, Any]) -> Check:
     if calm > most:
         note = f"steady heel {degrees(calm):.2f}° is more than {degrees(most):.2f}°"
         return Check(clause["clause"], clause["what"], "m·rad", a, b, "fail", note)
-    note = "" if edge is not None else "no deck edge given: the steady heel is compared with 16° alone"
+    note = (
+        "" if edge is not None else "no deck edge given: the steady heel is compared with 16° alone"
+    )
     return context.check(clause, "m·rad", a, b, note)
 
 

@@ -111,8 +111,10 @@ class Units:
         return _MASSES[self.mass]
 
     def complete(self) -> Units:
-        """The units with mass and force filled in where the length is known: kg and N with metric
-        lengths, lb and lbf with feet, inches and yards."""
+        """The units with mass and force filled in where the length is known.
+
+        With metric lengths kg and N, with feet, inches and yards lb and lbf.
+        """
         if not self.length:
             return self
         metric = self.length in ("m", "cm", "mm", "km")
