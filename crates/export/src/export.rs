@@ -101,8 +101,7 @@ fn refuse_options(format: &Format, options: &WriteOptions) -> Result<(), Diagnos
     if (options.whole || options.triangles) && !(of_panels && format.symmetry == Symmetry::None) {
         let option = if options.whole { "whole" } else { "triangles" };
         let meshes = names(|f| {
-            matches!(f.holds, Holds::Panels | Holds::PanelsAndLines)
-                && f.symmetry == Symmetry::None
+            matches!(f.holds, Holds::Panels | Holds::PanelsAndLines) && f.symmetry == Symmetry::None
         });
         return error(format!("`{option}` is for files of plain panels, {meshes}"));
     }

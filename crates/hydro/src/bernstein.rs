@@ -141,7 +141,11 @@ pub(crate) fn bracketed(row: &[f64]) -> f64 {
         if x == 0.0 {
             break;
         }
-        if (x > 0.0) == rising { high = t } else { low = t }
+        if (x > 0.0) == rising {
+            high = t
+        } else {
+            low = t
+        }
         let newton = t - x / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         if (next - t).abs() <= 1e-16 || high - low <= 1e-16 {

@@ -2,7 +2,7 @@
 
 use crate::bernstein::halves;
 use crate::cell::{Cell, FitLimits, cells_of};
-use crate::integrals::{Immersed, immersed};
+use crate::integrals::{Immersed, Wanted, immersed};
 use moldloft_mesh::Mesh;
 use moldloft_num::{Box3, Real, Surface, Vec3};
 use std::sync::Arc;
@@ -56,10 +56,7 @@ pub struct Measures<T> {
 }
 
 /// Area, volume and centres of one surface; `None` when it has a place that is not finite.
-pub fn surface_measures<T: Real>(
-    surface: &dyn Surface<T>,
-    accuracy: f64,
-) -> Option<Measures<T>> {
+pub fn surface_measures<T: Real>(surface: &dyn Surface<T>, accuracy: f64) -> Option<Measures<T>> {
     let steps: Vec<f64> = (0..=6).map(|k| f64::from(k) / 6.0).collect();
     let mut points = vec![Vec3::zero(); steps.len() * steps.len()];
     surface.grid(&steps, &steps, &mut points, None);
@@ -218,7 +215,13 @@ impl<T: Real> Body<T> {
 
     /// The integrals below `level` about (x0, y0).
     pub(crate) fn integrals(&self, level: T, origin: [T; 2]) -> Immersed<T> {
-        immersed(&self.cells, level, origin, self.size, (SHARE * self.accuracy).max(FINEST))
+        self.wanted_integrals(level, origin, Wanted::All)
+    }
+
+    /// The same, but only what is wanted to the accuracy.
+    pub(crate) fn wanted_integrals(&self, level: T, origin: [T; 2], wanted: Wanted) -> Immersed<T> {
+        let accuracy = (SHARE * self.accuracy).max(FINEST);
+        immersed(&self.cells, level, origin, self.size, accuracy, wanted)
     }
 
     /// What the distance between cells and surfaces can add to the errors of volume, its first moments, area, and
@@ -249,9 +252,8 @@ impl<T: Real> Body<T> {
     /// at which it is reached.
     pub fn lowest(&self, direction: Vec3<f64>) -> Option<T> {
         let along = |p: Vec3<T>| p.x * direction.x + p.y * direction.y + p.z * direction.z;
-        let least = |c: &Cell<T>| {
-            c.net().iter().map(|&p| along(p).re()).fold(f64::INFINITY, f64::min)
-        };
+        let least =
+            |c: &Cell<T>| c.net().iter().map(|&p| along(p).re()).fold(f64::INFINITY, f64::min);
         let mut best: Option<T> = None;
         let mut stack: Vec<(f64, Arc<Cell<T>>)> =
             self.cells.iter().map(|c| (least(c), c.clone())).collect();
@@ -293,10 +295,10 @@ impl<T: Real> Body<T> {
 
     /// The lowest z of the open rims.
     pub fn lowest_rim(&self) -> Option<T> {
-        let least =
-            |r: &[Vec3<T>]| r.iter().map(|p| p.z.re()).fold(f64::INFINITY, f64::min);
+        let least = |r: &[Vec3<T>]| r.iter().map(|p| p.z.re()).fold(f64::INFINITY, f64::min);
         let mut best: Option<T> = None;
-        let mut stack: Vec<(Vec<Vec3<T>>, u32)> = self.rims.iter().map(|r| (r.clone(), 0)).collect();
+        let mut stack: Vec<(Vec<Vec3<T>>, u32)> =
+            self.rims.iter().map(|r| (r.clone(), 0)).collect();
         while let Some((row, depth)) = stack.pop() {
             if best.is_some_and(|b| least(&row) >= b.re() - 1e-14 * self.size) {
                 continue;

@@ -38,7 +38,13 @@ const DEEPEST: u32 = 40;
 impl<T: Real> Cell<T> {
     /// The bilinear cell of four corners, counter-clockwise seen from outside; a triangle repeats its last.
     pub fn of_panel([a, b, c, d]: [Vec3<T>; 4]) -> Self {
-        Self { degree: [1, 1], net: vec![a, d, b, c], reversed: false, border: [false; 4], fit: [0.0; 2] }
+        Self {
+            degree: [1, 1],
+            net: vec![a, d, b, c],
+            reversed: false,
+            border: [false; 4],
+            fit: [0.0; 2],
+        }
     }
 
     pub(crate) fn degree(&self) -> [usize; 2] {
@@ -185,9 +191,8 @@ pub(crate) fn cells_of<T: Real>(
         // Rounding of the places cannot be had smaller.
         let size = fitted.net.iter().fold(0.0f64, |m, p| m.max(p.re().norm()));
         let distance = limits.distance.max(4e-14 * size);
-        let negligible = |tail: f64, across: f64| {
-            tail <= distance || tail * across.max(tail) <= limits.area
-        };
+        let negligible =
+            |tail: f64, across: f64| tail <= distance || tail * across.max(tail) <= limits.area;
         let full = cells.len() + stack.len() >= MOST_CELLS;
         let rough =
             [!negligible(tail_u, length_v), !negligible(tail_v, length_u)].map(|r| r && !full);
@@ -253,9 +258,8 @@ fn fit<T: Real>(
         })
     };
     // Derivatives may be of a higher degree than the places.
-    let highest = |from: usize, along: usize| {
-        (from + 1..N).rev().find(|&k| !still(k, along)).unwrap_or(from)
-    };
+    let highest =
+        |from: usize, along: usize| (from + 1..N).rev().find(|&k| !still(k, along)).unwrap_or(from);
     let (du, dv) = (highest(degree(&row), 0), highest(degree(&column), 1));
     let tail = |d: usize, size_of: &dyn Fn(usize) -> f64| {
         let left: f64 = (d + 1..N).map(size_of).sum();

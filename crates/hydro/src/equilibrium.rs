@@ -373,8 +373,11 @@ impl<'m> Problem<'m, f64> {
                     // Between two heels the arm is all but straight.
                     let (found, steps, left) = self.newton(next);
                     let near = (found[2] - next[2]).abs() <= 3.0 * HEEL_STEP;
-                    return (left <= self.loose() && near && self.stable(found))
-                        .then_some((found, count + steps, left));
+                    return (left <= self.loose() && near && self.stable(found)).then_some((
+                        found,
+                        count + steps,
+                        left,
+                    ));
                 }
                 before = arm;
                 now = next;

@@ -1,6 +1,7 @@
 //! The hydrostatic figures of a body below a water plane z = level.
 
 use crate::body::Body;
+use crate::integrals::Wanted;
 use crate::section::{section_area, waterline_extent};
 use crate::strip::Cut;
 use moldloft_mesh::{FormCoefficients, Hydrostatics, Symmetry, VolumeForms, Waterplane};
@@ -30,7 +31,7 @@ pub(crate) fn displaced<T: Real>(
     origin: [T; 2],
     count: f64,
 ) -> Displaced<T> {
-    let sums = body.integrals(level, origin).sums;
+    let sums = body.wanted_integrals(level, origin, Wanted::Displacement).sums;
     let times = |x: T| x * count;
     Displaced {
         forms: sums.forms.map(times),

@@ -93,9 +93,7 @@ impl<T: Real> Sums<T> {
     /// How far two results of the same integrals are apart.
     fn differences(&self, o: &Self) -> Errors {
         let off = |a: T, b: T| (a.re() - b.re()).abs();
-        let vector = |a: Vec3<T>, b: Vec3<T>| {
-            off(a.x, b.x).max(off(a.y, b.y)).max(off(a.z, b.z))
-        };
+        let vector = |a: Vec3<T>, b: Vec3<T>| off(a.x, b.x).max(off(a.y, b.y)).max(off(a.z, b.z));
         let plane = |k: usize| off(self.plane[k], o.plane[k]);
         [
             (0..3).map(|k| off(self.forms[k], o.forms[k])).fold(0.0, f64::max),
@@ -151,6 +149,14 @@ impl Ord for Candidate {
     }
 }
 
+/// Which integrals must reach the accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    All,
+    /// Volume and its first moments: what an equilibrium needs.
+    Displacement,
+}
+
 /// The integrals below `level`, each to about `accuracy` of its size; `origin` is (x0, y0), `size` that of the body.
 pub(crate) fn immersed<T: Real>(
     cells: &[Arc<Cell<T>>],
@@ -158,6 +164,7 @@ pub(crate) fn immersed<T: Real>(
     origin: [T; 2],
     size: f64,
     accuracy: f64,
+    wanted: Wanted,
 ) -> Immersed<T> {
     let cut = Cut { axis: 2, level, epsilon: 1e-13 * size };
     let origin = Vec3::new(origin[0], origin[1], level);
@@ -189,7 +196,8 @@ pub(crate) fn immersed<T: Real>(
             plane * size * size,
         ]);
     }
-    let worst = |e: &Errors| (0..6).map(|k| e[k] / scale[k]).fold(0.0, f64::max);
+    let count = if wanted == Wanted::All { 6 } else { 2 };
+    let worst = |e: &Errors| (0..count).map(|k| e[k] / scale[k]).fold(0.0, f64::max);
     let mut heap: BinaryHeap<Candidate> = parts
         .iter()
         .enumerate()
@@ -282,18 +290,16 @@ fn is_exact<T: Real>(strip: &Strip<T>) -> bool {
 }
 
 /// The integrals over a strip by the finer (0) or the coarser (1) rule.
-fn integrated<T: Real>(
-    strip: &Strip<T>,
-    cut: Cut<T>,
-    origin: Vec3<T>,
-    coarser: usize,
-) -> Sums<T> {
+fn integrated<T: Real>(strip: &Strip<T>, cut: Cut<T>, origin: Vec3<T>, coarser: usize) -> Sums<T> {
     let mut sums = Sums::zero();
     let degree = strip.cell.degree();
     let fewer = if degree == [1, 1] { 1 } else { 2 };
     let across = points(degree[strip.inner]) - fewer * coarser;
-    let outer =
-        if strip.is_cut() { OUTER[coarser] } else { points(degree[1 - strip.inner]) - fewer * coarser };
+    let outer = if strip.is_cut() {
+        OUTER[coarser]
+    } else {
+        points(degree[1 - strip.inner]) - fewer * coarser
+    };
     let length = strip.to - strip.from;
     let sign = strip.sign();
     let mut line = Line::default();

@@ -23,10 +23,10 @@ mod strip;
 pub use afloat::{Afloat, Attitude, Water, afloat, bottom, bounds};
 pub use body::{Body, Measures, Side, USUAL_ACCURACY, surface_measures};
 pub use cell::Cell;
+pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
 pub use figures::hydrostatics;
 pub use measures::{curve_measures, solid_measures};
 pub use section::section_area;
-pub use equilibrium::{FloatError, Loading, Solved, Status, equilibrium};
 
 #[cfg(test)]
 mod tests;

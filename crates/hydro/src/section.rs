@@ -67,8 +67,7 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: Cut<T>, level: T) -> Vec<[T; 2]> 
         let z = height(w);
         if (z.re() < 0.0) != (last.1.re() < 0.0) {
             // The root, by Illinois steps on real parts, then one secant step for the derivatives.
-            let (mut a, mut fa, mut b, mut fb) =
-                (last.0.re(), last.1.re(), w.re(), z.re());
+            let (mut a, mut fa, mut b, mut fb) = (last.0.re(), last.1.re(), w.re(), z.re());
             let mut root = 0.5 * (a + b);
             for _ in 0..60 {
                 root = if fb == fa { 0.5 * (a + b) } else { (a * fb - b * fa) / (fb - fa) };
@@ -93,7 +92,11 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: Cut<T>, level: T) -> Vec<[T; 2]> 
                     strip.cut_at(T::from(root), cut, &mut line)
                 };
                 let off = (at.p.z - level) / at.along.z;
-                if off.is_finite() && off.re().abs() < 1e-6 { T::from(root) - off } else { T::from(root) }
+                if off.is_finite() && off.re().abs() < 1e-6 {
+                    T::from(root) - off
+                } else {
+                    T::from(root)
+                }
             };
             match start.take() {
                 Some(from) => out.push([from, exact]),
@@ -109,10 +112,7 @@ fn under_water<T: Real>(strip: &Strip<T>, cut: Cut<T>, level: T) -> Vec<[T; 2]> 
 }
 
 /// The lowest and the highest x, then y, of the waterline.
-pub(crate) fn waterline_extent<T: Real>(
-    strips: &[Strip<T>],
-    cut: Cut<T>,
-) -> Option<[T; 4]> {
+pub(crate) fn waterline_extent<T: Real>(strips: &[Strip<T>], cut: Cut<T>) -> Option<[T; 4]> {
     let mut best: [Option<(f64, T)>; 4] = [None; 4];
     let mut line = Line::default();
     for strip in strips {
@@ -143,9 +143,7 @@ pub(crate) fn waterline_extent<T: Real>(
             let mut value = points[k][axis];
             let (low, high) = (place(k.saturating_sub(1)), place((k + 1).min(LOOKS)));
             if high > low {
-                let mut f = |w: f64| {
-                    sign * strip.cut_at(T::from(w), cut, &mut line).p[axis].re()
-                };
+                let mut f = |w: f64| sign * strip.cut_at(T::from(w), cut, &mut line).p[axis].re();
                 let w = least(&mut f, low, high);
                 if f(w) < sign * value.re() {
                     value = strip.cut_at(T::from(w), cut, &mut line).p[axis];

@@ -105,14 +105,22 @@ fn edges_in_plane<T: Real>(cell: &Cell<T>, heights: &[f64], epsilon: f64) -> Vec
     }
     let u = |i: usize| (0..=dv).map(|j| i * (dv + 1) + j).collect::<Vec<_>>();
     let v = |j: usize| (0..=du).map(|i| i * (dv + 1) + j).collect::<Vec<_>>();
-    let sides =
-        [(0, Wet::After, u(0)), (0, Wet::Before, u(du)), (1, Wet::After, v(0)), (1, Wet::Before, v(dv))];
+    let sides = [
+        (0, Wet::After, u(0)),
+        (0, Wet::Before, u(du)),
+        (1, Wet::After, v(0)),
+        (1, Wet::Before, v(dv)),
+    ];
     let place = |k: usize| cell.net()[k].re();
     let lies = |edge: &[usize]| {
         edge.iter().all(|&k| near(k))
             && edge.iter().any(|&k| place(k).distance(place(edge[0])) > epsilon)
     };
-    sides.into_iter().filter(|(_, _, edge)| lies(edge)).map(|(inner, wet, _)| (inner, wet)).collect()
+    sides
+        .into_iter()
+        .filter(|(_, _, edge)| lies(edge))
+        .map(|(inner, wet, _)| (inner, wet))
+        .collect()
 }
 
 fn heights<T: Real>(cell: &Cell<T>, cut: Cut<T>) -> Vec<f64> {

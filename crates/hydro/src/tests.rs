@@ -101,8 +101,8 @@ impl SurfaceFormula for Lumpy {
     type Scalar = f64;
     fn at<J: Jet<f64>>(&self, u: J, v: J) -> Vec3<J> {
         let (a, b) = (u * PI, v * (2.0 * PI));
-        let r = (a.sin() * 3.0).sin() * (b * 3.0).cos() * 0.2 + (a * 2.0).sin() * b.sin() * 0.15
-            + 1.0;
+        let r =
+            (a.sin() * 3.0).sin() * (b * 3.0).cos() * 0.2 + (a * 2.0).sin() * b.sin() * 0.15 + 1.0;
         Vec3::new(a.sin() * b.cos() * r, a.sin() * b.sin() * r, -a.cos() * r)
     }
 }

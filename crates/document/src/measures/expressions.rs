@@ -3,12 +3,12 @@
 use crate::document::{Document, Source};
 use indexmap::IndexMap;
 use moldloft_diag::Diagnostic;
+use moldloft_hydro::USUAL_ACCURACY;
 use moldloft_lang::run::interpreter::Inputs;
 use moldloft_lang::run::program::Program;
 use moldloft_lang::run::whole::{body_numbers, mesh_numbers, not_finite, one_of};
 use moldloft_lang::source::env::Evaluation;
 use moldloft_lang::value::variables::Called as _;
-use moldloft_hydro::USUAL_ACCURACY;
 use moldloft_num::{Dual4, Vec3};
 use moldloft_registry::{Scalar, Value};
 use std::collections::HashSet;
@@ -93,8 +93,7 @@ impl Document {
                         } else {
                             let bodied = document.bodied(USUAL_ACCURACY).map_err(|d| vec![d])?;
                             let graph = &evaluation.graph;
-                            let body =
-                                bodied.skin.body(&panelled.panelling, graph, USUAL_ACCURACY);
+                            let body = bodied.skin.body(&panelled.panelling, graph, USUAL_ACCURACY);
                             let body = body.ok_or_else(|| vec![not_finite()])?;
                             body_numbers(&body, &document.symmetry())
                         };

@@ -2,12 +2,12 @@
 
 use crate::Document;
 use moldloft_diag::Diagnostic;
-use moldloft_lang::run::weight::{WEIGHT, mass_and_centre};
-use moldloft_lang::run::whole::not_finite;
 use moldloft_hydro::{
     Afloat, Attitude, Body, FloatError, Loading, Solved, Status, Water, afloat, bottom, bounds,
     equilibrium, section_area,
 };
+use moldloft_lang::run::weight::{WEIGHT, mass_and_centre};
+use moldloft_lang::run::whole::not_finite;
 use moldloft_mesh::{FloatOptions, Symmetry};
 use moldloft_model::Graph;
 use moldloft_num::{Dual4, Real, Vec3};

@@ -3,9 +3,9 @@
 use crate::Document;
 use moldloft_diag::Diagnostic;
 use moldloft_hydro::{Body, USUAL_ACCURACY, hydrostatics};
+use moldloft_lang::run::whole::not_finite;
 use moldloft_mesh::{Hydrostatics, Mesh, Symmetry};
 use moldloft_panel::Skin;
-use moldloft_lang::run::whole::not_finite;
 use std::sync::Arc;
 
 /// How the model floats.

@@ -158,8 +158,7 @@ fn a_sphere_in_water() {
 fn an_unstable_equilibrium_is_called_so_and_left() {
     let tall = box_of([3.0, 2.0, 10.0], 2, true);
     let at = |free_heel| Loading { free_heel, ..loading(30.0, [0.0; 3]) };
-    let solved =
-        equilibrium(&tall, Water::default(), at(false), Attitude::upright(0.0)).unwrap();
+    let solved = equilibrium(&tall, Water::default(), at(false), Attitude::upright(0.0)).unwrap();
     assert!(solved.status == Status::Converged && !solved.stable);
     assert!(solved.afloat.gm.unwrap()[0] < 0.0);
     let solved = equilibrium(&tall, Water::default(), at(true), Attitude::upright(0.0)).unwrap();
@@ -174,7 +173,9 @@ fn the_angle_of_loll_of_a_box() {
     // at every angle up to 180 degrees, so that it comes to rest upside down.
     let barge = box_of([10.0, 4.0, 2.5], 1, true);
     let wall_sided = |kg: f64| (2.0 * (kg - 0.5 - 4.0 / 3.0) / (4.0 / 3.0)).sqrt().atan();
-    for (kg, heel) in [(1.9, wall_sided(1.9)), (1.95, wall_sided(1.95)), (2.0, 0.5f64.atan()), (2.4, PI)] {
+    for (kg, heel) in
+        [(1.9, wall_sided(1.9)), (1.95, wall_sided(1.95)), (2.0, 0.5f64.atan()), (2.4, PI)]
+    {
         let at = loading(40.0, [0.0, 0.0, kg - 1.25]);
         let solved = equilibrium(&barge, Water::default(), at, Attitude::upright(0.0)).unwrap();
         assert!(solved.stable && solved.lolls && solved.status == Status::Converged, "{kg}");

@@ -6,11 +6,11 @@
 
 mod formula;
 pub mod header;
-pub mod units;
 pub(crate) mod names;
 mod panel_attributes;
 mod to_model_file;
 mod to_program;
+pub mod units;
 
 pub use to_model_file::to_model_file;
 pub use to_program::{prevents_conversion, quoted, to_program};

@@ -70,8 +70,7 @@ impl<T: Real> Build<T> for Weight<T> {
                 .in_field(Self::STATUS));
         }
         let unsound = || {
-            CallError::new("no-body", "the shape has places that are not finite")
-                .in_field(Self::AT)
+            CallError::new("no-body", "the shape has places that are not finite").in_field(Self::AT)
         };
         // The size of the shape, none of a point, and its centre.
         let (size, centre) = match &self.at {

@@ -118,9 +118,8 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
         if let Some(graph) = (graph as &dyn Any).downcast_ref::<Graph<f64>>() {
             let panelling = Panelling::new(graph).map_err(|fault| unplaced(&fault))?;
             let mesh = panelling.own_mesh().ok_or_else(no_mesh)?;
-            let mirrors: Vec<u8> = (0..3u8)
-                .filter(|&k| symmetry.contains(['x', 'y', 'z'][usize::from(k)]))
-                .collect();
+            let mirrors: Vec<u8> =
+                (0..3u8).filter(|&k| symmetry.contains(['x', 'y', 'z'][usize::from(k)])).collect();
             let skin = Skin::new(&panelling, &mesh, graph, &mirrors);
             if skins.len() >= MOST_SKINS {
                 skins.clear();
