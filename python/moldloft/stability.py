@@ -211,14 +211,18 @@ class Stability:
         if self.gmt >= 0:
             return None
         heels = self.grid(0.0, most)
-        for a, b in pairwise(heels[1:]):
+        low = heels[1]
+        # A small angle of loll lies before the first heel of the grid.
+        while self.gz(low) >= 0 and low > 1e-6:
+            low /= 4
+        if self.gz(low) >= 0:
+            return None
+        for a, b in pairwise([low, *heels[1:]]):
             if self.gz(a) < 0 <= self.gz(b):
-                return _root(self.gz, a, b)
-        if self.gz(heels[1]) >= 0:
-            low = heels[1]
-            while self.gz(low) >= 0 and low > 1e-6:
-                low /= 4
-            return _root(self.gz, low, heels[1]) if self.gz(low) < 0 else None
+                heel = _root(self.gz, a, b)
+                # Upside down the arm vanishes too; rounding may turn its sign there.
+                if heel < most - 1e-6 or self.gz(0.999 * most) > 0:
+                    return heel
         return None
 
     def largest(self, most: float = math.pi / 2) -> tuple[float, float]:

@@ -93,6 +93,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="a point through which water enters; may be repeated",
     )
     parser.add_argument(
+        "--booklet", metavar="FILE", help="a stability booklet of the loading (.html)"
+    )
+    parser.add_argument(
         "--kn",
         metavar="VOLUMES",
         type=_list,
@@ -180,6 +183,8 @@ def run(options: argparse.Namespace) -> int:
             print(model.weights())
         if options.sections:
             return _sections(model, options)
+        if options.booklet:
+            return _booklet(model, options)
         if options.criteria:
             return _criteria(model, options)
         if options.kn:
@@ -294,6 +299,17 @@ def _criteria(model: Any, options: argparse.Namespace) -> int:
     print(stability.summary())
     print()
     print(found)
+    return 0
+
+
+def _booklet(model: Any, options: argparse.Namespace) -> int:
+    from moldloft.booklet import write_booklet
+    from moldloft.stability import Wind
+
+    wind = Wind(*options.wind) if options.wind else None
+    rule = options.criteria or "is-code-2008"
+    stability = _stability(model, options)
+    print(f"wrote {write_booklet(options.booklet, model, stability, rule=rule, wind=wind)}")
     return 0
 
 
