@@ -157,6 +157,7 @@ def _plot(x: Sequence[float], y: Sequence[float], label: str) -> str:
     zero = f'<polyline points="{place(x[0], 0)} {place(x[-1], 0)}" fill="none" stroke="#999"/>'
     return (
         f'<svg viewBox="0 0 {wide:g} {tall:g}" font-size="11" font-family="sans-serif">'
-        f'{zero}{ticks}{marks}<polyline points="{curve}" fill="none" stroke="#039" stroke-width="2"/>'
+        f"{zero}{ticks}{marks}"
+        f'<polyline points="{curve}" fill="none" stroke="#039" stroke-width="2"/>'
         f'<text x="{left + 6}" y="14">{escape(label)} over heel [deg]</text></svg>'
     )

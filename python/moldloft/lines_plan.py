@@ -234,7 +234,7 @@ def lines_plan(
     title
         For the title block.
     sheet
-        ``A0`` to ``A4``; by default the smallest on which the scale is no smaller than on the next.
+        ``A0`` to ``A4``; by default A3, or a larger one where the plan needs it.
     scale
         The denominator; by default the largest scale that fits.
     stations

@@ -84,7 +84,7 @@ class Units:
             unit = names.get(word) or names.get(word.lower())
             if unit is None:
                 known = ", ".join(u for table in _TABLES.values() for u in table)
-                raise Error(f"`{word}` is no unit; expected one of: {known}")
+                raise Error(f"`{word}` is not a unit; expected one of: {known}")
             dimension = next(name for name, table in _TABLES.items() if unit in table)
             if dimension in found:
                 raise Error(f"two units of {dimension}: {found[dimension]} and {unit}")

@@ -270,8 +270,8 @@ def test_weights_float_the_model(cli, tmp_path):
         ('Weight w({0, 0, 0}, mass = 1, status = "guessed");', "unknown status"),
         ("Weight w({0, 0, 0}, mass = 0); WeightSum s({w});", "no mass"),
         ("AbsPoint p(0, 0, 0); WeightSum s({p});", "of weights"),
-        ('Model info(units = "furlong");', "no unit here"),
-        ('Model info(units = "m ft");', "no unit here"),
+        ('Model info(units = "furlong");', "not a unit"),
+        ('Model info(units = "m ft");', "not a unit"),
     ],
 )
 def test_bad_weights_and_units(text, words):
@@ -293,7 +293,7 @@ def test_what_cannot_float_says_why():
         box.stability(density=1)
     with pytest.raises(moldloft.Error, match="converted"):
         box.hydrostatics(density=1).converted("m")
-    with pytest.raises(moldloft.Error, match="no unit"):
+    with pytest.raises(moldloft.Error, match="not a unit"):
         Units.parse("furlong")
 
 

@@ -332,7 +332,7 @@ fn bernstein_from_chebyshev(degree: usize) -> Vec<Vec<f64>> {
     let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
     let mut matrix = vec![vec![0.0; degree + 1]; degree + 1];
     for m in 0..=degree {
-        let sign = |k: usize| if k % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut row: Vec<f64> =
             (0..=m).map(|k| sign(k) * (choose(2 * m, 2 * k) / choose(m, k))).collect();
         for d in m..degree {

@@ -131,11 +131,13 @@ pub fn equilibrium<T: Real>(
     let (mut at, mut iterations, mut residual) = problem.newton(from);
     let loose = problem.loose();
     let mut lolls = false;
-    if residual <= loose && loading.free_heel && !problem.stable(at) {
-        if let Some((found, steps, left)) = problem.beyond(at) {
-            (at, residual, lolls) = (found, left, true);
-            iterations += steps;
-        }
+    if residual <= loose
+        && loading.free_heel
+        && !problem.stable(at)
+        && let Some((found, steps, left)) = problem.beyond(at)
+    {
+        (at, residual, lolls) = (found, left, true);
+        iterations += steps;
     }
     let status = if residual <= loose { Status::Converged } else { Status::NotConverged };
 

@@ -166,8 +166,7 @@ def _build(options: argparse.Namespace, sources: list[str] | None = None) -> int
             floating = model.hydrostatics(
                 level=options.level, density=options.density, sides=options.sides
             )
-            if not _floats(floating) and not options.verbose:
-                floating = None
+
         outputs: list[Output] = []
         halves: list[str] = []
         folder = Path(options.output)
@@ -293,7 +292,7 @@ def summary(
         rows.append(["whole", "", *whole, "", "", ""])
         lines += ["", table(header, rows, left=2)]
         lines += _openings(mesh, data)
-    if floating is not None:
+    if floating is not None and (verbose or _floats(floating)):
         lines += ["", _floating(floating) if verbose else _main_figures(floating)]
     if data["files"]:
         lines.append("")
@@ -305,8 +304,8 @@ def summary(
 
 
 def _floats(floating: Hydrostatics) -> bool:
-    """Whether the water cuts the skin, and the skin holds it there."""
-    return floating.volume > 0 and floating.waterplane_area is not None and not floating.open_edges
+    """Whether the water cuts the skin."""
+    return floating.volume > 0 and floating.waterplane_area is not None
 
 
 _MAIN = ["volume", "displacement", "wetted_area", "draft", "lcb", "vcb", "waterplane_area"]
@@ -322,6 +321,8 @@ def _main_figures(floating: Hydrostatics) -> str:
             words.append(f"{name} {value:.5g} {floating.unit(name)}".rstrip())
     text = f"hydrostatics at z = {_number(floating.level)}, {sides} (all: -v, or moldloft hydro)"
     lines = [", ".join(words[k : k + 4]) for k in range(0, len(words), 4)]
+    if floating.open_edges:
+        lines.append(f"{floating.open_edges} open edges below the water: results are unreliable")
     return "\n  ".join([text, *lines])
 
 

@@ -1,8 +1,9 @@
 //! The hydrostatics of a model, as named numbers.
 
 use crate::Document;
+use crate::measures::bodied::Bodied;
 use moldloft_diag::Diagnostic;
-use moldloft_hydro::{Body, USUAL_ACCURACY, hydrostatics};
+use moldloft_hydro::{USUAL_ACCURACY, hydrostatics};
 use moldloft_lang::run::whole::not_finite;
 use moldloft_mesh::{Hydrostatics, Mesh, Symmetry};
 use moldloft_panel::Skin;
@@ -29,15 +30,6 @@ impl Options {
     fn symmetry(&self) -> Symmetry {
         if self.mirrored { Symmetry::MirroredTwice } else { Symmetry::None }
     }
-}
-
-/// The skin of a model, and its body at an accuracy.
-#[derive(Debug)]
-pub(crate) struct Bodied {
-    clock: u64,
-    accuracy: f64,
-    pub skin: Skin,
-    pub body: Body<f64>,
 }
 
 impl Document {

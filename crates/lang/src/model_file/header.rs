@@ -63,7 +63,7 @@ impl<T: Real> Build<T> for Model<T> {
         }
         if let Err(word) = units::parsed(&self.units.0) {
             let known: Vec<&str> = units::UNITS.iter().map(|u| u.0).collect();
-            return Err(CallError::new("unknown-unit", format!("`{word}` is no unit here"))
+            return Err(CallError::new("unknown-unit", format!("`{word}` is not a unit, or a second one"))
                 .expected(format!(
                     "at most one unit each of length, mass, force and angle: {}",
                     known.join(", ")

@@ -48,7 +48,7 @@ pub fn unit(word: &str) -> Option<(&'static str, Dimension, f64)> {
 /// The units that a text such as "m t kN" states, at most one of a dimension.
 ///
 /// # Errors
-/// The word that is no unit, or the second of a dimension.
+/// The word that is not a unit, or the second of a dimension.
 pub fn parsed(text: &str) -> Result<Vec<(&'static str, Dimension, f64)>, String> {
     let mut found: Vec<(&'static str, Dimension, f64)> = Vec::new();
     for word in text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty()) {
