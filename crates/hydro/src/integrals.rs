@@ -119,7 +119,7 @@ pub(crate) struct Immersed<T> {
 const MOST_HALVED: usize = 20_000;
 
 /// From this many cells on they are shared among threads.
-const WORTH_A_THREAD: usize = 64;
+const WORTH_A_THREAD: usize = 2048;
 
 /// A cell's share of the integrals.
 struct Part<T> {
