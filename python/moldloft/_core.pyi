@@ -345,7 +345,17 @@ class Document:
         centre: Sequence[float] | None,
         sides: str,
         by: Sequence[str],
+        accuracy: float,
+        of_weights: bool,
     ) -> list[dict[str, Any]]: ...
+    def weights(
+        self,
+    ) -> list[tuple[str, str, float, float, tuple[float, float, float], str]]: ...
+    def section_areas(
+        self, stations: Sequence[float], levels: Sequence[float], accuracy: float
+    ) -> list[list[tuple[float, float]]]: ...
+    def panel_figures(self, level: float) -> tuple[float, float, float]: ...
+    def units(self) -> list[tuple[str, float]]: ...
     def write(
         self,
         format: str,
@@ -354,6 +364,8 @@ class Document:
         immersed: bool,
         tags: Sequence[str],
         tolerance: float | None,
+        whole: bool,
+        triangles: bool,
     ) -> list[tuple[str, bytes]]: ...
     def spline_patches(
         self, tolerance: float | None, lids: bool

@@ -1,5 +1,6 @@
 //! What a model says of itself as a whole: its mirror planes, its unit, the header of its model file.
 
+use crate::model_file::units;
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
@@ -21,7 +22,7 @@ pub struct Model<T: Real> {
     /// The mirror planes, as letters: "y" for y = 0, "xy" for x = 0 and y = 0.
     #[field(default = "")]
     symmetry: Text<T>,
-    /// The units of length and mass, such as "m kg".
+    /// The units of length, mass, force and angle, such as "m t kN": of each at most one.
     #[field(default = "")]
     units: Text<T>,
     /// The version of the model file, such as "0.35" or "1.44".
@@ -34,6 +35,13 @@ pub struct Model<T: Real> {
 /// A text, in a kind that is generic over the number all the same.
 #[derive(Clone, Debug)]
 pub struct Text<T>(Arc<str>, PhantomData<T>);
+
+impl<T> Text<T> {
+    /// The text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
 
 impl<T: Real> FromValue<T> for Text<T> {
     const CLASS: Class = Class::Text;
@@ -53,6 +61,16 @@ impl<T: Real> Build<T> for Model<T> {
                 .found(format!("\"{letters}\""))
                 .in_field(Self::SYMMETRY));
         }
+        if let Err(word) = units::parsed(&self.units.0) {
+            let known: Vec<&str> = units::UNITS.iter().map(|u| u.0).collect();
+            return Err(CallError::new("unknown-unit", format!("`{word}` is not a unit, or a second one"))
+                .expected(format!(
+                    "at most one unit each of length, mass, force and angle: {}",
+                    known.join(", ")
+                ))
+                .found(format!("\"{}\"", self.units.0))
+                .in_field(Self::UNITS));
+        }
         let lines = self.lines.unwrap_or_default();
         let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);
         Ok(Value::list(texts.map(|text| Value::Text(text.0))))
@@ -61,7 +79,9 @@ impl<T: Real> Build<T> for Model<T> {
 
 /// The rows of this crate that are kinds.
 pub fn rows() -> Vec<Row> {
-    vec![<Model<f64> as StaticRow>::row(), crate::run::solve_set::row()]
+    let mut rows = vec![<Model<f64> as StaticRow>::row(), crate::run::solve_set::row()];
+    rows.extend(crate::run::weight::rows());
+    rows
 }
 
 /// The header's text of that field in the first object of kind `Model`; empty without one.

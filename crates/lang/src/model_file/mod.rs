@@ -11,6 +11,7 @@ pub(crate) mod names;
 mod panel_attributes;
 mod to_model_file;
 mod to_program;
+pub mod units;
 
 pub use to_model_file::to_model_file;
 pub use to_program::{prevents_conversion, quoted, to_program};
@@ -546,6 +547,11 @@ impl ModelFileSource {
     /// The planes in which the model is mirrored, as "y" or "xy".
     pub fn symmetry(&self) -> String {
         self.model.symmetry()
+    }
+
+    /// The header's line of units, empty without one.
+    pub fn units(&self) -> String {
+        self.model.header_value("Units").unwrap_or("").trim().to_string()
     }
 }
 
