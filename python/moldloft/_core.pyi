@@ -536,6 +536,10 @@ class Net:
     def measure(self, name: str) -> tuple[float, float]: ...
     def fair(self, options: dict[str, Any]) -> tuple[Net, dict[str, Any]]: ...
     @staticmethod
+    def fair_data(
+        points: NDArray[np.float64], shape: tuple[int, int], options: dict[str, Any]
+    ) -> tuple[Net, Net, tuple[list[float], list[float]], dict[str, Any]]: ...
+    @staticmethod
     def joined(
         nets: list[Net], keeps: str, options: dict[str, Any]
     ) -> tuple[
