@@ -19,6 +19,7 @@ fn number(model: &mut Document, text: &str) -> Result<f64, String> {
     }
 }
 
+/// Prints exact derivatives beside differences; an error when they differ.
 pub fn main() -> Result<(), String> {
     let mut model = Document::from_text(registry(), Box::new(NoFiles), "body.sdl", BODY);
     let (texts, parameters) = (["mesh.volume", "body(0.25, 0).z"], ["length", "radius"]);

@@ -63,13 +63,16 @@ impl<T: Real> Build<T> for Model<T> {
         }
         if let Err(word) = units::parsed(&self.units.0) {
             let known: Vec<&str> = units::UNITS.iter().map(|u| u.0).collect();
-            return Err(CallError::new("unknown-unit", format!("`{word}` is not a unit, or a second one"))
-                .expected(format!(
-                    "at most one unit each of length, mass, force and angle: {}",
-                    known.join(", ")
-                ))
-                .found(format!("\"{}\"", self.units.0))
-                .in_field(Self::UNITS));
+            return Err(CallError::new(
+                "unknown-unit",
+                format!("`{word}` is not a unit, or a second one"),
+            )
+            .expected(format!(
+                "at most one unit each of length, mass, force and angle: {}",
+                known.join(", ")
+            ))
+            .found(format!("\"{}\"", self.units.0))
+            .in_field(Self::UNITS));
         }
         let lines = self.lines.unwrap_or_default();
         let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);
@@ -77,11 +80,9 @@ impl<T: Real> Build<T> for Model<T> {
     }
 }
 
-/// The rows of this crate that are kinds.
-pub fn rows() -> Vec<Row> {
-    let mut rows = vec![<Model<f64> as StaticRow>::row(), crate::run::solve_set::row()];
-    rows.extend(crate::run::weight::rows());
-    rows
+/// The row of the header.
+pub fn row() -> Row {
+    <Model<f64> as StaticRow>::row()
 }
 
 /// The header's text of that field in the first object of kind `Model`; empty without one.

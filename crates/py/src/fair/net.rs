@@ -2,7 +2,8 @@
 
 use super::solve::{bound, contradiction, end, get, goal, motion};
 use super::spline::spacing;
-use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
+use super::arguments::{certificate, fair_error, floats, measure, refused, space, vectors};
+use super::look::Look;
 use crate::arrays;
 use moldloft_fair::{
     Condition, End, FairError, GridData, Layout, Limit, Measure, Network, NetworkCurve,
