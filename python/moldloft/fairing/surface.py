@@ -318,7 +318,9 @@ class _Axis:
             raise FairingError(f"{what} has no breaks of its points")
         line = np.column_stack([np.arange(count, dtype=np.float64), np.zeros((count, 2))])
         if knots is None:
-            core, at, marks = _core.Spline.interpolate(line, degree, "uniform", closed, rows)
+            core, at, marks = _core.Spline.interpolate(
+                line, degree, "uniform", closed, rows, (1.0, 0.0, 0.0)
+            )
             low, high = core.domain
             period = high - low if closed else None
             return cls(degree, closed, core.knots, period, at, marks, rows, False)
@@ -356,7 +358,9 @@ class _Axis:
                     "uniform",
                     self.at,
                 )[0].control_points
-            made = _core.Spline.interpolate(line, self.degree, "uniform", self.closed, self.breaks)
+            made = _core.Spline.interpolate(
+                line, self.degree, "uniform", self.closed, self.breaks, (1.0, 0.0, 0.0)
+            )
             return made[0].control_points
 
         columns = [one(np.ascontiguousarray(lines[:, k])) for k in range(lines.shape[1])]
@@ -675,6 +679,7 @@ def fair_surface(
         "measure": measure,
         "mode": mode,
         "bound": bound,
+        "goal": None,
         "passes": passes,
         "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
         "order": order,

@@ -64,7 +64,10 @@ fn number<T: Real>(x: f64) -> Value<T> {
 #[test]
 fn curves_still_meet_in_their_points() {
     let points = hull();
-    let net = curves(call("FairNet", vec![lists(&points), number(2e-3)], vec![]).unwrap());
+    // By index, so that parameters of the points are known.
+    let index = ("spacing", Value::text("index"));
+    let made = call("FairNet", vec![lists(&points), number(2e-3)], vec![index]).unwrap();
+    let net = curves(made);
     assert_eq!(net.len(), 16);
     let at = |c: &CurveRef<f64>, t: f64| c.jet(t, Order::Zero)[0];
     for i in 0..9 {
@@ -92,6 +95,7 @@ fn one_direction_breaks_and_one_curve_of_a_network() {
     let named = vec![
         ("along", Value::Vector(Vec3::of(0.0, 2.0, 0.0))),
         ("breaks", Value::list([object(&points, 7 * 4 + 3)])),
+        ("spacing", Value::text("index")),
     ];
     let value = call("FairNet", vec![lists(&points), number(2e-3)], named).unwrap();
     let net = curves(value.clone());

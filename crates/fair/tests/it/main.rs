@@ -3,6 +3,7 @@
 
 mod breaks;
 mod entity;
+mod findings;
 mod fit;
 mod fixtures;
 mod interrogate;
@@ -13,3 +14,4 @@ mod knot_removal;
 mod network;
 mod optimum;
 mod rational;
+mod truth;

@@ -7,7 +7,7 @@ mod spline;
 
 pub use look::Look;
 pub use net::{Net, Web};
-pub use spline::{Spline, divided_differences, eta_y, monotone_runs};
+pub use spline::{Spline, data_findings, detectable, divided_differences, eta_y, monotone_runs};
 
 use moldloft_fair::{Certificate, FairError, Measure, Space};
 use moldloft_num::Vec3;

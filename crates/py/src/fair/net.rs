@@ -1,11 +1,12 @@
 //! Nets of surfaces, and curves that share points.
 
-use super::solve::{bound, contradiction, end, get, motion};
+use super::solve::{bound, contradiction, end, get, goal, motion};
+use super::spline::spacing;
 use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
 use crate::arrays;
 use moldloft_fair::{
     Condition, End, FairError, Limit, Network, NetworkCurve, NetworkMode, NetworkReport, PatchNet,
-    Seam, Space,
+    Seam, Space, Spacing, parameters_across,
 };
 use moldloft_num::Vec3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -216,7 +217,10 @@ impl Web {
         let word: String = get(&options, "motion")?;
         let motion = motion(&word, get(&options, "direction")?)?;
         let limit = Limit::new(motion, get(&options, "tolerance")?).map_err(fair_error)?;
+        let motion = limit.motion;
         let mut strands = Vec::new();
+        let word: String = get(&options, "spacing")?;
+        let spaced = spacing(&word, get(&options, "spacing_direction")?)?;
         for (k, (own, closed, marks)) in self.curves.iter().enumerate() {
             let form = if *closed { "closed" } else { "floating" };
             let space = space(self.degree, own.len(), form, None, None)
@@ -227,6 +231,25 @@ impl Web {
                 weights: None,
                 marks: marks.clone(),
                 ends: [End::Points(1); 2],
+                at: match spaced {
+                    Spacing::Uniform => None,
+                    spaced => {
+                        let list: Vec<Vec3> = own.iter().map(|&i| self.points[i]).collect();
+                        let at =
+                            parameters_across(&list, spaced, *closed, motion).or_else(|error| {
+                                match error {
+                                    // Sections run across the stations.
+                                    FairError::TurnsAlong { .. } | FairError::Coincident { .. }
+                                        if matches!(spaced, Spacing::Along(_)) =>
+                                    {
+                                        parameters_across(&list, Spacing::Chord, *closed, motion)
+                                    }
+                                    error => Err(error),
+                                }
+                            });
+                        Some(at.map_err(|e| refused(format!("curve {}: {e}", k + 1)))?)
+                    }
+                },
             });
         }
         let mut network = Network::new(self.points.clone(), strands, limit).map_err(fair_error)?;
@@ -246,7 +269,10 @@ fn solved<'py>(
     let mode: String = get(options, "mode")?;
     let (passes, steps): (usize, usize) = (get(options, "passes")?, get(options, "steps")?);
     let mode = match mode.as_str() {
-        "optimum" => NetworkMode::Joint(bound(&get::<String>(options, "bound")?)?),
+        "optimum" => match get::<Option<(String, f64)>>(options, "goal")? {
+            Some(word) => NetworkMode::Toward(goal(&word)?),
+            None => NetworkMode::Joint(bound(&get::<String>(options, "bound")?)?),
+        },
         "sweeps" => NetworkMode::Sweeps(steps),
         "faithful" => NetworkMode::Passes(passes, steps),
         _ => {
@@ -289,6 +315,7 @@ fn dictionary<'py>(py: Python<'py>, r: &NetworkReport) -> PyResult<Bound<'py, Py
     dict.set_item("jumps_after", r.jumps[1])?;
     dict.set_item("certified", r.certified)?;
     dict.set_item("sampled", r.sampled)?;
+    dict.set_item("used", r.used)?;
     dict.set_item("certificate", certificate(py, &r.certificate)?)?;
     Ok(dict)
 }
