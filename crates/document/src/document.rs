@@ -132,6 +132,12 @@ impl Document {
     }
 
     fn parse(&mut self, name: &str, text: String, file: moldloft_diag::FileId) {
+        // Counts that follow from lengths are those at the text's own values, whatever is set.
+        if let Some((at, panelled)) = &mut self.panelled
+            && panelled.panelling.is_measured()
+        {
+            *at = u64::MAX;
+        }
         let lower = name.to_ascii_lowercase();
         let model_file = lower.ends_with(".ms2")
             || (!lower.ends_with(".sdl") && text.trim_start().starts_with("MultiSurf"));
@@ -301,7 +307,7 @@ impl Document {
         diagnostics
     }
 
-    fn declared_at<T: Scalar>(
+    pub(crate) fn declared_at<T: Scalar>(
         &self,
         evaluation: &Evaluation<T>,
         object: &moldloft_model::Object<T>,

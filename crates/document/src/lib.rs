@@ -24,6 +24,7 @@ mod convert;
 mod document;
 mod editor;
 mod measures;
+mod places;
 mod rename;
 pub mod searches;
 mod set;

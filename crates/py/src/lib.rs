@@ -10,6 +10,7 @@ mod arrays;
 mod blocks;
 mod diagnostics;
 mod document;
+mod engine;
 mod error;
 mod fair;
 mod foreign;
@@ -41,6 +42,8 @@ mod _core {
     use crate::diagnostics::{Diagnostic, Label};
     #[pymodule_export]
     use crate::document::{PyDocument, format_text};
+    #[pymodule_export]
+    use crate::engine::{PySession, engine};
     #[pymodule_export]
     use crate::fair::{
         Look, Net, Spline, Web, data_findings, detectable, divided_differences, eta_y,
