@@ -63,7 +63,7 @@ def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
 
 
 def _text(found: Imported, name: str, units: str) -> str:
-    lines = [f"// {name}", f'Model info(units = "{units}");']
+    lines = [f"# {name}", f'Model info(units = "{units}");']
     taken = {face.name for face in found.faces} | set(found.curves)
     for face in found.faces:
         if face.natural:
