@@ -1,12 +1,11 @@
 //! What a model says of itself as a whole: its mirror planes, its unit, the header of its model file.
 
+use crate::model_file::text::Text;
 use crate::model_file::units;
 use moldloft_model::Graph;
 use moldloft_num::Real;
 use moldloft_registry::export::StaticRow;
-use moldloft_registry::{Build, CallError, Class, Context, FromValue, Kind, Row, Scalar, Value};
-use std::marker::PhantomData;
-use std::sync::Arc;
+use moldloft_registry::{Build, CallError, Context, Kind, Row, Scalar, Value};
 
 /// The name of the kind below.
 pub const KIND: &str = "Model";
@@ -32,27 +31,9 @@ pub struct Model<T: Real> {
     lines: Option<Vec<Text<T>>>,
 }
 
-/// A text, in a kind that is generic over the number all the same.
-#[derive(Clone, Debug)]
-pub struct Text<T>(Arc<str>, PhantomData<T>);
-
-impl<T> Text<T> {
-    /// The text.
-    pub fn as_str(&self) -> &str {
-        &self.0
-    }
-}
-
-impl<T: Real> FromValue<T> for Text<T> {
-    const CLASS: Class = Class::Text;
-    fn from_value(value: &Value<T>) -> Result<Self, CallError> {
-        <Arc<str> as FromValue<T>>::from_value(value).map(|text| Text(text, PhantomData))
-    }
-}
-
 impl<T: Real> Build<T> for Model<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
-        let letters = &self.symmetry.0;
+        let letters = self.symmetry.as_str().to_string();
         let known = letters.chars().all(|c| matches!(c, 'x' | 'y' | 'z'));
         let once = letters.chars().enumerate().all(|(k, c)| letters.find(c) == Some(k));
         if !known || !once {
@@ -61,7 +42,7 @@ impl<T: Real> Build<T> for Model<T> {
                 .found(format!("\"{letters}\""))
                 .in_field(Self::SYMMETRY));
         }
-        if let Err(word) = units::parsed(&self.units.0) {
+        if let Err(word) = units::parsed(self.units.as_str()) {
             let known: Vec<&str> = units::UNITS.iter().map(|u| u.0).collect();
             return Err(CallError::new(
                 "unknown-unit",
@@ -71,12 +52,12 @@ impl<T: Real> Build<T> for Model<T> {
                 "at most one unit each of length, mass, force and angle: {}",
                 known.join(", ")
             ))
-            .found(format!("\"{}\"", self.units.0))
+            .found(format!("\"{}\"", self.units.as_str()))
             .in_field(Self::UNITS));
         }
         let lines = self.lines.unwrap_or_default();
         let texts = [self.symmetry, self.units, self.version].into_iter().chain(lines);
-        Ok(Value::list(texts.map(|text| Value::Text(text.0))))
+        Ok(Value::list(texts.map(Text::into_value)))
     }
 }
 

@@ -9,6 +9,7 @@ mod formula;
 pub mod header;
 pub(crate) mod names;
 mod panel_attributes;
+pub mod text;
 mod to_model_file;
 mod to_program;
 pub mod units;

@@ -110,7 +110,7 @@ pub(crate) struct Interpreter<'a, 'g, T: Scalar> {
     pub(crate) current: usize,
     pub arrays: ArrayMachine<T>,
     /// Numbers of the whole model that were read last.
-    pub(crate) measured: crate::run::whole::Read<T>,
+    pub(crate) measured: Option<(usize, String, Vec<(&'static str, Value<T>)>)>,
     /// True once the note on the misprint of 1992 was given.
     pub misprint_told: bool,
     /// True while a library routine is left because of an error in it.

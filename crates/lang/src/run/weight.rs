@@ -1,7 +1,7 @@
 //! Weights: masses with their centres, as kinds. Their mass is a number of the program, `engine.mass`, and follows
 //! from the shape where it is a mass per length, area or volume of one.
 
-use crate::model_file::header::Text;
+use crate::model_file::text::Text;
 use moldloft_hydro::{USUAL_ACCURACY, curve_measures, solid_measures, surface_measures};
 use moldloft_model::Object;
 use moldloft_num::{Real, Vec3};

@@ -8,6 +8,7 @@ use crate::model_file::header;
 use crate::run::interpreter::Interpreter;
 use crate::source::fault_location::unplaced;
 use crate::source::module::Module;
+pub use crate::value::member::not_finite;
 use moldloft_diag::{Diagnostic, Span};
 use moldloft_hydro::{Body, USUAL_ACCURACY, hydrostatics};
 use moldloft_mesh::{Hydrostatics, Mesh, Symmetry, measure};
@@ -66,9 +67,6 @@ struct Skins(Mutex<HashMap<Vec<Arc<str>>, Arc<(Panelling, Skin)>>>);
 
 /// More of them are not kept.
 const MOST_SKINS: usize = 64;
-
-/// What statements have read so far: after so many objects, the numbers of a group.
-pub(crate) type Read<T> = Option<(usize, String, Vec<(&'static str, Value<T>)>)>;
 
 impl<T: Scalar> Interpreter<'_, '_, T> {
     /// `hydrostatics.volume` and the like; `None` where the name means something else.
@@ -143,9 +141,4 @@ impl<T: Scalar> Interpreter<'_, '_, T> {
 fn no_mesh() -> Diagnostic {
     Diagnostic::error("no-mesh", "the model has no panels")
         .help("declare a surface, and show it (visible = 1)")
-}
-
-/// The fault of a surface without finite places.
-pub fn not_finite() -> Diagnostic {
-    Diagnostic::error("no-body", "a surface has places that are not finite, so it has no measures")
 }

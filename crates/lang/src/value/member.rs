@@ -128,7 +128,7 @@ pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Valu
         return None;
     }
     let Some(measures) = surface_measures(&**surface, USUAL_ACCURACY) else {
-        return Some(Err(crate::run::whole::not_finite()));
+        return Some(Err(not_finite()));
     };
     Some(match name {
         "area" => Ok(Value::Number(measures.area)),
@@ -140,6 +140,11 @@ pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Valu
             .expected("a closed surface")
             .help("`hydrostatics.volume` is that of all shown surfaces below the water")),
     })
+}
+
+/// The fault of a surface without finite places.
+pub fn not_finite() -> Diagnostic {
+    Diagnostic::error("no-body", "a surface has places that are not finite, so it has no measures")
 }
 
 /// The integral of the normal of a closed surface is this share of its area at most.
