@@ -45,7 +45,7 @@ def test_a_curve_runs_on_from_others():
     turned = fairing.Spline.interpolate(fore[::-1])
     for first in (a, turned):
         joined = moldloft.fair(middle, 0.02, as_="fit", joins=[b, first])
-        assert joined.deviation_certified <= 0.02 * (1 + 1e-12)
+        assert joined.deviation_data <= 0.02 * (1 + 1e-12)
         assert np.abs(joined.points[[0, -1]] - middle[[0, -1]]).max() < 1e-14
         for own, other in (((0.0), bend(a, 1.0)), ((1.0), bend(b, 0.0))):
             tangent, curvature = bend(joined.spline, own)
@@ -71,7 +71,8 @@ def test_a_join_by_the_command(cli, model_file, tmp_path):
     assert out.tobytes() == wanted.points.tobytes()
     error = cli("fair", path, "--tol", "1e-6", "--as", "fit", "--join", other, status=1).stderr
     assert "join 1" in error and "within the tolerance" in error
-    error = cli("fair", path, "--tol", "0.02", "--join", other, status=1).stderr
+    control = ("--as", "control", "--join", other)
+    error = cli("fair", path, "--tol", "0.02", *control, status=1).stderr
     assert "as `fit`" in error
 
 
@@ -230,7 +231,8 @@ def test_curves_of_every_form(cli, model_file):
         ("--weights", weights[:-1], "weights"),
     ):
         file = numbers(values, "bad.txt")
-        done = cli("fair", path, "--tol", 1, "--degree", 4, option, file, status=1)
+        own = ("--as", "control", "--degree", 4, option, file)
+        done = cli("fair", path, "--tol", 1, *own, status=1)
         assert words in done.stderr, done.stderr
     bad = model_file("0 0 0 0\n0.5 half", "bad.txt")
     done = cli("fair", path, "--tol", 1, "--knots", bad, status=1)

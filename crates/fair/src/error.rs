@@ -22,6 +22,20 @@ pub enum FairError {
         /// Index of the first of the two, from 0.
         first: usize,
     },
+    /// Points run back along the direction that gives them their parameters.
+    TurnsAlong {
+        /// Index of the first that does, from 0.
+        index: usize,
+    },
+    /// Data farther from every spline of so few control points than their tolerance.
+    OutOfReach {
+        /// Index of the datum that is farthest off, in tolerances.
+        index: usize,
+        /// How far the best curve that was found is from it.
+        distance: f64,
+    },
+    /// A budget or a share is out of range, or the measure has none.
+    Goal(&'static str),
     /// A tolerance is negative, NaN or infinite.
     Tolerance {
         /// The number given.
@@ -120,6 +134,22 @@ impl fmt::Display for FairError {
             Self::Coincident { first } => {
                 write!(f, "points {} and {} coincide", first + 1, first + 2)
             }
+            Self::TurnsAlong { index } => {
+                write!(
+                    f,
+                    "point {} runs back along the direction that gives parameters: take `chord`",
+                    index + 1
+                )
+            }
+            Self::OutOfReach { index, distance } => {
+                write!(
+                    f,
+                    "a spline of so few control points stays {distance:.3e} off point {}: more \
+                     control points, or a larger tolerance",
+                    index + 1
+                )
+            }
+            Self::Goal(why) => f.write_str(why),
             Self::Tolerance { value } => {
                 write!(f, "expected a tolerance of at least 0, found {value}")
             }

@@ -92,8 +92,12 @@ mod sparse_rows;
 pub use curve::breaks::{Finding, findings, with_findings};
 pub use curve::condition::{Condition, joined};
 pub use curve::corners::{FitWithCorners, interpolate_with_corners};
+pub use curve::data::{
+    Data, DataFit, DataOptions, Merged, MovingFit, fair_data, fair_data_with, merged,
+};
 pub use curve::fit::{
     Fit, Spacing, fit, fit_rational, fit_with, interpolate, least_squares, parameters,
+    parameters_across, parameters_with,
 };
 pub use curve::job::{End, Job};
 pub use curve::jumps::Jumps;
@@ -101,18 +105,24 @@ pub use curve::knot_removal::{
     KnotRemoval, KnotRemovalOptions, Move, Rule, Step, Stopped, Stops, knot_removal,
     knot_removal_from, replay, replay_from_with, replay_with, sweeps,
 };
+pub use curve::layout::Layout;
 pub use curve::limit::{Limit, Motion};
 pub use curve::multilevel::multilevel;
 pub use curve::space::Space;
 pub use error::FairError;
 pub use interrogate::deviation::{Deviation, certified, deviation};
-pub use interrogate::report::{Mode, Numbers, Report, numbers, report};
+pub use interrogate::outliers::{DataFinding, data_findings, detectable};
+pub use interrogate::report::{Mode, Numbers, Report, data_report, numbers, report};
 pub use interrogate::{shape, surface};
 pub use kinds::rows;
 pub use measure::{Measure, Norm, value};
+pub use net::grid::{
+    GridData, GridFit, MovingGrid, fair_grid, fair_grid_with, grid_parameters, grid_spacing,
+};
 pub use net::network;
 pub use net::network::{Network, NetworkCurve, NetworkMode, NetworkReport};
 pub use net::patches::{Edge, PatchNet, Seam};
 pub use optimum::certificate::{Certificate, ball_gap};
+pub use optimum::goal::Goal;
 pub use optimum::{Bound, Optimum, OptimumOptions, optimum, optimum_with};
 pub use sparse_rows::SparseRows;

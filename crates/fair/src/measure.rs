@@ -142,7 +142,7 @@ fn differences(space: &Space, order: usize) -> SparseRows {
 fn integrated(space: &Space, order: usize) -> SparseRows {
     let p = space.degree();
     let mean = space.mean_span();
-    let unit = mean.powi(2 * order as i32 - 1);
+    let unit = unit_of(mean, order);
     let rule = gauss((p - order + 1).max(1));
     let mut rows = SparseRows::new();
     for k in space.spans() {
@@ -157,9 +157,53 @@ fn integrated(space: &Space, order: usize) -> SparseRows {
     rows
 }
 
+/// What makes an integral of squared derivatives of an order free of the parameter's unit.
+pub(crate) fn unit_of(mean: f64, order: usize) -> f64 {
+    mean.powi(2 * order as i32 - 1)
+}
+
+impl Measure {
+    /// The order of the differences that the measure is of.
+    fn order(self, degree: usize) -> usize {
+        match self {
+            Measure::Second | Measure::Bending => 2,
+            Measure::Third | Measure::Variation => 3,
+            Measure::Jumps | Measure::JumpLengths => degree + 1,
+        }
+    }
+
+    /// The measure of points themselves at parameters that rise by 1 in all (of a closed curve from
+    /// the first to itself): divided differences, each weighted with the root of the range that it
+    /// stands for, so that the sum of squares approximates the integral of the squared derivative.
+    /// Zero on polynomials below its order at any spacing.
+    pub fn divided<T: moldloft_num::Real>(
+        self,
+        at: &[T],
+        closed: bool,
+        degree: usize,
+    ) -> Vec<Vec<(usize, T)>> {
+        let (n, order) = (at.len(), self.order(degree));
+        let count = if closed { n } else { n.saturating_sub(order) };
+        let place = |k: usize| at[k % n] + T::from((k / n) as f64);
+        let factorial: f64 = (1..=order).map(|i| i as f64).product();
+        let row = |first: usize| {
+            let span = place(first + order) - place(first);
+            let weight = (span / order as f64).sqrt() * factorial;
+            let entry = |k: usize| {
+                let others = (0..=order).filter(|&l| l != k);
+                let product =
+                    others.fold(T::one(), |s, l| s * (place(first + k) - place(first + l)));
+                ((first + k) % n, weight / product)
+            };
+            (0..=order).map(entry).collect()
+        };
+        (0..count).map(row).collect()
+    }
+}
+
 /// Nodes and weights of the Gauss-Legendre rule with `n` points on [-1, 1], exact to degree
 /// 2n - 1: Newton's method from Tricomi's starting values (Press et al. 2007, section 4.6).
-fn gauss(n: usize) -> Vec<(f64, f64)> {
+pub(crate) fn gauss(n: usize) -> Vec<(f64, f64)> {
     (0..n)
         .map(|i| {
             let start = std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5);

@@ -90,11 +90,31 @@ impl SparseRows {
         }
     }
 
+    /// Calls `add` with each column's share of the transpose times `x`.
+    pub(crate) fn add_transposed_into(
+        &self,
+        x: &[Vec3<f64>],
+        mut add: impl FnMut(usize, Vec3<f64>),
+    ) {
+        for (k, value) in x.iter().enumerate() {
+            let (columns, factors) = self.row(k);
+            for (&c, &a) in columns.iter().zip(factors) {
+                add(c as usize, *value * a);
+            }
+        }
+    }
+
     /// The rows with the entries of column j multiplied by `scale[j]`.
     pub fn with_columns_scaled(mut self, scale: &[f64]) -> Self {
         for (c, a) in self.columns.iter().zip(&mut self.factors) {
             *a *= scale[*c as usize];
         }
+        self
+    }
+
+    /// The rows times a number.
+    pub fn scaled(mut self, by: f64) -> Self {
+        self.factors.iter_mut().for_each(|f| *f *= by);
         self
     }
 

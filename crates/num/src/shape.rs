@@ -4,7 +4,7 @@
 use crate::jet::{Jet, lift_curve, lift_surface};
 use crate::reparametrization::Reparametrization;
 use crate::trace::{Edges, Key, Trace};
-use crate::{Real, Vec3, find_root};
+use crate::{Rational, Real, Vec3, find_root};
 use std::sync::Arc;
 
 /// How many derivatives by the shape parameters are wanted.
@@ -89,6 +89,11 @@ pub trait Curve<T: Real>: Send + Sync {
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         None
     }
+
+    /// What makes the curve rational, where something does that is known.
+    fn rational(&self) -> Rational<1> {
+        Rational::none()
+    }
 }
 
 /// A surface S(u, v) for u, v in [0, 1]; its natural normal is S_u x S_v.
@@ -169,6 +174,11 @@ pub trait Surface<T: Real>: Send + Sync {
     /// The solid object of which this is face 0..6, at equal parameters. For joins of blocks.
     fn face_of(&self) -> Option<(Key, u8)> {
         None
+    }
+
+    /// What makes the surface rational, where something does that is known.
+    fn rational(&self) -> Rational<2> {
+        Rational::none()
     }
 }
 
@@ -301,6 +311,11 @@ pub trait CurveFormula: Send + Sync {
         Vec::new()
     }
 
+    /// See [`Curve::joints`].
+    fn joints(&self) -> Vec<f64> {
+        self.breaks()
+    }
+
     /// See [`Curve::trace`].
     fn trace(&self) -> Trace<Self::Scalar> {
         Trace::own()
@@ -309,6 +324,11 @@ pub trait CurveFormula: Send + Sync {
     /// See [`Curve::image_of`].
     fn image_of(&self) -> Option<Key> {
         None
+    }
+
+    /// See [`Curve::rational`].
+    fn rational(&self) -> Rational<1> {
+        Rational::none()
     }
 }
 
@@ -319,11 +339,18 @@ impl<F: CurveFormula> Curve<F::Scalar> for F {
     fn breaks(&self) -> Vec<f64> {
         CurveFormula::breaks(self)
     }
+    fn joints(&self) -> Vec<f64> {
+        CurveFormula::joints(self)
+    }
     fn trace(&self) -> Trace<F::Scalar> {
         CurveFormula::trace(self)
     }
     fn image_of(&self) -> Option<Key> {
         CurveFormula::image_of(self)
+    }
+
+    fn rational(&self) -> Rational<1> {
+        CurveFormula::rational(self)
     }
 }
 
@@ -355,9 +382,19 @@ pub trait SurfaceFormula: Send + Sync {
         Vec::new()
     }
 
+    /// See [`Surface::joints`].
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.breaks()
+    }
+
     /// See [`Surface::image_of`].
     fn image_of(&self) -> Option<(Key, bool)> {
         None
+    }
+
+    /// See [`Surface::rational`].
+    fn rational(&self) -> Rational<2> {
+        Rational::none()
     }
 }
 
@@ -377,7 +414,14 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         SurfaceFormula::edge_made_of(self, k)
     }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        SurfaceFormula::joints(self)
+    }
     fn image_of(&self) -> Option<(Key, bool)> {
         SurfaceFormula::image_of(self)
+    }
+    fn rational(&self) -> Rational<2> {
+        SurfaceFormula::rational(self)
     }
 }

@@ -1,6 +1,6 @@
 //! Maps of space by which curves and points are copied and turned.
 
-use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Vec3};
+use moldloft_num::{Axis, Curve, CurveJet, Order, Rational, Real, Vec3};
 use moldloft_registry::CurveRef;
 
 /// The map p -> to + M (p - from).
@@ -72,5 +72,9 @@ impl<T: Real> Curve<T> for Mapped<T> {
 
     fn image_of(&self) -> Option<moldloft_num::trace::Key> {
         self.curve.key
+    }
+
+    fn rational(&self) -> Rational<1> {
+        self.curve.rational()
     }
 }

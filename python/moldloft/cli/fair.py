@@ -5,6 +5,7 @@ from __future__ import annotations
 import abc
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -48,8 +49,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--as",
         dest="role",
         choices=["control", "points", "fit"],
-        help="points are control points (the default for files), are moved themselves, or lie on "
-        "the curve before it is faired",
+        help="points are data on the curve (the default of the optimum), are moved themselves, or "
+        "are control points, whose index is their parameter: the rule of the report of 1991",
     )
     parser.add_argument(
         "--closed", action="store_true", help="the last point joins the first; of surfaces along u"
@@ -64,11 +65,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--measure",
         choices=["second", "third", "jumps", "jump-lengths", "bending", "variation"],
-        default="second",
-        help="the measure to minimise; default: squared second differences",
+        help="the measure to minimise; default: the integral of the squared third derivative of "
+        "data, squared third differences of networks, squared second differences otherwise",
     )
     parser.add_argument(
-        "--bound", choices=["curve", "points"], help="what the tolerance is a bound on"
+        "--bound", choices=["data", "curve", "points"], help="what the tolerance is a bound on"
     )
     parser.add_argument(
         "--breaks",
@@ -151,7 +152,34 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="keep the area, the volume (of revolution about x; of a surface that between it and "
         "the original) or, of curves, the centroid, to first order",
     )
-    parser.add_argument("--spacing", choices=["chord", "centripetal", "uniform"], default="chord")
+    parser.add_argument(
+        "--spacing",
+        metavar="WORD|X,Y[,Z]",
+        type=_spacing,
+        default="chord",
+        help="parameters of points: chord (the default), centripetal, a coordinate (x, y, z) or a "
+        "direction that they run along, or index",
+    )
+    parser.add_argument(
+        "--goal",
+        metavar="WORD[=SHARE]",
+        type=_goal,
+        default="near",
+        help="which of the results within the tolerance: near (the default: no fairer than noise "
+        "of that size asks for, unmoved where there is little to gain), fairest, budget=SHARE of "
+        "such noise, nearest=SHARE above the least",
+    )
+    parser.add_argument(
+        "--release",
+        metavar="auto|I,J",
+        default="",
+        help="points that are wrong and may be left; `auto`: the wrong digits that were found",
+    )
+    parser.add_argument(
+        "--bends",
+        action="store_true",
+        help="allow inflections that the curve of least bending does not have",
+    )
     parser.add_argument(
         "--count",
         type=int,
@@ -185,6 +213,24 @@ def _tolerance(text: str) -> float | None:
     except ValueError:
         raise argparse.ArgumentTypeError(f"`{text}` is neither a length nor `none`") from None
     return value
+
+
+def _spacing(text: str) -> Any:
+    if text in ("chord", "centripetal", "index", "uniform", "x", "y", "z"):
+        return text
+    return tuple(_vector(text))
+
+
+def _goal(text: str) -> Any:
+    word, equals, share = text.partition("=")
+    if word not in ("near", "fairest", "budget", "nearest"):
+        raise argparse.ArgumentTypeError(
+            f"`{word}` is no goal; there are: near, fairest, budget=SHARE, nearest=SHARE"
+        )
+    try:
+        return (word, float(share)) if equals else word
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"`{share}` is no share") from None
 
 
 def _vector(text: str) -> list[float]:
@@ -391,6 +437,11 @@ def _curve_options(options: argparse.Namespace, count: int, role: str) -> dict[s
         "weights": _numbers(options.weights),
         "keep": options.keep,
         "spacing": options.spacing,
+        "goal": options.goal,
+        "release": "auto"
+        if options.release == "auto"
+        else _places(options.release, count, "--release"),
+        "bends": options.bends,
         "count": options.count,
         "steps": steps,
         "log": bool(options.log),
@@ -410,6 +461,17 @@ def _commit(path: Path, data: bytes) -> Path:
     return commit(path.parent, [Output(path.name, data)])[0]
 
 
+def _known_ending(path: Path, source: Path | None) -> None:
+    """Refuses an ending that says nothing, before anything is written."""
+    from moldloft.fairing.spline_files import POINTS, SPLINES
+
+    ending = path.suffix.lower()
+    known = (*POINTS, *SPLINES)
+    if ending in known or (source is not None and ending == source.suffix.lower()):
+        return
+    raise Error(f"--output: `{path}`: expected an ending of {', '.join(known)}")
+
+
 class _Points(_Source):
     """A file of points."""
 
@@ -419,7 +481,10 @@ class _Points(_Source):
         self.title = str(file.path)
 
     def fair(self, options: argparse.Namespace) -> Result:
-        if len([b for b in self.file.blocks if len(b) > 1]) > 1:
+        if self.file.offsets and options.along is None and not options.box:
+            self.said.append("half-breadths move; stations and heights stay")
+            options.along = [0.0, 1.0, 0.0]
+        if self.file.offsets or len([b for b in self.file.blocks if len(b) > 1]) > 1:
             return self._network(options)
         from moldloft.fairing import fair
 
@@ -429,7 +494,8 @@ class _Points(_Source):
             self.said.append("the last point repeats the first and is not counted twice")
             points = points[:-1]
             self.closing = True
-        role = options.role or "control"
+        data = options.mode == "optimum" and options.bound in (None, "data")
+        role = options.role or ("fit" if data else "control")
         chosen = _curve_options(options, len(points), role)
         try:
             result = fair(points, options.tol, as_=role, **chosen)
@@ -460,6 +526,7 @@ class _Points(_Source):
             ("--join", options.join),
             ("--rims", options.rims != "corners"),
             ("--count", options.count),
+            ("--release", options.release),
             ("--knots", options.knots or options.knots_v),
             ("--weights", options.weights),
             ("--seams", options.seams),
@@ -492,8 +559,10 @@ class _Points(_Source):
                 curves,
                 options.tol,
                 degree=options.degree,
-                measure=options.measure,
+                measure=options.measure or "third",
                 mode=options.mode,
+                spacing=options.spacing,
+                goal=options.goal,
                 breaks=marks,
                 fixed=fixed,
                 motion=_motion(options),
@@ -515,16 +584,28 @@ class _Points(_Source):
         import numpy as np
 
         from moldloft.fairing.files import points_text
+        from moldloft.fairing.spline_files import SPLINES, encoded
 
+        _known_ending(path, self.file.path)
+        if path.suffix.lower() in SPLINES:
+            curves = result.curves if hasattr(result, "lists") else [result.spline]
+            return _commit(path, encoded(curves, path))
         if hasattr(result, "lists"):
-            return _commit(path, points_text(result.points[self.of_row], self.file).encode())
+            rows = result.points[self.of_row]
+            like: PointFile = self.file
+            if like.table is not None:
+                # Each row of the table once, as it stood.
+                table = like.table.copy()
+                table[like.places] = rows
+                rows, like = table, replace(like, blocks=[range(len(table))])
+            return _commit(path, points_text(rows, like).encode())
         points = result.points
         if self.closing:
             points = np.concatenate([points, points[:1]])
         same = path.suffix.lower() == self.file.path.suffix.lower()
-        like = self.file if same else None
+        form = self.file if same else None
         delimiter = {".csv": ",", ".tsv": "\t"}.get(path.suffix.lower(), " ")
-        return _commit(path, points_text(points, like, delimiter).encode())
+        return _commit(path, points_text(points, form, delimiter).encode())
 
 
 def _surface_breaks(text: str) -> tuple[list[int], list[int]]:
@@ -575,7 +656,9 @@ def _fair_grid(grid: Any, role: str, options: argparse.Namespace) -> SurfaceFair
         "closed": (options.closed, options.closed_v),
         "measure": options.measure,
         "mode": options.mode,
-        "bound": options.bound or "points",
+        "bound": options.bound,
+        "spacing": options.spacing,
+        "goal": options.goal,
         "breaks": _surface_breaks(options.breaks),
         "ends": 2 if options.ends is None else _ends(options),
         "rims": rims,
@@ -650,7 +733,7 @@ class _Grids(_Source):
             seams=options.seams or "curvature",
             as_=options.role or "fit",
             degree=options.degree,
-            measure=options.measure,
+            measure=options.measure or "second",
             bound=options.bound or "points",
             rims=rims,
             motion=_motion(options),
@@ -694,6 +777,9 @@ class _Object(_Source):
             chosen["breaks"] = made.breaks
         if made.role == "fit" and not made.breaks:
             chosen["spacing"] = "uniform"
+        if (options.role or made.role) == "fit" and options.mode == "optimum":
+            # The object itself is what the tolerance is about, between its points too.
+            chosen["bound"] = options.bound or "curve"
         return fair(made.points, options.tol, as_=options.role or made.role, **chosen)
 
     def facts(self) -> dict[str, Any]:
@@ -715,6 +801,11 @@ class _Object(_Source):
             from moldloft.grids import write_plot3d
 
             return write_plot3d(path, [result.points])
+        from moldloft.fairing.spline_files import SPLINES, encoded
+
+        _known_ending(path, None)
+        if path.suffix.lower() in SPLINES:
+            return _commit(path, encoded([result.spline], path))
         return _commit(path, _encode_curve(result, path, None))
 
 

@@ -6,10 +6,12 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from moldloft import _core
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii, refuse_repeats
 from moldloft.fairing.report import Finding, Numbers, lines_of
@@ -87,9 +89,30 @@ class Fairing:
     """What the user should know."""
     seconds: float
     """Time of the fairing."""
+    goal: str = "fairest"
+    """Which of the curves within the tolerances was wanted."""
+    residuals: Floats | None = field(default=None, repr=False)
+    """The distance of each point that was given from the curve at its parameter, for fits."""
+    used: float | None = None
+    """The mean of the squared residuals over tolerances; 1 is noise that fills these evenly."""
+    parameters: Floats | None = field(default=None, repr=False)
+    """Where the points that were given are on the curve, from 0 to 1."""
     log: tuple[NDArray[np.uint32], Floats] | None = field(default=None, repr=False)
     """Local steps in order, when asked for: which point went where. Replayed on the original they
     give the result's bits."""
+
+    @property
+    def deviation_data(self) -> float:
+        """No point that was given is farther from the curve than this.
+
+        The distance from the curve's point at its parameter, or the move of the point itself.
+        """
+        if self.residuals is not None and len(self.residuals):
+            return float(self.residuals.max())
+        if self.as_ == "points":
+            moved = self.points - narrowed(self.data, self.points.shape[1])
+            return float(np.linalg.norm(moved, axis=1).max())
+        return self.deviation_control
 
     @property
     def control_points(self) -> Floats:
@@ -138,6 +161,8 @@ class Fairing:
             "measure": self.measure,
             "tolerance": self.tol,
             "breaks": [b + 1 for b in self.breaks],
+            "goal": self.goal,
+            "deviation_data": self.deviation_data,
             "deviation_certified": self.deviation_certified,
             "deviation_sampled": self.deviation_sampled,
             "deviation_control": self.deviation_control,
@@ -164,6 +189,14 @@ class Fairing:
             "findings": [_finding(f) for f in self.findings],
             "corrected": [_finding(f) for f in self.corrected],
             "notes": list(self.notes),
+            "budget_used": self.used,
+            "spline": {
+                "degree": self.spline.degree,
+                "closed": self.spline.closed,
+                "knots": [float(k) for k in self.spline.knots],
+                "control_points": self.spline.control_points.tolist(),
+                "weights": None if self.spline.weights is None else self.spline.weights.tolist(),
+            },
             "seconds": self.seconds,
         }
 
@@ -188,7 +221,8 @@ class Fairing:
         tail = [
             (
                 "deviation",
-                f"certified {self.deviation_certified:.6e}, sampled {self.deviation_sampled:.6e}, "
+                f"to the data {self.deviation_data:.6e}; curve to curve certified "
+                f"{self.deviation_certified:.6e}, sampled {self.deviation_sampled:.6e}, "
                 f"{self.deviation_percent:.4g} % of the arc length",
             ),
             ("certificate", f"{self.value:.9e}, {left}"),
@@ -289,10 +323,10 @@ def fair_curve(
     points: ArrayLike | Spline,
     tol: ArrayLike | None,
     *,
-    as_: str = "control",
+    as_: str | None = None,
     closed: bool = False,
     degree: int = 3,
-    measure: str = "second",
+    measure: str | None = None,
     mode: str = "optimum",
     bound: str | None = None,
     breaks: Sequence[int] | str = (),
@@ -303,7 +337,12 @@ def fair_curve(
     tangents: Iterable[tuple[float, ArrayLike]] = (),
     keep: Sequence[str] = (),
     joins: Sequence[Spline] = (),
-    spacing: str = "chord",
+    spacing: Any = "chord",
+    at: ArrayLike | None = None,
+    goal: Any = "near",
+    release: Sequence[int] | str = (),
+    bends: bool = False,
+    original: ArrayLike | None = None,
     count: int | None = None,
     knots: ArrayLike | None = None,
     weights: ArrayLike | None = None,
@@ -325,9 +364,11 @@ def fair_curve(
     tol
         How far the curve, or each point, may move; ``None`` for no limit.
     as_
-        What points are: ``"control"``, the control points of a uniform spline; ``"points"``, moved
-        themselves, each within the tolerance; ``"fit"``, the curve passes through them before it is
-        faired (or near them: see ``count``). A spline is its own.
+        What points are: ``"fit"``, data on the curve, which stays within the tolerance of each;
+        ``"points"``, moved themselves, each within the tolerance; ``"control"``, the control points
+        of a uniform spline, whose parameter is the index: the rule of the report of 1991. By
+        default data for the optimum, control points for the other modes, which are the report's.
+        A spline is its own.
     closed
         Whether the last point is followed by the first, which is not repeated.
     degree
@@ -336,7 +377,8 @@ def fair_curve(
         The measure to minimise. ``"second"``: squared second differences (the measure of the
         knot steps); ``"third"``: squared third differences; ``"jumps"``: squared jumps of the
         highest derivative; ``"jump-lengths"``: their lengths, which leaves few polynomial pieces;
-        ``"bending"`` and ``"variation"``: integrals of the squared second and third derivative.
+        ``"bending"`` and ``"variation"``: integrals of the squared second and third derivative. By
+        default ``"variation"`` for data, ``"second"`` otherwise.
     mode
         ``"optimum"``: the least there is, with a certificate; continuous in the input.
         ``"faithful"``: knots removed and re-inserted one by one, the longest achievable move first
@@ -345,13 +387,14 @@ def fair_curve(
         ``"vertex"``: one control point at a time to its own best place. ``"sweeps"``: all points in
         order. ``"levels"``: waves of all lengths, the longest first.
     bound
-        ``"curve"``: the tolerance bounds the curve; ``"points"``: each control point. By default
-        the curve for fits and splines, points otherwise.
+        ``"data"``: the tolerance bounds the distance of each point from the curve; ``"curve"``:
+        that of the curve from the one through the points, everywhere; ``"points"``: the move of
+        each control point. By default the data for fits, the curve for splines, points otherwise.
     breaks
         Points, from 0, that are intended breaks: they do not move by a bit and nothing is smoothed
-        across them; a fitted curve has corners there. ``"auto"`` takes corners that stand out as
-        breaks and lets single wrong points move by their error besides the tolerance; see
-        :attr:`Fairing.corrected`.
+        across them; a fitted curve has corners there. ``"auto"`` takes the corners among
+        :attr:`Fairing.findings`; of control points it also lets single wrong points move by their
+        error besides the tolerance.
     fixed
         Points (control points of fits and splines), from 0, that do not move.
     ends
@@ -373,7 +416,25 @@ def fair_curve(
         Open splines that begin or end where the curve does: an optimum runs on from them with the
         same tangent direction and curvature. They stay as they are.
     spacing
-        Parameters of a fit: ``"chord"``, ``"centripetal"`` or ``"uniform"``.
+        Parameters of the points: ``"chord"``, ``"centripetal"``, a coordinate (``"x"``, ``"y"``,
+        ``"z"``) or a direction along which the points run, or ``"index"``.
+    at
+        The parameters themselves, rising, in [0, 1].
+    goal
+        Which of the curves within the tolerances. ``"near"``: the fairest whose squared residuals
+        are at most four fifths of what noise has that fills the tolerances evenly, and the data's
+        own curve where there is little to gain: exact data stay. ``"fairest"``: the least of the
+        measure. ``("budget", share)``: the first with a share of your own. ``("nearest", share)``:
+        the nearest to the data whose measure exceeds the least by at most this share.
+    release
+        Points, from 0, that are wrong and may be left; ``"auto"``: the wrong digits among
+        :attr:`Fairing.findings`. Nothing is released by itself.
+    original
+        The points as they were read, when ``points`` were faired already: tolerances are counted
+        from these, so that fairing a result again is fairing the original.
+    bends
+        Whether third derivatives may buy smoothness with inflections that the curve of least
+        bending does not have.
     count
         Fit by least squares with so many control points instead of through all points.
     knots, weights, period
@@ -399,15 +460,55 @@ def fair_curve(
     FairingError
         With :attr:`~moldloft.errors.FairingError.index`, the point at fault.
     """
+    if as_ is None:
+        as_ = "fit" if mode == "optimum" and bound in (None, "data") else "control"
+    if original is not None:
+        reference, _ = points_of(original)
+        if isinstance(points, Spline) or len(reference) != len(points_of(points)[0]):
+            raise FairingError("the original has as many points as there are points")
+        points = original
     if as_ not in ROLES:
         raise FairingError(f"points are `control`, `points` or `fit`, not `{as_}`")
     started = time.perf_counter()
     own = _Own(knots, weights, period)
+    word, share = _goal(goal)
+    if not isinstance(points, Spline) and mode == "optimum":
+        asked = _Asked(
+            closed,
+            degree,
+            measure,
+            breaks,
+            release,
+            fixed,
+            ends,
+            motion,
+            spacing,
+            at,
+            (word, share),
+            bends,
+            accuracy,
+        )
+        through, tangents = list(through), list(tangents)
+        # Points that move are those of the curve through them.
+        moves = as_ == "points" and bound is None and spacing not in ("index", "uniform")
+        if (as_ == "fit" or moves) and not own.given and count is None and bound in (None, "data"):
+            return _fair_data(points, tol, asked, (through, tangents, keep, joins), as_, started)
+    if bound == "data":
+        raise FairingError('bound `data` is for optima of data, `as_="fit"`')
+    if len(release):
+        raise FairingError('release is for optima of data, `as_="fit"`')
+    measure = measure or "second"
+    if spacing == "index":
+        spacing = "uniform"
+    if not isinstance(spacing, str) or spacing not in ("chord", "centripetal", "uniform"):
+        raise FairingError(
+            f"spacing {spacing!r} is for optima of data; here: chord, centripetal or index"
+        )
     made = _prepared(points, as_, closed, degree, spacing, count, breaks, own)
     spline, data, width = made.spline, made.data, made.width
     fitted = made.role in ("fit", "spline")
     n = len(spline.control_points)
-    limits = radii(tol, n) if made.parameters is None else _spread(tol, made, n)
+    limits = radii(tol, n) if made.parameters is None else _spread(_left(tol, made), made, n)
     for finding in made.corrected:
         if finding.kind == "outlier" and made.role != "fit":
             limits[finding.index] += float(np.linalg.norm(finding.vector))
@@ -443,6 +544,199 @@ def fair_curve(
     core, told = spline._core.fair(chosen)
     seconds = time.perf_counter() - started
     return _result(made, Spline._of(core), told, tol, mode, width, seconds, data)
+
+
+@dataclass
+class _Asked:
+    """How data are to be faired."""
+
+    closed: bool
+    degree: int
+    measure: str | None
+    breaks: Sequence[int] | str
+    release: Sequence[int] | str
+    fixed: Sequence[int]
+    ends: Any
+    motion: Any
+    spacing: Any
+    at: ArrayLike | None
+    goal: tuple[str, float]
+    bends: bool
+    accuracy: float
+
+
+BUDGET = 0.8
+"""Of what noise has in squared residuals that fills the tolerances evenly."""
+
+
+def _goal(given: Any) -> tuple[str, float]:
+    word, share = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
+    known = {"near": BUDGET, "budget": BUDGET, "fairest": 0.0, "nearest": 0.1}
+    if word not in known:
+        raise FairingError(f"unknown goal `{word}`; there are: near, fairest, budget, nearest")
+    return str(word), known[word] if share is None else float(share)
+
+
+def spacing_of(given: Any) -> tuple[str, tuple[float, float, float]]:
+    """The word and the direction of a spacing."""
+    axes = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+    if isinstance(given, str):
+        return ("along", axes[given]) if given in axes else (given, (0.0, 0.0, 0.0))
+    return "along", direction(given)[1]
+
+
+def _chosen(given: Sequence[int] | str, found: list[Finding], kind: str, count: int) -> list[int]:
+    """Points by number, or those that findings of a kind propose."""
+    if isinstance(given, str):
+        if given != "auto":
+            raise FairingError(f"expected numbers of points or `auto`, found `{given}`")
+        return sorted({f.index for f in found if f.kind == kind})
+    return sorted({_index(k, count) for k in given})
+
+
+def _released(
+    limits: list[float], release: list[int], found: list[Finding], data: Floats
+) -> list[float]:
+    """Tolerances with room for wrong points to go to their place."""
+    out = list(limits)
+    for k in release:
+        error = next((float(np.linalg.norm(f.vector)) for f in found if f.index == k), None)
+        size = float(np.ptp(data, axis=0).max())
+        out[k] = out[k] + 2.0 * error if error is not None else size
+    return out
+
+
+def _data_measure(measure: str | None, degree: int) -> str:
+    return measure or ("variation" if degree >= 3 else "bending")
+
+
+def _fair_data(
+    points: ArrayLike, tol: ArrayLike | None, asked: _Asked, wanted: Any, as_: str, started: float
+) -> Fairing:
+    """Data under tolerances."""
+    data, width = points_of(points)
+    n = len(data)
+    least = 2 * asked.degree + 2 if asked.closed else asked.degree + 2
+    if n < least:
+        raise FairingError(f"expected at least {least} points for degree {asked.degree}, found {n}")
+    found = [Finding.of(row) for row in _core.data_findings(data, asked.closed)]
+    breaks = _chosen(asked.breaks, found, "corner", n)
+    release = _chosen(asked.release, found, "outlier", n)
+    limits = radii(tol, n)
+    notes = []
+    for k in asked.fixed:
+        limits[_index(k, n)] = 0.0
+    limits = _released(limits, release, found, data)
+    if asked.closed and tol is None:
+        raise FairingError("a closed curve without a tolerance shrinks to a point")
+    word, way = direction(asked.motion)
+    spaced, spacing_way = spacing_of(asked.spacing)
+    kept = list(_ends(asked.ends if asked.ends is not None else "free", asked.closed))
+    through, tangents, keep, joins = wanted
+    conditions, labels = _conditions(through, tangents, keep)
+    if joins:
+        rough = Spline.interpolate(data, degree=asked.degree, closed=asked.closed)
+        for k, join in enumerate(_joins(joins, rough)):
+            kept[int(join[1])] = "position"
+            conditions.append(join)
+            labels.append(f"join {k + 1}")
+    at = None
+    if asked.at is not None:
+        at = [float(t) for t in np.asarray(asked.at, np.float64).ravel()]
+        rises = len(at) == n and all(a < b for a, b in pairwise(at)) and at[0] >= 0 and at[-1] <= 1
+        if not rises:
+            raise FairingError(f"expected {n} rising parameters in [0, 1]")
+    measure = _data_measure(asked.measure, asked.degree)
+    core, original, told = _core.Spline.fair_data(
+        data,
+        {
+            "tolerance": limits,
+            "motion": word,
+            "direction": way,
+            "ends": tuple(kept),
+            "closed": asked.closed,
+            "degree": asked.degree,
+            "breaks": breaks,
+            "spacing": spaced,
+            "spacing_direction": spacing_way,
+            "at": at,
+            "measure": measure,
+            "goal": asked.goal,
+            "conditions": conditions,
+            "labels": labels,
+            "bends": asked.bends or measure == "jump-lengths",
+            "accuracy": asked.accuracy,
+        },
+    )
+    for k in release:
+        off = float(told["residuals"][k])
+        notes.append(f"point {k + 1} was released: the curve passes {off:.3e} from it")
+    faired, before = Spline._of(core), Spline._of(original)
+    rows = faired(told["at"])
+    # What the curve passes through to rounding has not moved by a bit.
+    still = told["residuals"] <= 64 * np.finfo(float).eps * np.abs(data).max()
+    rows[still] = data[still]
+    far, certificate = told["deviation"], told["certificate"]
+    taken = {*breaks, *release}
+    return Fairing(
+        points=narrowed(rows, width),
+        spline=faired,
+        original=before,
+        data=data,
+        tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
+        as_=as_,
+        mode="optimum",
+        measure=measure,
+        breaks=tuple(breaks),
+        before=Numbers(**told["before"]),
+        after=Numbers(**told["after"]),
+        deviation_certified=far["certified"],
+        deviation_sampled=far["sampled"],
+        deviation_control=far["control"],
+        length=far["length"],
+        value=certificate["value"],
+        gap=certificate["gap"],
+        steps=told["steps"],
+        stopped=None,
+        active=told["active"],
+        findings=tuple(f for f in found if f.index not in taken),
+        corrected=tuple(f for f in found if f.index in taken),
+        jump_lengths_before=told["jumps_before"],
+        jump_lengths_after=told["jumps_after"],
+        notes=(*told["notes"], *notes),
+        seconds=time.perf_counter() - started,
+        goal=asked.goal[0],
+        residuals=told["residuals"],
+        used=told["used"],
+        parameters=told["at"],
+    )
+
+
+def laid(
+    before: Floats, after: Floats, degree: int, spacing: Any, closed: bool, breaks: Sequence[int]
+) -> tuple[Spline, Spline, float, float]:
+    """The splines through points before and after on the same knots.
+
+    Also how far these are apart: certified by their control points, and sampled.
+    """
+    word, way = spacing_of(spacing)
+    core, at, _ = _core.Spline.interpolate(before, degree, word, closed, list(breaks), way)
+    first = Spline._of(core)
+    low, high = first.domain
+    own = np.asarray(first.knots)
+    if len(first.control_points) == len(before) and first.closed == closed:
+        period = high - low if closed else None
+        second, _ = Spline._fit(
+            after, degree, own, None, None, closed, period, "chord", np.asarray(at)
+        )
+        moved = second.control_points - first.control_points
+        certified = float(np.linalg.norm(moved, axis=1).max())
+    else:
+        core, _, _ = _core.Spline.interpolate(after, degree, word, closed, list(breaks), way)
+        second = Spline._of(core)
+        certified = float("nan")
+    a, b = first.samples(16).points, second.samples(16).points
+    return first, second, certified, float(np.linalg.norm(a - b, axis=1).max())
 
 
 @dataclass
@@ -566,10 +860,29 @@ def _prepared(
 def _least_squares(
     points: Floats, degree: int, count: int, spacing: str, closed: bool
 ) -> tuple[Spline, Floats, float, float]:
-    from moldloft import _core
-
     core, at, largest, rms = _core.Spline.least_squares(points, degree, count, spacing, closed)
     return Spline._of(core), at, largest, rms
+
+
+def _left(tol: ArrayLike | None, made: _Prepared) -> ArrayLike | None:
+    """What a fit that misses its data leaves of their tolerances."""
+    if tol is None or made.role != "fit" or made.parameters is None:
+        return tol
+    each = np.asarray(radii(tol, len(made.data)))
+    off = np.linalg.norm(made.spline(made.parameters) - made.data, axis=1)
+    noise = 1e-9 * float(np.ptp(made.data, axis=0).max())
+    if off.max() <= noise:
+        return tol
+    short = off - each
+    if short.max() > 0:
+        k = int(short.argmax())
+        raise FairingError(
+            f"a spline of {len(made.spline.control_points)} control points is "
+            f"{off[k]:.3e} off point {k + 1}: more control points, or a larger tolerance",
+            index=k,
+        )
+    limits: NDArray[np.float64] = each - off
+    return limits
 
 
 def _spread(tol: ArrayLike | None, made: _Prepared, n: int) -> list[float]:
@@ -626,7 +939,12 @@ def _result(
         rows = faired.control_points
     log = (told["log_index"], told["log_to"]) if "log_index" in told else None
     largest = None if tol is None else float(np.max(np.asarray(tol, np.float64)))
+    residuals = None
+    if made.parameters is not None:
+        residuals = np.linalg.norm(faired(made.parameters) - made.data, axis=1)
     return Fairing(
+        residuals=residuals,
+        parameters=made.parameters,
         points=narrowed(rows, width),
         spline=spline,
         original=original,

@@ -12,7 +12,8 @@ import numpy as np
 from moldloft import _core
 from moldloft.errors import FairingError
 from moldloft.fairing.arrays import direction, narrowed, points_of, radii
-from moldloft.fairing.report import lines_of
+from moldloft.fairing.curve import _goal, laid, spacing_of
+from moldloft.fairing.report import Finding, lines_of
 from moldloft.fairing.spline import Spline
 
 if TYPE_CHECKING:
@@ -66,6 +67,16 @@ class NetworkFairing:
     """No network within the tolerance measures less than ``value - gap``."""
     seconds: float
     """Time of the fairing."""
+    deviation_curves_certified: float = float("nan")
+    """No curve is farther from its original than this anywhere; not a number where a curve's pieces
+    are too short for a proof."""
+    goal: str = "fairest"
+    """Which of the networks within the tolerance was wanted."""
+    used: float | None = None
+    """The mean of the squared moves over tolerances; 1 is noise that fills these evenly."""
+    findings: tuple[tuple[int, Finding], ...] = ()
+    """Wrong digits and knuckles that stand out along curves: the curve, from 0, and the finding,
+    whose index is the point's."""
 
     @property
     def deviation_sampled(self) -> float:
@@ -91,6 +102,13 @@ class NetworkFairing:
             "deviation_certified": self.deviation_certified,
             "deviation_sampled": self.deviation_sampled,
             "deviation_curves": self.deviation_curves,
+            "deviation_curves_certified": self.deviation_curves_certified,
+            "goal": self.goal,
+            "budget_used": self.used,
+            "findings": [
+                {"curve": k + 1, "kind": f.kind, "point": f.index + 1, "text": f.text}
+                for k, f in self.findings
+            ],
             "measure_before": self.measure_before,
             "measure_after": self.measure_after,
             "jumps_before": self.jumps_before,
@@ -112,12 +130,14 @@ class NetworkFairing:
             (
                 "deviation",
                 f"certified {self.deviation_certified:.6e} at points, "
-                f"sampled {self.deviation_curves:.6e} along curves",
+                f"{self.deviation_curves_certified:.6e} along curves "
+                f"(sampled {self.deviation_curves:.6e})",
             ),
             ("certificate", f"{self.value:.9e}, {left}"),
             ("time", f"{1e3 * self.seconds:.3g} ms"),
         ]
-        return lines_of(rows, tail)
+        said = [f"note: curve {k + 1}, {f.text}" for k, f in self.findings]
+        return "\n".join([lines_of(rows, tail), *said])
 
     def plot(self, path: str | PathLike[str]) -> None:
         """Draw the curves before and after, and where points moved, into a file (PNG or SVG)."""
@@ -132,8 +152,10 @@ def network(
     tol: ArrayLike | None,
     *,
     degree: int = 3,
-    measure: str = "second",
+    measure: str = "third",
     mode: str = "optimum",
+    spacing: Any = "chord",
+    goal: Any = "near",
     breaks: Sequence[int] = (),
     fixed: Sequence[int] | str = "corners",
     motion: Any = "ball",
@@ -157,6 +179,12 @@ def network(
         The measure to minimise, summed over all curves; see :func:`~moldloft.fairing.fair`.
     mode
         ``"optimum"``, ``"faithful"`` (curve after curve, ``passes`` times) or ``"sweeps"``.
+    spacing
+        Parameters of the points along each curve: ``"chord"``, ``"centripetal"``, a coordinate
+        (``"x"``) or a direction where it rises or falls along a curve (chords elsewhere), or
+        ``"index"``, the rule of the report of 1991, which the modes other than the optimum keep.
+    goal
+        Which of the networks within the tolerance; see :func:`~moldloft.fairing.fair`.
     breaks
         Points that are intended breaks of all their curves.
     fixed
@@ -183,6 +211,9 @@ def network(
     """
     data, width = points_of(points)
     started = time.perf_counter()
+    wanted = _goal(goal)
+    word_spaced, spaced_way = spacing_of(spacing)
+    index = mode != "optimum" or word_spaced in ("index", "uniform")
     count = len(data)
     lists: list[tuple[list[int], bool]] = []
     marked = {_number(b, count) for b in breaks}
@@ -229,30 +260,34 @@ def network(
             "measure": measure,
             "mode": mode,
             "bound": "points",
+            "spacing": "index" if index else word_spaced,
+            "spacing_direction": spaced_way,
+            "goal": wanted if mode == "optimum" else None,
             "conditions": [],
             "labels": [],
             "passes": passes,
             "steps": {"faithful": 3, "sweeps": 50}.get(mode, 0) if steps is None else steps,
         }
     )
-    laid: list[list[Spline]] = []
-    for rows in (data, faired):
-        made = [
-            Spline.interpolate(
-                rows[own], degree=degree, spacing="uniform", closed=closed, breaks=own_marks
-            )
-            for (own, closed), own_marks in zip(lists, marks, strict=True)
-        ]
-        laid.append(made)
+    pairs = []
+    found = []
+    for k, ((own, closed), own_marks) in enumerate(zip(lists, marks, strict=True)):
+        spaced = "index" if index else spacing
+        try:
+            pairs.append(laid(data[own], faired[own], degree, spaced, closed, own_marks))
+        except FairingError:
+            # The coordinate does not rise along this curve.
+            pairs.append(laid(data[own], faired[own], degree, "chord", closed, own_marks))
+        for row in _core.data_findings(np.ascontiguousarray(data[own]), closed):
+            one = Finding.of(row)
+            if own[one.index] not in marked:
+                text = one.text.replace(f"point {one.index + 1}", f"point {own[one.index] + 1}", 1)
+                found.append((k, Finding(one.kind, own[one.index], one.vector, text)))
     seconds = time.perf_counter() - started
-    swing = [
-        np.linalg.norm(a.samples(8).points - b.samples(8).points, axis=1).max()
-        for b, a in zip(*laid, strict=True)
-    ]
     return NetworkFairing(
         points=narrowed(faired, width),
-        curves=tuple(laid[1]),
-        originals=tuple(laid[0]),
+        curves=tuple(p[1] for p in pairs),
+        originals=tuple(p[0] for p in pairs),
         data=data,
         lists=tuple(tuple(o + o[:1]) if c else tuple(o) for o, c in lists),
         tol=None if tol is None else float(np.max(np.asarray(tol, np.float64))),
@@ -264,11 +299,31 @@ def network(
         jumps_before=told["jumps_before"],
         jumps_after=told["jumps_after"],
         deviation_certified=told["certified"],
-        deviation_curves=float(max(swing)),
+        deviation_curves=max(p[3] for p in pairs),
+        deviation_curves_certified=max(p[2] for p in pairs),
+        goal=wanted[0],
+        used=told["used"],
+        findings=tuple(_agreed(found, uses)),
         value=told["certificate"]["value"],
         gap=told["certificate"]["gap"],
         seconds=seconds,
     )
+
+
+def _agreed(found: list[tuple[int, Finding]], uses: NDArray[np.int_]) -> list[tuple[int, Finding]]:
+    """What stands out: a wrong digit shows in all curves of its point, a knuckle in one."""
+    seen: dict[int, int] = {}
+    for _, f in found:
+        if f.kind == "outlier":
+            seen[f.index] = seen.get(f.index, 0) + 1
+    out, told = [], set()
+    for k, f in found:
+        if f.kind == "outlier":
+            if f.index in told or seen[f.index] < min(2, int(uses[f.index])):
+                continue
+            told.add(f.index)
+        out.append((k, f))
+    return out
 
 
 def _number(given: Any, count: int) -> int:

@@ -195,6 +195,7 @@ def patches(
         "measure": measure,
         "mode": "optimum",
         "bound": bound,
+        "goal": None,
         "passes": 1,
         "steps": 0,
         "conditions": [],

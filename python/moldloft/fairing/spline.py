@@ -148,7 +148,7 @@ class Spline:
         rows, _ = points_of(points)
         refuse_repeats(rows, closed)
         core, at, marks = _core.Spline.interpolate(
-            rows, degree, spacing, closed, [int(b) for b in breaks]
+            rows, degree, spacing, closed, [int(b) for b in breaks], (0.0, 0.0, 0.0)
         )
         return cls._of(core), at, marks
 

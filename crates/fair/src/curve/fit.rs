@@ -2,12 +2,12 @@
 
 use crate::error::check_finite;
 use crate::optimum::problem::{self, Bounds, Problem};
-use crate::{FairError, Norm, Space, SparseRows};
+use crate::{FairError, Motion, Norm, Space, SparseRows};
 use moldloft_num::{Real, Vec3};
 use moldloft_spline::KnotVector;
 
 /// How data points are given parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spacing {
     /// Equal steps.
     Uniform,
@@ -15,6 +15,8 @@ pub enum Spacing {
     Chord,
     /// By the root of the distance (Lee 1989): calmer at sharp turns.
     Centripetal,
+    /// The coordinate along a direction: stations. It must rise or fall from point to point.
+    Along(Vec3<f64>),
 }
 
 /// A fitted spline.
@@ -36,38 +38,97 @@ pub struct Fit {
 /// after the last being the first.
 ///
 /// # Errors
-/// [`FairError::Coincident`] when two neighbours have no distance and a distance is asked for.
+/// [`FairError::Coincident`] when two neighbours have no distance and a distance is asked for,
+/// [`FairError::TurnsAlong`] when the points run back along a given direction.
 pub fn parameters(
     points: &[Vec3<f64>],
     spacing: Spacing,
     closed: bool,
 ) -> Result<Vec<f64>, FairError> {
     check_finite(points)?;
+    parameters_with(points, spacing, closed)
+}
+
+/// The same for points that carry derivatives, which parameters then do too.
+///
+/// # Errors
+/// As [`parameters`].
+pub fn parameters_with<T: Real>(
+    points: &[Vec3<T>],
+    spacing: Spacing,
+    closed: bool,
+) -> Result<Vec<T>, FairError> {
     let n = points.len();
     if n < 2 {
         return Err(FairError::TooFew { expected: 2, actual: n });
     }
     let steps = if closed { n } else { n - 1 };
-    let mut at = vec![0.0];
+    let along = |a: Vec3<f64>, k: usize| {
+        let step = points[k + 1] - points[k];
+        step.x * a.x + step.y * a.y + step.z * a.z
+    };
+    let mut at = vec![T::zero()];
     for k in 0..steps {
-        let chord = (points[(k + 1) % n] - points[k]).norm();
+        let chord = || (points[(k + 1) % n] - points[k]).norm();
         let step = match spacing {
-            Spacing::Uniform => 1.0,
-            Spacing::Chord => chord,
-            Spacing::Centripetal => Real::sqrt(chord),
+            Spacing::Uniform => T::one(),
+            Spacing::Chord if chord().re() == 0.0 => T::zero(),
+            Spacing::Chord => chord(),
+            Spacing::Centripetal if chord().re() == 0.0 => T::zero(),
+            Spacing::Centripetal => chord().sqrt(),
+            Spacing::Along(_) if closed => return Err(FairError::TurnsAlong { index: n - 1 }),
+            Spacing::Along(a) => {
+                let (first, own) = (along(a, 0), along(a, k));
+                let step = if first.re() < 0.0 { -own } else { own };
+                if step.re() < 0.0 || step.re().is_nan() {
+                    return Err(FairError::TurnsAlong { index: k + 1 });
+                }
+                step
+            }
         };
-        if step == 0.0 {
+        if step.re() == 0.0 {
             return Err(FairError::Coincident { first: k });
         }
         at.push(at[k] + step);
     }
     let total = at[steps];
     at.truncate(n);
-    let mut at: Vec<f64> = at.into_iter().map(|t| t / total).collect();
+    let mut at: Vec<T> = at.into_iter().map(|t| t / total).collect();
     if !closed {
-        at[n - 1] = 1.0;
+        at[n - 1] = T::one();
     }
     Ok(at)
+}
+
+/// The least share of a chord that its projection must be for stations to count.
+const SHALLOW: f64 = 0.2;
+
+/// The same where points move along a direction only: chords are measured across it, so that
+/// offsets at stations have these for parameters, unless a curve is too steep for that.
+///
+/// # Errors
+/// As [`parameters`].
+pub fn parameters_across<T: Real>(
+    points: &[Vec3<T>],
+    spacing: Spacing,
+    closed: bool,
+    motion: Motion,
+) -> Result<Vec<T>, FairError> {
+    let (Motion::Along(d), Spacing::Chord | Spacing::Centripetal) = (motion, spacing) else {
+        return parameters_with(points, spacing, closed);
+    };
+    let flat = |p: &Vec3<T>| {
+        let along = p.x * d.x + p.y * d.y + p.z * d.z;
+        *p - Vec3::new(along * d.x, along * d.y, along * d.z)
+    };
+    let projected: Vec<Vec3<T>> = points.iter().map(flat).collect();
+    let n = points.len();
+    let steps = if closed { n } else { n.saturating_sub(1) };
+    let shallow = (0..steps).all(|k| {
+        let step = |all: &[Vec3<T>]| (all[(k + 1) % n].re() - all[k].re()).norm();
+        step(&projected) >= SHALLOW * step(points) && step(&projected) > 0.0
+    });
+    parameters_with(if shallow { &projected } else { points }, spacing, closed)
 }
 
 /// The spline through all points: clamped knots that are means of `degree` parameters (de Boor
@@ -196,12 +257,7 @@ pub fn fit(
             offsets: (0..weighted.len()).map(off).collect(),
             measure: weighted.clone(),
             norm: Norm::Square,
-            bounds: Bounds {
-                rows: SparseRows::new(),
-                direct: true,
-                radii: Vec::new(),
-                separate: false,
-            },
+            bounds: Bounds::none(),
             frozen: frozen.clone(),
             conditions: Vec::new(),
             reach: vec![f64::INFINITY; n],
@@ -268,7 +324,7 @@ pub fn fit_rational(
 }
 
 /// The basis functions at parameters, as rows over the control points.
-fn values(space: &Space, parameters: &[f64]) -> SparseRows {
+pub(crate) fn values(space: &Space, parameters: &[f64]) -> SparseRows {
     let mut rows = SparseRows::new();
     for &t in parameters {
         let (k, t) = space.locate(t);
@@ -281,8 +337,7 @@ fn values(space: &Space, parameters: &[f64]) -> SparseRows {
 /// A sum of squares without limits.
 fn squares(measure: SparseRows, offsets: Vec<[f64; 3]>, frozen: Vec<bool>) -> Problem {
     let reach = vec![f64::INFINITY; frozen.len()];
-    let bounds =
-        Bounds { rows: SparseRows::new(), direct: true, radii: Vec::new(), separate: false };
+    let bounds = Bounds::none();
     let conditions = Vec::new();
     Problem {
         dimension: 3,

@@ -4,10 +4,13 @@
 pub(crate) mod breaks;
 pub(crate) mod condition;
 pub(crate) mod corners;
+pub(crate) mod data;
 pub(crate) mod fit;
 pub(crate) mod job;
 pub(crate) mod jumps;
 pub(crate) mod knot_removal;
+pub(crate) mod layout;
 pub(crate) mod limit;
+pub(crate) mod moving;
 pub(crate) mod multilevel;
 pub(crate) mod space;

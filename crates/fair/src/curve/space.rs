@@ -176,6 +176,23 @@ impl Space {
         (knots.normalized(), places)
     }
 
+    /// Knots and control points of an open curve for those of the space, which may carry
+    /// derivatives: a closed spline repeats its first `degree` points.
+    pub(crate) fn open_form<T: moldloft_num::Real>(
+        &self,
+        knots: &[T],
+        points: &[moldloft_num::Vec3<T>],
+    ) -> (Vec<T>, Vec<moldloft_num::Vec3<T>>) {
+        if !self.is_closed() {
+            return (knots.to_vec(), points.to_vec());
+        }
+        let (p, n) = (self.degree as isize, self.count as isize);
+        let (a, b) = self.domain();
+        let knot =
+            |i: isize| knots[i.rem_euclid(n) as usize] + T::from(i.div_euclid(n) as f64 * (b - a));
+        ((-p..=n + p).map(knot).collect(), (-p..n).map(|s| points[self.column(s)]).collect())
+    }
+
     /// The simple interior knots: where the derivative of order `degree` may jump and a local
     /// step is defined. Multiple knots are intended breaks.
     pub(crate) fn simple_knots(&self) -> impl Iterator<Item = isize> + '_ {

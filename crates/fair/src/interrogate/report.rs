@@ -1,9 +1,9 @@
 //! All about one fairing, as data: what the command line prints.
 
 use crate::{
-    Certificate, Deviation, FairError, Finding, Job, Jumps, KnotRemoval, KnotRemovalOptions,
-    Measure, Norm, Optimum, OptimumOptions, Stopped, ball_gap, deviation, knot_removal, multilevel,
-    optimum, shape, sweeps,
+    Certificate, Data, DataFit, DataOptions, Deviation, FairError, Finding, Job, Jumps,
+    KnotRemoval, KnotRemovalOptions, Limit, Measure, Norm, Optimum, OptimumOptions, Stopped,
+    ball_gap, deviation, fair_data, knot_removal, multilevel, optimum, shape, sweeps,
 };
 use moldloft_num::Vec3;
 use std::fmt;
@@ -151,6 +151,70 @@ pub fn report(job: &Job, mode: &Mode) -> Result<Report, FairError> {
     };
     report.notes = notes(job, &report);
     Ok(report)
+}
+
+/// Fairs data and reports. Jumps, counts and the deviation compare the faired curve with the one
+/// through the data; findings are the caller's to look for ([`crate::data_findings`]).
+///
+/// # Errors
+/// As [`fair_data`].
+pub fn data_report(data: &Data, options: &DataOptions) -> Result<(DataFit, Report), FairError> {
+    let made = fair_data(data, options)?;
+    let n = made.points.len();
+    let job = Job {
+        space: data.layout.space.clone(),
+        points: made.original.clone(),
+        weights: None,
+        limit: Limit { motion: data.limit.motion, radii: vec![f64::INFINITY; n] },
+        marks: Vec::new(),
+        ends: data.ends,
+    };
+    let numbers = |points: &[Vec3<f64>]| numbers(&job, options.measure, points);
+    let (before, after) = (numbers(&job.points)?, numbers(&made.points)?);
+    let rows = Jumps::of(&job.space).rows;
+    let jumps = [&job.points, &made.points]
+        .map(|p| (0..rows.len()).map(|k| rows.apply(k, p).norm()).collect());
+    let mut notes = Vec::new();
+    if data.limit.radii.iter().any(|r| r.is_infinite()) {
+        notes.push(
+            "no tolerance: the fairest curve is a single polynomial, far from the data".to_string(),
+        );
+    }
+    let first = data.points.first().copied().unwrap_or_default();
+    let size = data.points.iter().map(|p| (*p - first).norm()).fold(0.0, f64::max);
+    let tolerance = data.limit.radii.iter().copied().filter(|r| r.is_finite()).fold(0.0, f64::max);
+    if tolerance > 0.05 * size {
+        notes.push(format!(
+            "the tolerance, {tolerance:.3e}, is {:.0} % of the extent of the data: is its unit theirs?",
+            100.0 * tolerance / size
+        ));
+    }
+    let held = data.limit.radii.iter().filter(|r| r.is_finite() && **r > 0.0).count();
+    if held > 3 && made.active >= held {
+        notes.push("the tolerance is reached at every datum: the data ask for more".to_string());
+    }
+    if made.bends > 0 {
+        notes.push(format!(
+            "{} inflections more than the curve of least bending: no curve was found that meets the \
+             goal without them; a larger tolerance or budget, or the goal `fairest`",
+            made.bends
+        ));
+    }
+    let report = Report {
+        deviation: deviation(&job, &made.points),
+        points: made.points.clone(),
+        measure: options.measure.name(),
+        before,
+        after,
+        certificate: made.certificate,
+        steps: made.iterations,
+        stopped: None,
+        active: Some(made.active),
+        findings: Vec::new(),
+        jumps,
+        notes,
+    };
+    Ok((made, report))
 }
 
 /// What stands out and is not taken into account yet.

@@ -218,6 +218,36 @@ pub fn inflections(samples: &[Sample]) -> usize {
     changes + usize::from(last.is_some() && ends_straight)
 }
 
+/// The turn of the tangent, in radians, below which a reversal is no inflection.
+const LEAST_TURN: f64 = 1e-4;
+
+/// How often a plane curve turns back: the reversals of its tangent's turning by more than a
+/// ten-thousandth of a radian. 0 for curves in space, which have no sign of curvature.
+pub fn turns_back(space: &Space, points: &[Vec3<f64>]) -> usize {
+    let all = samples(space, points, None, COUNTING);
+    let Some(normal) = plane_normal(&all) else { return 0 };
+    let (mut angle, mut extreme, mut rising, mut count) = (0.0, 0.0, None, 0usize);
+    let mut before: Option<Vec3<f64>> = None;
+    for d in all.iter().map(|s| s.derivatives[0]).filter(|d| d.norm_sq() > 0.0) {
+        if let Some(b) = before {
+            angle += Real::atan2(b.cross(d).dot(normal), b.dot(d));
+        }
+        before = Some(d);
+        let on = match rising {
+            None => false,
+            Some(true) => angle >= extreme,
+            Some(false) => angle <= extreme,
+        };
+        if on {
+            extreme = angle;
+        } else if (angle - extreme).abs() > LEAST_TURN {
+            count += usize::from(rising.is_some());
+            (rising, extreme) = (Some(angle > extreme), angle);
+        }
+    }
+    count
+}
+
 /// Samples on each span for counts.
 const COUNTING: usize = 16;
 

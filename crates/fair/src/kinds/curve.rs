@@ -9,12 +9,13 @@ use std::sync::Arc;
 
 /// A fair B-spline curve within a tolerance of the one through its points.
 ///
-/// The points are interpolated at uniform parameters (or are control points, or are faired
-/// themselves: see `as`). Of all splines on the same knots that stay within the tolerance of that
-/// curve everywhere, the one with the least of the measure is taken. The result is continuous in
-/// the points, except in mode "faithful": there the worst knots are removed and re-inserted one
-/// after the other (Farin and Sapidis 1989), one step per point, and which knot comes first may
-/// change with the points.
+/// Of all splines with knots at the points that stay within the tolerance of each point, `goal` says
+/// which is taken; parameters and knots follow the points' spacing. Points that are as fair as the
+/// tolerance allows do not move. The result is continuous in the points. Points can be control points
+/// or be faired themselves instead (`as`); these, curves that join others and the mode "faithful"
+/// take the number of a point for its parameter, as the report of 1991 does. In mode "faithful" the
+/// worst knots are removed and re-inserted one after the other (Farin and Sapidis 1989), one step per
+/// point, and which knot comes first may change with the points.
 #[derive(Kind)]
 #[kind(
     class = Curve,
@@ -26,7 +27,7 @@ pub struct FairCurve<T: Real> {
     /// Points, at least degree + 2 of them (closed: 2 degree + 2).
     #[field(min_items = 3)]
     points: Vec<Point<T>>,
-    /// Largest distance from the curve through the points; 0 leaves it unchanged.
+    /// How far the curve may be from each of the points; 0 passes through all.
     #[field(min = 0)]
     tolerance: T,
     /// The measure to minimise: "second", "third", "jumps", "jump-lengths", "bending" or
@@ -42,8 +43,9 @@ pub struct FairCurve<T: Real> {
     /// first of them.
     #[field(default)]
     breaks: Option<Vec<usize>>,
-    /// Kept at open ends: "free", "position", "tangent" or "curvature".
-    #[field(default = "tangent")]
+    /// What open ends keep of the curve through the points: "free" (within the tolerance), "position",
+    /// "tangent" or "curvature".
+    #[field(default = "position")]
     ends: Arc<str>,
     /// "optimum" or "faithful".
     #[field(default = "optimum")]
@@ -66,6 +68,19 @@ pub struct FairCurve<T: Real> {
     /// non-decreasing; constants too.
     #[field(default)]
     knots: Option<Vec<T>>,
+    /// How points get their parameters: "chord", "centripetal", a coordinate ("x", "y" or "z", for
+    /// offsets at stations), or "index".
+    #[field(default = "chord")]
+    spacing: Arc<str>,
+    /// Which of the curves within the tolerance: "near" (no fairer than noise of the tolerance's size
+    /// asks for, and unmoved where there is little to gain), "budget" (the same, moved in any case) or
+    /// "fairest".
+    #[field(default = "near")]
+    goal: Arc<str>,
+    /// The direction in which the curve may leave its points, such as {0, 1, 0} for offsets at fixed
+    /// stations; any direction without it.
+    #[field(default)]
+    along: Option<Vec3<T>>,
 }
 
 /// Ends within this share of the curve's extent are one place.
@@ -77,6 +92,11 @@ const JOINS: FieldId = FairCurve::<f64>::JOINS;
 /// The fields of the weights and the knots.
 const WEIGHTS: FieldId = FairCurve::<f64>::WEIGHTS;
 const KNOTS: FieldId = FairCurve::<f64>::KNOTS;
+
+/// The fields of the spacing, the goal and the direction.
+const SPACING: FieldId = FairCurve::<f64>::SPACING;
+const GOAL: FieldId = FairCurve::<f64>::GOAL;
+const ALONG: FieldId = FairCurve::<f64>::ALONG;
 
 impl<T: Real> FairCurve<T> {
     /// Weights and knots, where they have a meaning.
@@ -211,6 +231,15 @@ impl<T: Real> Build<T> for FairCurve<T> {
     fn build(self, _: &Context) -> Result<Value<T>, CallError> {
         let neighbours = self.neighbours()?;
         let own = self.own()?;
+        let motion = match &self.along {
+            None => crate::Motion::Ball,
+            Some(d) if d.re().norm() > 0.0 => crate::Motion::Along(d.re()),
+            Some(_) => {
+                return Err(CallError::new("zero-direction", "the direction has no length")
+                    .expected("a direction such as {0, 1, 0}")
+                    .in_field(ALONG));
+            }
+        };
         let intent = Intent {
             tolerance: self.tolerance,
             degree: self.degree,
@@ -222,6 +251,9 @@ impl<T: Real> Build<T> for FairCurve<T> {
             breaks: self.breaks.unwrap_or_default(),
             joins: neighbours.map(|n| n.map(|(_, derivatives)| derivatives)),
             own,
+            spacing: super::spacing(&self.spacing, SPACING)?,
+            goal: super::goal(&self.goal, GOAL)?,
+            motion,
         };
         let places = Places {
             points: Self::POINTS,
@@ -240,8 +272,26 @@ impl<T: Real> Build<T> for FairCurve<T> {
             | FairError::Count { what: "knots", .. } => {
                 CallError::new("bad-knots", e.to_string()).in_field(KNOTS)
             }
+            FairError::TurnsAlong { index } => {
+                CallError::new("runs-back", e.to_string()).in_item(index).in_field(SPACING)
+            }
+            FairError::Goal(why) => CallError::new("no-goal", why).in_field(GOAL),
             e => unjoined(e, joins, &places),
         };
+        let index = matches!(intent.spacing, crate::Spacing::Uniform);
+        let alone = intent.joins.iter().all(Option::is_none);
+        if intent.role == super::Role::Fit && !intent.faithful && alone && !index {
+            let curve = intent.near(&points).map_err(about)?;
+            let [first, .., last] = self.points.as_slice() else {
+                return Err(
+                    CallError::new("too-few-items", "a curve needs points").in_field(Self::POINTS)
+                );
+            };
+            // A free end leaves its point, and a closed curve has no ends.
+            let kept = !intent.closed && (intent.end.kept() > 0 || self.tolerance.re() == 0.0);
+            let ends = [first, last].map(|p| if kept { p.key } else { None });
+            return Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)));
+        }
         let (space, control) = intent.spline(&points).map_err(about)?;
         let made = match &intent.own.weights {
             Some(weights) => shapes::rational(&space, &control, weights),

@@ -49,6 +49,9 @@ impl<T: Real> Build<T> for Fair<T> {
             breaks: Vec::new(),
             joins: [None; 2],
             own: super::Own::default(),
+            spacing: crate::Spacing::Uniform,
+            goal: crate::Goal::Fairest,
+            motion: crate::Motion::Ball,
         };
         let places = Places {
             points: Self::POINTS,

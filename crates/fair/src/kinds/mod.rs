@@ -2,6 +2,7 @@
 
 mod curve;
 mod functions;
+mod moving_surface;
 mod net;
 mod patches;
 mod shapes;
@@ -10,14 +11,14 @@ mod surface;
 
 use crate::curve::condition::{end_jet, joined};
 use crate::{
-    Bound, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Measure, Motion,
-    OptimumOptions, Space, Spacing, interpolate_with_corners, knot_removal, optimum_with,
-    replay_with,
+    Bound, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions, Layout,
+    Limit, Measure, Motion, OptimumOptions, Space, Spacing, fair_data_with,
+    interpolate_with_corners, knot_removal, optimum_with, parameters_across, replay_with,
 };
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::export::StaticRow;
 use moldloft_registry::{CallError, FieldId, Row};
-use moldloft_spline::KnotVector;
+use moldloft_spline::{KnotVector, SplineWithKnotDerivatives};
 
 /// All kinds and functions of this crate, in the order of the reference.
 ///
@@ -61,6 +62,42 @@ pub(crate) struct Intent<T> {
     pub joins: [Option<[Vec3<T>; 2]>; 2],
     /// Knots of the control points, and their weights, which stay.
     pub own: Own,
+    /// How points get their parameters; the index for control points and knot removal.
+    pub spacing: Spacing,
+    /// Which of the curves within the tolerances is wanted.
+    pub goal: Goal,
+    /// The directions in which points may move.
+    pub motion: Motion,
+}
+
+/// The way in which points get their parameters that is called `name`.
+pub(crate) fn spacing(name: &str, field: FieldId) -> Result<Spacing, CallError> {
+    let axis = |x, y, z| Spacing::Along(Vec3::of(x, y, z));
+    Ok(match name {
+        "chord" => Spacing::Chord,
+        "centripetal" => Spacing::Centripetal,
+        "index" => Spacing::Uniform,
+        "x" => axis(1.0, 0.0, 0.0),
+        "y" => axis(0.0, 1.0, 0.0),
+        "z" => axis(0.0, 0.0, 1.0),
+        _ => {
+            let all = ["chord", "centripetal", "x", "y", "z", "index"];
+            return Err(unknown("spacing", name, &all, field));
+        }
+    })
+}
+
+/// The budget of the goals: 1 is what noise takes that fills the tolerances evenly.
+pub(crate) const BUDGET: f64 = 0.8;
+
+/// The goal called `name`.
+pub(crate) fn goal(name: &str, field: FieldId) -> Result<Goal, CallError> {
+    Ok(match name {
+        "near" => Goal::Near(BUDGET),
+        "budget" => Goal::Budget(BUDGET),
+        "fairest" => Goal::Fairest,
+        _ => return Err(unknown("goal", name, &["near", "budget", "fairest"], field)),
+    })
 }
 
 /// Knots and weights of the user's.
@@ -194,6 +231,38 @@ pub(crate) fn indices(numbers: &[usize], count: usize) -> Result<Vec<usize>, Fai
 }
 
 impl<T: Real> Intent<T> {
+    /// The faired spline within the tolerances of the points themselves, which it passes through
+    /// before it is faired.
+    pub fn near(&self, points: &[Vec3<T>]) -> Result<SplineWithKnotDerivatives<T>, FairError> {
+        let marks = indices(&self.breaks, points.len())?;
+        let plain: Vec<Vec3<f64>> = points.iter().map(|p| p.re()).collect();
+        crate::error::check_finite(&plain)?;
+        let least = if self.closed { 2 * self.degree + 2 } else { self.degree + 2 };
+        if points.len() < least {
+            return Err(FairError::TooFew { expected: least, actual: points.len() });
+        }
+        let at = parameters_across(points, self.spacing, self.closed, self.motion)?;
+        let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
+        let data = Data {
+            points: plain,
+            limit: Limit::new(self.motion, vec![self.tolerance.re(); points.len()])?,
+            layout: Layout::new(self.degree, &real, &marks, self.closed)?,
+            ends: [self.end; 2],
+        };
+        let options = DataOptions {
+            measure: self.measure,
+            goal: self.goal,
+            conditions: Vec::new(),
+            bends: true,
+            accuracy: ACCURACY,
+        };
+        let tolerances = vec![self.tolerance; points.len()];
+        let (made, _) = fair_data_with(&data, &options, points, &tolerances, &at)?;
+        let (knots, control) = data.layout.space.open_form(&made.knots, &made.points);
+        SplineWithKnotDerivatives::new(self.degree, Some(knots), control, None)
+            .map_err(|_| FairError::Singular)
+    }
+
     /// The faired spline of points.
     pub fn spline(&self, points: &[Vec3<T>]) -> Result<(Space, Vec<Vec3<T>>), FairError> {
         let n = points.len();
@@ -258,7 +327,7 @@ impl<T: Real> Intent<T> {
             space: space.clone(),
             points: points.iter().map(|p| p.re()).collect(),
             weights: self.own.weights.clone(),
-            limit: Limit::new(Motion::Ball, vec![self.tolerance.re(); n])?,
+            limit: Limit::new(self.motion, vec![self.tolerance.re(); n])?,
             marks,
             ends: [self.end; 2],
         };

@@ -3,14 +3,15 @@
 use super::shapes::{self, Ended};
 use super::{ACCURACY, Places, fault, measure};
 use crate::{
-    Bound, End, FairError, Limit, Motion, Network, NetworkCurve, Space, Spacing,
-    interpolate_with_corners,
+    End, FairError, Layout, Limit, Motion, Network, NetworkCurve, Space, Spacing,
+    interpolate_with_corners, parameters_across,
 };
 use moldloft_num::trace::Key;
 use moldloft_num::{Real, Vec3};
 use moldloft_registry::{
     Build, CallError, Class, Context, CurveRef, FromValue, Kind, Point, Value, many,
 };
+use moldloft_spline::SplineWithKnotDerivatives;
 use std::sync::Arc;
 
 /// The points of one curve of a network.
@@ -74,6 +75,13 @@ pub struct FairNet<T: Real> {
     /// Passes of the faithful mode.
     #[field(default = 1, min = 1, max = 100)]
     passes: usize,
+    /// How points get their parameters along each curve, as for `FairCurve`; a coordinate is taken where
+    /// it rises or falls along a curve, chords elsewhere. The mode "faithful" takes "index".
+    #[field(default = "chord")]
+    spacing: Arc<str>,
+    /// Which of the results within the tolerance; see `FairCurve`.
+    #[field(default = "near")]
+    goal: Arc<str>,
 }
 
 /// A network with points by identity.
@@ -166,7 +174,19 @@ impl<T: Real> Build<T> for FairNet<T> {
             degree: Self::DEGREE,
             breaks: Self::BREAKS,
         };
-        let mut strands = Vec::new();
+        let spaced = super::spacing(&self.spacing, Self::SPACING)?;
+        let goal = super::goal(&self.goal, Self::GOAL)?;
+        let index = matches!(spaced, Spacing::Uniform) || super::faithful(&self.mode, Self::MODE)?;
+        let motion = match &self.along {
+            None => Motion::Ball,
+            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
+            Some(_) => {
+                return Err(CallError::new("zero-direction", "the direction has no length")
+                    .expected("a direction such as {0, 1, 0}")
+                    .in_field(Self::ALONG));
+            }
+        };
+        let (mut strands, mut ats) = (Vec::new(), Vec::new());
         for (k, (own, closed)) in joined.curves.iter().enumerate() {
             let space = match (closed, own.len()) {
                 (true, n) => Space::closed(degree, n),
@@ -184,17 +204,31 @@ impl<T: Real> Build<T> for FairNet<T> {
                     .in_field(Self::CURVES));
             }
             let (marks, ends) = (marks_of(own), [End::Points(0); 2]);
-            strands.push(NetworkCurve { space, points: own.clone(), weights: None, marks, ends });
+            let list: Vec<Vec3<T>> = own.iter().map(|&i| joined.points[i].xyz).collect();
+            let at = if index {
+                None
+            } else {
+                let at = match parameters_across(&list, spaced, *closed, motion) {
+                    Err(FairError::TurnsAlong { .. } | FairError::Coincident { .. })
+                        if matches!(spaced, Spacing::Along(_)) =>
+                    {
+                        parameters_across(&list, Spacing::Chord, *closed, motion)
+                    }
+                    other => other,
+                };
+                Some(at.map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?)
+            };
+            let plain = at.as_ref().map(|at| at.iter().map(|t| t.re()).collect());
+            ats.push(at);
+            strands.push(NetworkCurve {
+                space,
+                points: own.clone(),
+                weights: None,
+                marks,
+                ends,
+                at: plain,
+            });
         }
-        let motion = match &self.along {
-            None => Motion::Ball,
-            Some(d) if d.re().norm() > 0.0 => Motion::Along(d.re()),
-            Some(_) => {
-                return Err(CallError::new("zero-direction", "the direction has no length")
-                    .expected("a direction such as {0, 1, 0}")
-                    .in_field(Self::ALONG));
-            }
-        };
         let measure = measure(&self.measure, Self::MEASURE)?;
         let passes = super::faithful(&self.mode, Self::MODE)?.then_some(self.passes);
         let kept = joined.kept(&self.keep)?;
@@ -210,34 +244,51 @@ impl<T: Real> Build<T> for FairNet<T> {
             if let Some(passes) = passes {
                 return network.passes_with(passes, 3, &xyz, &tolerances);
             }
-            let bound = Bound::ControlPoints;
-            Ok(network.optimum_with(measure, bound, ACCURACY, &xyz, &tolerances)?.0)
+            network.toward_with(measure, goal, ACCURACY, &xyz, &tolerances, &ats)
         };
         let moved = solve().map_err(|e| fault(e, &places))?;
         let curve = |(k, (own, closed)): (usize, &(Vec<usize>, bool))| {
             let points: Vec<Vec3<T>> = own.iter().map(|&i| moved[i]).collect();
-            let sharp = interpolate_with_corners(
-                degree,
-                &points,
-                Spacing::Uniform,
-                *closed,
-                &marks_of(own),
-            )
-            .map_err(|e| fault(e, &places).in_item(k).in_field(Self::CURVES))?;
-            let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
-                CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
-            })?;
             // Ends that may move are no longer their point objects.
             let end = |i: Option<&usize>| {
                 i.filter(|&&i| !closed && still[i]).and_then(|&i| joined.points[i].key)
             };
             let ends = [end(own.first()), end(own.last())];
+            let about = |e: FairError| fault(e, &places).in_item(k).in_field(Self::CURVES);
+            if let Some(at) = &ats[k] {
+                // At the parameters of the points given: the moved ones are near them.
+                let curve = through(degree, &points, at, &marks_of(own), *closed).map_err(about)?;
+                return Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)));
+            }
+            let marks = marks_of(own);
+            let sharp =
+                interpolate_with_corners(degree, &points, Spacing::Uniform, *closed, &marks)
+                    .map_err(about)?;
+            let curve = shapes::curve(&sharp.fit.space, &sharp.points).map_err(|e| {
+                CallError::new("no-spline", e.to_string()).in_item(k).in_field(Self::CURVES)
+            })?;
             Ok(Value::Curve(CurveRef::new(Ended { curve, ends }, 0)))
         };
         let curves: Result<Vec<_>, CallError> =
             joined.curves.iter().enumerate().map(curve).collect();
         Ok(Value::list(curves?))
     }
+}
+
+/// The spline through points at parameters, both of which may carry derivatives.
+fn through<T: Real>(
+    degree: usize,
+    points: &[Vec3<T>],
+    at: &[T],
+    breaks: &[usize],
+    closed: bool,
+) -> Result<SplineWithKnotDerivatives<T>, FairError> {
+    let real: Vec<f64> = at.iter().map(|t| t.re()).collect();
+    let layout = Layout::new(degree, &real, breaks, closed)?;
+    let (control, knots) = layout.through_moving(points, at)?;
+    let (knots, control) = layout.space.open_form(&knots, &control);
+    SplineWithKnotDerivatives::new(degree, Some(knots), control, None)
+        .map_err(|_| FairError::Singular)
 }
 
 /// One curve of a faired network.

@@ -7,8 +7,8 @@ use moldloft_registry::SurfaceRef;
 use moldloft_spline::{BSplineCurve, SplineError};
 
 /// A spline curve of its own that begins and ends at point objects.
-pub(crate) struct Ended<T> {
-    pub curve: BSplineCurve<T>,
+pub(crate) struct Ended<C> {
+    pub curve: C,
     pub ends: [Option<Key>; 2],
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn rational<T: Real>(
     BSplineCurve::new(knots, places.into_iter().map(|i| points[i]).collect(), Some(each))
 }
 
-impl<T: Real> Curve<T> for Ended<T> {
+impl<T: Real, C: Curve<T>> Curve<T> for Ended<C> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         self.curve.jet(t, order)
     }
@@ -48,13 +48,13 @@ impl<T: Real> Curve<T> for Ended<T> {
 }
 
 /// The curve X(t) = S(w(t)) of a spline path w(t) = (u, v, 0) in the parameters of a surface.
-pub(crate) struct OnSurface<T: Real> {
+pub(crate) struct OnSurface<T: Real, P> {
     pub surface: SurfaceRef<T>,
-    pub path: BSplineCurve<T>,
+    pub path: P,
     pub ends: [Option<Key>; 2],
 }
 
-impl<T: Real> Curve<T> for OnSurface<T> {
+impl<T: Real, P: Curve<T>> Curve<T> for OnSurface<T, P> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         let [w, d, dd] = self.path.jet(t, order);
         let s = self.surface.jet(w.x, w.y, order);

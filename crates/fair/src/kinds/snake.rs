@@ -100,6 +100,9 @@ impl<T: Real> Build<T> for FairSnake<T> {
             breaks: Vec::new(),
             joins: [None; 2],
             own: super::Own::default(),
+            spacing: crate::Spacing::Chord,
+            goal: crate::Goal::Near(super::BUDGET),
+            motion: crate::Motion::Ball,
         };
         let places = Places {
             points: Self::MAGNETS,
@@ -109,10 +112,15 @@ impl<T: Real> Build<T> for FairSnake<T> {
         };
         let path: Vec<_> =
             self.magnets.iter().map(|m| Vec3::new(m.uv[0], m.uv[1], T::zero())).collect();
+        let ends = [first.point.key, last.point.key];
+        if !intent.faithful {
+            let path = intent.near(&path).map_err(|e| fault(e, &places))?;
+            let shape = OnSurface { surface: surface.clone(), path, ends };
+            return Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)));
+        }
         let (space, control) = intent.spline(&path).map_err(|e| fault(e, &places))?;
         let path = shapes::curve(&space, &control)
             .map_err(|e| CallError::new("no-spline", e.to_string()).in_field(Self::MAGNETS))?;
-        let ends = [first.point.key, last.point.key];
         let shape = OnSurface { surface: surface.clone(), path, ends };
         Ok(Value::Curve(CurveRef::snake(shape, surface, context.nesting)))
     }

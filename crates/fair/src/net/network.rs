@@ -1,10 +1,12 @@
 //! Curves that share points: control nets of surfaces, and hulls of stations, waterlines and
 //! buttocks.
 
+use crate::curve::moving::MovingRows;
 use crate::error::check_finite;
 use crate::net::patches::{Across, Patch};
 use crate::optimum::certificate::gap;
-use crate::optimum::{Optimum, Parts};
+use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
+use crate::optimum::{Bounded, Optimum, Parts};
 use crate::{
     Bound, Certificate, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Measure, Space,
     SparseRows, knot_removal_from, replay_from_with,
@@ -25,6 +27,23 @@ pub struct NetworkCurve {
     pub marks: Vec<usize>,
     /// What its ends keep when it is faired by itself.
     pub ends: [End; 2],
+    /// Parameters of its points in [0, 1], for points that the curve passes through: measures are
+    /// then those of divided differences. Without them the points are control points of its
+    /// spline.
+    pub at: Option<Vec<f64>>,
+}
+
+impl NetworkCurve {
+    /// The rows of a measure over its own points, at parameters that may carry derivatives.
+    fn divided<T: Real>(&self, measure: Measure, at: &[T]) -> Vec<Vec<(usize, T)>> {
+        let (closed, degree) = (self.space.is_closed(), self.space.degree());
+        let mut rows = measure.divided(at, closed, degree);
+        rows.retain(|row| {
+            let inner = &row[1..row.len() - 1];
+            !inner.iter().any(|(c, _)| self.marks.contains(c))
+        });
+        rows
+    }
 }
 
 /// Curves over common points. A shared point is one point: it moves for all its curves at once.
@@ -96,6 +115,7 @@ impl Network {
             points: own,
             marks: Vec::new(),
             ends: [End::Points(2); 2],
+            at: None,
         };
         let along_u = (0..nv).map(|j| strand(&spaces[0], (0..nu).map(|i| i * nv + j).collect()));
         let along_v = (0..nu).map(|i| strand(&spaces[1], (0..nv).map(|j| i * nv + j).collect()));
@@ -189,6 +209,15 @@ impl Network {
             if expected != actual {
                 return Err(FairError::Count { what: "points of a curve", expected, actual });
             }
+            if let Some(at) = &strand.at {
+                let (expected, actual) = (strand.points.len(), at.len());
+                if expected != actual {
+                    return Err(FairError::Count { what: "parameters", expected, actual });
+                }
+                if let Some(k) = (1..actual).find(|&k| at[k].is_nan() || at[k] <= at[k - 1]) {
+                    return Err(FairError::Unsorted { index: k });
+                }
+            }
             self.job(k, &self.points).check()
         })
     }
@@ -238,6 +267,11 @@ impl Network {
         let origin = self.origin();
         let mut sum = 0.0;
         for k in strands {
+            if self.strands[k].at.is_some() {
+                let own = self.own_rows(k, measure)?;
+                sum += crate::measure::value(&own, measure.norm(), points);
+                continue;
+            }
             let job = self.job(k, points);
             let relative: Vec<_> = job.points.iter().map(|&p| p - origin).collect();
             sum += crate::measure::value(&job.measure_rows(measure)?, measure.norm(), &relative);
@@ -313,17 +347,156 @@ impl Network {
     fn rows(&self, measure: Measure) -> Result<SparseRows, FairError> {
         let mut all = SparseRows::new();
         for k in 0..self.strands.len() {
-            let rows = self.job(k, &self.points).measure_rows(measure)?;
-            let own = &self.strands[k].points;
-            for r in 0..rows.len() {
-                let (c, f) = rows.row(r);
-                all.push(c.iter().map(|&c| own[c as usize]).zip(f.iter().copied()));
-            }
+            all = all.joined(&self.own_rows(k, measure)?);
         }
         Ok(all)
     }
 
-    /// Which points stay fixed in the joint optimum.
+    /// The rows of a measure over the points of curve `k`.
+    fn own_rows(&self, k: usize, measure: Measure) -> Result<SparseRows, FairError> {
+        let strand = &self.strands[k];
+        let own = &strand.points;
+        let mut all = SparseRows::new();
+        if let Some(at) = &strand.at {
+            for row in strand.divided(measure, at) {
+                all.push(row.into_iter().map(|(c, f)| (own[c], f)));
+            }
+            return Ok(all);
+        }
+        let rows = self.job(k, &self.points).measure_rows(measure)?;
+        for r in 0..rows.len() {
+            let (c, f) = rows.row(r);
+            all.push(c.iter().map(|&c| own[c as usize]).zip(f.iter().copied()));
+        }
+        Ok(all)
+    }
+
+    /// The points that pull: those that may move, over their tolerances.
+    fn pull(&self, frozen: &[bool]) -> (SparseRows, Vec<usize>) {
+        let (mut pull, mut owners) = (SparseRows::new(), Vec::new());
+        for (i, &radius) in self.limit.radii.iter().enumerate() {
+            if !frozen[i] && radius.is_finite() {
+                pull.push([(i, 1.0 / radius)]);
+                owners.push(i);
+            }
+        }
+        (pull, owners)
+    }
+
+    fn found(
+        &self,
+        parts: &mut Parts<'_>,
+        goal: Goal,
+        conditioned: bool,
+    ) -> Result<(Found, SparseRows, Vec<usize>), FairError> {
+        let (pull, owners) = self.pull(&parts.frozen);
+        let (rows, norm) = (parts.measure.clone(), parts.norm);
+        let path = Path {
+            energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
+            squares: |points: &[Vec3<f64>]| {
+                let moved: Vec<_> = points.iter().zip(&self.points).map(|(p, q)| *p - *q).collect();
+                pull.sum_sq(&moved)
+            },
+            count: pull.len(),
+            noise: rounding(&rows, norm, &self.points),
+            original: &self.points,
+        };
+        let found = path.follow(goal, norm, conditioned, |weight| {
+            parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+            parts.solve()
+        })?;
+        Ok((found, pull, owners))
+    }
+
+    /// The result of a goal, with a ball round each point; see [`Goal`].
+    ///
+    /// # Errors
+    /// As [`Network::optimum`]; [`FairError::Goal`].
+    pub fn toward(
+        &self,
+        measure: Measure,
+        goal: Goal,
+        conditions: Vec<Condition>,
+        accuracy: f64,
+    ) -> Result<(Optimum, f64), FairError> {
+        let conditioned = !conditions.is_empty();
+        let mut parts = self.parts(measure, Bound::ControlPoints, conditions, accuracy)?;
+        let (found, _, _) = self.found(&mut parts, goal, conditioned)?;
+        Ok((found.optimum, found.used))
+    }
+
+    /// The same for numbers that carry derivatives: points, tolerances, and of each curve with
+    /// parameters these.
+    ///
+    /// # Errors
+    /// As [`Network::toward`].
+    pub fn toward_with<T: Real>(
+        &self,
+        measure: Measure,
+        goal: Goal,
+        accuracy: f64,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+        ats: &[Option<Vec<T>>],
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let mut parts = self.parts(measure, Bound::ControlPoints, Vec::new(), accuracy)?;
+        let (found, pull, owners) = self.found(&mut parts, goal, false)?;
+        let mut numbers = points.iter().flat_map(|p| p.to_array());
+        if numbers.all(T::is_constant) && tolerances.iter().all(|t| t.is_constant()) {
+            return Ok(found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect());
+        }
+        if found.share == 0.0 {
+            return Ok(points.to_vec());
+        }
+        if parts.norm != crate::Norm::Square
+            && (found.share < 1.0 || ats.iter().any(Option::is_some))
+        {
+            return Err(FairError::Goal(
+                "derivatives of a sum of lengths through moving parameters are not known: take \
+                 another measure, or spacing \"index\"",
+            ));
+        }
+        parts.pull = (found.weight > 0.0).then(|| pull.clone().scaled(found.weight.sqrt()));
+        let solved = parts.whole()?;
+        let mut rows = MovingRows { rows: Vec::new() };
+        for (k, strand) in self.strands.iter().enumerate() {
+            match ats.get(k).and_then(Option::as_ref) {
+                Some(at) => {
+                    let own = strand.divided(measure, at).into_iter();
+                    rows.rows.extend(
+                        own.map(|row| {
+                            row.into_iter().map(|(c, f)| (strand.points[c], f)).collect()
+                        }),
+                    );
+                }
+                None => {
+                    let own = self.own_rows(k, measure)?;
+                    rows.rows.extend((0..own.len()).map(|r| {
+                        let (c, f) = own.row(r);
+                        c.iter().zip(f).map(|(&c, &f)| (c as usize, T::from(f))).collect()
+                    }));
+                }
+            }
+        }
+        let forces = if parts.norm == crate::Norm::Square {
+            let slope = rows.slope(&solved.optimum.points);
+            slope.into_iter().map(|v| v - Vec3::lifted(v.re())).collect()
+        } else {
+            Vec::new()
+        };
+        let moving = Moving {
+            originals: points.to_vec(),
+            tolerances,
+            pulled: owners.iter().map(|&i| tolerances[i]).collect(),
+            targets: &[],
+            forces,
+            rows: &rows,
+            start: points,
+        };
+        moved(&parts, &solved, goal, &found, &pull, moving)
+    }
+
+    /// Which points stand still in the joint optimum.
     fn frozen(&self) -> Vec<bool> {
         let mut frozen: Vec<bool> = self.limit.radii.iter().map(|&r| r == 0.0).collect();
         let marked = self.strands.iter().flat_map(|s| s.marks.iter().map(|&m| s.points[m]));
@@ -472,7 +645,13 @@ impl Network {
             frozen: self.frozen(),
             conditions,
             own: 0,
-            bezier: if bound == Bound::Bezier { self.bezier() } else { None },
+            bounded: match bound {
+                Bound::Bezier => self
+                    .bezier()
+                    .map_or(Bounded::ControlPoints, |(rows, reach)| Bounded::Bezier(rows, reach)),
+                Bound::ControlPoints => Bounded::ControlPoints,
+            },
+            pull: None,
             accuracy,
         })
     }
@@ -565,12 +744,16 @@ pub struct NetworkReport {
     pub sampled: f64,
     /// The measure and the optimality gap within the limits.
     pub certificate: Certificate,
+    /// Of goals, the mean of the squared moves over tolerances, over 1/3; else no number.
+    pub used: f64,
 }
 
 /// How a network is faired.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NetworkMode {
-    /// All curves at once.
+    /// All curves at once, with a ball round each point, towards a goal.
+    Toward(Goal),
+    /// All curves at once: the fairest.
     Joint(Bound),
     /// All curves at once by so many sweeps over single points.
     Sweeps(usize),
@@ -597,7 +780,13 @@ impl Network {
         mode: NetworkMode,
         conditions: Vec<Condition>,
     ) -> Result<NetworkReport, FairError> {
+        let mut used = f64::NAN;
         let (points, certificate) = match mode {
+            NetworkMode::Toward(goal) => {
+                let (best, share) = self.toward(measure, goal, conditions, 1e-9)?;
+                used = share;
+                (best.points, best.certificate)
+            }
             NetworkMode::Joint(bound) => {
                 let best = self.optimum(measure, bound, conditions, 1e-9)?;
                 (best.points, best.certificate)
@@ -623,6 +812,7 @@ impl Network {
             certified: self.certified(&points),
             sampled: self.sampled(&points),
             certificate,
+            used,
             points,
         })
     }

@@ -329,7 +329,9 @@ impl<'a, const D: usize> State<'a, D> {
             // Slacks are recomputed from x, so they never drift from it.
             let inner = if c < limits {
                 let (rows, k) = self.rows_of(c);
-                self.part(c, apply(rows, k, &self.x))
+                let mut s: V<D> = cut(&self.p.bounds.offset(k));
+                axpy(&mut s, 1.0, apply(rows, k, &self.x));
+                self.part(c, s)
             } else {
                 self.error(c - limits)
             };
@@ -380,13 +382,16 @@ impl<'a, const D: usize> State<'a, D> {
         };
         for k in 0..self.limit_rows.len() {
             let r = p.bounds.radii[k];
-            if p.bounds.direct {
+            if p.bounds.direct && p.bounds.offsets.is_empty() {
                 // One limit per point: the force is eliminated, nothing is trusted.
-                let i = self.limit_rows.row(k).0[0] as usize;
+                // Points that do not vary are no unknowns.
+                let Some(&i) = self.limit_rows.row(k).0.first() else { continue };
+                let i = i as usize;
                 let g = std::mem::replace(&mut slope[i], [0.0; D]);
                 gap += dot(g, self.x[i]) + r * norm(g);
             } else {
-                let s = apply(&self.limit_rows, k, &self.x);
+                let mut s: V<D> = cut(&p.bounds.offset(k));
+                axpy(&mut s, 1.0, apply(&self.limit_rows, k, &self.x));
                 let mut force = [0.0; D];
                 for g in 0..self.groups() {
                     axpy(&mut force, -1.0, self.cones[k * self.groups() + g].y.1);
@@ -435,9 +440,11 @@ impl<'a, const D: usize> State<'a, D> {
         }
         let total: f64 = slope.iter().map(|s| dot(*s, *s).sqrt()).sum();
         let force = (total / slope.len().max(1) as f64).max(1e-200);
-        for &radius in &self.p.bounds.radii {
-            for _ in 0..self.groups() {
-                self.cones.push(Cone::new((radius, [0.0; D]), (force, [0.0; D])));
+        for (k, &radius) in self.p.bounds.radii.iter().enumerate() {
+            let offset: V<D> = cut(&self.p.bounds.offset(k));
+            for c in 0..self.groups() {
+                let inner = self.part(c, offset);
+                self.cones.push(Cone::new((radius, inner), (force, [0.0; D])));
             }
         }
         self.cones.extend(lengths);

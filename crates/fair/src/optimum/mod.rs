@@ -2,6 +2,7 @@
 
 mod band;
 pub(crate) mod certificate;
+pub(crate) mod goal;
 mod interior_point;
 mod polish;
 pub(crate) mod problem;
@@ -134,8 +135,51 @@ pub fn optimum_with<T: Real>(
     Parts::of(job, options)?.solve_with(points, tolerances, targets)
 }
 
+/// An optimum with all that its derivatives need.
+pub(crate) struct Solved {
+    pub frame: Frame,
+    pub problem: Problem,
+    pub optimum: Optimum,
+    pub solution: problem::Solution,
+}
+
+impl Solved {
+    /// The forces of the limits on what they limit, one per limit of the problem.
+    pub fn forces(&self) -> Vec<Vec3<f64>> {
+        let groups = if self.problem.bounds.separate { self.problem.dimension } else { 1 };
+        let force = |k: usize| {
+            let own = &self.solution.cones[k * groups..(k + 1) * groups];
+            own.iter().fold(Vec3::zero(), |s, (_, y)| s - self.frame.up(y.1))
+        };
+        (0..self.problem.bounds.rows.len()).map(force).collect()
+    }
+}
+
 /// The number of a condition, and by how much its factors change, point by point.
 pub(crate) type Bend<T> = (usize, Vec<(usize, Vec3<T>)>);
+
+/// What the limits are about.
+pub(crate) enum Bounded {
+    /// Control points.
+    ControlPoints,
+    /// Bézier points of the displacement, and how far control points can move under them.
+    Bezier(SparseRows, Vec<f64>),
+    /// Data on the curve.
+    Data(DataLimits),
+}
+
+/// How far data may be from the curve at their parameters.
+#[derive(Clone)]
+pub(crate) struct DataLimits {
+    /// The values at the data's parameters over the control points.
+    pub rows: SparseRows,
+    /// A radius per row.
+    pub radii: Vec<f64>,
+    /// Where the original is off the data; none where it passes through them.
+    pub offsets: Vec<Vec3<f64>>,
+    /// By how much each control point can move under these limits.
+    pub reach: Vec<f64>,
+}
 
 /// What curves, nets and networks have in common.
 pub(crate) struct Parts<'a> {
@@ -151,9 +195,19 @@ pub(crate) struct Parts<'a> {
     pub centred: bool,
     /// How many of the conditions are not the caller's.
     pub own: usize,
-    /// Bézier points of the displacement, and how far control points can move under them.
-    pub bezier: Option<(SparseRows, Vec<f64>)>,
+    pub bounded: Bounded,
+    /// A pull towards the data, beside the measure: rows that measure displacements.
+    pub pull: Option<SparseRows>,
     pub accuracy: f64,
+}
+
+impl DataLimits {
+    /// The limits that say something: neither without end nor on what stands still.
+    fn used<'a>(&'a self, frozen: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+        (0..self.rows.len()).filter(|&k| {
+            self.radii[k].is_finite() && self.rows.row(k).0.iter().any(|&c| !frozen[c as usize])
+        })
+    }
 }
 
 impl<'a> Parts<'a> {
@@ -174,10 +228,13 @@ impl<'a> Parts<'a> {
             frozen,
             conditions,
             own,
-            bezier: match options.bound {
-                Bound::ControlPoints => None,
-                Bound::Bezier => Some((job.space.bezier(weights), job.space.reach(weights))),
+            bounded: match options.bound {
+                Bound::ControlPoints => Bounded::ControlPoints,
+                Bound::Bezier => {
+                    Bounded::Bezier(job.space.bezier(weights), job.space.reach(weights))
+                }
             },
+            pull: None,
             accuracy: options.accuracy,
         })
     }
@@ -213,12 +270,37 @@ impl<'a> Parts<'a> {
         let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
         let problem = self.problem(&frame);
         let (optimum, solution) = self.solved(&frame, &problem)?;
+        let solved = Solved { frame, problem, optimum, solution };
+        let points = self.answer(&solved, points, tolerances, targets, bends, &[])?;
+        Ok((points, solved.optimum))
+    }
+
+    /// The optimum with all that its derivatives need.
+    pub fn whole(&self) -> Result<Solved, FairError> {
+        let frame = Frame::of(self.limit.motion, self.points, &self.conditions);
+        let problem = self.problem(&frame);
+        let (optimum, solution) = self.solved(&frame, &problem)?;
+        Ok(Solved { frame, problem, optimum, solution })
+    }
+
+    /// How the optimum answers to changes; `forces` are changes of the slope of half the measure, with zero
+    /// real parts (none when empty).
+    pub fn answer<T: Real>(
+        &self,
+        solved: &Solved,
+        points: &[Vec3<T>],
+        tolerances: &[T],
+        targets: &[T],
+        bends: &[Bend<T>],
+        forces: &[Vec3<T>],
+    ) -> Result<Vec<Vec3<T>>, FairError> {
+        let Solved { frame, problem, optimum, solution } = solved;
         let constant = |p: &Vec3<T>| p.to_array().iter().all(|c| c.is_constant());
         let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
-        let still = points.iter().all(constant) && fixed(tolerances) && fixed(targets);
+        let still =
+            points.iter().chain(forces).all(constant) && fixed(tolerances) && fixed(targets);
         if still {
-            let lifted = optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
-            return Ok((lifted, optimum));
+            return Ok(optimum.points.iter().map(|&p| Vec3::lifted(p)).collect());
         }
         let change = |p: &Vec3<T>| *p - Vec3::lifted(p.re());
         let changes: Vec<Vec3<T>> = points.iter().map(change).collect();
@@ -228,7 +310,7 @@ impl<'a> Parts<'a> {
         } else {
             Vec3::zero()
         };
-        let rows = &problem.measure;
+        let rows = &self.measure;
         let down = |v: Vec3<T>| {
             let mut out = [T::zero(); 3];
             for (o, a) in out.iter_mut().zip(&frame.axes) {
@@ -236,7 +318,7 @@ impl<'a> Parts<'a> {
             }
             out
         };
-        let offsets: Vec<_> = (0..rows.len())
+        let mut offsets: Vec<_> = (0..rows.len())
             .map(|k| {
                 let (columns, factors) = rows.row(k);
                 let entries = columns.iter().zip(factors);
@@ -245,9 +327,17 @@ impl<'a> Parts<'a> {
                 }))
             })
             .collect();
+        offsets.resize(problem.measure.len(), [T::zero(); 3]);
         let limits = &problem.bounds.rows;
+        let used: Vec<usize> = match &self.bounded {
+            Bounded::Data(data) => data.used(&self.frozen).collect(),
+            _ => Vec::new(),
+        };
         let radii: Vec<T> = (0..limits.len())
             .map(|k| {
+                if let Some(&own) = used.get(k) {
+                    return tolerances[own] - T::from(tolerances[own].re());
+                }
                 // The tolerance that set this limit's radius: the first of the smallest.
                 let near = limits.row(k).0.iter().map(|&c| c as usize);
                 let set = near
@@ -270,7 +360,11 @@ impl<'a> Parts<'a> {
         };
         let mut values: Vec<T> = self.conditions.iter().enumerate().map(value).collect();
         // d(A x) = 0 and d(slope + nu A) = 0: both have a share of dA.
-        let mut pushes = vec![[T::zero(); 3]; if bends.is_empty() { 0 } else { points.len() }];
+        let none = bends.is_empty() && forces.is_empty();
+        let mut pushes = vec![[T::zero(); 3]; if none { 0 } else { points.len() }];
+        for (push, force) in pushes.iter_mut().zip(forces) {
+            *push = down(*force);
+        }
         for (k, entries) in bends {
             let k = k + self.own;
             for (i, f) in entries {
@@ -281,7 +375,7 @@ impl<'a> Parts<'a> {
                 }
             }
         }
-        let answers = problem::respond(&problem, &solution, &offsets, &radii, &values, &pushes)?;
+        let answers = problem::respond(problem, solution, &offsets, &radii, &values, &pushes)?;
         let faired = (0..points.len()).map(|i| {
             let mut p = Vec3::lifted(optimum.points[i]) + changes[i];
             for (a, x) in frame.axes.iter().zip(answers[i]) {
@@ -290,7 +384,7 @@ impl<'a> Parts<'a> {
             // The answer's real part is zero; adding it must not touch a bit.
             p - Vec3::lifted(p.re() - optimum.points[i])
         });
-        Ok((faired.collect(), optimum))
+        Ok(faired.collect())
     }
 
     fn solved(
@@ -342,23 +436,26 @@ impl<'a> Parts<'a> {
     pub fn problem(&self, frame: &Frame) -> Problem {
         let (n, radii, frozen) = (self.points.len(), &self.limit.radii, &self.frozen);
         let rows = &self.measure;
-        let offsets = (0..rows.len()).map(|k| frame.down(rows.apply(k, &self.relative))).collect();
+        let mut offsets: Vec<V> =
+            (0..rows.len()).map(|k| frame.down(rows.apply(k, &self.relative))).collect();
+        let mut measure = rows.clone();
+        if let Some(pull) = &self.pull {
+            // Displacements begin at zero.
+            offsets.resize(rows.len() + pull.len(), [0.0; 3]);
+            measure = measure.joined(pull);
+        }
         let corner = if frame.separate { (frame.axes.len() as f64).sqrt() } else { 1.0 };
         let mut reach: Vec<f64> = radii.iter().map(|r| r * corner).collect();
-        let mut bounds = Bounds {
-            rows: SparseRows::new(),
-            direct: self.bezier.is_none(),
-            radii: Vec::new(),
-            separate: frame.separate,
-        };
-        match &self.bezier {
-            None => {
+        let mut bounds = Bounds { separate: frame.separate, ..Bounds::none() };
+        match &self.bounded {
+            Bounded::ControlPoints => {
                 for i in (0..n).filter(|&i| !frozen[i] && radii[i].is_finite()) {
                     bounds.rows.push([(i, 1.0)]);
                     bounds.radii.push(radii[i]);
                 }
             }
-            Some((all, most)) => {
+            Bounded::Bezier(all, most) => {
+                bounds.direct = false;
                 for k in 0..all.len() {
                     let (columns, factors) = all.row(k);
                     let columns = || columns.iter().map(|&c| c as usize);
@@ -371,6 +468,18 @@ impl<'a> Parts<'a> {
                 }
                 let largest = radii.iter().copied().fold(0.0, f64::max);
                 reach = most.iter().map(|r| r * largest * corner).collect();
+            }
+            Bounded::Data(data) => {
+                bounds.direct = false;
+                for k in data.used(frozen) {
+                    let (columns, factors) = data.rows.row(k);
+                    bounds
+                        .rows
+                        .push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
+                    bounds.radii.push(data.radii[k]);
+                    bounds.offsets.extend(data.offsets.get(k).map(|&o| frame.down(o)));
+                }
+                reach = data.reach.iter().map(|r| r * corner).collect();
             }
         }
         let conditions = self
@@ -386,7 +495,7 @@ impl<'a> Parts<'a> {
             .collect();
         Problem {
             dimension: frame.axes.len(),
-            measure: self.measure.clone(),
+            measure,
             norm: self.norm,
             offsets,
             bounds,
@@ -403,7 +512,7 @@ fn active(p: &Problem, s: &problem::Solution) -> usize {
     let mut count = 0;
     for k in 0..p.bounds.rows.len() {
         let (columns, factors) = p.bounds.rows.row(k);
-        let mut sum = [0.0; 3];
+        let mut sum = p.bounds.offset(k);
         for (&c, &a) in columns.iter().zip(factors) {
             for (q, x) in sum.iter_mut().zip(s.x[c as usize]) {
                 *q += a * x;

@@ -45,7 +45,9 @@ impl<const D: usize> State<'_, D> {
     /// What cone `c`'s row is, and its length.
     fn limit(&self, c: usize, x: &[V<D>]) -> (V<D>, f64) {
         let (rows, k) = self.rows_of(c);
-        let s = self.part(c, apply(rows, k, x));
+        let mut s: V<D> = std::array::from_fn(|i| self.p.bounds.offset(k)[i]);
+        axpy(&mut s, 1.0, apply(rows, k, x));
+        let s = self.part(c, s);
         (s, dot(s, s).sqrt())
     }
 
@@ -131,9 +133,16 @@ impl<const D: usize> State<'_, D> {
                 spread(rows, k, n.map(|v| -push * v), &mut dx);
                 normals.push((n, off));
             }
+            // What the multipliers carry already, so that each round refines them.
+            for (condition, nu) in self.conditions.iter().zip(&nu) {
+                for (i, factor) in &condition.entries {
+                    axpy(&mut dx[*i], -nu, *factor);
+                }
+            }
             band.solve(dx.as_flattened_mut());
             if !self.conditions.is_empty() {
-                nu = Schur::new(self, band).solve(self, &x, dx.as_flattened_mut());
+                let more = Schur::new(self, band).solve(self, &x, dx.as_flattened_mut());
+                nu.iter_mut().zip(more).for_each(|(nu, more)| *nu += more);
             }
             for (at, &c) in active.cones.iter().enumerate() {
                 let c = c as usize;

@@ -18,14 +18,29 @@ use moldloft_num::Real;
 /// One coordinate triple; only those of the problem's dimension are used.
 pub(crate) type V = [f64; 3];
 
-/// A limit |Q_k x| <= radius, of all coordinates together or of each by itself.
+/// A limit |o_k + Q_k x| <= radius, of all coordinates together or of each by itself.
 pub(crate) struct Bounds {
     pub rows: SparseRows,
     /// Each row is a single point, each point has at most one row.
     pub direct: bool,
     pub radii: Vec<f64>,
+    /// What is added to each row, shorter than its radius; none when empty.
+    pub offsets: Vec<V>,
     /// Each coordinate is limited by itself.
     pub separate: bool,
+}
+
+impl Bounds {
+    /// No limits.
+    pub fn none() -> Self {
+        let (rows, radii, offsets) = (SparseRows::new(), Vec::new(), Vec::new());
+        Self { rows, direct: true, radii, offsets, separate: false }
+    }
+
+    /// What row `k` begins with.
+    pub fn offset(&self, k: usize) -> V {
+        self.offsets.get(k).copied().unwrap_or_default()
+    }
 }
 
 /// One linear condition: the sum of factor . x[point] equals `value`.

@@ -123,16 +123,19 @@ fn the_curve_keeps_its_ends_and_its_tolerance() {
         curve(call("FairCurve", vec![list(&points), Value::Number(tolerance)], named).unwrap())
     };
     let through = line(0.0, "tangent");
-    for (i, p) in points.iter().enumerate() {
-        let t = i as f64 / 29.0;
-        assert!((through.jet(t, Order::Zero)[0] - *p).norm() < 1e-12);
+    let near = |of: &CurveRef<f64>, p: Vec3<f64>| {
+        (0..=4000)
+            .map(|k| (of.jet(f64::from(k) / 4000.0, Order::Zero)[0] - p).norm())
+            .fold(f64::INFINITY, f64::min)
+    };
+    for p in &points {
+        assert!(near(&through, *p) < 1e-3);
     }
     for ends in ["free", "position", "tangent", "curvature"] {
-        let faired = line(1e-3, ends);
-        for i in 0..=300 {
-            let t = f64::from(i) / 300.0;
-            let far = (faired.jet(t, Order::Zero)[0] - through.jet(t, Order::Zero)[0]).norm();
-            assert!(far <= 1e-3 * (1.0 + 1e-9));
+        let faired = line(1e-2, ends);
+        for p in &points {
+            // Samples are up to 1.25e-4 from the nearest place.
+            assert!(near(&faired, *p) <= 1e-2 * (1.0 + 1e-3));
         }
         let kept = ["position", "tangent", "curvature"].iter().position(|e| *e == ends);
         for order in 0..3 {

@@ -3,8 +3,10 @@
 
 mod breaks;
 mod entity;
+mod findings;
 mod fit;
 mod fixtures;
+mod grid;
 mod interrogate;
 mod joined;
 mod joins;
@@ -13,3 +15,4 @@ mod knot_removal;
 mod network;
 mod optimum;
 mod rational;
+mod truth;

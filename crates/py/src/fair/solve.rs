@@ -1,10 +1,11 @@
 //! From options to reports.
 
-use super::spline::told;
-use super::{Spline, certificate, fair_error, measure, refused};
+use super::arguments::{certificate, fair_error, measure, refused};
+use super::spline::{Spline, spacing, told};
 use moldloft_fair::{
-    Bound as Bounded, Condition, End, FairError, Job, KnotRemovalOptions, Limit, Mode, Motion,
-    Numbers, OptimumOptions, Report, Rule, Space, Step, Stops, knot_removal, report,
+    Bound as Bounded, Condition, Data, DataOptions, End, FairError, Goal, Job, KnotRemovalOptions,
+    Layout, Limit, Mode, Motion, Numbers, OptimumOptions, Report, Rule, Space, Step, Stops,
+    data_report, knot_removal, merged, parameters_across, report, shape,
 };
 use moldloft_num::{Order, Vec3};
 use numpy::ToPyArray;
@@ -176,6 +177,100 @@ pub fn curve<'py>(
         weights: spline.weights.clone(),
     };
     Ok((faired, dict))
+}
+
+/// The goal called `word`, with its share.
+pub fn goal((word, share): &(String, f64)) -> PyResult<Goal> {
+    Ok(match word.as_str() {
+        "near" => Goal::Near(*share),
+        "fairest" => Goal::Fairest,
+        "budget" => Goal::Budget(*share),
+        "nearest" => Goal::Nearest(*share),
+        _ => {
+            let known = "near, fairest, budget, nearest";
+            return Err(refused(format!("unknown goal `{word}`; expected one of: {known}")));
+        }
+    })
+}
+
+/// Fairs data under tolerances: the faired curve, the curve through the data, and the report.
+pub fn data<'py>(
+    py: Python<'py>,
+    points: Vec<Vec3>,
+    options: Options<'_, 'py>,
+) -> PyResult<(Spline, Spline, Bound<'py, PyDict>)> {
+    let radii: Vec<f64> = get(options, "tolerance")?;
+    let motion = motion(&get::<String>(options, "motion")?, get(options, "direction")?)?;
+    let ends: (String, String) = get(options, "ends")?;
+    let closed: bool = get(options, "closed")?;
+    let degree: usize = get(options, "degree")?;
+    let breaks: Vec<usize> = get(options, "breaks")?;
+    let one = merged(&points, &radii, closed).map_err(fair_error)?;
+    let limit = Limit::new(motion, one.radii.clone()).map_err(fair_error)?;
+    let at = match get::<Option<Vec<f64>>>(options, "at")? {
+        Some(all) if one.points.len() < points.len() => {
+            let first = |k: usize| one.of.iter().position(|&o| o == k).unwrap_or(0);
+            (0..one.points.len()).map(|k| all[first(k)]).collect()
+        }
+        Some(all) => all,
+        None => {
+            let word: String = get(options, "spacing")?;
+            let spaced = spacing(&word, get(options, "spacing_direction")?)?;
+            parameters_across(&one.points, spaced, closed, limit.motion).map_err(fair_error)?
+        }
+    };
+    let breaks: Vec<usize> = breaks.iter().filter_map(|&b| one.of.get(b).copied()).collect();
+    let data = Data {
+        limit,
+        layout: Layout::new(degree, &at, &breaks, closed).map_err(fair_error)?,
+        ends: [end(&ends.0)?, end(&ends.1)?],
+        points: one.points.clone(),
+    };
+    let mut owners = Vec::new();
+    let mut chosen = DataOptions {
+        measure: measure(&get::<String>(options, "measure")?)?,
+        goal: goal(&get(options, "goal")?)?,
+        conditions: Vec::new(),
+        bends: get(options, "bends")?,
+        accuracy: get(options, "accuracy")?,
+    };
+    let wanted: Vec<(String, f64, [f64; 3], [f64; 3])> = get(options, "conditions")?;
+    if !wanted.is_empty() {
+        let control = data.layout.through(&data.layout.data(&data.points)).map_err(fair_error)?;
+        for (k, one) in wanted.iter().enumerate() {
+            let all = conditions(&data.layout.space, &control, one)?;
+            owners.extend(std::iter::repeat_n(k, all.len()));
+            chosen.conditions.extend(all);
+        }
+    }
+    let labels: Vec<String> = get(options, "labels")?;
+    let done = crate::work::interruptible(py, &Default::default(), move || {
+        data_report(&data, &chosen).map(|made| (data, made))
+    })?;
+    let (data, (made, told)) = match done {
+        Ok(done) => done,
+        Err(FairError::Contradiction { conditions, ends, miss }) => {
+            return Err(contradiction(&conditions, ends, miss, &owners, &labels));
+        }
+        Err(other) => return Err(fair_error(other)),
+    };
+    let space = data.layout.space.clone();
+    let dict = dictionary(py, &told)?;
+    let off = |k: usize| {
+        let t = data.layout.at[one.of[k]];
+        (shape::sample_at(&space, &made.points, None, t).point - points[k]).norm()
+    };
+    let off: Vec<f64> = (0..points.len()).map(off).collect();
+    dict.set_item("residuals", off.to_pyarray(py))?;
+    let (a, b) = space.domain();
+    let at: Vec<f64> = one.of.iter().map(|&k| (data.layout.at[k] - a) / (b - a)).collect();
+    dict.set_item("at", at.to_pyarray(py))?;
+    dict.set_item("used", made.used)?;
+    dict.set_item("least", made.least)?;
+    let marks: Vec<usize> = data.layout.marks.iter().map(|&m| data.layout.control_of(m)).collect();
+    dict.set_item("marks", marks)?;
+    let spline = |points: Vec<Vec3>| Spline { space: space.clone(), points, weights: None };
+    Ok((spline(made.points), spline(made.original), dict))
 }
 
 /// Which of the user's conditions contradict each other or the tolerance.

@@ -1,6 +1,7 @@
 //! Spline curves and their interrogation.
 
-use super::{fair_error, floats, long, measure, refused, solve, space, vectors};
+use super::arguments::{fair_error, floats, long, measure, refused, space, vectors};
+use super::solve;
 use crate::arrays;
 use moldloft_fair::shape::{self, Sample};
 use moldloft_fair::{
@@ -21,13 +22,15 @@ pub struct Spline {
     pub weights: Option<Vec<f64>>,
 }
 
-fn spacing(name: &str) -> PyResult<Spacing> {
+pub fn spacing(name: &str, direction: [f64; 3]) -> PyResult<Spacing> {
     Ok(match name {
-        "uniform" => Spacing::Uniform,
+        // The literal rule of the report: the index is the parameter.
+        "uniform" | "index" => Spacing::Uniform,
         "chord" => Spacing::Chord,
         "centripetal" => Spacing::Centripetal,
+        "along" => Spacing::Along(direction.into()),
         _ => {
-            let known = "uniform, chord, centripetal";
+            let known = "chord, centripetal, index (or uniform), x, y, z, a direction";
             return Err(refused(format!("unknown spacing `{name}`; expected one of: {known}")));
         }
     })
@@ -124,14 +127,25 @@ impl Spline {
         spaced: &str,
         closed: bool,
         breaks: Vec<usize>,
+        direction: [f64; 3],
     ) -> PyResult<(Self, Bound<'py, PyArray1<f64>>, Vec<usize>)> {
         let points = vectors(&points)?;
-        let spaced = spacing(spaced)?;
+        let spaced = spacing(spaced, direction)?;
         let sharp =
             long(py, move || interpolate_with_corners(degree, &points, spaced, closed, &breaks))?;
         let at = shares(&sharp.fit.space, &sharp.at).to_pyarray(py);
         let spline = Self { space: sharp.fit.space, points: sharp.points, weights: None };
         Ok((spline, at, sharp.marks))
+    }
+
+    /// Data faired under tolerances: the faired spline, the one through the data, and the report.
+    #[staticmethod]
+    fn fair_data<'py>(
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+        options: Bound<'py, PyDict>,
+    ) -> PyResult<(Self, Self, Bound<'py, PyDict>)> {
+        solve::data(py, vectors(&points)?, &options)
     }
 
     /// The spline with `count` control points nearest to points; parameters, largest and rms
@@ -146,7 +160,7 @@ impl Spline {
         closed: bool,
     ) -> PyResult<(Self, Bound<'py, PyArray1<f64>>, f64, f64)> {
         let points = vectors(&points)?;
-        let spaced = spacing(spaced)?;
+        let spaced = spacing(spaced, [0.0; 3])?;
         let fit = long(py, move || least_squares(degree, &points, count, spaced, closed))?;
         let at = shares(&fit.space, &fit.parameters).to_pyarray(py);
         let spline = Self { space: fit.space, points: fit.points, weights: None };
@@ -173,7 +187,7 @@ impl Spline {
     ) -> PyResult<(Self, Bound<'py, PyArray1<f64>>, f64, f64)> {
         let points = vectors(&points)?;
         let space = space(degree, count, form, floats(knots), period).map_err(fair_error)?;
-        let (spaced, at, weights) = (spacing(spaced)?, floats(at), floats(weights));
+        let (spaced, at, weights) = (spacing(spaced, [0.0; 3])?, floats(at), floats(weights));
         let own = weights.clone();
         let fit = long(py, move || {
             let at = match at {
@@ -356,6 +370,34 @@ pub fn told(finding: Finding) -> Told {
         Finding::Corner { index, turn } => ("corner", index, turn.to_array(), text),
         Finding::Outlier { index, error } => ("outlier", index, error.to_array(), text),
     }
+}
+
+/// What stands out among data at any spacing: kind, point, vector, sentence.
+#[pyfunction]
+pub fn data_findings(points: PyReadonlyArray2<'_, f64>, closed: bool) -> PyResult<Vec<Told>> {
+    let points = vectors(&points)?;
+    let one = |f: moldloft_fair::DataFinding| {
+        let text = f.to_string();
+        match f {
+            moldloft_fair::DataFinding::WrongDigit { index, expected, .. } => {
+                ("outlier", index, (points[index] - expected).to_array(), text)
+            }
+            moldloft_fair::DataFinding::Knuckle { index, angle, .. } => {
+                ("corner", index, [angle, 0.0, 0.0], text)
+            }
+        }
+    };
+    Ok(moldloft_fair::data_findings(&points, closed).into_iter().map(one).collect())
+}
+
+/// How large an error of each point would be found.
+#[pyfunction]
+pub fn detectable<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    closed: bool,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    Ok(moldloft_fair::detectable(&vectors(&points)?, closed).to_pyarray(py))
 }
 
 /// The number of monotone runs of a list of numbers; see `moldloft_fair::shape::monotone_runs`.

@@ -3,7 +3,7 @@
 use super::chunk::{Chunk, LANES, Part, Plane};
 use super::masters::{Masters, Points};
 use moldloft_num::trace::Edges;
-use moldloft_num::{Order, Real, SurfJet, Surface, Uni1, Vec3};
+use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Uni1, Vec3};
 use moldloft_spline::{Basis, KnotVector};
 
 /// Masters blended by the basis functions of a clamped knot vector.
@@ -154,6 +154,10 @@ impl<T: Real> Surface<T> for Blend<T> {
 
     fn edge_made_of(&self, k: usize) -> Vec<moldloft_num::trace::Key> {
         self.masters.edge_made_of(k)
+    }
+
+    fn rational(&self) -> Rational<2> {
+        self.masters.rational()
     }
 
     fn edges(&self) -> Edges<T> {

@@ -1,0 +1,544 @@
+//! Data under tolerances: the fairest spline that stays within each datum's tolerance at the
+//! datum's own parameter.
+//!
+//! minimise E(x) subject to |x(t_i) - p_i| <= a_i
+//!
+//! Knots stand at the data ([`Layout`]), so the spline through them is the start and any tolerance
+//! can be kept, 0 too. The distance at a datum's parameter is at least its distance from the curve:
+//! what is kept is a proof about the data. The least energy sits at the edge of what is allowed,
+//! which is fair but no nearer to the truth than the data; [`Goal`] says what is wanted.
+
+use crate::curve::job::End;
+use crate::curve::moving::{MapReal, MovingRows, MovingSpace};
+use crate::optimum::goal::{Found, Goal, Moving, Path, moved, rounding};
+use crate::optimum::{Bounded, DataLimits, Parts, kept};
+use crate::{Certificate, Condition, FairError, Job, Layout, Limit, Measure, SparseRows, shape};
+use moldloft_num::{Real, Vec3};
+
+/// Data with what they allow.
+#[derive(Clone, Debug)]
+pub struct Data {
+    /// The data.
+    pub points: Vec<Vec3<f64>>,
+    /// How far the curve may be from each, and in which directions it may leave them.
+    pub limit: Limit,
+    /// Where they are on the curve, and the splines.
+    pub layout: Layout,
+    /// What open ends keep of the curve through the data.
+    pub ends: [End; 2],
+}
+
+/// What is wanted.
+#[derive(Clone, Debug)]
+pub struct DataOptions {
+    /// What there is to be little of.
+    pub measure: Measure,
+    /// Which of the curves.
+    pub goal: Goal,
+    /// Linear conditions on the control points.
+    pub conditions: Vec<Condition>,
+    /// Whether the curve may have more inflections than the one of least bending within the same
+    /// tolerances.
+    pub bends: bool,
+    /// The certified gap, as a share of the measure.
+    pub accuracy: f64,
+}
+
+/// A faired curve.
+#[derive(Clone, Debug)]
+pub struct DataFit {
+    /// Its control points, on the layout's space.
+    pub points: Vec<Vec3<f64>>,
+    /// Those of the curve through the data.
+    pub original: Vec<Vec3<f64>>,
+    /// The distance of each datum from the curve at its parameter.
+    pub residuals: Vec<f64>,
+    /// The mean of the squared residuals over the tolerances, over 1/3.
+    pub used: f64,
+    /// The measure of the curve, and what is left to gain among the curves within the tolerances
+    /// whose residuals are no larger in the sum of squares.
+    pub certificate: Certificate,
+    /// The least of the measure within the tolerances.
+    pub least: f64,
+    /// The weight of the data beside the measure.
+    pub weight: f64,
+    /// Newton steps taken.
+    pub iterations: usize,
+    /// Tolerances that are reached.
+    pub active: usize,
+    /// Inflections beyond those of the curve of least bending, where the goal left no other way.
+    pub bends: usize,
+}
+
+/// Data of which neighbours in one place are one datum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Merged {
+    /// The data that are left.
+    pub points: Vec<Vec3<f64>>,
+    /// Their tolerances.
+    pub radii: Vec<f64>,
+    /// Which of them each datum became.
+    pub of: Vec<usize>,
+}
+
+/// Neighbours nearer than this share of the extent are in one place.
+const TOGETHER: f64 = 1e-6;
+
+/// Joins neighbours that are in one place: their mean, as far from it as all their tolerances allow.
+///
+/// # Errors
+/// [`FairError::Coincident`] when no place is within the tolerances of both.
+pub fn merged(points: &[Vec3<f64>], radii: &[f64], closed: bool) -> Result<Merged, FairError> {
+    let first = points.first().copied().unwrap_or_default();
+    let extent = points.iter().map(|p| (*p - first).norm()).fold(0.0, f64::max);
+    let near = |a: usize, b: usize| (points[a] - points[b]).norm() <= TOGETHER * extent;
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for k in 0..points.len() {
+        match groups.last_mut() {
+            Some(group) if near(group[0], k) => group.push(k),
+            _ => groups.push(vec![k]),
+        }
+    }
+    if closed && groups.len() > 1 && near(groups[0][0], points.len() - 1) {
+        let last = groups.pop().expect("there are two");
+        groups[0].extend(last);
+    }
+    let mut out = Merged { points: Vec::new(), radii: Vec::new(), of: vec![0; points.len()] };
+    for (at, group) in groups.iter().enumerate() {
+        let sum = group.iter().fold(Vec3::zero(), |s, &k| s + points[k]);
+        let same = group.iter().all(|&k| points[k] == points[group[0]]);
+        let middle = if same { points[group[0]] } else { sum * (1.0 / group.len() as f64) };
+        let left = |&k: &usize| radii[k] - (points[k] - middle).norm();
+        let radius = group.iter().map(left).fold(f64::INFINITY, f64::min);
+        if radius < 0.0 {
+            return Err(FairError::Coincident { first: group[0] });
+        }
+        group.iter().for_each(|&k| out.of[k] = at);
+        out.points.push(middle);
+        out.radii.push(radius);
+    }
+    Ok(out)
+}
+
+impl Data {
+    /// The parts of the optimum that are the same for all weights of the data.
+    fn parts<'a>(&self, options: &DataOptions, job: &'a Job) -> Result<Parts<'a>, FairError> {
+        let layout = &self.layout;
+        let radii = layout.radii(&self.limit.radii);
+        let (mut frozen, mut conditions) = kept(job);
+        // Of what an end keeps, the position is a datum of its own; the rest is held by conditions,
+        // so that it follows the curve through the data when these change.
+        let n = frozen.len();
+        let held: Vec<usize> = self.held();
+        for &c in &held {
+            frozen[c] = false;
+        }
+        if !layout.space.is_closed() {
+            for (end, c) in self.ends.into_iter().zip([0, n - 1]) {
+                frozen[c] |= end != End::Free && end != End::Points(0);
+            }
+        }
+        for &m in &layout.marks {
+            frozen[layout.control_of(m)] = true;
+        }
+        // A datum without tolerance stays on the curve.
+        for k in (0..radii.len()).filter(|&k| radii[k] == 0.0) {
+            let (columns, factors) = layout.rows.row(k);
+            if columns.iter().all(|&c| frozen[c as usize]) {
+                continue;
+            }
+            if let (&[c], &[_]) = (columns, factors) {
+                frozen[c as usize] = true;
+                continue;
+            }
+            for axis in crate::curve::condition::AXES {
+                let entries: Vec<_> =
+                    columns.iter().zip(factors).map(|(&c, &f)| (c as usize, axis * f)).collect();
+                let mut condition = Condition { entries, value: 0.0 };
+                condition.value = condition.at(&job.points);
+                conditions.push(condition);
+            }
+        }
+        let own = conditions.len();
+        for &c in &held {
+            for axis in crate::curve::condition::AXES {
+                let entries = vec![(c, axis)];
+                conditions.push(Condition { entries, value: axis.dot(job.points[c]) });
+            }
+        }
+        conditions.extend(options.conditions.iter().cloned());
+        let mut rows = SparseRows::new();
+        let mut own_radii = Vec::new();
+        for k in (0..radii.len()).filter(|&k| radii[k] > 0.0) {
+            let (columns, factors) = layout.rows.row(k);
+            rows.push(columns.iter().map(|&c| c as usize).zip(factors.iter().copied()));
+            own_radii.push(radii[k]);
+        }
+        let finite: Vec<f64> = radii.iter().map(|r| if r.is_finite() { *r } else { 0.0 }).collect();
+        let reach = if radii.iter().all(|r| r.is_finite()) {
+            layout.reach(&finite)?
+        } else {
+            vec![f64::INFINITY; job.points.len()]
+        };
+        Ok(Parts {
+            points: &job.points,
+            relative: job.points.clone(),
+            centred: false,
+            limit: &job.limit,
+            measure: options.measure.rows(&layout.space)?,
+            norm: options.measure.norm(),
+            frozen,
+            conditions,
+            own,
+            bounded: Bounded::Data(DataLimits {
+                rows,
+                radii: own_radii,
+                offsets: Vec::new(),
+                reach,
+            }),
+            pull: None,
+            accuracy: options.accuracy,
+        })
+    }
+
+    /// The control points beside the ends that these keep.
+    fn held(&self) -> Vec<usize> {
+        if self.layout.space.is_closed() {
+            return Vec::new();
+        }
+        let n = self.layout.space.count();
+        let [first, last] = self.ends.map(|e| match e {
+            End::Points(k) => k.min(n),
+            e => e.kept(),
+        });
+        (1..first).chain((n - last.max(1)..n - 1).filter(move |&c| c >= first.max(1))).collect()
+    }
+
+    /// The data that pull, as rows of displacements over tolerances.
+    fn pull(&self, parts: &Parts<'_>) -> SparseRows {
+        let mut pull = SparseRows::new();
+        for (k, owner) in self.layout.owner.iter().enumerate() {
+            let Some(radius) = owner.map(|i| self.limit.radii[i]) else { continue };
+            let (columns, factors) = self.layout.rows.row(k);
+            let free = columns.iter().any(|&c| !parts.frozen[c as usize]);
+            if free && radius > 0.0 && radius.is_finite() {
+                let entries = columns.iter().zip(factors);
+                pull.push(entries.map(|(&c, &f)| (c as usize, f / radius)));
+            }
+        }
+        pull
+    }
+
+    /// The distances of the data from a curve at their parameters.
+    pub fn residuals(&self, control: &[Vec3<f64>]) -> Vec<f64> {
+        let mut out = vec![0.0; self.points.len()];
+        for (k, owner) in self.layout.owner.iter().enumerate() {
+            if let Some(i) = *owner {
+                let off = (self.layout.rows.apply(k, control) - self.points[i]).norm();
+                out[i] = f64::max(out[i], off);
+            }
+        }
+        out
+    }
+
+    /// The curve through the data as a job with these limits' motion.
+    fn job(&self) -> Result<Job, FairError> {
+        let points = self.layout.through(&self.layout.data(&self.points))?;
+        let limit = Limit { motion: self.limit.motion, radii: vec![f64::INFINITY; points.len()] };
+        let (space, ends) = (self.layout.space.clone(), self.ends);
+        Ok(Job { space, points, weights: None, limit, marks: Vec::new(), ends })
+    }
+}
+
+impl Layout {
+    /// The control point that a mark is.
+    pub fn control_of(&self, site: usize) -> usize {
+        let (columns, factors) = self.rows.row(site);
+        let largest = (0..factors.len()).max_by(|&a, &b| factors[a].total_cmp(&factors[b]));
+        columns[largest.expect("a row has entries")] as usize
+    }
+}
+
+/// Fairs data.
+///
+/// # Errors
+/// [`FairError`] when conditions contradict each other, or the goal does not go with the measure.
+///
+/// # Example
+/// ```
+/// use moldloft_fair::{Data, DataOptions, End, Goal, Layout, Limit, Measure, Spacing, fair_data,
+///     parameters};
+/// use moldloft_num::Vec3;
+/// // A straight line at uneven stations, with one reading off by 0.01.
+/// let stations = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.5, 9.0];
+/// let off = |x: f64| if x == 4.0 { 0.01 } else { 0.0 };
+/// let points: Vec<_> = stations.map(|x| Vec3::of(x, 0.1 * x + off(x), 0.0)).to_vec();
+/// let at = parameters(&points, Spacing::Along(Vec3::of(1.0, 0.0, 0.0)), false).unwrap();
+/// let data = Data {
+///     limit: Limit::ball(points.len(), 0.02).unwrap(),
+///     layout: Layout::new(3, &at, &[], false).unwrap(),
+///     ends: [End::Free; 2],
+///     points,
+/// };
+/// let options = DataOptions {
+///     measure: Measure::Variation, goal: Goal::Fairest, conditions: Vec::new(), bends: true,
+///     accuracy: 1e-9,
+/// };
+/// let faired = fair_data(&data, &options).unwrap();
+/// assert!(faired.residuals.iter().all(|&r| r <= 0.02));
+/// assert!(faired.certificate.value < 1e-12);
+/// ```
+pub fn fair_data(data: &Data, options: &DataOptions) -> Result<DataFit, FairError> {
+    let job = data.job()?;
+    let mut parts = data.parts(options, &job)?;
+    let plain = data.along(options, &job, &mut parts, None)?;
+    let higher = matches!(options.measure, Measure::Third | Measure::Variation);
+    if options.bends || !higher {
+        return Ok(plain);
+    }
+    // Third derivatives alone may buy smoothness with a bend; second derivatives do not. As much
+    // of them is added as keeps the count.
+    let bends = |points: &[Vec3<f64>]| shape::turns_back(&data.layout.space, points);
+    let most = {
+        let least =
+            DataOptions { measure: Measure::Bending, goal: Goal::Fairest, ..options.clone() };
+        let mut own = data.parts(&least, &job)?;
+        bends(&data.along(&least, &job, &mut own, None)?.points)
+    };
+    if bends(&plain.points) <= most {
+        return Ok(plain);
+    }
+    let stiff = Measure::Bending.rows(&data.layout.space)?;
+    let third = parts.measure.clone();
+    let (low, high) = (plain.certificate.value, stiff.sum_sq(&plain.points));
+    let mut attempt = |log: f64| -> Result<DataFit, FairError> {
+        let factor = (log.exp() * low.max(f64::MIN_POSITIVE) / high.max(f64::MIN_POSITIVE)).sqrt();
+        parts.measure = third.clone().joined(&stiff.clone().scaled(factor));
+        data.along(options, &job, &mut parts, Some(&third))
+    };
+    // From little to much, then back half-way as long as the count is kept.
+    let step = 10f64.ln();
+    let mut good: Option<(f64, DataFit)> = None;
+    for k in -3..=5 {
+        let log = f64::from(k) * step;
+        let made = attempt(log)?;
+        if bends(&made.points) <= most {
+            good = Some((log, made));
+            break;
+        }
+    }
+    let Some((mut log, mut made)) = good else {
+        return Ok(DataFit { bends: bends(&plain.points) - most, ..plain });
+    };
+    let mut low = log - step;
+    for _ in 0..3 {
+        let middle = 0.5 * (low + log);
+        let trial = attempt(middle)?;
+        if bends(&trial.points) <= most {
+            (log, made) = (middle, trial);
+        } else {
+            low = middle;
+        }
+    }
+    // What the count costs is part of the gap.
+    made.certificate.gap = made.certificate.gap.max(made.certificate.value - plain.least);
+    made.least = plain.least;
+    Ok(made)
+}
+
+impl Data {
+    /// The optimum of a goal by the rows of `parts`; its value by those of `counted`, where these
+    /// are others.
+    fn along(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+        parts: &mut Parts<'_>,
+        counted: Option<&SparseRows>,
+    ) -> Result<DataFit, FairError> {
+        let found = self.found(options, job, parts)?;
+        let mut fit = self.fit(found, job);
+        if let Some(rows) = counted {
+            fit.certificate.value = rows.sum_sq(&fit.points);
+        }
+        Ok(fit)
+    }
+
+    fn fit(&self, found: Found, job: &Job) -> DataFit {
+        DataFit {
+            residuals: self.residuals(&found.optimum.points),
+            used: found.used,
+            least: found.least,
+            weight: found.weight,
+            certificate: found.optimum.certificate,
+            iterations: found.optimum.iterations,
+            active: found.optimum.active,
+            points: found.optimum.points,
+            original: job.points.clone(),
+            bends: 0,
+        }
+    }
+
+    fn found(
+        &self,
+        options: &DataOptions,
+        job: &Job,
+        parts: &mut Parts<'_>,
+    ) -> Result<Found, FairError> {
+        let pull = self.pull(parts);
+        let (rows, norm) = (parts.measure.clone(), parts.norm);
+        let still = self.limit.radii.iter().all(|&r| r == 0.0);
+        let fair = matches!(options.goal, Goal::Near(_)) && on_a_circle(&self.points);
+        if options.conditions.is_empty() && (still || fair) {
+            let value = crate::measure::value(&rows, norm, &job.points);
+            return Ok(Found::unmoved(&job.points, value, still));
+        }
+        let path = Path {
+            energy: |points: &[Vec3<f64>]| crate::measure::value(&rows, norm, points),
+            squares: |points: &[Vec3<f64>]| {
+                let moved: Vec<_> = points.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
+                pull.sum_sq(&moved)
+            },
+            count: pull.len(),
+            noise: rounding(&rows, norm, &job.points),
+            original: &job.points,
+        };
+        path.follow(options.goal, norm, !options.conditions.is_empty(), |weight| {
+            parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+            parts.solve()
+        })
+    }
+}
+
+/// Whether points lie on a circle to rounding: as fair as a curve can be, at any spacing.
+fn on_a_circle(points: &[Vec3<f64>]) -> bool {
+    let n = points.len();
+    let (a, b, c) = (points[0], points[n / 3], points[2 * n / 3]);
+    let (u, v) = (b - a, c - a);
+    let axis = u.cross(v);
+    let square = axis.norm_sq();
+    let size = u.norm().max(v.norm());
+    if square <= 1e-12 * size.powi(4) {
+        return false;
+    }
+    let half = 0.5 / square;
+    let away = (axis.cross(u) * v.norm_sq() + v.cross(axis) * u.norm_sq()) * half;
+    let (middle, radius) = (a + away, away.norm());
+    let axis = axis * (1.0 / square.sqrt());
+    let close = 1e-12 * (radius + middle.norm());
+    points.iter().all(|p| {
+        let q = *p - middle;
+        (q.norm() - radius).abs() <= close && q.dot(axis).abs() <= close
+    })
+}
+
+/// A faired curve whose control points and knots carry derivatives.
+#[derive(Clone, Debug)]
+pub struct MovingFit<T> {
+    /// The control points on the layout's space.
+    pub points: Vec<Vec3<T>>,
+    /// The space's knots.
+    pub knots: Vec<T>,
+}
+
+/// The same for data, tolerances (one per datum) and parameters that carry derivatives, whose real
+/// parts are those of the data. Derivatives follow from
+/// the conditions of optimality by the implicit function theorem, through knots and parameters
+/// too. Inflections are not held back (`bends`), and there are no conditions but those of the ends.
+///
+/// # Errors
+/// As [`fair_data`]; [`FairError::Goal`] for the goal `nearest`, and for sums of lengths on knots
+/// that move.
+pub fn fair_data_with<T: Real>(
+    data: &Data,
+    options: &DataOptions,
+    points: &[Vec3<T>],
+    tolerances: &[T],
+    at: &[T],
+) -> Result<(MovingFit<T>, DataFit), FairError> {
+    let options = &DataOptions { bends: true, conditions: Vec::new(), ..options.clone() };
+    let job = data.job()?;
+    let mut parts = data.parts(options, &job)?;
+    let found = data.found(options, &job, &mut parts)?;
+    let (share, weight) = (found.share, found.weight);
+    let layout = &data.layout;
+    let (sites, knots) = layout.moving(at);
+    let mut plain = points.iter().flat_map(|p| p.to_array()).chain(at.iter().copied());
+    let fixed = |all: &[T]| all.iter().all(|t| t.is_constant());
+    if plain.all(|x| x.is_constant()) && fixed(tolerances) {
+        let points = found.optimum.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        return Ok((MovingFit { points, knots }, data.fit(found, &job)));
+    }
+    let space = MovingSpace { space: &layout.space, knots: &knots };
+    let values = MovingRows { rows: sites.iter().map(|&t| space.value(t)).collect() };
+    let wanted = layout.data(points);
+    // By how much control points must change so that the curve of `of` follows the data at the
+    // sites while knots and sites move.
+    let through = |of: &[Vec3<f64>], real: &[Vec3<f64>]| -> Result<Vec<Vec3<T>>, FairError> {
+        let lifted: Vec<Vec3<T>> = of.iter().map(|&p| Vec3::lifted(p)).collect();
+        let change: Vec<Vec3<T>> = (0..wanted.len())
+            .map(|k| {
+                let off = wanted[k] - values.apply(k, &lifted);
+                off - Vec3::lifted(off.re())
+            })
+            .collect();
+        let change = layout.through(&change)?;
+        Ok(real.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect())
+    };
+    let start = through(&job.points, &job.points)?;
+    if share == 0.0 {
+        return Ok((MovingFit { points: start, knots }, data.fit(found, &job)));
+    }
+    if parts.norm != crate::Norm::Square {
+        return Err(FairError::Goal(
+            "derivatives of a sum of lengths through moving knots are not known: take another \
+             measure, or spacing \"index\"",
+        ));
+    }
+    // The optimum of the weight found, with what its answers need.
+    let pull = data.pull(&parts);
+    parts.pull = (weight > 0.0).then(|| pull.clone().scaled(weight.sqrt()));
+    let solved = parts.whole()?;
+    let control = &solved.optimum.points;
+    let rows = space.measure(options.measure)?;
+    let mut forces: Vec<Vec3<T>> =
+        rows.slope(control).into_iter().map(|v| v - Vec3::lifted(v.re())).collect();
+    // Forces at the sites act through rows that move.
+    let radii = layout.radii(&data.limit.radii);
+    let held = |k: &usize| layout.rows.row(*k).0.iter().all(|&c| parts.frozen[c as usize]);
+    let limited: Vec<usize> =
+        (0..radii.len()).filter(|k| radii[*k] > 0.0 && radii[*k].is_finite() && !held(k)).collect();
+    let away: Vec<Vec3<f64>> = control.iter().zip(&job.points).map(|(p, q)| *p - *q).collect();
+    for (&k, force) in limited.iter().zip(&solved.forces()) {
+        let mut force = *force;
+        if layout.owner[k].is_some() {
+            force += layout.rows.apply(k, &away) * (weight / (radii[k] * radii[k]));
+        }
+        for &(c, f) in &values.rows[k] {
+            let change = f - T::from(f.re());
+            forces[c] += force.map_real(|x| change * x);
+        }
+    }
+    let owner = |k: &usize| layout.owner[*k].map(|i| tolerances[i]);
+    // A site that is no datum has the largest tolerance near it.
+    let largest = |k: usize| {
+        let near = layout.sources_of(k).map(|i| tolerances[i]);
+        near.reduce(|a, b| if b.re() > a.re() { b } else { a }).unwrap_or_else(T::zero)
+    };
+    let own: Vec<T> = (0..radii.len())
+        .filter(|&k| radii[k] > 0.0)
+        .map(|k| owner(&k).unwrap_or_else(|| largest(k)))
+        .collect();
+    let targets: Vec<T> = data.held().into_iter().flat_map(|c| start[c].to_array()).collect();
+    let moving = Moving {
+        originals: through(control, &job.points)?,
+        tolerances: &own,
+        pulled: limited.iter().filter_map(owner).collect(),
+        targets: &targets,
+        forces,
+        rows: &rows,
+        start: &start,
+    };
+    let points = moved(&parts, &solved, options.goal, &found, &pull, moving)?;
+    Ok((MovingFit { points, knots }, data.fit(found, &job)))
+}

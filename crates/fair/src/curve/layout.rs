@@ -1,0 +1,353 @@
+//! Splines whose knots stand at the data: where data lie on the curve, and the curve through them.
+
+use crate::curve::fit::{fit_with, values};
+use crate::curve::moving::{MapReal, MovingSpace};
+use crate::{FairError, Space, SparseRows, fit};
+use moldloft_num::{Banded, Real, Vec3};
+use moldloft_spline::KnotVector;
+
+/// A space of splines with as many control points as there are sites, of which one passes through
+/// any data at the sites.
+///
+/// Knots stand at the sites but for those next to the ends ("not a knot", de Boor 1978), so that
+/// polynomials are reproduced at any spacing. At a break the spline is continuous and no more.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// The splines.
+    pub space: Space,
+    /// Parameters of the sites: those of the data, and of points that complete short pieces.
+    pub sites: Vec<f64>,
+    /// The sites as combinations of the data.
+    sources: SparseRows,
+    /// Which datum each site is.
+    pub owner: Vec<Option<usize>>,
+    /// The parameter of each datum.
+    pub at: Vec<f64>,
+    /// Sites that are breaks, each a control point of its own.
+    pub marks: Vec<usize>,
+    /// Values at the sites over the control points.
+    pub rows: SparseRows,
+    /// Sites as shares of the way from one parameter of the list to another.
+    site_of: Vec<Share>,
+    /// Knots as shares of the way from one site to another.
+    knot_of: Vec<Share>,
+    /// The datum at which a closed curve with breaks begins.
+    first: Option<usize>,
+}
+
+/// A share of the way from one place of a list to another; from the last to the first of a closed
+/// curve when the second is the length of the list.
+type Share = (usize, usize, f64);
+
+impl Layout {
+    /// The splines for data at rising parameters in [0, 1] (of a closed curve less than 1), with
+    /// `breaks` among them. A closed curve with breaks begins and ends at the first of them.
+    ///
+    /// # Errors
+    /// [`FairError`] when the data are too few, or parameters do not rise.
+    pub fn new(
+        degree: usize,
+        at: &[f64],
+        breaks: &[usize],
+        closed: bool,
+    ) -> Result<Self, FairError> {
+        let n = at.len();
+        if let Some(&index) = breaks.iter().find(|&&b| b >= n) {
+            return Err(FairError::Mark { index, count: n });
+        }
+        if let Some(k) = (1..n).find(|&k| at[k].is_nan() || at[k] <= at[k - 1]) {
+            return Err(FairError::Unsorted { index: k });
+        }
+        let mut breaks = breaks.to_vec();
+        breaks.sort_unstable();
+        breaks.dedup();
+        if !closed {
+            return Self::open(degree, at, (0..n).collect(), &breaks);
+        }
+        if let Some(&first) = breaks.first() {
+            let owner: Vec<usize> = (0..=n).map(|k| (first + k) % n).collect();
+            let turned: Vec<f64> = (0..=n)
+                .map(|k| at[(first + k) % n] - at[first] + if first + k >= n { 1.0 } else { 0.0 })
+                .collect();
+            let mut moved: Vec<usize> = breaks.iter().map(|b| b - first).collect();
+            moved.push(n);
+            let mut layout = Self::open(degree, &turned, owner, &moved)?;
+            layout.first = Some(first);
+            layout.at = (0..n).map(|i| turned[(i + n - first) % n]).collect();
+            return Ok(layout);
+        }
+        let half = if degree % 2 == 1 { 0.0 } else { 0.5 };
+        let knot_of: Vec<Share> = (0..n).map(|k| (k, k + 1, half)).collect();
+        let knots = knot_of.iter().map(|&s| shared(at, s)).collect();
+        let space = Space::periodic(degree, knots, 1.0)?;
+        Ok(Self {
+            rows: values(&space, at),
+            space,
+            sites: at.to_vec(),
+            sources: SparseRows::identity(n),
+            owner: (0..n).map(Some).collect(),
+            at: at.to_vec(),
+            marks: Vec::new(),
+            site_of: (0..n).map(|k| (k, k, 0.0)).collect(),
+            knot_of,
+            first: None,
+        })
+    }
+
+    fn open(
+        degree: usize,
+        at: &[f64],
+        owners: Vec<usize>,
+        breaks: &[usize],
+    ) -> Result<Self, FairError> {
+        let count = at.len();
+        if count < 2 {
+            return Err(FairError::TooFew { expected: 2, actual: count });
+        }
+        let last = count - 1;
+        let inner = breaks.iter().copied().filter(|&b| 0 < b && b < last);
+        let ends: Vec<usize> = std::iter::once(0).chain(inner).chain([last]).collect();
+        if ends.len() == 2 && count < degree + 1 {
+            return Err(FairError::TooFew { expected: degree + 1, actual: count });
+        }
+        let mut knot_of: Vec<Share> = vec![(0, 0, 0.0); degree + 1];
+        let mut site_of: Vec<Share> = vec![(0, 0, 0.0)];
+        let (mut sites, mut owner) = (vec![at[0]], vec![Some(owners[0])]);
+        let mut sources = SparseRows::new();
+        sources.push([(owners[0], 1.0)]);
+        let mut marks = Vec::new();
+        if breaks.contains(&0) {
+            marks.push(0);
+        }
+        for pair in ends.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let own = completed(degree, &at[from..=to]);
+            let m = own.len();
+            let start = sites.len() - 1;
+            // Odd degrees leave out the same number of sites at both ends.
+            for j in 1..m - degree {
+                let middle = start + j + degree / 2;
+                knot_of.push(if degree % 2 == 1 {
+                    (middle, middle, 0.0)
+                } else {
+                    (middle - 1, middle, 0.5)
+                });
+            }
+            let times = if to == last { degree + 1 } else { degree };
+            knot_of.extend(std::iter::repeat_n((start + m - 1, start + m - 1, 0.0), times));
+            for (share, source) in own.into_iter().skip(1) {
+                let share = (from + share.0, from + share.1, share.2);
+                sites.push(shared(at, share));
+                site_of.push(share);
+                owner.push(match source[..] {
+                    [(k, _)] => Some(owners[from + k]),
+                    _ => None,
+                });
+                sources.push(source.into_iter().map(|(k, x)| (owners[from + k], x)));
+            }
+            if breaks.contains(&to) {
+                marks.push(sites.len() - 1);
+            }
+        }
+        // A single polynomial piece has nothing to fair.
+        if knot_of.len() == 2 * degree + 2 {
+            return Err(FairError::TooFew { expected: degree + 2, actual: count });
+        }
+        let knots = knot_of.iter().map(|&s| shared(&sites, s)).collect();
+        let space = Space::open(KnotVector::new(degree, knots)?)?;
+        let rows = values(&space, &sites);
+        let (at, first) = (at.to_vec(), None);
+        Ok(Self { space, sites, sources, owner, at, marks, rows, site_of, knot_of, first })
+    }
+
+    /// The parameters of the sites and the knots for parameters of the data that carry derivatives,
+    /// whose real parts are those of the layout.
+    pub(crate) fn moving<T: Real>(&self, at: &[T]) -> (Vec<T>, Vec<T>) {
+        let n = at.len();
+        let turned: Vec<T> = match self.first {
+            None => at.to_vec(),
+            Some(first) => (0..=n)
+                .map(|k| {
+                    let once = if first + k >= n { T::one() } else { T::zero() };
+                    at[(first + k) % n] - at[first] + once
+                })
+                .collect(),
+        };
+        let sites: Vec<T> = self.site_of.iter().map(|&s| shared(&turned, s)).collect();
+        let knots = self.knot_of.iter().map(|&s| shared(&sites, s)).collect();
+        (sites, knots)
+    }
+
+    /// The sites of data.
+    pub fn data<T: Real>(&self, points: &[Vec3<T>]) -> Vec<Vec3<T>> {
+        (0..self.sources.len())
+            .map(|k| {
+                let (columns, factors) = self.sources.row(k);
+                if let [only] = columns {
+                    return points[*only as usize];
+                }
+                let entries = columns.iter().zip(factors);
+                entries.fold(Vec3::zero(), |s, (&c, &f)| s + points[c as usize].map(|x| x * f))
+            })
+            .collect()
+    }
+
+    /// The data that a site hangs on.
+    pub(crate) fn sources_of(&self, site: usize) -> impl Iterator<Item = usize> + '_ {
+        self.sources.row(site).0.iter().map(|&c| c as usize)
+    }
+
+    /// The sites' tolerances: of a point that completes a short piece the largest near it.
+    pub fn radii(&self, radii: &[f64]) -> Vec<f64> {
+        let of = |k: usize| {
+            let near = self.sources.row(k).0.iter().map(|&c| radii[c as usize]);
+            near.fold(0.0, f64::max)
+        };
+        (0..self.sources.len()).map(of).collect()
+    }
+
+    /// The control points of the spline that takes these values at the sites.
+    ///
+    /// # Errors
+    /// [`FairError::Singular`].
+    pub fn through<T: Real>(&self, values: &[Vec3<T>]) -> Result<Vec<Vec3<T>>, FairError> {
+        let n = self.space.count();
+        if self.space.is_closed() {
+            let plain: Vec<_> = values.iter().map(|v| v.re()).collect();
+            let own = fit(self.space.clone(), &plain, self.sites.clone(), &vec![1.0; n])?;
+            return fit_with(&own, values);
+        }
+        let solve = |right: &[Vec3<T>]| -> Result<Vec<Vec3<T>>, FairError> {
+            let mut matrix = Banded::<T>::zero(n, self.space.degree().min(n - 1));
+            for k in 0..n {
+                let (columns, factors) = self.rows.row(k);
+                for (&c, &f) in columns.iter().zip(factors) {
+                    *matrix.entry(k, c as usize) = T::from(f);
+                }
+            }
+            let mut out = right.to_vec();
+            matrix.solve(&mut out).map_err(|_| FairError::Singular)?;
+            Ok(out)
+        };
+        let mut control = solve(values)?;
+        // Once more for what rounding left.
+        let short: Vec<Vec3<T>> = (0..n)
+            .map(|k| {
+                let (columns, factors) = self.rows.row(k);
+                let entries = columns.iter().zip(factors);
+                entries.fold(values[k], |s, (&c, &f)| s - control[c as usize].map(|x| x * f))
+            })
+            .collect();
+        for (c, more) in control.iter_mut().zip(solve(&short)?) {
+            *c += more;
+        }
+        if control.iter().any(|c| !c.is_finite()) {
+            return Err(FairError::Singular);
+        }
+        // Marks and ends are data by their bits.
+        for &m in &self.marks {
+            let (columns, factors) = self.rows.row(m);
+            if let (&[c], &[1.0]) = (columns, factors) {
+                control[c as usize] = values[m];
+            }
+        }
+        Ok(control)
+    }
+
+    /// Control points and knots of the spline through data at parameters that carry derivatives,
+    /// whose real parts are those of the layout.
+    ///
+    /// # Errors
+    /// [`FairError::Singular`].
+    pub(crate) fn through_moving<T: Real>(
+        &self,
+        points: &[Vec3<T>],
+        at: &[T],
+    ) -> Result<(Vec<Vec3<T>>, Vec<T>), FairError> {
+        let (sites, knots) = self.moving(at);
+        let wanted = self.data(points);
+        let real: Vec<Vec3<f64>> = wanted.iter().map(|p| p.re()).collect();
+        let control = self.through(&real)?;
+        let space = MovingSpace { space: &self.space, knots: &knots };
+        let change: Vec<Vec3<T>> = sites
+            .iter()
+            .zip(&wanted)
+            .map(|(&t, &p)| {
+                let value = space.value(t);
+                let at = value
+                    .iter()
+                    .fold(Vec3::zero(), |s: Vec3<T>, &(c, f)| s + control[c].map_real(|x| f * x));
+                let off = p - at;
+                off - Vec3::lifted(off.re())
+            })
+            .collect();
+        let change = self.through(&change)?;
+        Ok((control.iter().zip(change).map(|(&p, c)| Vec3::lifted(p) + c).collect(), knots))
+    }
+
+    /// By how much control points can move when the curve moves at the sites by these radii at
+    /// most: the collocation matrix is totally positive, so its inverse has the signs of a
+    /// chequer-board and one solution with alternating signs has the sums of its entries' sizes.
+    ///
+    /// # Errors
+    /// [`FairError::Singular`].
+    pub fn reach(&self, radii: &[f64]) -> Result<Vec<f64>, FairError> {
+        let n = self.space.count();
+        let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let size = |points: &[Vec3<f64>]| points.iter().map(|p| p.x.abs()).collect::<Vec<f64>>();
+        let alternating = |radii: &[f64]| -> Vec<Vec3<f64>> {
+            radii.iter().enumerate().map(|(k, r)| Vec3::of(sign(k) * r, 0.0, 0.0)).collect()
+        };
+        if !self.space.is_closed() || n.is_multiple_of(2) {
+            return Ok(size(&self.through(&alternating(radii))?));
+        }
+        // Signs alternate round a closed curve when it is run through twice.
+        let twice = |all: &[f64]| -> Vec<f64> {
+            all.iter().copied().chain(all.iter().map(|t| t + 1.0)).collect()
+        };
+        let double = Self {
+            space: Space::periodic(self.space.degree(), twice(self.space.knots()), 2.0)?,
+            sites: twice(&self.sites),
+            ..self.clone()
+        };
+        let radii: Vec<f64> = radii.iter().chain(radii).copied().collect();
+        let all = double.through(&alternating(&radii))?;
+        Ok(size(&all[..n]))
+    }
+}
+
+/// A share of the way between two places of a list.
+fn shared<T: Real>(list: &[T], (a, b, share): Share) -> T {
+    if share == 0.0 {
+        return list[a];
+    }
+    let to = if b < list.len() { list[b] } else { list[0] + T::one() };
+    list[a] + (to - list[a]) * share
+}
+
+/// The parameters of a piece with at least `degree + 1` sites, each as a combination of the data:
+/// what is missing is taken from the polynomial through the others, spread over its gaps.
+fn completed(degree: usize, at: &[f64]) -> Vec<(Share, Vec<(usize, f64)>)> {
+    let m = at.len();
+    let datum = |k: usize| ((k, k, 0.0), vec![(k, 1.0)]);
+    if m > degree {
+        return (0..m).map(datum).collect();
+    }
+    let (missing, gaps) = (degree + 1 - m, m - 1);
+    let mut out = Vec::new();
+    for gap in 0..gaps {
+        out.push(datum(gap));
+        let more = missing / gaps + usize::from(gap < missing % gaps);
+        for k in 1..=more {
+            let share = k as f64 / (more + 1) as f64;
+            let t = at[gap] + (at[gap + 1] - at[gap]) * share;
+            let factor = |j: usize| {
+                let others = (0..m).filter(|&i| i != j);
+                others.map(|i| (t - at[i]) / (at[j] - at[i])).product::<f64>()
+            };
+            out.push(((gap, gap + 1, share), (0..m).map(|j| (j, factor(j))).collect()));
+        }
+    }
+    out.push(datum(m - 1));
+    out
+}

@@ -1,0 +1,466 @@
+//! Wrong digits and knuckles among data at any spacing: proposals, with the evidence.
+//!
+//! Each point is left out and predicted by a cubic through its neighbours, five on either side, by
+//! their chord lengths. What is off along the curve is a matter of spacing and no finding; what is
+//! off across it is set against a scale of the neighbourhood that the whole file moderates (Smyth
+//! 2004). A knuckle is told from a wrong digit by leaving the point out: that cures a wrong digit.
+
+use moldloft_num::Vec3;
+
+/// A finding about data.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DataFinding {
+    /// A point that its neighbours do not predict: probably a wrong digit.
+    WrongDigit {
+        /// The point.
+        index: usize,
+        /// Where its neighbours have it, straight across the curve.
+        expected: Vec3<f64>,
+        /// How far it is off, as a multiple of its scale.
+        score: f64,
+        /// How far off it had to be to be found.
+        least: f64,
+    },
+    /// A point at which the tangent turns: probably a break that is meant.
+    Knuckle {
+        /// The point.
+        index: usize,
+        /// The angle that the tangent turns by, in radians.
+        angle: f64,
+        /// The turn as a multiple of its scale.
+        score: f64,
+    },
+}
+
+impl DataFinding {
+    /// The point that it is about.
+    pub fn index(&self) -> usize {
+        match *self {
+            Self::WrongDigit { index, .. } | Self::Knuckle { index, .. } => index,
+        }
+    }
+}
+
+impl std::fmt::Display for DataFinding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let number = self.index() + 1;
+        match self {
+            Self::WrongDigit { expected, score, least, .. } => write!(
+                f,
+                "point {number}: a wrong digit? its neighbours have it at ({:.6}, {:.6}, {:.6}), it is \
+                 {score:.1} times the scale off ({least:.2e} would have been found)",
+                expected.x, expected.y, expected.z
+            ),
+            Self::Knuckle { angle, score, .. } => write!(
+                f,
+                "point {number}: an intended break? the tangent turns by {:.2} degrees there, \
+                 {score:.0} times the scale",
+                angle.to_degrees()
+            ),
+        }
+    }
+}
+
+/// From which score on a point is proposed.
+pub const SCORE: f64 = 6.0;
+
+/// The same for the turn of a knuckle.
+const KNUCKLE_SCORE: f64 = 20.0;
+
+/// Turns beyond this are noses, unless both sides are straight or the turn stands out by `STANDS_OUT`.
+const LARGEST_TURN: f64 = 0.44;
+
+/// How many times the turns beside it a knuckle's is, where a nose could be as sharp.
+const STANDS_OUT: f64 = 6.0;
+
+/// Neighbours on either side.
+const SIDE: usize = 5;
+
+/// Proposals at most.
+const MOST: usize = 5;
+
+/// Weight of the file's scale, in degrees of freedom.
+const PRIOR: f64 = 4.0;
+
+/// What a point looks like from its neighbours.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    /// Across the curve, over the root of 1 + leverage.
+    off: f64,
+    expected: Vec3<f64>,
+    leverage: f64,
+    /// The scale of the neighbours about their cubic.
+    scale: f64,
+    judged: bool,
+}
+
+/// A least squares fit of polynomials with an extra column, by Householder's QR through modified
+/// Gram and Schmidt, which columns this few allow.
+struct Columns<const C: usize> {
+    q: Vec<[f64; C]>,
+    r: [[f64; C]; C],
+}
+
+impl<const C: usize> Columns<C> {
+    fn new(mut a: Vec<[f64; C]>) -> Option<Self> {
+        let mut r = [[0.0; C]; C];
+        for j in 0..C {
+            for _ in 0..2 {
+                for i in 0..j {
+                    let dot: f64 = a.iter().map(|row| row[i] * row[j]).sum();
+                    r[i][j] += dot;
+                    a.iter_mut().for_each(|row| row[j] -= dot * row[i]);
+                }
+            }
+            let norm = a.iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt();
+            if norm.is_nan() || norm <= 1e-12 {
+                return None;
+            }
+            r[j][j] = norm;
+            a.iter_mut().for_each(|row| row[j] /= norm);
+        }
+        Some(Self { q: a, r })
+    }
+
+    fn solve(&self, b: &[Vec3<f64>]) -> [Vec3<f64>; C] {
+        let mut x = [Vec3::zero(); C];
+        for j in 0..C {
+            x[j] = self.q.iter().zip(b).fold(Vec3::zero(), |s, (row, p)| s + *p * row[j]);
+        }
+        for j in (0..C).rev() {
+            for k in j + 1..C {
+                let known = x[k];
+                x[j] -= known * self.r[j][k];
+            }
+            x[j] = x[j] * (1.0 / self.r[j][j]);
+        }
+        x
+    }
+
+    /// The squared length of R^-T a.
+    fn leverage(&self, a: [f64; C]) -> f64 {
+        let mut y = a;
+        for j in 0..C {
+            for k in 0..j {
+                y[j] -= self.r[k][j] * y[k];
+            }
+            y[j] /= self.r[j][j];
+        }
+        y.iter().map(|v| v * v).sum()
+    }
+}
+
+fn cubic(c: &[Vec3<f64>; 4], x: f64) -> [Vec3<f64>; 3] {
+    [
+        c[0] + (c[1] + (c[2] + c[3] * x) * x) * x,
+        c[1] + (c[2] * 2.0 + c[3] * (3.0 * x)) * x,
+        c[2] * 2.0 + c[3] * (6.0 * x),
+    ]
+}
+
+/// The indices of the neighbours of place `i` in a list, and whether it lies among them.
+fn window(i: usize, n: usize, closed: bool) -> (Vec<usize>, usize) {
+    let side = SIDE.min((n - 1) / 2);
+    if closed {
+        let all = (1..=side).rev().map(|k| (i + n - k) % n).chain((1..=side).map(|k| (i + k) % n));
+        return (all.collect(), side);
+    }
+    let low = i.saturating_sub(side).min(n - 1 - 2 * side);
+    ((low..=low + 2 * side).filter(|&j| j != i).collect(), i - low)
+}
+
+fn seen(points: &[Vec3<f64>], i: usize, closed: bool) -> Option<Seen> {
+    let n = points.len();
+    let (near, place) = window(i, n, closed);
+    let m = near.len();
+    if m < 6 {
+        return None;
+    }
+    let mut chord = vec![0.0];
+    for w in near.windows(2) {
+        chord.push(chord.last()? + (points[w[1]] - points[w[0]]).norm());
+    }
+    let middle = 0.5 * chord[m - 1];
+    if middle.is_nan() || middle <= 0.0 {
+        return None;
+    }
+    let t: Vec<f64> = chord.iter().map(|c| (c - middle) / middle).collect();
+    let powers = |x: f64| [1.0, x, x * x, x * x * x];
+    let columns = Columns::new(t.iter().map(|&x| powers(x)).collect())?;
+    let own: Vec<Vec3<f64>> = near.iter().map(|&j| points[j]).collect();
+    let c = columns.solve(&own);
+    let inside = 0 < place && place < m;
+    let (a, b) = (place.max(1) - 1, place.min(m - 1));
+    let p = points[i];
+    let (da, db) = ((p - own[a]).norm(), (p - own[b]).norm());
+    let mut x = if place == 0 {
+        t[0] - db / middle
+    } else if place == m {
+        t[m - 1] + da / middle
+    } else {
+        t[a] + (t[b] - t[a]) * da / (da + db).max(f64::MIN_POSITIVE)
+    };
+    for _ in 0..6 {
+        let [at, d, dd] = cubic(&c, x);
+        let v = at - p;
+        let plain = d.norm_sq();
+        let bent = plain + v.dot(dd);
+        let step = v.dot(d) / if bent > 0.3 * plain { bent } else { plain };
+        x = (x - step).clamp(-2.0, 2.0);
+    }
+    let across = |v: Vec3<f64>, d: Vec3<f64>| {
+        let long = d.norm_sq();
+        if long > 0.0 { v - d * (v.dot(d) / long) } else { v }
+    };
+    let [at, d, _] = cubic(&c, x);
+    let off = across(p - at, d);
+    let leverage = columns.leverage(powers(x));
+    let squares: f64 = own
+        .iter()
+        .zip(&t)
+        .map(|(q, &x)| {
+            let [at, d, _] = cubic(&c, x);
+            across(*q - at, d).norm_sq()
+        })
+        .sum();
+    let scale = (squares / (m - 4) as f64).sqrt();
+    let off = off.norm() / (1.0 + leverage).sqrt();
+    let judged = inside && (closed || (i > 0 && i + 1 < n));
+    (off.is_finite() && scale.is_finite()).then_some(Seen {
+        off,
+        expected: at,
+        leverage,
+        scale,
+        judged,
+    })
+}
+
+fn median(mut all: Vec<f64>) -> f64 {
+    if all.is_empty() {
+        return 0.0;
+    }
+    all.sort_unstable_by(f64::total_cmp);
+    all[all.len() / 2]
+}
+
+/// Scores of all points: how far each is off, as a multiple of its scale, and the scale.
+fn scores(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<Option<(f64, Seen, f64)>> {
+    let all: Vec<Option<Seen>> = (0..points.len()).map(|i| seen(points, i, closed)).collect();
+    let judged = all.iter().flatten().filter(|s| s.judged);
+    let file = (1.4826 * median(judged.map(|s| s.off).collect())).max(floor);
+    let freedom = (2 * SIDE - 4) as f64;
+    all.into_iter()
+        .map(|s| {
+            let s = s.filter(|s| s.judged)?;
+            let scale = ((PRIOR * file * file + freedom * s.scale * s.scale) / (PRIOR + freedom))
+                .sqrt()
+                .max(f64::MIN_POSITIVE);
+            Some((s.off / scale, s, scale))
+        })
+        .collect()
+}
+
+/// Half the step of the digits that all coordinates have, over the root of three: what rounding
+/// does to a reading.
+pub fn digit_scale(points: &[Vec3<f64>]) -> f64 {
+    let size = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let whole = |step: f64| {
+        points.iter().flat_map(|p| p.to_array()).all(|x| {
+            let k = x / step;
+            (k - k.round()).abs() <= 1e-6 && k.abs() < 1e15
+        })
+    };
+    for digits in 0..10 {
+        let step = 10f64.powi(-digits);
+        // Whole numbers beside a large size say nothing about their digits.
+        if whole(step) {
+            return if step < 0.1 * size { step / 12f64.sqrt() } else { 0.0 };
+        }
+    }
+    0.0
+}
+
+/// What stands out among data, wrong digits first, the clearest first. Nothing is said of lists of
+/// fewer than a dozen points.
+pub fn data_findings(points: &[Vec3<f64>], closed: bool) -> Vec<DataFinding> {
+    let n = points.len();
+    if n < 12 {
+        return Vec::new();
+    }
+    let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
+    let floor = digit_scale(points).max(1e-12 * size);
+    let knuckles = knuckles(points, closed, floor);
+    let mut out = Vec::new();
+    // Cubics do not run across knuckles.
+    let mut cuts: Vec<usize> = knuckles.iter().map(DataFinding::index).collect();
+    cuts.sort_unstable();
+    let pieces: Vec<(Vec<usize>, bool)> = match (closed, cuts.as_slice()) {
+        (true, []) => vec![((0..n).collect(), true)],
+        (true, cuts) => (0..cuts.len())
+            .map(|k| {
+                let (a, b) = (cuts[k], cuts[(k + 1) % cuts.len()]);
+                let count = if b > a { b - a } else { b + n - a };
+                ((0..=count).map(|i| (a + i) % n).collect(), false)
+            })
+            .collect(),
+        (false, cuts) => {
+            let ends: Vec<usize> =
+                std::iter::once(0).chain(cuts.iter().copied()).chain([n - 1]).collect();
+            ends.windows(2).map(|w| ((w[0]..=w[1]).collect(), false)).collect()
+        }
+    };
+    for (mut own, round) in pieces {
+        for _ in 0..MOST {
+            if own.len() < 12 {
+                break;
+            }
+            let list: Vec<Vec3<f64>> = own.iter().map(|&i| points[i]).collect();
+            let all = scores(&list, round, floor);
+            let Some((at, (score, seen, scale))) = all
+                .into_iter()
+                .enumerate()
+                .filter_map(|(k, s)| Some((k, s?)))
+                .max_by(|a, b| a.1.0.total_cmp(&b.1.0))
+            else {
+                break;
+            };
+            if score < SCORE {
+                break;
+            }
+            let least = SCORE * scale * (1.0 + seen.leverage).sqrt();
+            let index = own.remove(at);
+            out.push(DataFinding::WrongDigit { index, expected: seen.expected, score, least });
+        }
+    }
+    out.sort_by(|a, b| match (a, b) {
+        (DataFinding::WrongDigit { score: a, .. }, DataFinding::WrongDigit { score: b, .. }) => {
+            b.total_cmp(a)
+        }
+        _ => std::cmp::Ordering::Equal,
+    });
+    out.truncate(MOST);
+    out.extend(knuckles);
+    out
+}
+
+/// How large an error of each point would have been found; infinite where points are not judged.
+pub fn detectable(points: &[Vec3<f64>], closed: bool) -> Vec<f64> {
+    let n = points.len();
+    if n < 12 {
+        return vec![f64::INFINITY; n];
+    }
+    let size = points.iter().map(|p| (*p - points[0]).norm()).fold(0.0, f64::max);
+    let floor = digit_scale(points).max(1e-12 * size);
+    let least = |s: Option<(f64, Seen, f64)>| {
+        s.map_or(f64::INFINITY, |(_, seen, scale)| SCORE * scale * (1.0 + seen.leverage).sqrt())
+    };
+    scores(points, closed, floor).into_iter().map(least).collect()
+}
+
+/// Points at which a cubic through the neighbours wants a hinge.
+fn knuckles(points: &[Vec3<f64>], closed: bool, floor: f64) -> Vec<DataFinding> {
+    const HALF: usize = 4;
+    let n = points.len();
+    if n < 2 * HALF + 1 {
+        return Vec::new();
+    }
+    struct Hinge {
+        index: usize,
+        size: f64,
+        scale: f64,
+        factor: f64,
+        angle: f64,
+        straight: bool,
+        /// Its turn over the largest beside it.
+        sharpness: f64,
+    }
+    let turn = |a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>| {
+        let (u, v) = (b - a, c - b);
+        moldloft_num::Real::atan2(u.cross(v).norm(), u.dot(v))
+    };
+    let range = if closed { 0..n } else { HALF..n - HALF };
+    let all: Vec<Hinge> = range
+        .filter_map(|i| {
+            let near: Vec<Vec3<f64>> =
+                (0..=2 * HALF).map(|k| points[(i + n + k - HALF) % n]).collect();
+            let mut chord = vec![0.0];
+            for w in near.windows(2) {
+                chord.push(chord.last()? + (w[1] - w[0]).norm());
+            }
+            let half = 0.5 * chord[2 * HALF];
+            let t: Vec<f64> = chord.iter().map(|c| (c - chord[HALF]) / half).collect();
+            let row = |x: f64| [1.0, x, x * x, x * x * x, x.max(0.0)];
+            let columns = Columns::new(t.iter().map(|&x| row(x)).collect())?;
+            let c = columns.solve(&near);
+            let smooth = [c[0], c[1], c[2], c[3]];
+            let squares: f64 = near
+                .iter()
+                .zip(&t)
+                .map(|(q, &x)| {
+                    let [at, d, _] = cubic(&smooth, x);
+                    let (at, d) =
+                        (at + c[4] * x.max(0.0), d + c[4] * if x > 0.0 { 1.0 } else { 0.0 });
+                    let v = *q - at;
+                    (v - d * (v.dot(d) / d.norm_sq().max(f64::MIN_POSITIVE))).norm_sq()
+                })
+                .sum();
+            let d = c[1] + c[4] * 0.5;
+            let speed = d.norm();
+            let normal = c[4] - d * (c[4].dot(d) / (speed * speed));
+            let turns: Vec<f64> =
+                (1..2 * HALF).map(|k| turn(near[k - 1], near[k], near[k + 1])).collect();
+            let own = turns[HALF - 1];
+            let others =
+                || turns.iter().enumerate().filter(|(k, _)| *k != HALF - 1).map(|(_, t)| *t);
+            let angle = moldloft_num::Real::atan2(normal.norm(), speed);
+            Some(Hinge {
+                index: i,
+                size: normal.norm(),
+                scale: (squares / 4.0).sqrt(),
+                factor: 1.0 / columns.r[4][4],
+                angle,
+                straight: others().all(|t| t < 0.02),
+                sharpness: own / others().fold(f64::MIN_POSITIVE, f64::max),
+            })
+        })
+        .collect();
+    let file = (1.4826 * median(all.iter().map(|h| h.scale).collect()) / 1.2).max(floor);
+    let mut out = Vec::new();
+    for h in &all {
+        let scale = ((PRIOR * file * file + 3.0 * h.scale * h.scale) / (PRIOR + 3.0)).sqrt();
+        let score = h.size / (scale * h.factor);
+        let nose = h.angle > LARGEST_TURN && !h.straight && h.sharpness < STANDS_OUT;
+        if score <= KNUCKLE_SCORE || h.sharpness <= 2.0 || nose {
+            continue;
+        }
+        // A wrong digit turns the polygon half as much beside it, at any spacing; it, the point's or a
+        // neighbour's, is cured by leaving it out.
+        let digit = h.sharpness < STANDS_OUT;
+        let cured = digit
+            && [h.index, (h.index + 1) % n, (h.index + n - 1) % n].into_iter().any(|gone| {
+                if !closed && (gone < 2 || gone + 2 >= n) {
+                    return false;
+                }
+                let left: Vec<Vec3<f64>> =
+                    (0..n).filter(|&j| j != gone).map(|j| points[j]).collect();
+                let m = left.len();
+                let near = (0..8).map(|k| (gone + m + k - 4) % m);
+                let fine = near
+                    .filter_map(|j| seen(&left, j, closed))
+                    .filter(|s| s.judged)
+                    .map(|s| {
+                        let scale = ((PRIOR * file * file + 6.0 * s.scale * s.scale)
+                            / (PRIOR + 6.0))
+                            .sqrt();
+                        // Beside a break the neighbours' own scale is large: the file's decides.
+                        s.off / scale.min(3.0 * file)
+                    })
+                    .fold(0.0, f64::max);
+                fine < SCORE
+            });
+        if !cured {
+            out.push(DataFinding::Knuckle { index: h.index, angle: h.angle, score });
+        }
+    }
+    out
+}

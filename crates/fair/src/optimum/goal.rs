@@ -1,0 +1,361 @@
+//! Which of the results within the tolerances is wanted, and the way to it from the fairest.
+//!
+//! The results on the way are the optima of the measure plus a weight times the squared residuals
+//! over tolerances: the fairest at weight 0, the data at the end. Each is the fairest of all whose
+//! residuals are no larger, and the nearest of all that are as fair.
+
+use crate::curve::moving::{MapReal, MovingRows};
+use crate::optimum::{Optimum, Parts, Solved};
+use crate::{Certificate, FairError, Norm, SparseRows};
+use moldloft_num::{Dual4, Real, Vec3};
+
+/// Which of the curves within the tolerances is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The fairest: the least of the measure.
+    Fairest,
+    /// The fairest of those whose squared residuals, each over its tolerance, have a mean of at
+    /// most this share of 1/3, which is what noise has that fills the tolerance evenly.
+    Budget(f64),
+    /// The same, as far as it is worth a move: data whose own curve measures less than one and a
+    /// half times as much do not move at all, and from three times on they move all the way.
+    /// Exact data stay.
+    Near(f64),
+    /// The one nearest to the data (in the sum of the same squares) whose measure exceeds the least
+    /// by at most this share. Data that are as fair as that do not move.
+    Nearest(f64),
+}
+
+/// Solutions at most on the way to a goal.
+const MOST_SOLUTIONS: usize = 60;
+
+/// How many times the optimum's measure the data's own curve must have before anything moves, and
+/// before it moves all the way.
+const STAYS: f64 = 1.5;
+const MOVES: f64 = 3.0;
+
+/// How far a gain is worth to move: a smooth step.
+fn worth<T: Real>(gain: T) -> T {
+    let share = (gain - T::from(STAYS)) / (MOVES - STAYS);
+    if share.re() <= 0.0 {
+        T::zero()
+    } else if share.re() >= 1.0 {
+        T::one()
+    } else {
+        share * share * (T::from(3.0) - share * 2.0)
+    }
+}
+
+/// How exactly budgets and shares are kept.
+const GOAL_ACCURACY: f64 = 1e-7;
+
+/// The measure that rounding of the points alone may leave.
+pub(crate) fn rounding(rows: &SparseRows, norm: Norm, points: &[Vec3<f64>]) -> f64 {
+    let of = |k: usize| {
+        let (columns, factors) = rows.row(k);
+        let size: f64 =
+            columns.iter().zip(factors).map(|(&c, f)| f.abs() * points[c as usize].norm()).sum();
+        let noise = 64.0 * f64::EPSILON * size;
+        if norm == Norm::Square { noise * noise } else { noise }
+    };
+    (0..rows.len()).map(of).sum()
+}
+
+/// The way from the fairest curve to the data as their weight grows.
+pub(crate) struct Path<'a, E, S> {
+    /// The measure at points.
+    pub energy: E,
+    /// The sum of squared residuals over tolerances.
+    pub squares: S,
+    /// How many residuals these are.
+    pub count: usize,
+    /// What rounding leaves of the measure.
+    pub noise: f64,
+    pub original: &'a [Vec3<f64>],
+}
+
+/// Where the way ended.
+pub(crate) struct Found {
+    pub optimum: Optimum,
+    /// How far the result is on the straight way from the original to the optimum of the weight.
+    pub share: f64,
+    pub used: f64,
+    pub least: f64,
+    pub weight: f64,
+}
+
+impl Found {
+    /// The original itself; nothing is left to gain where nothing may move.
+    pub fn unmoved(points: &[Vec3<f64>], value: f64, still: bool) -> Self {
+        let certificate = Certificate { value, gap: if still { 0.0 } else { value } };
+        let optimum = Optimum { points: points.to_vec(), certificate, iterations: 0, active: 0 };
+        Self { optimum, share: 0.0, used: 0.0, least: value, weight: 0.0 }
+    }
+}
+
+impl<E, S> Path<'_, E, S>
+where
+    E: Fn(&[Vec3<f64>]) -> f64,
+    S: Fn(&[Vec3<f64>]) -> f64,
+{
+    /// The optimum of a goal. The sum of squares falls and the measure rises with the weight, both
+    /// continuously, so the goal is found between two weights.
+    pub fn follow(
+        &self,
+        goal: Goal,
+        norm: Norm,
+        conditioned: bool,
+        mut solve: impl FnMut(f64) -> Result<Optimum, FairError>,
+    ) -> Result<Found, FairError> {
+        let mean = (self.count as f64 / 3.0).max(f64::MIN_POSITIVE);
+        let begin = (self.energy)(self.original);
+        if !conditioned && begin <= self.noise {
+            // Nothing is left but rounding: not a bit moves.
+            let certificate = Certificate { value: begin, gap: begin };
+            let points = self.original.to_vec();
+            let optimum = Optimum { points, certificate, iterations: 0, active: 0 };
+            return Ok(Found { optimum, share: 0.0, used: 0.0, least: begin, weight: 0.0 });
+        }
+        let fairest = solve(0.0)?;
+        let least = (self.energy)(&fairest.points);
+        let squares = (self.squares)(&fairest.points);
+        let ended = |optimum: Optimum, weight: f64| {
+            let used = (self.squares)(&optimum.points) / mean;
+            let value = (self.energy)(&optimum.points);
+            let certificate = Certificate { value, ..optimum.certificate };
+            Ok(Found {
+                optimum: Optimum { certificate, ..optimum },
+                share: 1.0,
+                used,
+                least,
+                weight,
+            })
+        };
+        // Between the data's own curve and the optimum, by what there is to gain: both are within
+        // the tolerances, and so is all between them.
+        let settle = |optimum: Optimum, weight: f64| {
+            let Goal::Near(_) = goal else { return ended(optimum, weight) };
+            if conditioned {
+                return ended(optimum, weight);
+            }
+            let value = (self.energy)(&optimum.points);
+            let share = worth(begin / value.max(f64::MIN_POSITIVE));
+            if share >= 1.0 {
+                return ended(optimum, weight);
+            }
+            let between = |(p, q): (&Vec3<f64>, &Vec3<f64>)| {
+                if share == 0.0 { *q } else { *q + (*p - *q) * share }
+            };
+            let points: Vec<_> = optimum.points.iter().zip(self.original).map(between).collect();
+            let now = (self.energy)(&points);
+            let gap = optimum.certificate.gap + (now - value).max(0.0);
+            let certificate = Certificate { value: now, gap };
+            let active = if share == 0.0 { 0 } else { optimum.active };
+            let mut found = ended(Optimum { points, certificate, active, ..optimum }, weight)?;
+            found.share = share;
+            Ok(found)
+        };
+        // What should be met: a falling function of the weight's logarithm, negative when met.
+        let measured = |optimum: &Optimum| match goal {
+            Goal::Fairest => -1.0,
+            Goal::Budget(share) | Goal::Near(share) => {
+                ((self.squares)(&optimum.points) / (share * mean)).ln()
+            }
+            Goal::Nearest(share) => {
+                // Of curves near enough to the least the one nearest to the data: towards the data
+                // the measure rises.
+                (((1.0 + share) * least + self.noise) / (self.energy)(&optimum.points)).ln()
+            }
+        };
+        match goal {
+            Goal::Fairest => return ended(fairest, 0.0),
+            Goal::Budget(share) | Goal::Near(share) => {
+                if share.is_nan() || share <= 0.0 {
+                    return Err(FairError::Goal("a budget is a positive share"));
+                }
+                if squares <= share * mean || norm != Norm::Square {
+                    return settle(fairest, 0.0);
+                }
+            }
+            Goal::Nearest(share) => {
+                if share.is_nan() || share < 0.0 {
+                    return Err(FairError::Goal("a share of the measure is 0 or more"));
+                }
+                if share == 0.0 || squares == 0.0 {
+                    return ended(fairest, 0.0);
+                }
+                if !conditioned && begin <= (1.0 + share) * least + self.noise {
+                    let certificate =
+                        Certificate { value: begin, gap: begin - least + fairest.certificate.gap };
+                    let optimum = Optimum {
+                        points: self.original.to_vec(),
+                        certificate,
+                        active: 0,
+                        ..fairest
+                    };
+                    return Ok(Found { optimum, share: 0.0, used: 0.0, least, weight: 0.0 });
+                }
+            }
+        }
+        if norm != Norm::Square {
+            return Err(FairError::Goal(
+                "a sum of lengths has neither budget nor share: take `fairest`",
+            ));
+        }
+        // Between two weights by regula falsi on logarithms, the stale end halved (Illinois).
+        let mut low = (f64::NEG_INFINITY, measured(&fairest));
+        let mut high: Option<(f64, f64, Optimum)> = None;
+        let mut trial = (least.max(1e-6 * begin) / squares).ln();
+        let mut side = 0;
+        let mut best: Option<(f64, f64, Optimum)> = None;
+        for _ in 0..MOST_SOLUTIONS {
+            let optimum = solve(trial.exp())?;
+            let value = measured(&optimum);
+            let better = best.as_ref().is_none_or(|b| value.abs() < b.1.abs());
+            if better {
+                best = Some((trial, value, optimum.clone()));
+            }
+            if value.abs() <= GOAL_ACCURACY {
+                break;
+            }
+            if value > 0.0 {
+                if side == 1
+                    && let Some(h) = &mut high
+                {
+                    h.1 *= 0.5;
+                }
+                low = (trial, value);
+                side = 1;
+            } else {
+                if side == -1 {
+                    low.1 *= 0.5;
+                }
+                high = Some((trial, value, optimum));
+                side = -1;
+            }
+            trial = match (&high, low.0.is_finite()) {
+                (Some(h), true) => {
+                    if h.0 - low.0 < 1e-12 {
+                        break;
+                    }
+                    let share = low.1 / (low.1 - h.1);
+                    low.0 + (h.0 - low.0) * share.clamp(0.01, 0.99)
+                }
+                (Some(h), false) => h.0 - 3.0,
+                (None, _) => low.0 + 3.0,
+            };
+        }
+        let (weight, _, optimum) = best.expect("one solution at least");
+        settle(optimum, weight.exp())
+    }
+}
+
+/// What the derivatives of a result hang on.
+pub(crate) struct Moving<'a, T: Real> {
+    /// The originals, as they and the limits move.
+    pub originals: Vec<Vec3<T>>,
+    /// Tolerances of the limits.
+    pub tolerances: &'a [T],
+    /// The tolerance of each row that pulls.
+    pub pulled: Vec<T>,
+    /// Values of the caller's conditions.
+    pub targets: &'a [T],
+    /// Changes of half the measure's slope that come from its rows and the limits' rows.
+    pub forces: Vec<Vec3<T>>,
+    /// The rows of the measure as they change.
+    pub rows: &'a MovingRows<T>,
+    /// The original itself, which the originals are but for what its limits' rows change by.
+    pub start: &'a [Vec3<T>],
+}
+
+/// The result of a goal with derivatives. `parts` has the pull of the weight found, `solved` is their
+/// optimum, `pull` the rows that pull at weight 1.
+pub(crate) fn moved<T: Real>(
+    parts: &Parts<'_>,
+    solved: &Solved,
+    goal: Goal,
+    found: &Found,
+    pull: &SparseRows,
+    moving: Moving<'_, T>,
+) -> Result<Vec<Vec3<T>>, FairError> {
+    if found.share == 0.0 {
+        return Ok(moving.start.to_vec());
+    }
+    let n = parts.points.len();
+    let at = &solved.optimum.points;
+    let away: Vec<Vec3<f64>> = at.iter().zip(parts.points).map(|(p, q)| *p - *q).collect();
+    let weight = found.weight;
+    let zero = |all: &[T], k: usize| all[k] - T::from(all[k].re());
+    let mut forces = moving.forces;
+    if forces.is_empty() {
+        forces = vec![Vec3::zero(); n];
+    }
+    // Residuals over tolerances: wider tolerances pull less.
+    let residuals: Vec<Vec3<f64>> = (0..pull.len()).map(|k| pull.apply(k, &away)).collect();
+    let stretch = |k: usize| zero(&moving.pulled, k) / moving.pulled[k].re();
+    for (k, r) in residuals.iter().enumerate() {
+        let (columns, factors) = pull.row(k);
+        for (&c, &f) in columns.iter().zip(factors) {
+            let change = stretch(k) * (-2.0 * weight * f);
+            forces[c as usize] += r.map_real(|x| change * x);
+        }
+    }
+    let mut out =
+        parts.answer(solved, &moving.originals, moving.tolerances, moving.targets, &[], &forces)?;
+    if weight > 0.0 {
+        // The weight answers, too, so that the budget is kept.
+        let mut slope = vec![Vec3::<Dual4>::zero(); n];
+        pull.add_transposed_into(&residuals, |c, v| {
+            slope[c] += v.map_real(|x| Dual4::from_parts(|k| if k == 1 { x } else { 0.0 }));
+        });
+        let plain: Vec<Vec3<Dual4>> = parts.points.iter().map(|&p| Vec3::lifted(p)).collect();
+        let still = |all: &[T]| all.iter().map(|t| Dual4::from(t.re())).collect::<Vec<_>>();
+        let (tolerances, targets) = (still(moving.tolerances), still(moving.targets));
+        let answer = parts.answer(solved, &plain, &tolerances, &targets, &[], &slope)?;
+        let by_weight: Vec<Vec3<f64>> =
+            answer.iter().map(|p| Vec3::of(p.x.part(1), p.y.part(1), p.z.part(1))).collect();
+        let (change, rate) = match goal {
+            Goal::Nearest(_) => {
+                return Err(FairError::Goal(
+                    "derivatives of `nearest` are not known: take `near`, `budget` or `fairest`",
+                ));
+            }
+            _ => {
+                let mut change = T::zero();
+                let mut rate = 0.0;
+                for (k, r) in residuals.iter().enumerate() {
+                    let (columns, factors) = pull.row(k);
+                    let mut moved = Vec3::zero();
+                    for (&c, &f) in columns.iter().zip(factors) {
+                        let c = c as usize;
+                        let own = out[c] - moving.originals[c];
+                        let own = own - Vec3::lifted(own.re());
+                        moved += own.map(|x| x * f);
+                    }
+                    change += (moved.x * r.x + moved.y * r.y + moved.z * r.z) * 2.0;
+                    change -= stretch(k) * (2.0 * r.norm_sq());
+                    rate += 2.0 * r.dot(pull.apply(k, &by_weight));
+                }
+                (change, rate)
+            }
+        };
+        if rate != 0.0 {
+            let more = change * (-1.0 / rate);
+            for (p, z) in out.iter_mut().zip(&by_weight) {
+                *p += z.map_real(|x| more * x);
+            }
+        }
+    }
+    if found.share < 1.0 {
+        let (begin, end) = (moving.rows.sum_sq(moving.start), moving.rows.sum_sq(&out));
+        let share = worth(begin / end);
+        let both = out.iter().zip(moving.start).zip(&found.optimum.points);
+        return Ok(both
+            .map(|((p, q), real)| {
+                let mixed = *q + (*p - *q).map(|x| x * share);
+                mixed - Vec3::lifted(mixed.re() - *real)
+            })
+            .collect());
+    }
+    Ok(out)
+}
