@@ -75,11 +75,13 @@ def produce(
         )
         return [Output(name, data) for name, data in found.items()]
     given = {"lids": lids, "immersed": immersed, "tags": bool(tags), "tolerance": tolerance}
+    if row.holds == "surfaces":
+        del given["tolerance"]
     for option, value in given.items():
         if value is not None and value is not False:
             raise Error(f"`{option}` is not for {row.name}, which takes whole surfaces")
     source = model.blocks() if row.volume else model
-    return [Output(path.name, row.encode(source, path.stem))]
+    return [Output(path.name, row.encode(source, path.stem, tolerance=tolerance))]
 
 
 def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:

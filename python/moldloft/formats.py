@@ -68,10 +68,11 @@ class Format:
         """Whether the files hold the cells of solids."""
         return self.holds == "volumes"
 
-    def encode(self, source: Model | Blocks, stem: str) -> bytes:
-        """The bytes that a row of Python makes."""
+    def encode(self, source: Model | Blocks, stem: str, *, tolerance: float | None = None) -> bytes:
+        """The bytes that a row of Python makes; surfaces are fitted within the tolerance."""
         module, _, function = self.writer.partition(":")
-        data: bytes = getattr(import_module(module), function)(source, stem)
+        options = {"accuracy": tolerance} if self.holds == "surfaces" else {}
+        data: bytes = getattr(import_module(module), function)(source, stem, **options)
         return data
 
 
@@ -100,6 +101,20 @@ PYTHON_ROWS = (
         symmetry="x, y, xy",
         text=True,
         writer="moldloft.blockmesh:encode",
+    ),
+    Format(
+        "3dm",
+        "Rhino: surfaces and trimmed planes (needs rhino3dm)",
+        aliases=("rhino",),
+        holds="surfaces",
+        writer="moldloft.cad.rhino:encode",
+    ),
+    Format(
+        "dxf",
+        "edges of surfaces and curves as splines (needs ezdxf)",
+        holds="surfaces",
+        text=True,
+        writer="moldloft.cad.dxf:encode",
     ),
     Format(
         "offsets",

@@ -682,8 +682,9 @@ class Model:
         tags
             Only the patches that carry one of these tags; by default all.
         tolerance
-            For ``gdf-high``: how far the fitted patches may be off, by default 1e-5 of the model's
-            diagonal. Surfaces that are B-splines are exact.
+            For ``gdf-high``, ``step``, ``iges``, ``3dm`` and ``dxf``: the largest error of fits,
+            by default 1e-6 of the model's diagonal (``gdf-high``: 1e-5). Surfaces that are
+            B-splines are exact.
 
         Returns
         -------
@@ -716,6 +717,50 @@ class Model:
         for :meth:`write`.
         """
         return dict(self._document.write(format, name, lids, immersed, list(tags), tolerance))
+
+    # -- for other packages ----------------------------------------------------------------
+
+    def to_pyvista(self, *, tags: str | Sequence[str] = ()) -> Any:
+        """The panels as ``pyvista.PolyData``; see :func:`moldloft.adapters.to_pyvista`."""
+        from moldloft.adapters import to_pyvista
+
+        return to_pyvista(self, tags=tags)
+
+    def to_trimesh(self, *, tags: str | Sequence[str] = ()) -> Any:
+        """The panels as ``trimesh.Trimesh``; see :func:`moldloft.adapters.to_trimesh`."""
+        from moldloft.adapters import to_trimesh
+
+        return to_trimesh(self, tags=tags)
+
+    def to_meshio(self, *, tags: str | Sequence[str] = ()) -> Any:
+        """The panels as ``meshio.Mesh``; see :func:`moldloft.adapters.to_meshio`."""
+        from moldloft.adapters import to_meshio
+
+        return to_meshio(self, tags=tags)
+
+    def to_capytaine(self, *, lids: bool = False, name: str = "model") -> Any:
+        """The wetted panels for Capytaine; see :func:`moldloft.adapters.to_capytaine`."""
+        from moldloft.adapters import to_capytaine
+
+        return to_capytaine(self, lids=lids, name=name)
+
+    def to_ocp(self, *, accuracy: float | None = None) -> Any:
+        """The exact surfaces as an OCCT shape; see :func:`moldloft.adapters.to_ocp`."""
+        from moldloft.adapters import to_ocp
+
+        return to_ocp(self, accuracy=accuracy)
+
+    def to_gmsh(self, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
+        """Adds the exact surfaces to Gmsh; see :func:`moldloft.adapters.to_gmsh`."""
+        from moldloft.adapters import to_gmsh
+
+        return to_gmsh(self, accuracy=accuracy, name=name)
+
+    def to_pandas(self) -> Any:
+        """The parameters as a ``pandas.DataFrame``; see :func:`moldloft.adapters.to_pandas`."""
+        from moldloft.adapters import to_pandas
+
+        return to_pandas(self)
 
     def picture(self, width: int = 1280, height: int = 720) -> bytes:
         """A picture of the panels, contours and wires, as PNG.

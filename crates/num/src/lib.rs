@@ -17,6 +17,7 @@ mod frame;
 mod jet;
 mod linear;
 mod quadrature;
+mod rational;
 mod real;
 mod reparametrization;
 mod roots;
@@ -32,6 +33,7 @@ pub use frame::{Axis, Frame, Plane};
 pub use jet::{Bi1, Bi2, Jet, Tri1, Uni1, Uni2, lift_curve, lift_surface};
 pub use linear::{Banded, SingularMatrix, solve_dense};
 pub use quadrature::{gauss_legendre, gauss_points, integrate};
+pub use rational::{Pace, Rational, Weight};
 pub use real::Real;
 pub use reparametrization::{
     Composed, Reparametrization, ReparametrizationJet, inv_reparametrization,

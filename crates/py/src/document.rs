@@ -106,6 +106,23 @@ impl PyDocument {
         &self.cancel
     }
 
+    /// The model as a boundary representation.
+    pub(crate) fn with_brep(
+        &self,
+        py: Python<'_>,
+        accuracy: Option<f64>,
+        stem: String,
+    ) -> PyResult<moldloft_brep::Brep> {
+        self.long_checked(py, move |d| {
+            moldloft_export::brep(d, accuracy, &stem).map_err(|e| e.diagnostics("nurbs"))
+        })
+    }
+
+    /// The name of the unit of length, and its millimetres.
+    pub(crate) fn unit(&self, py: Python<'_>) -> (String, f64) {
+        moldloft_export::length_unit(&self.lock(py))
+    }
+
     fn surface_of(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceRef<f64>> {
         match self.value(py, name)? {
             Value::Surface(surface) => Ok(surface),

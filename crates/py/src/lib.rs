@@ -18,6 +18,7 @@ mod formats;
 mod grids;
 mod implicit;
 mod mesh;
+mod nurbs;
 mod reference;
 mod search;
 mod sketch;
@@ -59,6 +60,8 @@ mod _core {
     use crate::implicit::{PyFacets, PyField, PySet};
     #[pymodule_export]
     use crate::mesh::PyMesh;
+    #[pymodule_export]
+    use crate::nurbs::{brep, length_unit, nurbs};
     #[pymodule_export]
     use crate::reference::reference;
     #[pymodule_export]

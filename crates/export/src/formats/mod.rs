@@ -8,6 +8,7 @@ mod gdf_high;
 mod glb;
 mod hams;
 mod hydrostar;
+mod iges;
 mod model_file;
 mod nemoh;
 mod obj;
@@ -16,6 +17,7 @@ mod p3d;
 mod ply;
 mod png;
 mod program;
+mod step;
 mod stl;
 mod svg;
 mod threemf;
@@ -52,6 +54,8 @@ pub static FORMATS: &[Format] = &[
     volume_p3d::FORMAT,
     volume_vts::FORMAT,
     volume_vtu::FORMAT,
+    step::FORMAT,
+    iges::FORMAT,
     svg::FORMAT,
     png::FORMAT,
     program::FORMAT,
