@@ -1,4 +1,4 @@
-# `make demo` and `make test` need only Rust and Python >= 3.10. CI runs `make test`.
+# `make demo` needs only Rust and Python >= 3.10; the workbench's page needs Node.js besides. CI runs `make test`.
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -13,12 +13,26 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 SOURCES := pyproject.toml Cargo.toml $(shell find crates -name '*.rs' -o -name Cargo.toml -o -name '*.sdl')
 
-.PHONY: setup demo test check reference soak clean help
+# The packages of the extras `test` and `view` by name: `pip install '.[test,view]'` would build the extension once more.
+define TEST_PACKAGES
+from importlib.metadata import requires
+for line in requires("moldloft"):
+    if line.replace("'", '"').endswith(('extra == "test"', 'extra == "view"')):
+        print(line.split(";")[0])
+endef
+export TEST_PACKAGES
+
+PAGE := python/moldloft/workbench/page/index.html
+PAGE_SOURCES := web/package-lock.json web/vite.config.js web/index.html $(wildcard web/src/*)
+# Without Node.js everything but the workbench is there.
+WEB := $(if $(shell command -v npm 2>/dev/null),$(PAGE),)
+
+.PHONY: setup demo web test check reference soak clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/'
 
-setup: $(VENV)/.with-tests ## .venv with the package and everything that the tests need
+setup: $(VENV)/.with-tests $(VENV)/.with-browser ## .venv with the package and everything that the tests need
 
 # The virtual environment, with the package built from this checkout.
 $(VENV)/.installed: $(SOURCES)
@@ -27,12 +41,30 @@ $(VENV)/.installed: $(SOURCES)
 	@$(PIP) install --editable .
 	@touch $@
 
-$(VENV)/.with-tests: $(VENV)/.installed pyproject.toml
+$(VENV)/.with-tests: $(VENV)/.installed pyproject.toml $(WEB)
 	@echo "installing the packages that the tests need into $(VENV)"
-	@$(PIP) install --editable '.[test]'
+	@$(BIN)/python -c "$$TEST_PACKAGES" > $(VENV)/test-packages.txt
+	@$(PIP) install --requirement $(VENV)/test-packages.txt
 	@echo "building the language server"
 	@cargo build --quiet --release -p moldloft-lsp
 	@cp $${CARGO_TARGET_DIR:-target}/release/moldloft-lsp$(EXE) $(BIN)/
+	@touch $@
+
+web: $(PAGE) ## the page of the workbench; needs Node.js
+
+$(PAGE): $(PAGE_SOURCES)
+	@command -v npm >/dev/null || { echo "the page of the workbench needs Node.js 20 or newer and npm"; exit 1; }
+	@echo "building the page of the workbench"
+	@cd web && npm ci --no-audit --no-fund --loglevel=error && npm run --silent build -- --logLevel warn
+	@touch $@
+
+# What the tests of the page need, where it can be had: a browser that runs without a display.
+$(VENV)/.with-browser:
+	@if ! command -v chromium >/dev/null && command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ]; then \
+		echo "installing chromium for the tests of the page"; \
+		(apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium) >/dev/null \
+			|| echo "chromium could not be installed: the tests of the page are left out"; \
+	fi
 	@touch $@
 
 demo: $(VENV)/.installed ## the sailing yacht of examples/sailboat as panels, files, hydrostatics and a picture
@@ -57,4 +89,4 @@ soak: export MOLDLOFT_SOAK = 1
 soak: test ## the long random tests in full
 
 clean: ## removes what was built
-	rm -rf $(VENV) out target
+	rm -rf $(VENV) out target web/node_modules python/moldloft/workbench/page

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from moldloft.implicit import Field, Set
     from moldloft.mesh import Mesh, Patch
     from moldloft.models import Model, Param, load, loads
+    from moldloft.nurbs import Nurbs
     from moldloft.objects import Object
     from moldloft.searches import Branch, Intersection, NearestPoints
     from moldloft.sketches import Sketch, SketchError
@@ -58,6 +59,7 @@ __all__ = [
     "Model",
     "ModelError",
     "NearestPoints",
+    "Nurbs",
     "Object",
     "Param",
     "Patch",
@@ -99,6 +101,7 @@ _HOMES = {
     "loads": "moldloft.models",
     "model": "moldloft.builder",
     "param": "moldloft.builder",
+    "Nurbs": "moldloft.nurbs",
     "Object": "moldloft.objects",
     "Branch": "moldloft.searches",
     "Intersection": "moldloft.searches",

@@ -62,24 +62,37 @@ def produce(
     immersed: bool = False,
     tags: Sequence[str] = (),
     tolerance: float | None = None,
+    whole: bool = False,
+    triangles: bool = False,
 ) -> list[Output]:
     """The files of a model in one format; ``path`` gives their names.
 
     ``lids`` and ``immersed`` are for the files of panel codes, see :meth:`Model.write`; ``tags``
-    names the patches to write, ``tolerance`` is how far fitted patches may be off.
+    names the patches to write, ``tolerance`` is how far fitted patches may be off, ``whole`` asks
+    for both sides of a symmetric model, ``triangles`` for triangles only.
     """
     row = _row(format)
     if not row.writer:
         found = model.encoded(
-            row.name, path.name, lids=lids, immersed=immersed, tags=tags, tolerance=tolerance
+            row.name,
+            path.name,
+            lids=lids,
+            immersed=immersed,
+            tags=tags,
+            tolerance=tolerance,
+            whole=whole,
+            triangles=triangles,
         )
         return [Output(name, data) for name, data in found.items()]
     given = {"lids": lids, "immersed": immersed, "tags": bool(tags), "tolerance": tolerance}
+    if row.holds == "surfaces":
+        del given["tolerance"]
+    given |= {"whole": whole, "triangles": triangles}
     for option, value in given.items():
         if value is not None and value is not False:
             raise Error(f"`{option}` is not for {row.name}, which takes whole surfaces")
     source = model.blocks() if row.volume else model
-    return [Output(path.name, row.encode(source, path.stem))]
+    return [Output(path.name, row.encode(source, path.stem, tolerance=tolerance))]
 
 
 def commit(folder: Path, outputs: Sequence[Output]) -> list[Path]:

@@ -59,6 +59,14 @@ class Format:
         return f"{stem}.{self.suffix or self.name}"
 
     @property
+    def plain_panels(self) -> bool:
+        """Whether the files hold panels and cannot name planes of symmetry.
+
+        Of a symmetric model they hold one side, or the whole when it is asked for.
+        """
+        return self.holds.startswith("panels") and not self.symmetry and not self.writer
+
+    @property
     def panel_code(self) -> bool:
         """Whether a panel code reads the files."""
         return self.immersed
@@ -68,10 +76,11 @@ class Format:
         """Whether the files hold the cells of solids."""
         return self.holds == "volumes"
 
-    def encode(self, source: Model | Blocks, stem: str) -> bytes:
-        """The bytes that a row of Python makes."""
+    def encode(self, source: Model | Blocks, stem: str, *, tolerance: float | None = None) -> bytes:
+        """The bytes that a row of Python makes; surfaces are fitted within the tolerance."""
         module, _, function = self.writer.partition(":")
-        data: bytes = getattr(import_module(module), function)(source, stem)
+        options = {"accuracy": tolerance} if self.holds == "surfaces" else {}
+        data: bytes = getattr(import_module(module), function)(source, stem, **options)
         return data
 
 
@@ -100,6 +109,35 @@ PYTHON_ROWS = (
         symmetry="x, y, xy",
         text=True,
         writer="moldloft.blockmesh:encode",
+    ),
+    Format(
+        "3dm",
+        "Rhino: surfaces and trimmed planes (needs rhino3dm)",
+        aliases=("rhino",),
+        holds="surfaces",
+        writer="moldloft.cad.rhino:encode",
+    ),
+    Format(
+        "dxf",
+        "edges of surfaces and curves as splines (needs ezdxf)",
+        holds="surfaces",
+        text=True,
+        writer="moldloft.cad.dxf:encode",
+    ),
+    Format(
+        "lines-svg",
+        "the lines plan on one sheet as SVG",
+        suffix="lines.svg",
+        holds="drawing",
+        text=True,
+        writer="moldloft.lines_plan:encode_svg",
+    ),
+    Format(
+        "lines-pdf",
+        "the lines plan on one sheet as PDF",
+        suffix="lines.pdf",
+        holds="drawing",
+        writer="moldloft.lines_plan:encode_pdf",
     ),
     Format(
         "offsets",
@@ -165,6 +203,8 @@ def markdown() -> str:
     for row in formats().values():
         names = ", ".join(f"`{name}`" for name in (row.name, *row.aliases))
         options = [word for word in ("lids", "immersed") if getattr(row, word)]
+        if row.plain_panels:
+            options += ["whole", "triangles"]
         if row.holds == "surfaces":
             options.append("tolerance")
         planes = row.symmetry or "–"

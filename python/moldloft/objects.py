@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from moldloft._core import Document
     from moldloft.fairing.surface import Look
+    from moldloft.nurbs import Nurbs
     from moldloft.searches import Intersection, NearestPoints
 
     Floats = NDArray[np.float64]
@@ -161,6 +162,38 @@ class Object:
         from moldloft.fairing.surface import Look, _parameters
 
         return Look(self._document.look(self.name, _parameters(u), _parameters(v)))
+
+    def to_nurbs(self, *, accuracy: float | None = None, degree: int = 3) -> Nurbs:
+        """The curve, snake, surface or solid as a NURBS.
+
+        Shapes that are piecewise polynomial or rational are exact but for rounding. Others are
+        fitted; :attr:`Nurbs.error` bounds the distance everywhere, not at samples.
+
+        Parameters
+        ----------
+        accuracy
+            The largest error of a fit, by default 1e-6 of the shape's diagonal.
+        degree
+            The degree along parameters in which the shape is no polynomial, 1 to 9.
+
+        Raises
+        ------
+        ModelError
+            When the object is something else.
+        Error
+            When no NURBS comes near enough, with the bound that was reached and its place.
+
+        Examples
+        --------
+        >>> import moldloft
+        >>> m = moldloft.loads("BCurve c({{0, 0, 0}, {1, 2, 0}, {3, 2, 1}, {4, 0, 0}});")
+        >>> m["c"].to_nurbs()
+        <Nurbs: curve of degree 3, 4 control points, exact>
+        """
+        from moldloft import _core
+        from moldloft.nurbs import Nurbs
+
+        return Nurbs._of(_core.nurbs(self._document, self.name, accuracy, degree))
 
     def nearest(self, points: ArrayLike) -> NearestPoints:
         """The points of a curve or surface that are nearest to given ones, all at once.

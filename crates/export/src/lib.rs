@@ -21,6 +21,7 @@
 //!
 //! Invariant: no file is opened here; the caller writes the bytes, all of them or none.
 
+mod brep;
 mod export;
 mod formats;
 mod kind_picture;
@@ -30,6 +31,7 @@ mod picture;
 mod spline_patches;
 mod units;
 
+pub use brep::brep;
 pub use export::{
     Export, Failure, FileName, WriteOptions, tagged, write, write_blocks, write_grids,
 };

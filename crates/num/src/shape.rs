@@ -4,7 +4,7 @@
 use crate::jet::{Jet, lift_curve, lift_surface};
 use crate::reparametrization::Reparametrization;
 use crate::trace::{Edges, Key, Trace};
-use crate::{Real, Vec3, find_root};
+use crate::{Rational, Real, Vec3, find_root};
 use std::sync::Arc;
 
 /// How many derivatives by the shape parameters are wanted.
@@ -83,6 +83,11 @@ pub trait Curve<T: Real>: Send + Sync {
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         None
     }
+
+    /// What makes the curve rational, where something does that is known.
+    fn rational(&self) -> Rational<1> {
+        Rational::none()
+    }
 }
 
 /// A surface S(u, v) for u, v in [0, 1]; its natural normal is S_u x S_v.
@@ -155,6 +160,11 @@ pub trait Surface<T: Real>: Send + Sync {
     /// The solid object of which this is face 0..6, at equal parameters. For joins of blocks.
     fn face_of(&self) -> Option<(Key, u8)> {
         None
+    }
+
+    /// What makes the surface rational, where something does that is known.
+    fn rational(&self) -> Rational<2> {
+        Rational::none()
     }
 }
 
@@ -287,9 +297,19 @@ pub trait CurveFormula: Send + Sync {
         Vec::new()
     }
 
+    /// See [`Curve::joints`].
+    fn joints(&self) -> Vec<f64> {
+        self.breaks()
+    }
+
     /// See [`Curve::trace`].
     fn trace(&self) -> Trace<Self::Scalar> {
         Trace::own()
+    }
+
+    /// See [`Curve::rational`].
+    fn rational(&self) -> Rational<1> {
+        Rational::none()
     }
 }
 
@@ -300,8 +320,14 @@ impl<F: CurveFormula> Curve<F::Scalar> for F {
     fn breaks(&self) -> Vec<f64> {
         CurveFormula::breaks(self)
     }
+    fn joints(&self) -> Vec<f64> {
+        CurveFormula::joints(self)
+    }
     fn trace(&self) -> Trace<F::Scalar> {
         CurveFormula::trace(self)
+    }
+    fn rational(&self) -> Rational<1> {
+        CurveFormula::rational(self)
     }
 }
 
@@ -328,9 +354,19 @@ pub trait SurfaceFormula: Send + Sync {
         Edges::own()
     }
 
+    /// See [`Surface::joints`].
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.breaks()
+    }
+
     /// See [`Surface::image_of`].
     fn image_of(&self) -> Option<(Key, bool)> {
         None
+    }
+
+    /// See [`Surface::rational`].
+    fn rational(&self) -> Rational<2> {
+        Rational::none()
     }
 }
 
@@ -347,7 +383,13 @@ impl<F: SurfaceFormula> Surface<F::Scalar> for F {
     fn edges(&self) -> Edges<F::Scalar> {
         SurfaceFormula::edges(self)
     }
+    fn joints(&self) -> [Vec<f64>; 2] {
+        SurfaceFormula::joints(self)
+    }
     fn image_of(&self) -> Option<(Key, bool)> {
         SurfaceFormula::image_of(self)
+    }
+    fn rational(&self) -> Rational<2> {
+        SurfaceFormula::rational(self)
     }
 }

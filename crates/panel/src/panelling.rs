@@ -47,7 +47,7 @@ pub struct Panelling {
     pub(crate) structure: Arc<PanelTopology>,
     pub(crate) joined: Arc<JoinedPatches>,
     /// Bodies of triangles; their vertices come after all others.
-    bodies: Arc<Vec<MeshedBody>>,
+    pub(crate) bodies: Arc<Vec<MeshedBody>>,
     /// The joint's topology and that of the bodies.
     topology: Arc<Topology>,
     /// The points of each patch by itself, in the order of the skeleton, at the state that this was

@@ -16,20 +16,20 @@ use std::sync::Arc;
 /// A shown object that is a body.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshedBody {
-    name: Arc<str>,
+    pub name: Arc<str>,
     kind: Arc<str>,
-    colour: i32,
-    tags: Vec<Arc<str>>,
-    reversed: bool,
+    pub colour: i32,
+    pub tags: Vec<Arc<str>>,
+    pub reversed: bool,
     pub facets: Arc<TriangleBody<f64>>,
     /// The parameters at which its border is divided, curve by curve; none when it has no border.
-    divided: Vec<Vec<f64>>,
+    pub divided: Vec<Vec<f64>>,
     /// The patch without panels that stands for each curve of its border, where there is one.
     border_curves: Vec<Option<usize>>,
     /// Which of its vertices are those of each curve.
-    border_vertices: Vec<Vec<u32>>,
+    pub border_vertices: Vec<Vec<u32>>,
     /// The number of each of its vertices in the mesh, and which are its own.
-    vertices: Vec<u32>,
+    pub vertices: Vec<u32>,
     own: Vec<u32>,
 }
 

@@ -10,6 +10,7 @@ mod arrays;
 mod blocks;
 mod diagnostics;
 mod document;
+mod engine;
 mod error;
 mod fair;
 mod foreign;
@@ -17,6 +18,7 @@ mod formats;
 mod grids;
 mod implicit;
 mod mesh;
+mod nurbs;
 mod reference;
 mod search;
 mod sketch;
@@ -41,6 +43,8 @@ mod _core {
     #[pymodule_export]
     use crate::document::{PyDocument, format_text};
     #[pymodule_export]
+    use crate::engine::{PySession, engine};
+    #[pymodule_export]
     use crate::fair::{
         Look, Net, Spline, Web, data_findings, detectable, divided_differences, eta_y,
         monotone_runs,
@@ -56,6 +60,8 @@ mod _core {
     use crate::implicit::{PyFacets, PyField, PySet};
     #[pymodule_export]
     use crate::mesh::PyMesh;
+    #[pymodule_export]
+    use crate::nurbs::{brep, length_unit, nurbs};
     #[pymodule_export]
     use crate::reference::reference;
     #[pymodule_export]

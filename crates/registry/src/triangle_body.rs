@@ -1,6 +1,6 @@
 //! Bodies bounded by triangles and open sheets of them, with borders that can be divided anew, and their measures.
 
-use crate::CurveRef;
+use crate::{CurveRef, SurfaceRef};
 use moldloft_num::{Real, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -50,8 +50,14 @@ pub struct BorderCurve<T: Real> {
 /// A sheet of triangles whose border runs along curves, so that it can be made anew with the
 /// divisions that its neighbours have there.
 pub trait TriangulatedBorder<T: Real>: Send + Sync {
+    /// The surface that it is a part of.
+    fn surface(&self) -> &SurfaceRef<T>;
+
     /// The curves of the border.
     fn curves(&self) -> &[BorderCurve<T>];
+
+    /// The curves of each loop in order, the outer loop first, and whether each runs against it.
+    fn cycles(&self) -> &[Vec<(usize, bool)>];
 
     /// The sheet whose border has vertices at these parameters of each curve, ascending from 0 to 1,
     /// and for each curve which of its vertices these are; `None` when such a border crosses itself.

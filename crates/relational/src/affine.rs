@@ -1,6 +1,6 @@
 //! Maps of space by which curves and points are copied and turned.
 
-use moldloft_num::{Axis, Curve, CurveJet, Order, Real, Vec3};
+use moldloft_num::{Axis, Curve, CurveJet, Order, Rational, Real, Vec3};
 use moldloft_registry::CurveRef;
 
 /// The map p -> to + M (p - from).
@@ -68,5 +68,9 @@ impl<T: Real> Curve<T> for Mapped<T> {
 
     fn joints(&self) -> Vec<f64> {
         self.curve.joints()
+    }
+
+    fn rational(&self) -> Rational<1> {
+        self.curve.rational()
     }
 }

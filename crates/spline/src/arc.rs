@@ -1,7 +1,7 @@
 //! Circular arcs by three points, uniform in angle.
 
 use crate::even_functions::{atanc_of_sq, cos_of_sq, sinc_of_sq};
-use moldloft_num::{Curve, CurveJet, Jet, Order, Real, Vec3, curve_jet_of};
+use moldloft_num::{Curve, CurveJet, Jet, Order, Pace, Rational, Real, Vec3, curve_jet_of};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
@@ -268,5 +268,9 @@ fn finite<T: Real>(points: [Vec3<T>; 3]) -> Result<(), ArcError> {
 impl<T: Real> Curve<T> for Arc<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
         curve_jet_of!(self, Self::at, t, order)
+    }
+
+    fn rational(&self) -> Rational<1> {
+        Rational::paced([Pace::Angle(self.angle().re())])
     }
 }

@@ -1,7 +1,7 @@
 //! B-spline curves of any degree, rational ones among them.
 
 use crate::{Basis, KnotError, KnotVector, PiecewiseCubic};
-use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use moldloft_num::{Curve, CurveJet, Order, Rational, Real, Vec3};
 use std::fmt;
 
 /// Why there is no such spline.
@@ -233,6 +233,17 @@ impl<T: Real> Curve<T> for BSplineCurve<T> {
 
     fn joints(&self) -> Vec<f64> {
         self.knots.joints()
+    }
+
+    fn rational(&self) -> Rational<1> {
+        let Some(weights) = &self.weights else { return Rational::none() };
+        let weights: Vec<f64> = weights.iter().map(|w| w.re()).collect();
+        let knots = self.knots.clone();
+        let weight = move |[t]: [f64; 1]| {
+            let basis = knots.basis(t, Order::Zero);
+            basis.rows[0].iter().zip(&weights[basis.first..]).map(|(b, w)| b * w).sum()
+        };
+        Rational { weight: Some(Box::new(weight)), ..Rational::none() }
     }
 }
 

@@ -30,6 +30,7 @@ mod even_functions;
 pub mod foil;
 mod interpolating;
 mod knot_vector;
+pub mod nurbs;
 mod parametrization;
 mod patches;
 mod piecewise;

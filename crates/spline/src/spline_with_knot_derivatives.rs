@@ -2,7 +2,7 @@
 
 use crate::curve::SplineError;
 use crate::{KnotError, KnotVector, MAX_DEGREE};
-use moldloft_num::{Banded, CurveFormula, Jet, Real, Vec3};
+use moldloft_num::{Banded, CurveFormula, Jet, Order, Rational, Real, Vec3};
 use smallvec::{SmallVec, smallvec};
 
 /// A rational B-spline curve whose knots are scalars, so that derivatives by them are known; on
@@ -199,13 +199,24 @@ impl<T: Real> CurveFormula for SplineWithKnotDerivatives<T> {
         breaks.dedup();
         breaks
     }
+
+    fn rational(&self) -> Rational<1> {
+        let knots = KnotVector::new(self.degree, self.knots.iter().map(|k| k.re()).collect());
+        let Some(knots) = knots.ok().filter(|_| self.rational) else { return Rational::none() };
+        let weights: Vec<f64> = self.points.iter().map(|(_, w)| w.re()).collect();
+        let weight = move |[t]: [f64; 1]| {
+            let basis = knots.basis(t, Order::Zero);
+            basis.rows[0].iter().zip(&weights[basis.first..]).map(|(b, w)| b * w).sum()
+        };
+        Rational { weight: Some(Box::new(weight)), ..Rational::none() }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::BSplineCurve;
-    use moldloft_num::{Curve, Dual, Order};
+    use moldloft_num::{Curve, Dual};
 
     fn points(n: usize) -> Vec<Vec3> {
         (0..n).map(|k| Vec3::of(k as f64, (k * k % 5) as f64, 0.3 * k as f64)).collect()

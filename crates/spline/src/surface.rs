@@ -3,7 +3,7 @@
 use crate::curve::check_net;
 use crate::patches::Patches;
 use crate::{Basis, KnotVector, SplineError};
-use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
+use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Vec3};
 use std::sync::OnceLock;
 
 /// A tensor-product B-spline surface of any degrees on [0, 1] x [0, 1], rational if it has weights.
@@ -138,5 +138,21 @@ impl<T: Real> Surface<T> for BSplineSurface<T> {
 
     fn joints(&self) -> [Vec<f64>; 2] {
         [self.u.joints(), self.v.joints()]
+    }
+
+    fn rational(&self) -> Rational<2> {
+        let Some(weights) = &self.weights else { return Rational::none() };
+        let weights: Vec<f64> = weights.iter().map(|w| w.re()).collect();
+        let (u_knots, v_knots) = (self.u.clone(), self.v.clone());
+        let columns = v_knots.points();
+        let weight = move |[u, v]: [f64; 2]| {
+            let (bu, bv) = (u_knots.basis(u, Order::Zero), v_knots.basis(v, Order::Zero));
+            let row = |i: usize| {
+                let from = (bu.first + i) * columns + bv.first;
+                bv.rows[0].iter().zip(&weights[from..]).map(|(b, w)| b * w).sum::<f64>()
+            };
+            bu.rows[0].iter().enumerate().map(|(i, b)| b * row(i)).sum()
+        };
+        Rational { weight: Some(Box::new(weight)), ..Rational::none() }
     }
 }

@@ -24,6 +24,8 @@ COMMANDS = {
     "convert": "convert between programs, model files, tables of offsets and sketches",
     "formats": "print the table of file formats",
     "graph": "draw the dependency graph as SVG",
+    "view": "open the workbench: see, edit and drag a model in the browser",
+    "export": "write a model as one page that opens offline",
     "render": "render a picture without a display",
     "sketch": "run a sketch file, or open a sketch prompt",
     "fair": "fair points, a curve or a surface within a certified tolerance",

@@ -24,6 +24,7 @@ __all__ = [
     "print_json",
     "report",
     "table",
+    "water",
 ]
 
 
@@ -177,3 +178,16 @@ class Progress:
             elif self._said != self._stage:
                 print(f"{self._stage} …", file=sys.stderr, flush=True)
             self._said = self._stage
+
+
+def water(text: str) -> float | str:
+    """A water by name, or its density."""
+    from moldloft.units import WATERS
+
+    if text in WATERS:
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        names = ", ".join(WATERS)
+        raise argparse.ArgumentTypeError(f"`{text}` is neither {names} nor a number") from None

@@ -1,4 +1,4 @@
-"""``moldloft convert``: between programs, model files, offsets, and into every other format."""
+"""``moldloft convert``: programs, model files, offsets and CAD files into every other format."""
 
 from __future__ import annotations
 
@@ -26,6 +26,12 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output, for text")
     parser.add_argument(
+        "--units",
+        choices=["m", "cm", "mm", "ft", "in"],
+        default="m",
+        help="of STEP and IGES files: the model's unit, into which lengths are converted (m)",
+    )
+    parser.add_argument(
         "--curves",
         choices=["CCurve", "BCurve"],
         default="CCurve",
@@ -40,6 +46,8 @@ def run(options: argparse.Namespace) -> int:
 
     target = Path(options.output) if options.output else None
     ending = target.suffix.lstrip(".").lower() if target else ""
+    if options.model.lower().endswith((".step", ".stp", ".iges", ".igs")):
+        return _from_cad(options, target, format_named(options.to or ending or "sdl"))
     if options.model.lower().endswith(".csv"):
         return _from_offsets(options, target, format_named(options.to or ending or "sdl"))
     model = open_model(options)
@@ -57,6 +65,27 @@ def run(options: argparse.Namespace) -> int:
         sys.stdout.write(output.data.decode())
     else:
         raise Error(f"{form} is binary and cannot be printed: name the file with -o")
+    return 0
+
+
+def _from_cad(options: argparse.Namespace, target: Path | None, form: str) -> int:
+    from moldloft.cad.importing import program
+    from moldloft.files import Output, commit, produce
+    from moldloft.models import loads
+
+    text, remarks = program(options.model, units=options.units)
+    for remark in remarks:
+        print(f"warning: {options.model}: {remark}", file=sys.stderr)
+    if form == "sdl":
+        if target is None:
+            sys.stdout.write(text)
+        else:
+            commit(target.parent, [Output(target.name, text.encode())])
+        return 0
+    if target is None:
+        raise Error(f"name the {form} file with -o")
+    model = loads(text, name=f"{Path(options.model).stem}.sdl")
+    commit(target.parent, produce(model, form, target))
     return 0
 
 

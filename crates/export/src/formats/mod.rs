@@ -8,7 +8,9 @@ mod gdf_high;
 mod glb;
 mod hams;
 mod hydrostar;
+mod iges;
 mod model_file;
+mod msh;
 mod nemoh;
 mod obj;
 mod off;
@@ -16,7 +18,10 @@ mod p3d;
 mod ply;
 mod png;
 mod program;
+mod step;
 mod stl;
+mod stl_text;
+mod su2;
 mod svg;
 mod threemf;
 mod volume_p3d;
@@ -41,10 +46,13 @@ pub static FORMATS: &[Format] = &[
     hams::FORMAT,
     aqwa::FORMAT,
     stl::FORMAT,
+    stl_text::FORMAT,
     threemf::FORMAT,
     obj::FORMAT,
     off::FORMAT,
     ply::FORMAT,
+    msh::FORMAT,
+    su2::FORMAT,
     glb::FORMAT,
     vtp::FORMAT,
     vts::FORMAT,
@@ -52,6 +60,8 @@ pub static FORMATS: &[Format] = &[
     volume_p3d::FORMAT,
     volume_vts::FORMAT,
     volume_vtu::FORMAT,
+    step::FORMAT,
+    iges::FORMAT,
     svg::FORMAT,
     png::FORMAT,
     program::FORMAT,

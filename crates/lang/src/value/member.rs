@@ -1,10 +1,11 @@
 //! What values own: `.x`, `.t`, `.length`, `.area` and the like.
 
 use moldloft_diag::Diagnostic;
-use moldloft_mesh::{Blocks, HexBlock, Mesh, PatchInfo, TopologyBuilder, measure};
-use moldloft_model::{Graph, Object};
+use moldloft_hydro::{USUAL_ACCURACY, surface_measures};
+use moldloft_mesh::{Blocks, HexBlock};
+use moldloft_model::Object;
 use moldloft_num::{Order, Real, Vec3, gauss_legendre};
-use moldloft_panel::{MOST_CELLS, MOST_PANELS, divisions, solid_grid, too_many_panels};
+use moldloft_panel::{MOST_CELLS, solid_grid};
 use moldloft_registry::{Array, ArrayShape, Scalar, SolidRef, Value, Vectors};
 use std::sync::Arc;
 
@@ -110,39 +111,44 @@ fn own_names<T: Real>(value: &Value<T>) -> Vec<&'static str> {
         Value::Vectors(_) => vec!["x", "y", "z", "d1"],
         Value::Numbers(_) | Value::List(_) => vec!["d1"],
         Value::Curve(_) => vec!["length"],
-        Value::Surface(_) => vec!["area"],
+        Value::Surface(_) => vec!["area", "centroid", "volume"],
         Value::Body(_) => [&["volume", "area", "centroid"][..], &FLAWS].concat(),
         Value::Solid(_) => vec!["volume"],
         _ => Vec::new(),
     }
 }
 
-/// The area of a surface object, measured on its panels, or the volume of a solid, on its cells.
-pub fn of_patch<T: Scalar>(
-    graph: &Graph<T>,
-    object: &Object<T>,
-    name: &str,
-) -> Option<Result<T, Diagnostic>> {
+/// The area, the centre of the area, or the enclosed volume of a surface; the volume of a solid, on its cells.
+pub fn of_patch<T: Scalar>(object: &Object<T>, name: &str) -> Option<Result<Value<T>, Diagnostic>> {
     if let Value::Solid(solid) = object.value()? {
-        return (name == "volume").then(|| solid_volume(solid, object));
+        return (name == "volume").then(|| solid_volume(solid, object).map(Value::Number));
     }
     let Value::Surface(surface) = object.value()? else { return None };
-    if name != "area" {
+    if !matches!(name, "area" | "centroid" | "volume") {
         return None;
     }
-    let [nu, nv] = divisions(graph, object).map(|n| n as usize);
-    let panels = nu as u64 * nv as u64;
-    if panels > MOST_PANELS {
-        return Some(Err(crate::source::fault_location::unplaced(&too_many_panels(panels))));
-    }
-    let steps = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();
-    let mut points = vec![Vec3::zero(); (nu + 1) * (nv + 1)];
-    surface.grid(&steps(nu), &steps(nv), &mut points, None);
-    let mut builder = TopologyBuilder::new();
-    let vertices = builder.add_vertices(points.len()).ok()?;
-    builder.add_block(PatchInfo::new(""), nu + 1, nv + 1, vertices.collect(), false).ok()?;
-    Some(Ok(measure(&Mesh::new(builder.build().into(), points).ok()?).area))
+    let Some(measures) = surface_measures(&**surface, USUAL_ACCURACY) else {
+        return Some(Err(not_finite()));
+    };
+    Some(match name {
+        "area" => Ok(Value::Number(measures.area)),
+        "centroid" => Ok(Value::Vector(measures.area_centre)),
+        _ if measures.open <= CLOSED * measures.area.re() => {
+            Ok(Value::Number(measures.volume.abs()))
+        }
+        _ => Err(Diagnostic::error("not-closed", format!("`{}` encloses no volume", object.name))
+            .expected("a closed surface")
+            .help("`hydrostatics.volume` is that of all shown surfaces below the water")),
+    })
 }
+
+/// The fault of a surface without finite places.
+pub fn not_finite() -> Diagnostic {
+    Diagnostic::error("no-body", "a surface has places that are not finite, so it has no measures")
+}
+
+/// The integral of the normal of a closed surface is this share of its area at most.
+const CLOSED: f64 = 1e-7;
 
 /// Cells along a direction of which the solid itself says nothing.
 const USUAL_CELLS: usize = 8;

@@ -1,8 +1,9 @@
 //! Nets of surfaces, and curves that share points.
 
+use super::arguments::{certificate, fair_error, floats, measure, refused, space, vectors};
+use super::look::Look;
 use super::solve::{bound, contradiction, end, get, goal, motion};
 use super::spline::spacing;
-use super::{Look, certificate, fair_error, floats, measure, refused, space, vectors};
 use crate::arrays;
 use moldloft_fair::{
     Condition, End, FairError, GridData, Layout, Limit, Measure, Network, NetworkCurve,

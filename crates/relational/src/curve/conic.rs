@@ -1,6 +1,6 @@
 //! Conic sections by three points and a shape factor.
 
-use moldloft_num::{CurveFormula, Jet, Real, Vec3};
+use moldloft_num::{CurveFormula, Jet, Pace, Rational, Real, Vec3};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, Point, Value};
 
 /// A conic section in the plane of three points: C = P1 + f(a) (P2 - P1) + g(a) (P3 - P1), where
@@ -72,5 +72,12 @@ impl<T: Real> CurveFormula for Oblique<T> {
         self.centre.map(J::fixed)
             + self.first.map(|x| f.scaled(x))
             + self.second.map(|x| g.scaled(x))
+    }
+
+    fn rational(&self) -> Rational<1> {
+        match self.kind {
+            1 => Rational::paced([Pace::Angle((self.a2 - self.a1).re())]),
+            _ => Rational::none(),
+        }
     }
 }

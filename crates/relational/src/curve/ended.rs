@@ -1,7 +1,7 @@
 //! Curves of their own between point objects: what joins them to their neighbours.
 
 use moldloft_num::trace::{Key, Trace};
-use moldloft_num::{Curve, CurveJet, Order, Real, Vec3};
+use moldloft_num::{Curve, CurveJet, Order, Rational, Real, Vec3};
 
 /// A curve of its own that begins and ends at point objects.
 pub struct Ended<C> {
@@ -26,5 +26,8 @@ impl<T: Real, C: Curve<T>> Curve<T> for Ended<C> {
     }
     fn trace(&self) -> Trace<T> {
         Trace::Own(self.ends)
+    }
+    fn rational(&self) -> Rational<1> {
+        self.curve.rational()
     }
 }

@@ -1,6 +1,6 @@
 //! Mirror images of curves, which know their originals.
 
-use moldloft_num::{Curve, CurveJet, Order, Real, Reparametrization, Vec3};
+use moldloft_num::{Curve, CurveJet, Order, Rational, Real, Reparametrization, Vec3};
 use moldloft_registry::{CurveRef, Kind, MirrorArgument};
 use std::sync::Arc;
 
@@ -44,5 +44,9 @@ impl<T: Real> Curve<T> for MirrCurve<T> {
 
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
+    }
+
+    fn rational(&self) -> Rational<1> {
+        self.curve.rational()
     }
 }

@@ -76,6 +76,10 @@ impl<T: Real> Curve<T> for Moved<T> {
         self.curve.breaks()
     }
 
+    fn joints(&self) -> Vec<f64> {
+        self.curve.joints()
+    }
+
     fn law(&self) -> Option<Arc<dyn Reparametrization<T>>> {
         self.curve.law()
     }

@@ -461,7 +461,7 @@ struct Projected<T: Real> {
 
 impl<T: Real> Curve<T> for Projected<T> {
     fn jet(&self, t: T, order: Order) -> CurveJet<T> {
-        super::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
+        super::on_surface::on_surface_jet(&self.path.surface, self.path.place(t, order), order)
     }
 
     /// Place by place, as single ones: none depends on the others.
@@ -484,7 +484,7 @@ impl<T: Real> Curve<T> for Projected<T> {
             let w = self.path.place(T::from(t), Order::Zero)[0].re();
             [w.x, w.y]
         };
-        super::crossings(&self.path.surface.breaks(), own, &nodes, at)
+        super::on_surface::crossings(&self.path.surface.breaks(), own, &nodes, at)
     }
 
     fn trace(&self) -> Trace<T> {

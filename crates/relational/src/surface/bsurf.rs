@@ -3,7 +3,7 @@
 use super::free_knots::{FreeKnots, FreeNet};
 use crate::faults;
 use moldloft_num::trace::{Edges, Key};
-use moldloft_num::{Order, Real, SurfJet, Surface, Vec3};
+use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
     Build, CallError, Context, FieldId, Kind, Point, Scalar, SurfaceRef, Value,
 };
@@ -179,6 +179,10 @@ impl<T: Real> Surface<T> for Net<T> {
 
     fn joints(&self) -> [Vec<f64>; 2] {
         self.surface.joints()
+    }
+
+    fn rational(&self) -> Rational<2> {
+        self.surface.rational()
     }
 
     fn edges(&self) -> Edges<T> {

@@ -115,14 +115,21 @@ impl<T: Real> Boundary<T> {
     }
 
     pub fn breaks(&self) -> [Vec<f64>; 2] {
-        let merged = |a: usize, b: usize| {
+        self.merged(|curve| curve.breaks())
+    }
+
+    pub fn joints(&self) -> [Vec<f64>; 2] {
+        self.merged(|curve| curve.joints())
+    }
+
+    fn merged(&self, of: impl Fn(&CurveRef<T>) -> Vec<f64>) -> [Vec<f64>; 2] {
+        [(0, 2), (1, 3)].map(|(a, b)| {
             let both = [self.curves.get(a), self.curves.get(b)];
-            let mut all: Vec<f64> = both.into_iter().flatten().flat_map(|c| c.breaks()).collect();
+            let mut all: Vec<f64> = both.into_iter().flatten().flat_map(&of).collect();
             all.sort_by(f64::total_cmp);
             all.dedup();
             all
-        };
-        [merged(0, 2), merged(1, 3)]
+        })
     }
 
     pub fn edges(&self) -> Edges<T> {
@@ -160,6 +167,10 @@ impl<T: Real> SurfaceFormula for Patch<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         self.boundary.breaks()
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        self.boundary.joints()
     }
 
     fn edges(&self) -> Edges<T> {

@@ -1,7 +1,7 @@
 //! Rational B-spline surfaces whose knots are scalars: for derivatives by the knots.
 
 use moldloft_num::trace::{Edges, Key};
-use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
+use moldloft_num::{Jet, Rational, Real, SurfaceFormula, Uni1, Vec3};
 use smallvec::SmallVec;
 
 /// The knots in one direction.
@@ -87,5 +87,27 @@ impl<T: Real> SurfaceFormula for FreeNet<T> {
 
     fn edges(&self) -> Edges<T> {
         Edges { corners: self.corners, ..Edges::own() }
+    }
+
+    fn rational(&self) -> Rational<2> {
+        let Some(weights) = &self.weights else { return Rational::none() };
+        let weights: Vec<f64> = weights.iter().map(|w| w.re()).collect();
+        let plain = |k: &FreeKnots<T>| FreeKnots {
+            degree: k.degree,
+            knots: k.knots.iter().map(|k| k.re()).collect::<Vec<f64>>(),
+        };
+        let [u_knots, v_knots] = self.knots.each_ref().map(plain);
+        let columns = v_knots.knots.len() - v_knots.degree - 1;
+        let weight = move |[u, v]: [f64; 2]| {
+            // Jets of no order would do: these carry slopes that are not looked at.
+            let [(first_u, by_u), (first_v, by_v)] =
+                [u_knots.basis(Uni1 { f: u, t: 0.0 }), v_knots.basis(Uni1 { f: v, t: 0.0 })];
+            let row = |i: usize| {
+                let from = (first_u + i) * columns + first_v;
+                by_v.iter().zip(&weights[from..]).map(|(b, w)| b.f * w).sum::<f64>()
+            };
+            by_u.iter().enumerate().map(|(i, b)| b.f * row(i)).sum()
+        };
+        Rational { weight: Some(Box::new(weight)), ..Rational::none() }
     }
 }

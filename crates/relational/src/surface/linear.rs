@@ -3,7 +3,7 @@
 use super::chunk::{Chunk, LANES, Part, Plane};
 use super::masters::{Masters, Points};
 use moldloft_num::trace::Edges;
-use moldloft_num::{Order, Real, SurfJet, Surface, Uni1, Vec3};
+use moldloft_num::{Order, Rational, Real, SurfJet, Surface, Uni1, Vec3};
 use moldloft_spline::{Basis, KnotVector};
 
 /// Masters blended by the basis functions of a clamped knot vector.
@@ -150,6 +150,10 @@ impl<T: Real> Surface<T> for Blend<T> {
 
     fn joints(&self) -> [Vec<f64>; 2] {
         [self.masters.joints(), self.knots.joints()]
+    }
+
+    fn rational(&self) -> Rational<2> {
+        self.masters.rational()
     }
 
     fn edges(&self) -> Edges<T> {

@@ -1,7 +1,7 @@
 //! Images of surfaces, point by point, under maps of space.
 
 use moldloft_num::trace::Key;
-use moldloft_num::{Axis, Order, Real, SurfJet, Surface, Vec3};
+use moldloft_num::{Axis, Order, Rational, Real, SurfJet, Surface, Vec3};
 use moldloft_registry::{
     Build, CallError, Context, Kind, MirrorArgument, Point, SurfaceRef, Value,
 };
@@ -109,6 +109,10 @@ impl<T: Real> Surface<T> for Image<T> {
 
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, self.map.reverses()))
+    }
+
+    fn rational(&self) -> Rational<2> {
+        self.surface.rational()
     }
 }
 
@@ -281,6 +285,10 @@ impl<T: Real> Surface<T> for Foot<T> {
 
     fn image_of(&self) -> Option<(Key, bool)> {
         Some((self.surface.key?, false))
+    }
+
+    fn rational(&self) -> Rational<2> {
+        self.surface.rational()
     }
 }
 

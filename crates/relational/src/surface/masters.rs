@@ -1,7 +1,7 @@
 //! What all lofts have in common: their master curves, and so their edges.
 
 use moldloft_num::trace::{Edge, Edges, Key, Piece, Trace};
-use moldloft_num::{Jet, Order, Real, Uni1, Vec3};
+use moldloft_num::{Jet, Order, Pace, Rational, Real, Uni1, Vec3, Weight};
 use moldloft_registry::{CallError, CurveRef, FieldId};
 use smallvec::SmallVec;
 
@@ -50,6 +50,31 @@ impl<T: Real> Masters<T> {
     /// The parameters u at which a master goes over to another formula.
     pub fn joints(&self) -> Vec<f64> {
         self.merged(|curve| curve.joints())
+    }
+
+    /// What makes surfaces rational that are linear in the masters: one pace along all, and the
+    /// product of their different weights.
+    pub fn rational(&self) -> Rational<2> {
+        let all: Vec<Rational<1>> = self.0.iter().map(|c| c.rational()).collect();
+        let [pace] = all[0].paces;
+        if all.iter().any(|r| r.paces != [pace]) {
+            return Rational::none();
+        }
+        let mut weights: Vec<Weight<1>> = Vec::new();
+        for weight in all.into_iter().filter_map(|r| r.weight) {
+            let samples = (0..=64).map(|k| [f64::from(k) / 64.0]);
+            let near = |x: f64, y: f64| (x - y).abs() <= 1e-15 * 8.0 * x.abs();
+            let known = |w: &Weight<1>| samples.clone().all(|s| near(w(s), weight(s)));
+            if !weights.iter().any(known) {
+                weights.push(weight);
+            }
+        }
+        let paces = [pace, Pace::Even];
+        if weights.is_empty() {
+            return Rational::paced(paces);
+        }
+        let weight: Weight<2> = Box::new(move |[u, _]| weights.iter().map(|w| w([u])).product());
+        Rational { paces, weight: Some(weight) }
     }
 
     fn merged(&self, of: impl Fn(&CurveRef<T>) -> Vec<f64>) -> Vec<f64> {

@@ -2,7 +2,7 @@
 
 use super::masters::{along, is_closed};
 use moldloft_num::trace::{Edge, Edges};
-use moldloft_num::{Axis, Jet, Order, Real, SurfaceFormula, Vec3};
+use moldloft_num::{Axis, Jet, Order, Pace, Rational, Real, SurfaceFormula, Vec3, Weight};
 use moldloft_registry::{Build, CallError, Context, CurveRef, Kind, SurfaceRef, Value};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -83,6 +83,16 @@ impl<T: Real> SurfaceFormula for Revolved<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.curve.breaks(), Vec::new()]
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        [self.curve.joints(), Vec::new()]
+    }
+
+    fn rational(&self) -> Rational<2> {
+        let Rational { paces: [pace], weight } = self.curve.rational();
+        let weight = weight.map(|w| Box::new(move |[u, _]: [f64; 2]| w([u])) as Weight<2>);
+        Rational { paces: [pace, Pace::Angle(self.sweep.re())], weight }
     }
 
     /// Edge v = 0 runs along the curve when the first angle is 0; after a full turn edge v = 1 is

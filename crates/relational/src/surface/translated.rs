@@ -2,7 +2,7 @@
 
 use super::masters::{along, is_closed};
 use moldloft_num::trace::{Edge, Edges};
-use moldloft_num::{Jet, Real, SurfaceFormula, Vec3};
+use moldloft_num::{Jet, Rational, Real, SurfaceFormula, Vec3, Weight};
 use moldloft_registry::{CurveRef, Kind};
 
 /// A curve moved along another: S(u, v) = C1(u) + (C2(v) - C2(0)).
@@ -30,6 +30,22 @@ impl<T: Real> SurfaceFormula for TranSurf<T> {
 
     fn breaks(&self) -> [Vec<f64>; 2] {
         [self.c1.breaks(), self.c2.breaks()]
+    }
+
+    fn joints(&self) -> [Vec<f64>; 2] {
+        [self.c1.joints(), self.c2.joints()]
+    }
+
+    fn rational(&self) -> Rational<2> {
+        let (a, b) = (self.c1.rational(), self.c2.rational());
+        let paces = [a.paces[0], b.paces[0]];
+        let weight: Option<Weight<2>> = match (a.weight, b.weight) {
+            (Some(a), Some(b)) => Some(Box::new(move |[u, v]| a([u]) * b([v]))),
+            (Some(a), None) => Some(Box::new(move |[u, _]| a([u]))),
+            (None, Some(b)) => Some(Box::new(move |[_, v]| b([v]))),
+            (None, None) => None,
+        };
+        Rational { paces, weight }
     }
 
     /// Edge v = 0 runs along the first curve; where both curves begin in one point object, edge

@@ -126,6 +126,14 @@ struct Trimmed<T: Real> {
 }
 
 impl<T: Real> TriangulatedBorder<T> for Trimmed<T> {
+    fn surface(&self) -> &SurfaceRef<T> {
+        &self.surface
+    }
+
+    fn cycles(&self) -> &[Vec<(usize, bool)>] {
+        &self.cycles
+    }
+
     fn curves(&self) -> &[BorderCurve<T>] {
         &self.hems
     }

@@ -6,4 +6,5 @@ mod bspline_surface;
 mod common;
 mod distribution;
 mod interpolating;
+mod nurbs;
 mod relabel_arclen;

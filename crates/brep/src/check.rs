@@ -1,0 +1,126 @@
+//! Shells: which faces hang together, whether they close, and what is wrong with them.
+
+use crate::{Brep, Shell};
+
+/// What counts of a shell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShellFacts {
+    /// Vertices, edges, faces, loops.
+    pub counts: [usize; 4],
+    /// Edges with one side.
+    pub open: usize,
+    /// Edges with more than two sides.
+    pub crowded: usize,
+}
+
+impl ShellFacts {
+    /// V - E + F - (loops - F): 2 for a sphere, 0 for a torus.
+    pub fn euler(&self) -> isize {
+        let [v, e, f, l] = self.counts.map(|n| n as isize);
+        v - e + f - (l - f)
+    }
+}
+
+/// What is wrong with a boundary representation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// A loop's sides do not follow one another: face, loop.
+    Broken(usize, usize),
+    /// Two sides of an edge run along it the same way: edge.
+    Senses(usize),
+}
+
+impl Brep {
+    /// Groups the faces into shells: those that share an edge with two sides of opposite senses.
+    pub fn shells(&self) -> Vec<Shell> {
+        let mut sides: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.edges.len()];
+        for (f, face) in self.faces.iter().enumerate() {
+            for side in face.loops.iter().flatten() {
+                sides[side.edge].push((f, side.forward));
+            }
+        }
+        let mut first: Vec<usize> = (0..self.faces.len()).collect();
+        fn root(first: &mut [usize], mut k: usize) -> usize {
+            while first[k] != k {
+                first[k] = first[first[k]];
+                k = first[k];
+            }
+            k
+        }
+        for users in &sides {
+            if let [(a, forward), (b, other)] = users[..]
+                && forward != other
+            {
+                let (a, b) = (root(&mut first, a), root(&mut first, b));
+                first[a.max(b)] = a.min(b);
+            }
+        }
+        let mut shells: Vec<(usize, Shell)> = Vec::new();
+        for f in 0..self.faces.len() {
+            let own = root(&mut first, f);
+            match shells.iter_mut().find(|(k, _)| *k == own) {
+                Some((_, shell)) => shell.faces.push(f),
+                None => shells.push((own, Shell { faces: vec![f], closed: true })),
+            }
+        }
+        let mut owner = vec![usize::MAX; self.faces.len()];
+        for (k, (_, shell)) in shells.iter().enumerate() {
+            shell.faces.iter().for_each(|&f| owner[f] = k);
+        }
+        for users in &sides {
+            let paired = matches!(users[..], [(_, a), (_, b)] if a != b);
+            if !paired {
+                for (f, _) in users {
+                    shells[owner[*f]].1.closed = false;
+                }
+            }
+        }
+        shells.into_iter().map(|(_, shell)| shell).collect()
+    }
+
+    /// The counts of a shell.
+    pub fn facts(&self, shell: &Shell) -> ShellFacts {
+        let mut uses = vec![0usize; self.edges.len()];
+        let mut used = vec![false; self.vertices.len()];
+        let mut loops = 0;
+        for &f in &shell.faces {
+            loops += self.faces[f].loops.len();
+            for side in self.faces[f].loops.iter().flatten() {
+                uses[side.edge] += 1;
+                self.edges[side.edge].ends.iter().for_each(|&v| used[v] = true);
+            }
+        }
+        let edges = uses.iter().filter(|&&n| n > 0).count();
+        ShellFacts {
+            counts: [used.iter().filter(|&&u| u).count(), edges, shell.faces.len(), loops],
+            open: uses.iter().filter(|&&n| n == 1).count(),
+            crowded: uses.iter().filter(|&&n| n > 2).count(),
+        }
+    }
+
+    /// What is wrong: loops with gaps, edges whose sides run the same way.
+    pub fn faults(&self) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        let mut sides: Vec<Vec<bool>> = vec![Vec::new(); self.edges.len()];
+        for (f, face) in self.faces.iter().enumerate() {
+            for (k, cycle) in face.loops.iter().enumerate() {
+                let end = |i: usize, last: bool| {
+                    let side = &cycle[i % cycle.len()];
+                    self.edges[side.edge].ends[usize::from(side.forward == last)]
+                };
+                if (0..cycle.len()).any(|i| end(i, true) != end(i + 1, false)) {
+                    faults.push(Fault::Broken(f, k));
+                }
+            }
+            for side in face.loops.iter().flatten() {
+                sides[side.edge].push(side.forward);
+            }
+        }
+        for (e, users) in sides.iter().enumerate() {
+            if users.len() == 2 && users[0] == users[1] {
+                faults.push(Fault::Senses(e));
+            }
+        }
+        faults
+    }
+}

@@ -1,0 +1,136 @@
+//! Boundary representations: vertices, edges with their curves, faces with their surfaces and loops, shells and
+//! named parts. What two faces share is one edge, by its number.
+//!
+//! `faces of a model -> Brep -> encoders of CAD formats`
+//!
+//! A face's normal is that of its surface (S_u x S_v), or the opposite where the face is reversed, and points out of
+//! the material; its outer loop runs counter-clockwise seen against it, its other loops clockwise.
+//!
+//! Invariant: this crate knows no entity, no file and no format.
+
+mod check;
+mod image;
+
+pub use check::{Fault, ShellFacts};
+
+use moldloft_num::Vec3;
+use moldloft_spline::nurbs::Nurbs;
+
+/// Vertices, edges, faces and the parts that they make.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Brep {
+    /// Positions of the vertices.
+    pub vertices: Vec<Vec3>,
+    /// The edges.
+    pub edges: Vec<Edge>,
+    /// The faces.
+    pub faces: Vec<Face>,
+    /// The parts.
+    pub parts: Vec<Part>,
+    /// A bound of the distances between edges, vertices and the surfaces that they lie on.
+    pub gap: f64,
+}
+
+/// An edge from a vertex to a vertex.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edge {
+    /// The vertices at its ends; one vertex twice for a closed edge.
+    pub ends: [usize; 2],
+    /// Its curve, from the first vertex at 0 to the second at 1.
+    pub curve: Nurbs<1>,
+}
+
+/// A part of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    /// Its name.
+    pub name: String,
+    /// Its colour, sRGB.
+    pub colour: Option<[u8; 3]>,
+    /// The layers that it is on.
+    pub layers: Vec<String>,
+    /// Its surface.
+    pub surface: SurfaceShape,
+    /// True when its normal is opposite to that of the surface.
+    pub reversed: bool,
+    /// Its loops, the outer one first.
+    pub loops: Vec<Vec<Side>>,
+    /// A bound of the distance between this surface and that of the model.
+    pub error: f64,
+    /// True when the surface is that of the model but for rounding.
+    pub exact: bool,
+}
+
+/// A side of a loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// The edge that it runs along.
+    pub edge: usize,
+    /// True when the loop runs from the edge's first vertex to its second.
+    pub forward: bool,
+    /// The same curve in the parameters (u, v, 0) of the surface, where it is known; of planes it is not.
+    pub trace: Option<Nurbs<1>>,
+    /// True when the trace is at the edge's place at equal parameters.
+    pub alike: bool,
+}
+
+/// The surface of a face.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SurfaceShape {
+    /// A plane.
+    Plane {
+        /// A point of it.
+        origin: Vec3,
+        /// Its unit normal.
+        normal: Vec3,
+        /// A unit vector in it.
+        axis: Vec3,
+    },
+    /// A NURBS.
+    Nurbs(Box<Nurbs<2>>),
+}
+
+/// A named thing: shells, or curves and points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// Its name.
+    pub name: String,
+    /// Its shells.
+    pub shells: Vec<Shell>,
+    /// Curves that bound no face.
+    pub wires: Vec<Wire>,
+}
+
+/// Faces that hang together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shell {
+    /// The faces.
+    pub faces: Vec<usize>,
+    /// True when each edge has two sides, of opposite senses: the shell bounds a solid.
+    pub closed: bool,
+}
+
+/// A curve that bounds no face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wire {
+    /// Its name.
+    pub name: String,
+    /// Its colour, sRGB.
+    pub colour: Option<[u8; 3]>,
+    /// The layers that it is on.
+    pub layers: Vec<String>,
+    /// The curve.
+    pub curve: Nurbs<1>,
+}
+
+impl Brep {
+    /// The largest error of its faces.
+    pub fn error(&self) -> f64 {
+        self.faces.iter().map(|f| f.error).fold(0.0, f64::max)
+    }
+
+    /// True when all faces are exact but for rounding.
+    pub fn exact(&self) -> bool {
+        self.faces.iter().all(|f| f.exact)
+    }
+}

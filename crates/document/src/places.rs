@@ -1,0 +1,67 @@
+//! Where objects and numbers are in the text, for those who change a model by hand.
+
+use crate::document::{Document, Source};
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_syntax::sdl::StmtKind;
+
+impl Document {
+    /// The name of an object where it is declared, when that is in the main text.
+    pub fn declaration(&self, name: &str) -> Option<Span> {
+        let graph = self.graph();
+        let span = self.declared_at(&self.plain, graph.get(graph.find(name)?)?)?;
+        (self.sources.ids().next() == Some(span.file)).then_some(span)
+    }
+
+    /// Whether [`Document::set`] can change the number of an object, such as `P21.y`.
+    ///
+    /// # Errors
+    /// Why it cannot, and what else to set.
+    pub fn settable(&self, name: &str) -> Result<(), Diagnostic> {
+        self.literal(name, 0.0).map(drop)
+    }
+
+    /// True when the text states the value of a parameter as a number.
+    pub fn param_is_number(&self, name: &str) -> bool {
+        self.param_literal(name).is_some()
+    }
+
+    /// Writes changed values of parameters into the text, where it states them as numbers; what cannot be
+    /// written stays as it was set. Returns the names of both.
+    pub fn write_params(&mut self) -> (Vec<String>, Vec<String>) {
+        let set: Vec<(String, f64)> = self.overrides.iter().map(|(n, x)| (n.clone(), *x)).collect();
+        let (mut written, mut kept) = (Vec::new(), Vec::new());
+        for (name, value) in set {
+            let Some(literal) = self.param_literal(&name) else {
+                kept.push(name);
+                continue;
+            };
+            if self.modules.get_mut(0).program.set_literal(literal, value).is_ok() {
+                self.overrides.shift_remove(&name);
+                written.push(name);
+            }
+        }
+        (written, kept)
+    }
+
+    /// Parameters take the values of the text again, all but those named; the next run shows it.
+    pub fn forget_params(&mut self, but: &[String]) {
+        self.overrides.retain(|name, _| but.contains(name));
+    }
+
+    fn param_literal(&self, name: &str) -> Option<moldloft_syntax::sdl::LiteralId> {
+        if !matches!(self.source, Source::Program) {
+            return None;
+        }
+        let param = self.params().iter().find(|p| p.name == name)?;
+        let program = &self.modules.get(0).program;
+        if param.span.file != program.file() {
+            return None;
+        }
+        program[program.body()].iter().find_map(|&stmt| match program[stmt].kind {
+            StmtKind::Param { name: ident, value, .. } if program.name(ident.symbol) == name => {
+                program.as_literal(value)
+            }
+            _ => None,
+        })
+    }
+}

@@ -1,0 +1,367 @@
+//! Sides of faces cut into runs between common vertices; runs that are one become one edge.
+
+use super::faces::{not_fitted, plane};
+use crate::Failure;
+use moldloft_brep::{Brep, Edge, Face, Side, SurfaceShape};
+use moldloft_num::{Order, Rational, Vec3};
+use moldloft_panel::{FaceOutline, OutlineCurve, OutlineSide};
+use moldloft_picture::PALETTE;
+use moldloft_registry::CurveRef;
+use moldloft_spline::nurbs::{FitOptions, Nurbs, Source, fit, of_curve};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+/// Curves through the same vertices that part by more than so many times the accuracy are two edges.
+const PARTED: f64 = 50.0;
+
+/// Curves within this share of the size at equal parameters run alike.
+const ALIKE: f64 = 1e-9;
+
+/// A side of a loop with what is known of it.
+struct Sided<'a> {
+    face: usize,
+    side: &'a OutlineSide,
+    /// Its curve in space and, for snakes, in the parameters of the surface's NURBS.
+    curve: Option<(Nurbs<1>, Option<Nurbs<1>>)>,
+}
+
+/// A stretch of a side between two vertices at which edges end.
+struct Run {
+    side: usize,
+    from: usize,
+    to: usize,
+}
+
+/// What sews faces.
+pub struct Sewing<'a> {
+    outlines: &'a [FaceOutline],
+    surfaces: &'a [Arc<Nurbs<2>>],
+    positions: &'a [Vec3],
+    accuracy: f64,
+    size: f64,
+    sides: Vec<Sided<'a>>,
+    /// The first side of each loop of each face.
+    loops: Vec<Vec<Vec<usize>>>,
+    ends: HashSet<u32>,
+    vertices: HashMap<u32, usize>,
+    edges: HashMap<Vec<u32>, Vec<usize>>,
+    brep: Brep,
+}
+
+impl<'a> Sewing<'a> {
+    pub fn new(
+        outlines: &'a [FaceOutline],
+        surfaces: &'a [Arc<Nurbs<2>>],
+        positions: &'a [Vec3],
+        accuracy: f64,
+        size: f64,
+    ) -> Self {
+        let mut sides = Vec::new();
+        let mut loops = Vec::new();
+        for (face, outline) in outlines.iter().enumerate() {
+            let mut own = Vec::new();
+            for cycle in &outline.loops {
+                let first = sides.len();
+                sides.extend(cycle.iter().map(|side| Sided { face, side, curve: None }));
+                own.push((first..sides.len()).collect());
+            }
+            loops.push(own);
+        }
+        let mut sewing = Self {
+            outlines,
+            surfaces,
+            positions,
+            accuracy,
+            size,
+            sides,
+            loops,
+            ends: HashSet::new(),
+            vertices: HashMap::new(),
+            edges: HashMap::new(),
+            brep: Brep::default(),
+        };
+        sewing.find_ends();
+        sewing
+    }
+
+    /// The vertices at which edges end: ends of sides, and those where other sides come or go.
+    fn find_ends(&mut self) {
+        let mut users: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
+        for (k, sided) in self.sides.iter().enumerate() {
+            for pair in sided.side.vertices.windows(2).filter(|w| w[0] != w[1]) {
+                let pair = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                let all = users.entry(pair).or_default();
+                if all.last() != Some(&k) {
+                    all.push(k);
+                }
+            }
+        }
+        let of = |a: u32, b: u32| users.get(&(a.min(b), a.max(b)));
+        for sided in &self.sides {
+            let vertices = &sided.side.vertices;
+            let [Some(first), Some(last)] = [vertices.first(), vertices.last()] else { continue };
+            if vertices.iter().any(|v| v != first) {
+                self.ends.extend([*first, *last]);
+            }
+            for w in vertices.windows(3).filter(|w| w[0] != w[1] && w[1] != w[2]) {
+                if of(w[0], w[1]) != of(w[1], w[2]) {
+                    self.ends.insert(w[1]);
+                }
+            }
+        }
+    }
+
+    pub fn finish(mut self) -> Result<Brep, Failure> {
+        for face in 0..self.outlines.len() {
+            self.face(face)?;
+        }
+        Ok(self.brep)
+    }
+
+    fn face(&mut self, face: usize) -> Result<(), Failure> {
+        let outline = &self.outlines[face];
+        let mut loops = Vec::new();
+        for (l, cycle) in self.loops[face].clone().into_iter().enumerate() {
+            let mut sides = Vec::new();
+            for side in cycle {
+                let mut own = self.side(side)?;
+                if self.sides[side].side.backwards {
+                    own.reverse();
+                    own.iter_mut().for_each(|s| s.forward = !s.forward);
+                }
+                sides.extend(own);
+            }
+            if sides.is_empty() {
+                continue;
+            }
+            // Round the outer loop the parameters run counter-clockwise, round holes clockwise.
+            if outline.reversed != (self.clockwise(&outline.loops[l]) == (l == 0)) {
+                sides.reverse();
+                sides.iter_mut().for_each(|s| s.forward = !s.forward);
+            }
+            loops.push(sides);
+        }
+        let surface = &self.surfaces[face];
+        let seam = |cycle: &Vec<Side>| {
+            cycle.iter().enumerate().any(|(k, a)| cycle[..k].iter().any(|b| a.edge == b.edge))
+        };
+        let flat = if loops.iter().any(seam) { None } else { plane(surface) };
+        if flat.is_some() {
+            loops.iter_mut().flatten().for_each(|side| side.trace = None);
+        }
+        self.brep.gap = self.brep.gap.max(surface.error);
+        self.brep.faces.push(Face {
+            name: outline.name.to_string(),
+            colour: Some(PALETTE[(outline.colour & 15) as usize]),
+            layers: outline.tags.iter().map(|t| t.to_string()).collect(),
+            surface: flat.unwrap_or_else(|| SurfaceShape::Nurbs(Box::new((**surface).clone()))),
+            reversed: outline.reversed,
+            loops,
+            error: surface.error,
+            exact: surface.exact,
+        });
+        Ok(())
+    }
+
+    /// True when the loop runs clockwise in the parameters.
+    fn clockwise(&self, cycle: &[OutlineSide]) -> bool {
+        let mut polygon = Vec::new();
+        // A side that is one point has no length there.
+        for side in cycle.iter().filter(|s| s.vertices.iter().any(|v| *v != s.vertices[0])) {
+            let mut own: Vec<[f64; 2]> = side.at.iter().map(|&t| place(&side.along, t)).collect();
+            if side.backwards {
+                own.reverse();
+            }
+            polygon.extend(own);
+        }
+        let next = |k: usize| polygon[(k + 1) % polygon.len()];
+        let cross = |k: usize| polygon[k][0] * next(k)[1] - polygon[k][1] * next(k)[0];
+        (0..polygon.len()).map(cross).sum::<f64>() < 0.0
+    }
+
+    /// The sides of edges that a side of an outline consists of, by increasing parameter.
+    fn side(&mut self, side: usize) -> Result<Vec<Side>, Failure> {
+        let vertices = &self.sides[side].side.vertices;
+        let mut runs = Vec::new();
+        let mut from = 0;
+        for to in 1..vertices.len() {
+            if self.ends.contains(&vertices[to]) || to + 1 == vertices.len() {
+                if vertices[from..=to].iter().any(|v| *v != vertices[from]) {
+                    runs.push(Run { side, from, to });
+                }
+                from = to;
+            }
+        }
+        runs.iter().map(|run| self.edge(run)).collect()
+    }
+
+    /// The curve of a side, and its trace where it is a snake; made once.
+    fn curve(&mut self, side: usize) -> Result<(), Failure> {
+        if self.sides[side].curve.is_some() {
+            return Ok(());
+        }
+        let face = self.sides[side].face;
+        let surface = &self.surfaces[face];
+        let made = match &self.sides[side].side.along {
+            OutlineCurve::Edge(k) => (surface.edge(usize::from(*k)), None),
+            OutlineCurve::Snake(snake) => {
+                let name = &self.outlines[face].name;
+                let fault = |e| not_fitted(name, &e, self.accuracy);
+                let options = FitOptions::within(self.accuracy);
+                let curve = of_curve(&**snake, &options).map_err(fault)?;
+                let trace = trace(snake, surface, self.accuracy).map_err(fault)?;
+                (curve, Some(trace))
+            }
+        };
+        self.sides[side].curve = Some(made);
+        Ok(())
+    }
+
+    /// The edge of a run, new or known.
+    fn edge(&mut self, run: &Run) -> Result<Side, Failure> {
+        self.curve(run.side)?;
+        let sided = &self.sides[run.side];
+        let surface = &self.surfaces[sided.face];
+        let at = [run.from, run.to].map(|k| sided.side.at[k]);
+        let Some((whole, path)) = &sided.curve else { unreachable!("made above") };
+        let pace = whole.paces[0];
+        let [a, b] = at.map(|t| pace.inverse(t));
+        let curve = whole.part(a, b);
+        let trace = match (&sided.side.along, path) {
+            (OutlineCurve::Edge(k), _) => line(*k, a, b),
+            (_, Some(path)) => {
+                let [a, b] = at.map(|t| path.paces[0].inverse(t));
+                path.part(a, b)
+            }
+            _ => unreachable!("snakes have traces"),
+        };
+        let error = curve.error.max(surface.error);
+        let mut key: Vec<u32> = sided.side.vertices[run.from..=run.to].to_vec();
+        key.dedup();
+        let ends = [key[0], key[key.len() - 1]];
+        let mut back = key.clone();
+        back.reverse();
+        if back < key {
+            key = back;
+        }
+        let ends = ends.map(|v| self.vertex(v));
+        let known = self.edges.get(&key).cloned().unwrap_or_default();
+        for edge in known {
+            if let Some((forward, alike, gap)) = self.same(edge, ends, &curve) {
+                self.brep.gap = self.brep.gap.max(gap.max(error));
+                let trace = if forward { trace } else { trace.reversed() };
+                return Ok(Side { edge, forward, trace: Some(trace), alike });
+            }
+        }
+        let far = |k: usize, t: f64| curve.at([t]).distance(self.brep.vertices[ends[k]]);
+        self.brep.gap = self.brep.gap.max(far(0, 0.0)).max(far(1, 1.0)).max(error);
+        let edge = self.brep.edges.len();
+        self.brep.edges.push(Edge { ends, curve });
+        self.edges.entry(key).or_default().push(edge);
+        Ok(Side { edge, forward: true, trace: Some(trace), alike: true })
+    }
+
+    fn vertex(&mut self, v: u32) -> usize {
+        *self.vertices.entry(v).or_insert_with(|| {
+            self.brep.vertices.push(self.positions[v as usize]);
+            self.brep.vertices.len() - 1
+        })
+    }
+
+    /// Whether a curve through the vertices of an edge is that edge: whether it runs the same way, at equal
+    /// parameters, and how far off.
+    fn same(&self, edge: usize, ends: [usize; 2], curve: &Nurbs<1>) -> Option<(bool, bool, f64)> {
+        const PLACES: usize = 12;
+        let known = &self.brep.edges[edge];
+        let parameters: Vec<f64> = (0..=PLACES).map(|k| k as f64 / PLACES as f64).collect();
+        let parameters = [parameters];
+        let theirs = known.curve.grid(&parameters);
+        let mut own = curve.grid(&parameters);
+        let apart =
+            |own: &[Vec3]| own.iter().zip(&theirs).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        // A closed edge may run either way.
+        let straight = apart(&own);
+        own.reverse();
+        let turned = apart(&own);
+        let forward = match known.ends == ends {
+            true if ends[0] == ends[1] => straight <= turned,
+            same => same,
+        };
+        let off = if forward { straight } else { turned };
+        if off <= ALIKE * self.size + self.accuracy.min(1e-6 * self.size) {
+            return Some((forward, true, off));
+        }
+        // Other parameters: how far each place is from the curve.
+        const FINE: usize = 400;
+        let fine: Vec<f64> = (0..=FINE).map(|k| k as f64 / FINE as f64).collect();
+        let fine = known.curve.grid(&[fine]);
+        let foot = |p: &Vec3| {
+            fine.windows(2).map(|w| to_segment(*p, w[0], w[1])).fold(f64::INFINITY, f64::min)
+        };
+        let off = own.iter().map(foot).fold(0.0, f64::max);
+        // Chords leave a curve by an eighth of their turning, here far below a thousandth of its length.
+        let length: f64 = fine.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let allowed = PARTED * self.accuracy + 1e-4 * length;
+        (off <= allowed).then_some((forward, false, off.min(PARTED * self.accuracy)))
+    }
+}
+
+fn to_segment(p: Vec3, a: Vec3, b: Vec3) -> f64 {
+    let d = b - a;
+    let size = d.norm_sq();
+    let t = if size > 0.0 { ((p - a).dot(d) / size).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance(a + d * t)
+}
+
+/// The parameters of the surface at `t`.
+fn place(along: &OutlineCurve, t: f64) -> [f64; 2] {
+    match along {
+        OutlineCurve::Edge(k) => [[t, 0.0], [1.0, t], [t, 1.0], [0.0, t]][usize::from(*k)],
+        OutlineCurve::Snake(snake) => {
+            let [w, ..] = snake.on_surface(t, Order::Zero).unwrap_or_default();
+            [w.x, w.y]
+        }
+    }
+}
+
+/// A straight trace along an edge of the surface.
+fn line(k: u8, a: f64, b: f64) -> Nurbs<1> {
+    let at = |t: f64| {
+        let [u, v] = [[t, 0.0], [1.0, t], [t, 1.0], [0.0, t]][usize::from(k)];
+        Vec3::of(u, v, 0.0)
+    };
+    Nurbs {
+        degrees: [1],
+        knots: [vec![0.0, 0.0, 1.0, 1.0]],
+        points: vec![at(a), at(b)],
+        weights: None,
+        error: 0.0,
+        exact: true,
+        paces: [moldloft_num::Pace::Even],
+    }
+}
+
+/// The path of a snake in the parameters of the surface's NURBS.
+fn trace(
+    snake: &CurveRef<f64>,
+    surface: &Nurbs<2>,
+    accuracy: f64,
+) -> Result<Nurbs<1>, moldloft_spline::nurbs::NotFitted> {
+    let [u_pace, v_pace] = surface.paces;
+    let sample = |[ts]: &[Vec<f64>; 1]| {
+        let at = |&t: &f64| {
+            let [w, ..] = snake.on_surface(t, Order::Zero).unwrap_or_default();
+            Vec3::of(u_pace.inverse(w.x), v_pace.inverse(w.y), 0.0)
+        };
+        ts.iter().map(at).collect()
+    };
+    // A step in parameters is so much in space.
+    let [nu, nv] = surface.counts();
+    let long = |a: usize, b: usize| surface.points[a].distance(surface.points[b]);
+    let u_size = (0..nv).map(|j| (1..nu).map(|i| long((i - 1) * nv + j, i * nv + j)).sum::<f64>());
+    let v_size = (0..nu).map(|i| (1..nv).map(|j| long(i * nv + j - 1, i * nv + j)).sum::<f64>());
+    let slope = 2.0 * u_size.chain(v_size).fold(0.0, f64::max);
+    let options =
+        FitOptions::within(if slope > 0.0 { (accuracy / slope).max(1e-13) } else { 1e-9 });
+    fit(&Source { sample: &sample, joints: [snake.joints()], rational: Rational::none() }, &options)
+}

@@ -1,0 +1,27 @@
+//! The shape itself as IGES.
+
+use super::{Format, Holds};
+use crate::brep::{brep, metres};
+use crate::{Export, Failure};
+use moldloft_io::iges::{self, Header};
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "iges",
+    aliases: &["igs"],
+    suffix: "igs",
+    other_suffix: "iges",
+    about: "IGES 5.3: trimmed surfaces as NURBS",
+    holds: Holds::Surfaces,
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let stem = export.stem().to_string();
+    let brep = brep(export.document, export.options.tolerance, &stem)?;
+    let metres = metres(export.document);
+    let header = Header { title: &stem, metres, version: env!("CARGO_PKG_VERSION") };
+    Ok(export.main_file(iges::write(&brep, &header)?))
+}

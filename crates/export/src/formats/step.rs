@@ -1,0 +1,31 @@
+//! The shape itself as STEP.
+
+use super::{Format, Holds};
+use crate::brep::{brep, metres};
+use crate::{Export, Failure};
+use moldloft_io::step::{self, Header, Protocol};
+use moldloft_io::vtk::NamedFile;
+
+pub const FORMAT: Format = Format {
+    name: "step",
+    aliases: &["stp", "ap242"],
+    suffix: "step",
+    other_suffix: "stp",
+    about: "STEP AP242: surfaces as NURBS and planes, sewn into shells and solids",
+    holds: Holds::Surfaces,
+    text: true,
+    write,
+    ..Format::PANELS
+};
+
+fn write(export: &mut Export<'_>) -> Result<Vec<NamedFile>, Failure> {
+    let stem = export.stem().to_string();
+    let brep = brep(export.document, export.options.tolerance, &stem)?;
+    let header = Header {
+        title: &stem,
+        metres: metres(export.document),
+        version: env!("CARGO_PKG_VERSION"),
+        protocol: Protocol::Ap242,
+    };
+    Ok(export.main_file(step::write(&brep, &header)?))
+}

@@ -1,0 +1,414 @@
+//! The attitude in which a body of given mass floats at rest.
+
+use crate::body::Body;
+use crate::figures::displaced;
+use crate::{Afloat, Attitude, Water, afloat};
+use moldloft_mesh::Symmetry;
+use moldloft_num::{Real, Vec3, solve_dense};
+use std::fmt;
+
+/// What floats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loading<T> {
+    /// Mass.
+    pub mass: T,
+    /// Centre of gravity in the body's axes; needed where trim or heel are free.
+    pub centre: Option<Vec3<T>>,
+    /// The trim is sought too, not kept.
+    pub free_trim: bool,
+    /// The heel is sought too, not kept.
+    pub free_heel: bool,
+}
+
+/// How a solution ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// The residual is rounding.
+    Converged,
+    /// The best attitude found is not an equilibrium.
+    NotConverged,
+}
+
+/// An equilibrium, or the best attempt at one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solved<T> {
+    /// The figures there.
+    pub afloat: Afloat<T>,
+    /// Whether it is one.
+    pub status: Status,
+    /// Newton steps.
+    pub iterations: usize,
+    /// Largest of: the error of the volume over the volume, those of the arms over the diagonal.
+    pub residual: f64,
+    /// True when all small turns are righted, be they free or not, and without a centre of gravity.
+    pub stable: bool,
+    /// True when the attitude sought from was at rest but unstable, and this one was found beyond it.
+    pub lolls: bool,
+}
+
+/// Why a body cannot float so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FloatError {
+    /// The mass is not a positive number.
+    Mass {
+        /// The mass.
+        mass: f64,
+    },
+    /// Trim or heel are free but no centre of gravity is given.
+    NoCentre,
+    /// A mesh of one side cannot heel.
+    HalfHeels,
+    /// There is no skin, or it encloses nothing.
+    NoBody,
+    /// The mass is more than the body displaces when it is all under water.
+    Sinks {
+        /// The mass.
+        mass: f64,
+        /// The most it displaces.
+        most: f64,
+    },
+}
+
+impl fmt::Display for FloatError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mass { mass } => write!(f, "the displacement {mass} is not a positive number"),
+            Self::NoCentre => {
+                write!(f, "trim and heel need a centre of gravity to come to rest")
+            }
+            Self::HalfHeels => write!(f, "one side of a body cannot heel by itself"),
+            Self::NoBody => write!(f, "the panels enclose no body that could float"),
+            Self::Sinks { mass, most } => write!(
+                f,
+                "the displacement {mass} is more than the body displaces all under water, {most}"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for FloatError {}
+
+/// The most Newton steps; a ship takes about five.
+const MOST_STEPS: usize = 60;
+
+/// Residual that counts as rounding, and the one that does where steps no longer improve it.
+const TIGHT: f64 = 1e-13;
+const LOOSE: f64 = 1e-9;
+
+/// The largest turn of a step, in radians.
+const LARGEST_TURN: f64 = 0.2;
+
+/// The attitude at rest, from `start` (its level is not used): level, and trim and heel where these
+/// are free.
+///
+/// The level is first found at the given trim and heel, by Newton steps within a bracket; then all
+/// unknowns together by Newton's method with exact derivatives and shortened steps, on the real
+/// parts. From an unstable state at rest the search goes on, heeling to both sides, to the nearest stable one, if
+/// there is one. One more step in `T` gives the derivatives of the solution (implicit function theorem).
+///
+/// # Errors
+/// [`FloatError`].
+pub fn equilibrium<T: Real>(
+    body: &Body<T>,
+    water: Water,
+    loading: Loading<T>,
+    start: Attitude<T>,
+) -> Result<Solved<T>, FloatError> {
+    let mass = loading.mass.re();
+    if !(mass > 0.0 && mass.is_finite()) {
+        return Err(FloatError::Mass { mass });
+    }
+    if loading.centre.is_none() && (loading.free_trim || loading.free_heel) {
+        return Err(FloatError::NoCentre);
+    }
+    let half = water.symmetry != Symmetry::None;
+    if half && (loading.free_heel || start.heel.re() != 0.0) {
+        return Err(FloatError::HalfHeels);
+    }
+    let real = body.re();
+    let problem = Problem::new(&real, water, loading)?;
+    let from = [problem.level(start.trim.re(), start.heel.re())?, start.trim.re(), start.heel.re()];
+    let (mut at, mut iterations, mut residual) = problem.newton(from);
+    let loose = problem.loose();
+    let mut lolls = false;
+    if residual <= loose
+        && loading.free_heel
+        && !problem.stable(at)
+        && let Some((found, steps, left)) = problem.beyond(at)
+    {
+        (at, residual, lolls) = (found, left, true);
+        iterations += steps;
+    }
+    let status = if residual <= loose { Status::Converged } else { Status::NotConverged };
+
+    // One Newton step in T: the unknowns move so that the residual's derivative vanishes.
+    let constant = at.map(T::from);
+    let seeded = [constant[0], start.trim, start.heel];
+    let fixed: [T; 3] =
+        std::array::from_fn(|k| if problem.free.contains(&k) { constant[k] } else { seeded[k] });
+    let (free, count, size) = (problem.free.clone(), problem.count, problem.size);
+    let exact = Problem { body, water, loading, free, count, size };
+    let off = exact.residual(fixed);
+    let mut unknowns = fixed;
+    if let Some(step) = problem.step(at, |r| off[r]) {
+        for (&k, dx) in problem.free.iter().zip(step) {
+            unknowns[k] += dx;
+        }
+    }
+    let afloat = afloat(body, water, Attitude::of(unknowns), loading.centre);
+    let stable = afloat.stable.unwrap_or(true);
+    Ok(Solved { afloat, status, iterations, residual, stable, lolls })
+}
+
+/// The equations of rest, made dimensionless: volume, trimming arm, heeling arm.
+struct Problem<'m, T: Real> {
+    body: &'m Body<T>,
+    water: Water,
+    loading: Loading<T>,
+    /// Which of level, trim and heel are sought: equation k for unknown k.
+    free: Vec<usize>,
+    /// 1, or -1 where the normals point inward; times 2 for one of two sides.
+    count: f64,
+    /// The body's diagonal.
+    size: f64,
+}
+
+/// Steps of heel in the search beyond an unstable attitude.
+const HEEL_STEP: f64 = 0.0349;
+
+impl<'m> Problem<'m, f64> {
+    fn new<S: Real>(
+        body: &'m Body<f64>,
+        water: Water,
+        loading: Loading<S>,
+    ) -> Result<Self, FloatError> {
+        let bounds = body.bounds();
+        let size = bounds.diagonal();
+        if body.is_empty() || !(size > 0.0 && size.is_finite()) {
+            return Err(FloatError::NoBody);
+        }
+        let mut free = vec![0];
+        free.extend(loading.free_trim.then_some(1));
+        free.extend(loading.free_heel.then_some(2));
+        let loading = Loading {
+            mass: loading.mass.re(),
+            centre: loading.centre.map(|c| c.re()),
+            free_trim: loading.free_trim,
+            free_heel: loading.free_heel,
+        };
+        // Half under water the sign of the volume tells which way the normals point.
+        let middle = bounds.centre();
+        let volume = displaced(body, middle.z, [middle.x, middle.y], 1.0).forms[2];
+        if volume == 0.0 {
+            return Err(FloatError::NoBody);
+        }
+        let sides = if water.symmetry == Symmetry::MirroredTwice { 2.0 } else { 1.0 };
+        Ok(Self { body, water, loading, free, count: sides * volume.signum(), size })
+    }
+
+    /// The residual up to which an attitude is at rest.
+    fn loose(&self) -> f64 {
+        LOOSE.max(0.1 * self.body.accuracy())
+    }
+
+    /// The level at which the body displaces its mass, at a trim and heel.
+    fn level(&self, trim: f64, heel: f64) -> Result<f64, FloatError> {
+        let turned = Attitude { level: 0.0, trim, heel }.turned(self.body);
+        let bounds = turned.bounds();
+        let density = self.water.density;
+        let wanted = self.loading.mass / density;
+        let middle = bounds.centre();
+        let volume = |z: f64| {
+            let sums = displaced(&turned, z, [middle.x, middle.y], self.count);
+            (sums.forms[2] - wanted, sums.plane[0])
+        };
+        let lowest = turned.lowest(Vec3::of(0.0, 0.0, 1.0)).unwrap_or(bounds.low.z);
+        let highest = -turned.lowest(Vec3::of(0.0, 0.0, -1.0)).unwrap_or(-bounds.high.z);
+        // A hair above the top, so that panels in the top are under water too.
+        let (mut low, mut high) = (lowest, highest + 1e-9 * self.size);
+        // Beyond its rim an open body gains nothing: it is full there.
+        let full = turned.lowest_rim().map_or(high, |z| z.min(high));
+        let most = volume(full).0.max(volume(high).0) + wanted;
+        if wanted > most * (1.0 + 1e-12) {
+            return Err(FloatError::Sinks { mass: self.loading.mass, most: most * density });
+        }
+        if volume(full).0 >= 0.0 {
+            high = full;
+        }
+        let mut z = 0.5 * (low + high);
+        for _ in 0..200 {
+            let (off, slope) = volume(z);
+            if off.abs() <= TIGHT * wanted {
+                break;
+            }
+            if off > 0.0 {
+                high = z
+            } else {
+                low = z
+            }
+            let newton = z - off / slope;
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if next == z || high - low <= 1e-15 * self.size {
+                break;
+            }
+            z = next;
+        }
+        Ok(z)
+    }
+
+    /// The derivatives of the residuals by level, trim and heel: `[residual][unknown]`.
+    ///
+    /// With the level axes ex, ey, n and moments about the origin: d/dlevel of V, P, Q are A, A xf, A yf; d/dtrim are
+    /// A xf, Ipp + V n.B, Ipq; d/dheel are c A yf, c Ipq - s V ey.B, c Iqq + V (s ex.B + c n.B), with c and s of the
+    /// trim.
+    fn slopes(&self, at: [f64; 3]) -> [[f64; 3]; 3] {
+        let attitude = Attitude::of(at);
+        let turned = attitude.turned(self.body);
+        let g = attitude.earth_from(self.loading.centre.unwrap_or_default());
+        let sums = displaced(&turned, at[0], [g.x, g.y], self.count);
+        let v = sums.forms[2];
+        let [a, ax, ay, axx, axy, ayy] = sums.plane;
+        let (px, qy) = (ax + a * g.x, ay + a * g.y);
+        let ipp = axx + 2.0 * g.x * ax + g.x * g.x * a;
+        let ipq = axy + g.x * ay + g.y * ax + g.x * g.y * a;
+        let iqq = ayy + 2.0 * g.y * ay + g.y * g.y * a;
+        let vb = sums.moment + Vec3::of(g.x, g.y, at[0]) * v;
+        let (s, c) = (libm::sin(at[1]), libm::cos(at[1]));
+        let dv = [a, px, c * qy];
+        let dp = [px, ipp + vb.z, c * ipq - s * vb.y];
+        let dq = [qy, ipq, c * iqq + s * vb.x + c * vb.z];
+        // The centre of gravity moves in the level axes as well.
+        let dpg = [0.0, g.z, -s * g.y];
+        let dqg = [0.0, 0.0, s * g.x + c * g.z];
+        let wanted = self.loading.mass / self.water.density;
+        let arm = wanted * self.size;
+        let mut rows = [[0.0; 3]; 3];
+        for k in 0..3 {
+            rows[0][k] = dv[k] / wanted;
+            rows[1][k] = (dp[k] - dv[k] * g.x - v * dpg[k]) / arm;
+            rows[2][k] = (dq[k] - dv[k] * g.y - v * dqg[k]) / arm;
+        }
+        rows
+    }
+
+    /// The Newton step of the free unknowns against the residuals `off`.
+    fn step<T: Real>(&self, at: [f64; 3], off: impl Fn(usize) -> T) -> Option<Vec<T>> {
+        let slopes = self.slopes(at);
+        let entries = self.free.iter().flat_map(|&r| self.free.iter().map(move |&c| (r, c)));
+        let mut matrix: Vec<T> = entries.map(|(r, c)| T::from(slopes[r][c])).collect();
+        let mut step: Vec<T> = self.free.iter().map(|&r| -off(r)).collect();
+        solve_dense(&mut matrix, &mut step).ok()?;
+        step.iter().all(|x| x.is_finite()).then_some(step)
+    }
+
+    fn worst(&self, residual: [f64; 3]) -> f64 {
+        self.free.iter().map(|&k| residual[k].abs()).fold(0.0, f64::max)
+    }
+
+    fn newton(&self, from: [f64; 3]) -> ([f64; 3], usize, f64) {
+        let height = self.size;
+        let mut at = from;
+        let mut residual = self.residual(at);
+        let mut worst = self.worst(residual);
+        let mut steps = 0;
+        while worst > TIGHT && steps < MOST_STEPS {
+            let Some(step) = self.step(at, |k| residual[k]) else { break };
+            let mut share: f64 = 1.0;
+            for (&k, dx) in self.free.iter().zip(&step) {
+                let most = if k == 0 { 0.25 * height } else { LARGEST_TURN };
+                share = share.min(most / dx.abs().max(f64::MIN_POSITIVE));
+            }
+            let mut better = false;
+            let tries = if worst < 1e-10 { 1 } else { 12 };
+            for _ in 0..tries {
+                let mut next = at;
+                for (&k, dx) in self.free.iter().zip(&step) {
+                    next[k] += share * dx;
+                }
+                let found = self.residual(next);
+                let off = self.worst(found);
+                if off < worst {
+                    (at, residual, worst, better) = (next, found, off, true);
+                    break;
+                }
+                share *= 0.5;
+            }
+            steps += 1;
+            if !better {
+                break;
+            }
+        }
+        (at, steps, worst)
+    }
+
+    fn stable(&self, at: [f64; 3]) -> bool {
+        let found = afloat(self.body, self.water, Attitude::of(at), self.loading.centre);
+        found.stable.unwrap_or(true)
+    }
+
+    /// From an unstable attitude at rest: the nearest stable one, heeling to either side, with the number of steps
+    /// and what is left. The arm is followed at fixed heel; where it changes from overturning to righting, all
+    /// unknowns are solved together.
+    fn beyond(&self, at: [f64; 3]) -> Option<([f64; 3], usize, f64)> {
+        let held = Problem {
+            body: self.body,
+            water: self.water,
+            loading: self.loading,
+            free: self.free.iter().copied().filter(|&k| k != 2).collect(),
+            count: self.count,
+            size: self.size,
+        };
+        let side = |sign: f64| -> Option<([f64; 3], usize, f64)> {
+            let (mut now, mut count) = (at, 0);
+            let mut before = -1.0;
+            while (now[2] - at[2]).abs() < std::f64::consts::PI {
+                let mut next = now;
+                next[2] += sign * HEEL_STEP;
+                next[0] = held.level(next[1], next[2]).ok()?;
+                let (next, steps, left) = held.newton(next);
+                count += steps;
+                if left > self.loose() {
+                    return None;
+                }
+                let arm = self.residual(next)[2] * sign;
+                if before < 0.0 && arm >= 0.0 {
+                    // Between two heels the arm is all but straight.
+                    let (found, steps, left) = self.newton(next);
+                    let near = (found[2] - next[2]).abs() <= 3.0 * HEEL_STEP;
+                    return (left <= self.loose() && near && self.stable(found)).then_some((
+                        found,
+                        count + steps,
+                        left,
+                    ));
+                }
+                before = arm;
+                now = next;
+            }
+            None
+        };
+        let [up, down] = [side(1.0), side(-1.0)];
+        let turned = |f: &Option<([f64; 3], usize, f64)>| {
+            f.map_or(f64::INFINITY, |f| (f.0[2] - at[2]).abs())
+        };
+        if turned(&down) < turned(&up) * (1.0 - 1e-9) { down } else { up }
+    }
+}
+
+impl<T: Real> Problem<'_, T> {
+    /// What is missing to rest: (V - V0) / V0, and the moments of volume about the centre of gravity
+    /// over V0 and the diagonal.
+    fn residual(&self, unknowns: [T; 3]) -> [T; 3] {
+        let attitude = Attitude::of(unknowns);
+        let turned = attitude.turned(self.body);
+        let wanted = self.loading.mass / self.water.density;
+        let centre = self.loading.centre.unwrap_or_default();
+        // Moments about the centre of gravity, so that a far origin costs no digits.
+        let g = attitude.earth_from(centre);
+        let sums = displaced(&turned, attitude.level, [g.x, g.y], self.count);
+        let arm = wanted * self.size;
+        [sums.forms[2] / wanted - 1.0, sums.moment.x / arm, sums.moment.y / arm]
+    }
+}
+
+#[cfg(test)]
+mod tests;

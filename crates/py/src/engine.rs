@@ -1,0 +1,109 @@
+//! The engine process: a session on standard input and output.
+//!
+//! `u32 length, request -> Session -> u32 length, frame`
+//!
+//! The parent has the text and may end this process at any time. A request `cancel` stops the one that is
+//! under way; everything else is answered in order.
+
+use moldloft_host::FileWorld;
+use moldloft_session::Session;
+use pyo3::prelude::*;
+use std::io::{Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+
+/// The longest request.
+const LONGEST: u32 = 64 << 20;
+
+/// What stops the work under way.
+const CANCEL: &[u8] = br#"{"kind":"cancel"}"#;
+
+/// Stack of the working thread, for texts that nest deeply.
+const STACK: usize = 64 << 20;
+
+/// Answers requests until standard input ends. The first message is the text.
+#[pyfunction]
+pub fn engine(py: Python<'_>, name: String, folder: Option<String>, library: Vec<String>) {
+    py.detach(|| {
+        let worker = std::thread::Builder::new().stack_size(STACK);
+        let run = worker.spawn(move || serve(&name, folder.as_deref(), &library));
+        if let Ok(run) = run {
+            let _ = run.join();
+        }
+    });
+}
+
+fn serve(name: &str, folder: Option<&str>, library: &[String]) {
+    let cancel = Arc::new(AtomicBool::new(false));
+    let (sender, requests) = mpsc::channel::<String>();
+    let flag = cancel.clone();
+    std::thread::spawn(move || {
+        let mut input = std::io::stdin().lock();
+        while let Some(message) = read(&mut input) {
+            if message == CANCEL {
+                flag.store(true, Ordering::Relaxed);
+            } else if sender.send(String::from_utf8_lossy(&message).into_owned()).is_err() {
+                return;
+            }
+        }
+    });
+    let Ok(text) = requests.recv() else { return };
+    let world = Box::new(FileWorld::new(folder.map(Path::new), library));
+    let mut session = Session::watched(world, name, &text, cancel);
+    let mut output = std::io::stdout().lock();
+    for request in requests {
+        let frame = session.answer(&request);
+        let length = (frame.len() as u32).to_le_bytes();
+        let sent = output.write_all(&length).and_then(|()| output.write_all(&frame));
+        if sent.and_then(|()| output.flush()).is_err() {
+            return;
+        }
+    }
+}
+
+fn read(input: &mut impl Read) -> Option<Vec<u8>> {
+    let mut length = [0; 4];
+    input.read_exact(&mut length).ok()?;
+    let length = u32::from_le_bytes(length);
+    if length > LONGEST {
+        return None;
+    }
+    let mut message = vec![0; length as usize];
+    input.read_exact(&mut message).ok()?;
+    Some(message)
+}
+
+/// A session in this process, for pages that are made once.
+#[pyclass(name = "Session", module = "moldloft._core")]
+pub struct PySession {
+    inner: std::sync::Mutex<Session>,
+}
+
+#[pymethods]
+impl PySession {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        name: &str,
+        text: &str,
+        folder: Option<String>,
+        library: Vec<String>,
+    ) -> Self {
+        let session = py.detach(|| {
+            let world = Box::new(FileWorld::new(folder.as_deref().map(Path::new), &library));
+            Session::new(world, name, text)
+        });
+        Self { inner: std::sync::Mutex::new(session) }
+    }
+
+    /// The reply to a request, as a frame.
+    fn answer<'py>(&self, py: Python<'py>, request: &str) -> Bound<'py, pyo3::types::PyBytes> {
+        let frame = py.detach(|| {
+            let mut session = self.inner.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            session.answer(request)
+        });
+        pyo3::types::PyBytes::new(py, &frame)
+    }
+}

@@ -1,0 +1,212 @@
+//! Facts of a document as data: parameters, objects, diagnostics, all about one object.
+
+use crate::drag::{own_numbers, state};
+use crate::text::unit;
+use moldloft_diag::{Diagnostic, Span};
+use moldloft_document::Document;
+use moldloft_model::Object;
+use moldloft_num::Vec3;
+use moldloft_registry::{Unit, Value as Quantity};
+use serde_json::{Value, json};
+
+/// The most items of a list that are spelled out.
+const MOST_SHOWN: usize = 8;
+
+/// A place of the main text in UTF-16 units; nothing for other texts.
+pub fn place(document: &Document, text: &str, span: Span) -> Value {
+    if !span.is_known() || document.sources().ids().next() != Some(span.file) {
+        return Value::Null;
+    }
+    json!([unit(text, span.start as usize), unit(text, span.end as usize)])
+}
+
+/// The parameters.
+pub fn params(document: &Document, text: &str) -> Value {
+    let one = |p: &moldloft_document::Param| {
+        json!({
+            "name": p.name,
+            "value": p.value,
+            "default": p.default,
+            "range": p.range.map(|(a, b)| [a, b]),
+            "whole": p.is_int,
+            "written": document.param_is_number(&p.name),
+            "place": place(document, text, p.span),
+        })
+    };
+    document.params().iter().map(one).collect()
+}
+
+/// The objects in the order of declaration.
+pub fn objects(document: &Document) -> Value {
+    let graph = document.graph();
+    let state = |o: &Object<f64>| match (o.fault(), o.blocked_by()) {
+        (Some(_), _) => "failed",
+        (_, Some(_)) => "blocked",
+        _ => "ok",
+    };
+    let one = |o: &Object<f64>| {
+        let parents = o.parents.iter().filter_map(|k| Some(&*graph.get(*k)?.name));
+        json!({
+            "name": &*o.name,
+            "kind": o.row.name,
+            "class": o.value().map_or(o.row.class, Quantity::class).name(),
+            "state": state(o),
+            "shown": o.head.shown(),
+            "parents": parents.collect::<Vec<_>>(),
+        })
+    };
+    graph.objects().map(one).collect()
+}
+
+/// Diagnostics with their places in the main text.
+pub fn diagnostics(document: &Document, text: &str, all: &[Diagnostic]) -> Value {
+    let sources = document.sources();
+    let one = |d: &Diagnostic| {
+        let data = d.to_data(sources);
+        let span = d.span();
+        let file = data.primary.as_ref().map(|l| &l.file);
+        let home = place(document, text, span);
+        let edit = d.edit.as_ref().map(|e| {
+            let at = place(document, text, e.span);
+            json!({"place": at, "insert": e.replacement, "title": e.title})
+        });
+        json!({
+            "id": data.id,
+            "severity": data.severity,
+            "message": data.message,
+            "place": home,
+            "line": data.primary.as_ref().map(|l| l.line),
+            "file": file.filter(|_| home.is_null()),
+            "expected": data.expected,
+            "found": data.found,
+            "notes": data.notes,
+            "help": data.help,
+            "object": data.object,
+            "edit": edit.filter(|e| !e["place"].is_null()),
+        })
+    };
+    all.iter().map(one).collect()
+}
+
+/// A number as JSON: text where JSON has no such number.
+pub fn number(x: f64) -> Value {
+    if x.is_finite() { json!(x) } else { json!(x.to_string()) }
+}
+
+fn vector(v: Vec3) -> Value {
+    v.to_array().map(number).to_vec().into()
+}
+
+/// A value in a few numbers.
+pub fn quantity(value: &Quantity<f64>) -> Value {
+    match value {
+        Quantity::Number(x) => number(*x),
+        Quantity::Vector(v) => vector(*v),
+        Quantity::Point(p) => vector(p.xyz),
+        Quantity::Text(text) => json!(&**text),
+        Quantity::Numbers(a) => {
+            let shown: Vec<Value> = a.items.iter().take(MOST_SHOWN).map(|&x| number(x)).collect();
+            json!({"shape": a.shape.to_string(), "first": shown})
+        }
+        Quantity::Vectors(a) => {
+            let shown: Vec<Value> = a.iter().take(MOST_SHOWN).map(vector).collect();
+            json!({"shape": a.shape.to_string(), "first": shown})
+        }
+        Quantity::List(items) => items.iter().take(MOST_SHOWN).map(quantity).collect(),
+        other => json!(other.class().name()),
+    }
+}
+
+/// Values of expressions, and derivatives by a parameter.
+pub fn values(document: &mut Document, expressions: &[String], by: Option<&str>) -> Value {
+    let said = |d: &[Diagnostic]| d.first().map_or("no value".to_string(), |d| d.message.clone());
+    let mut one = |text: &String| {
+        let mut row = json!({"expression": text});
+        match document.eval(text) {
+            Ok(value) => row["value"] = quantity(&value),
+            Err(diagnostics) => row["error"] = said(&diagnostics).into(),
+        }
+        if let Some(by) = by.filter(|_| row.get("error").is_none()) {
+            match document.derivatives(std::slice::from_ref(text), &[by.to_string()]) {
+                Ok(columns) => row["derivative"] = quantity(&columns[0][0]),
+                Err(diagnostics) => row["no_derivative"] = said(&diagnostics).into(),
+            }
+        }
+        row
+    };
+    expressions.iter().map(&mut one).collect()
+}
+
+/// All about an object.
+pub fn inspected(
+    document: &mut Document,
+    text: &str,
+    name: &str,
+    by: Option<&str>,
+) -> Option<Value> {
+    let declared = document.declaration(name).map(|span| place(document, text, span));
+    let settable = own_numbers(document, name);
+    let graph = document.graph();
+    let object = graph.get(graph.find(name)?)?;
+    let called = |key: &moldloft_num::trace::Key| Some(graph.get(*key)?.name.to_string());
+    let mut fields = Vec::new();
+    for (field, arg) in object.row.fields.iter().zip(&object.args) {
+        if matches!(arg, Quantity::Unset) {
+            continue;
+        }
+        let base = format!("{name}.{}", field.name);
+        let mut numbers = Vec::new();
+        for path in settable
+            .iter()
+            .filter(|p| **p == base || p.strip_prefix(&*base).is_some_and(|r| r.starts_with('.')))
+        {
+            if let Some((value, range)) = state(document, path) {
+                let range = range.map(|(a, b)| [a, b]);
+                numbers.push(json!({"path": path, "value": value, "range": range}));
+            }
+        }
+        let mut objects = Vec::new();
+        arg.for_each_object(&mut |key| objects.extend(called(&key)));
+        fields.push(json!({
+            "name": field.name,
+            "help": field.help,
+            "class": field.class.name(),
+            "unit": if field.unit == Unit::Angle { "rad" } else { "" },
+            "value": if objects.is_empty() { quantity(arg) } else { json!(null) },
+            "objects": objects,
+            "numbers": numbers,
+        }));
+    }
+    let (members, is_point): (&[&str], bool) = match object.value() {
+        Some(Quantity::Point(_)) => (&["t", "u", "v"], true),
+        Some(Quantity::Curve(_)) => (&["length"], false),
+        Some(Quantity::Surface(_)) => (&["area", "volume"], false),
+        Some(Quantity::Body(_)) => (&["area", "volume", "centroid"], false),
+        Some(Quantity::Number(_) | Quantity::Vector(_)) => (&[], true),
+        _ => (&[], false),
+    };
+    let report = json!({
+        "name": name,
+        "kind": object.row.name,
+        "class": object.value().map_or(object.row.class, Quantity::class).name(),
+        "about": object.row.summary(),
+        "failure": object.fault().map(|f| f.message.to_string()),
+        "waits": object.blocked_by().as_ref().and_then(called),
+        "shown": object.head.shown(),
+        "fields": fields,
+        "parents": object.parents.iter().filter_map(called).collect::<Vec<_>>(),
+        "children": object.children.iter().filter_map(called).collect::<Vec<_>>(),
+        "declared": declared,
+    });
+    let mut expressions: Vec<String> = members.iter().map(|m| format!("{name}.{m}")).collect();
+    if is_point {
+        expressions.insert(0, name.to_string());
+    }
+    let mut values = values(document, &expressions, by);
+    if let Some(rows) = values.as_array_mut() {
+        rows.retain(|row| row.get("error").is_none());
+    }
+    let mut report = report;
+    report["values"] = values;
+    Some(report)
+}

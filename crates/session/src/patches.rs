@@ -1,0 +1,237 @@
+//! What a viewer draws of a patch of a mesh: its own vertices, normals, triangles, panel edges and rim.
+//!
+//! Vertices are those of the patch alone, so that shades and colours do not run across its rim. A vertex
+//! at a crease has a copy for each panel on the other side of it.
+
+use moldloft_mesh::{Mesh, Patch, is_triangle};
+use moldloft_num::Vec3;
+use rustc_hash::FxHashMap;
+
+/// Cosine of 40 degrees: a sharper turn between panels is a crease.
+const CREASE: f64 = 0.766;
+
+/// What stays the same while a patch moves.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Connections {
+    /// Corners of the triangles.
+    pub triangles: Vec<u32>,
+    /// Ends of the sides of panels inside the patch.
+    pub edges: Vec<u32>,
+    /// Ends of the sides of panels along its rim.
+    pub rim: Vec<u32>,
+    /// For each vertex that is a copy, the one that it is a copy of: they come last.
+    pub copies: Vec<u32>,
+}
+
+/// A patch with vertices of its own.
+pub struct DrawnPatch {
+    /// Positions.
+    pub points: Vec<Vec3>,
+    /// Unit normals, outward.
+    pub normals: Vec<Vec3>,
+    /// Connectivity.
+    pub connections: Connections,
+}
+
+/// Panels by the patch's own vertices.
+struct Local {
+    /// The mesh's number of each vertex.
+    global: Vec<u32>,
+    faces: Vec<[u32; 4]>,
+}
+
+impl Local {
+    fn new(mesh: &Mesh, patch: &Patch) -> Self {
+        let faces = &mesh.faces()[patch.faces.clone()];
+        // The grid of a structured patch, so that fields of its vertices fit.
+        if let Some(block) = &patch.block {
+            let mut own = Vec::with_capacity(faces.len());
+            for i in 0..block.nu.saturating_sub(1) {
+                for j in 0..block.nv.saturating_sub(1) {
+                    let at = |i: usize, j: usize| (i * block.nv + j) as u32;
+                    let mut corners = vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                    if block.reversed {
+                        corners.swap(1, 3);
+                    }
+                    let same =
+                        |a: u32, b: u32| block.vertices[a as usize] == block.vertices[b as usize];
+                    corners.dedup_by(|b, a| same(*a, *b));
+                    if corners.len() > 1 && same(corners[0], corners[corners.len() - 1]) {
+                        corners.pop();
+                    }
+                    match corners[..] {
+                        [a, b, c, d] => own.push([a, b, c, d]),
+                        [a, b, c] => own.push([a, b, c, c]),
+                        _ => {}
+                    }
+                }
+            }
+            return Self { global: block.vertices.clone(), faces: own };
+        }
+        let mut number = FxHashMap::default();
+        let mut global = Vec::new();
+        let mut own = Vec::with_capacity(faces.len());
+        for face in faces {
+            own.push(face.map(|v| {
+                *number.entry(v).or_insert_with(|| {
+                    global.push(v);
+                    global.len() as u32 - 1
+                })
+            }));
+        }
+        Self { global, faces: own }
+    }
+}
+
+/// What is drawn of a patch.
+pub fn drawn(mesh: &Mesh, patch: &Patch) -> DrawnPatch {
+    let local = Local::new(mesh, patch);
+    let points: Vec<Vec3> = local.global.iter().map(|&v| mesh.positions()[v as usize]).collect();
+    of_faces(points, &local.faces, &local.global)
+}
+
+/// What is drawn of panels; vertices of one identity share their normal.
+pub fn of_faces(mut points: Vec<Vec3>, faces: &[[u32; 4]], identity: &[u32]) -> DrawnPatch {
+    let turned = |f: &[u32; 4]| {
+        let [a, b, c, d] = f.map(|v| points[v as usize]);
+        (c - a).cross(d - b)
+    };
+    let flat: Vec<Vec3> = faces.iter().map(turned).collect();
+    let size = identity.iter().copied().max().map_or(0, |v| v as usize + 1);
+    let mut sums = vec![Vec3::zero(); size];
+    for (face, normal) in faces.iter().zip(&flat) {
+        for &v in corners(face) {
+            sums[identity[v as usize] as usize] += *normal;
+        }
+    }
+    let mut normals: Vec<Vec3> = identity
+        .iter()
+        .map(|&v| sums[v as usize].normalized().unwrap_or(Vec3::of(0.0, 0.0, 1.0)))
+        .collect();
+    let mut connections = Connections::default();
+    let own = points.len() as u32;
+    for (face, flat) in faces.iter().zip(&flat) {
+        let unit = flat.normalized();
+        let corner = |v: u32,
+                      points: &mut Vec<Vec3>,
+                      normals: &mut Vec<Vec3>,
+                      copies: &mut Vec<u32>| {
+            let Some(unit) = unit.filter(|n| n.dot(normals[v as usize]) < CREASE) else { return v };
+            copies.push(v);
+            points.push(points[v as usize]);
+            normals.push(unit);
+            own + copies.len() as u32 - 1
+        };
+        let corners: Vec<u32> = corners(face)
+            .iter()
+            .map(|&v| corner(v, &mut points, &mut normals, &mut connections.copies))
+            .collect();
+        match corners[..] {
+            [a, b, c, d] => connections.triangles.extend([a, b, c, a, c, d]),
+            [a, b, c] => connections.triangles.extend([a, b, c]),
+            _ => {}
+        }
+    }
+    sides(faces, identity, &mut connections);
+    DrawnPatch { points, normals, connections }
+}
+
+fn corners(face: &[u32; 4]) -> &[u32] {
+    if is_triangle(*face) { &face[..3] } else { face }
+}
+
+/// The sides of panels: those of one panel are the rim, the others inside.
+fn sides(faces: &[[u32; 4]], identity: &[u32], connections: &mut Connections) {
+    let mut all: Vec<([u32; 2], [u32; 2])> = Vec::with_capacity(4 * faces.len());
+    for face in faces {
+        let corners = corners(face);
+        for (k, &a) in corners.iter().enumerate() {
+            let b = corners[(k + 1) % corners.len()];
+            let (p, q) = (identity[a as usize], identity[b as usize]);
+            all.push(([p.min(q), p.max(q)], [a, b]));
+        }
+    }
+    all.sort_unstable();
+    for run in all.chunk_by(|a, b| a.0 == b.0) {
+        let into = if run.len() == 1 { &mut connections.rim } else { &mut connections.edges };
+        into.extend(run[0].1);
+    }
+}
+
+/// For each patch, a number below about six that no patch with a common side has: neighbours can be given
+/// different colours. A patch keeps its number when others come after it.
+pub fn hues(mesh: &Mesh) -> Vec<u8> {
+    let mut owner: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+    let patches = mesh.patches();
+    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); patches.len()];
+    for (k, patch) in patches.iter().enumerate() {
+        for face in &mesh.faces()[patch.faces.clone()] {
+            let corners = corners(face);
+            for (at, &a) in corners.iter().enumerate() {
+                let b = corners[(at + 1) % corners.len()];
+                let before = owner.insert([a.min(b), a.max(b)], k as u32);
+                if let Some(other) = before.filter(|&o| o != k as u32)
+                    && !neighbours[k].contains(&other)
+                {
+                    neighbours[k].push(other);
+                    neighbours[other as usize].push(k as u32);
+                }
+            }
+        }
+    }
+    let mut hues: Vec<u8> = Vec::with_capacity(patches.len());
+    for near in &neighbours {
+        let taken = |hue: u8| near.iter().any(|&o| hues.get(o as usize) == Some(&hue));
+        hues.push((0..=u8::MAX).find(|&h| !taken(h)).unwrap_or(0));
+    }
+    hues
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moldloft_mesh::{PatchInfo, TopologyBuilder};
+
+    /// A cube of one patch: eight vertices, six panels.
+    fn cube() -> Mesh {
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(8).unwrap();
+        let faces =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        builder.add_faces(PatchInfo::new("cube"), faces.to_vec()).unwrap();
+        let at = |k: usize| Vec3::of((k & 1) as f64, (k >> 1 & 1) as f64, (k >> 2) as f64);
+        Mesh::new(builder.build().into(), (0..8).map(at).collect()).unwrap()
+    }
+
+    #[test]
+    fn creases_are_sharp() {
+        let cube = cube();
+        let drawn = drawn(&cube, &cube.patches()[0]);
+        // Every corner turns by more than 40 degrees from each of its faces.
+        assert_eq!(drawn.points.len(), 8 + 24);
+        assert_eq!(drawn.connections.triangles.len(), 36);
+        for t in drawn.connections.triangles.chunks(3) {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|v| v as usize);
+            let p = &drawn.points;
+            let flat = (p[b] - p[a]).cross(p[c] - p[a]).normalized().unwrap();
+            for v in [a, b, c] {
+                assert!(drawn.normals[v].distance(flat) < 1e-12);
+            }
+        }
+        assert_eq!((drawn.connections.edges.len(), drawn.connections.rim.len()), (24, 0));
+    }
+
+    #[test]
+    fn neighbours_have_different_hues() {
+        let mut builder = TopologyBuilder::new();
+        builder.add_vertices(8).unwrap();
+        for k in 0..3u32 {
+            let name = format!("p{k}");
+            let vertices = vec![2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 3];
+            builder.add_block(PatchInfo::new(name), 2, 2, vertices, false).unwrap();
+        }
+        let points = (0..8).map(|k| Vec3::of((k / 2) as f64, (k % 2) as f64, 0.0)).collect();
+        let strip = Mesh::new(builder.build().into(), points).unwrap();
+        assert_eq!(hues(&strip), [0, 1, 0]);
+    }
+}

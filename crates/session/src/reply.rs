@@ -1,0 +1,48 @@
+//! Frames read back, for tests and other programs.
+
+use crate::frame::{MAGIC, VERSION};
+use serde_json::Value;
+
+/// A reply: its facts, and the bytes of its arrays.
+#[derive(Clone, Debug)]
+pub struct Reply {
+    /// The facts.
+    pub head: Value,
+    /// The arrays, one behind the other.
+    pub arrays: Vec<u8>,
+}
+
+impl Reply {
+    /// Reads a frame.
+    ///
+    /// # Panics
+    /// When it is none.
+    pub fn of(bytes: &[u8]) -> Self {
+        let word = |k: usize| {
+            let word = bytes[4 * k..4 * k + 4].try_into().expect("four bytes");
+            u32::from_le_bytes(word)
+        };
+        assert_eq!((word(0), word(1)), (MAGIC, VERSION));
+        let end = 16 + word(2) as usize;
+        let head = serde_json::from_slice(&bytes[16..end]).expect("a head in JSON");
+        let arrays = bytes[end.next_multiple_of(8).min(bytes.len())..].to_vec();
+        Self { head, arrays }
+    }
+
+    /// The numbers of an array of 32-bit floats that the head names.
+    pub fn floats(&self, part: &Value) -> Vec<f32> {
+        self.words(part).map(f32::from_le_bytes).collect()
+    }
+
+    /// The numbers of an array of whole numbers that the head names.
+    pub fn numbers(&self, part: &Value) -> Vec<u32> {
+        self.words(part).map(u32::from_le_bytes).collect()
+    }
+
+    fn words(&self, part: &Value) -> impl Iterator<Item = [u8; 4]> {
+        let number = |key: &str| part[key].as_u64().expect("a whole number") as usize;
+        let (offset, count) = (number("offset"), number("count"));
+        let bytes = &self.arrays[offset..offset + 4 * count];
+        bytes.chunks_exact(4).map(|c| c.try_into().expect("four bytes"))
+    }
+}

@@ -1,0 +1,201 @@
+//! What a page may ask.
+
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// A request: who asks, and what.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Request {
+    /// Comes back with the reply.
+    #[serde(default)]
+    pub id: u64,
+    /// The viewer that asks: each is sent what it has not.
+    #[serde(default)]
+    pub tab: u64,
+    /// The version of the text that the viewer's words refer to; comes back with replies.
+    #[serde(default)]
+    pub version: Option<u64>,
+    /// What is asked.
+    #[serde(flatten)]
+    pub ask: Ask,
+}
+
+/// The requests. Places in the text count UTF-16 units.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Ask {
+    /// All that there is, as to a viewer that has nothing.
+    Open,
+    /// What is new since the last reply to this viewer.
+    Sync,
+    /// The viewer has gone.
+    Close,
+    /// The whole text anew.
+    Text {
+        /// The text.
+        text: String,
+    },
+    /// A change set of the text, or several.
+    Splice {
+        /// Lengths that are kept, and `[removed, line, line ...]`; a list of such lists.
+        changes: Vec<Value>,
+    },
+    /// Values of parameters, and of numbers of objects, before they are written into the text.
+    Set {
+        /// By name.
+        values: BTreeMap<String, f64>,
+    },
+    /// Writes what was set into the text; the reply has the edits.
+    Commit,
+    /// Takes back what was set and not written.
+    Reset,
+    /// Sets numbers of objects or parameters and writes them; the reply has the edits.
+    Write {
+        /// By name.
+        values: BTreeMap<String, f64>,
+    },
+    /// What may be dragged at a place, and what moves it.
+    DragBegin {
+        /// The object.
+        object: String,
+        /// The parameters of the place: none of a point, t of a curve, u and v of a surface.
+        #[serde(default)]
+        at: Vec<f64>,
+    },
+    /// Moves what is dragged as near to a place as it goes.
+    DragTo {
+        /// The place.
+        target: [f64; 3],
+        /// Orthogonal unit vectors: only the distance along these counts.
+        basis: Vec<[f64; 3]>,
+        /// The numbers that may change; those of the object itself by default.
+        #[serde(default)]
+        names: Vec<String>,
+        /// A length that does not matter, such as that of a picture point: numbers are rounded to it.
+        #[serde(default)]
+        grain: f64,
+    },
+    /// Ends a drag; the reply has the edits.
+    DragEnd {
+        /// False to take it back.
+        commit: bool,
+    },
+    /// All about an object.
+    Inspect {
+        /// Its name.
+        name: String,
+        /// A parameter to differentiate its numbers by.
+        #[serde(default)]
+        by: Option<String>,
+    },
+    /// Expressions whose values come with every change.
+    Watch {
+        /// The expressions.
+        expressions: Vec<String>,
+    },
+    /// Values of expressions, once.
+    Evaluate {
+        /// The expressions.
+        expressions: Vec<String>,
+        /// A parameter to differentiate by.
+        #[serde(default)]
+        by: Option<String>,
+    },
+    /// What else is drawn.
+    Show {
+        /// Sections.
+        #[serde(default)]
+        contours: Option<bool>,
+        /// Objects that the model hides.
+        #[serde(default)]
+        revealed: Option<Vec<String>>,
+    },
+    /// Numbers at the vertices of all patches.
+    Field {
+        /// Which: a name of [`crate::FIELDS`], or `derivative`.
+        field: String,
+        /// The parameter of `derivative`.
+        #[serde(default)]
+        by: Option<String>,
+    },
+    /// Curvature along curves.
+    Combs {
+        /// The curves.
+        names: Vec<String>,
+    },
+    /// Sections of all that is shown with planes of one coordinate.
+    Section {
+        /// 0, 1 or 2.
+        axis: usize,
+        /// The coordinate.
+        value: f64,
+    },
+    /// Closure and quality of the mesh.
+    Mesh,
+    /// The hydrostatics of the panels.
+    Hydrostatics,
+    /// Files in one of the formats.
+    Export {
+        /// Its name.
+        format: String,
+        /// The name of the files without ending.
+        stem: String,
+    },
+    /// The names of the formats.
+    Formats,
+    /// What may be typed at a place.
+    Complete {
+        /// The place.
+        offset: usize,
+    },
+    /// What the name at a place means.
+    Hover {
+        /// The place.
+        offset: usize,
+    },
+    /// Where the name at a place is declared.
+    Definition {
+        /// The place.
+        offset: usize,
+    },
+    /// Where an object is declared.
+    Locate {
+        /// Its name.
+        name: String,
+    },
+    /// The edits that give the name at a place another spelling everywhere.
+    Rename {
+        /// The place.
+        offset: usize,
+        /// The new name.
+        new: String,
+    },
+    /// The edit that formats the text.
+    Format,
+    /// The words of the language, for highlighting.
+    Words,
+    /// Nothing.
+    Ping,
+}
+
+impl Ask {
+    /// True when the scene may change.
+    pub fn changes(&self) -> bool {
+        matches!(
+            self,
+            Ask::Open
+                | Ask::Sync
+                | Ask::Text { .. }
+                | Ask::Splice { .. }
+                | Ask::Set { .. }
+                | Ask::Commit
+                | Ask::Reset
+                | Ask::Write { .. }
+                | Ask::DragTo { .. }
+                | Ask::DragEnd { .. }
+                | Ask::Show { .. }
+                | Ask::Watch { .. }
+        )
+    }
+}

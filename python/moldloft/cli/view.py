@@ -1,0 +1,80 @@
+"""``moldloft view``: the workbench, in the browser."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import contextlib
+import signal
+from pathlib import Path
+
+from moldloft.cli.console import add_model
+
+__all__ = ["add", "run"]
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Declares the arguments."""
+    add_model(parser)
+    parser.add_argument(
+        "--port", metavar="N", type=int, default=0, help="port on this machine; default: a free one"
+    )
+    parser.add_argument(
+        "--no-browser", action="store_true", help="print the address and open no browser"
+    )
+    parser.add_argument(
+        "--budget",
+        metavar="S",
+        type=float,
+        default=20.0,
+        help="seconds that one change may take before the engine is stopped; default 20",
+    )
+    parser.add_argument(
+        "--memory",
+        metavar="GIB",
+        type=float,
+        default=8.0,
+        help="GiB of address space that the engine may have; default 8",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serves until Ctrl-C."""
+    from moldloft.errors import Error
+
+    try:
+        from moldloft.workbench.hub import Hub
+        from moldloft.workbench.server import Server
+    except ImportError as error:
+        raise Error(
+            f"the workbench needs the package `{error.name}`: install `moldloft[view]`"
+        ) from None
+    return asyncio.run(_serve(options, Hub, Server))
+
+
+async def _serve(options: argparse.Namespace, hub_type: type, server_type: type) -> int:
+    hub = hub_type(
+        Path(options.model),
+        options.library,
+        budget=options.budget,
+        memory=int(options.memory * (1 << 30)),
+    )
+    server = server_type(hub, options.port)
+
+    def ready() -> None:
+        print(server.url, flush=True)
+        if not options.no_browser:
+            import webbrowser
+
+            webbrowser.open(server.url)
+
+    task = asyncio.ensure_future(server.run(ready))
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        with contextlib.suppress(NotImplementedError):
+            loop.add_signal_handler(number, task.cancel)
+    with contextlib.suppress(asyncio.CancelledError):
+        await task
+    if hub.dirty:
+        print(f"unsaved changes are kept in {hub.draft.path}")
+    return 0

@@ -1,0 +1,7 @@
+"""The workbench: a model under a person's hands in a browser page.
+
+``page <-> Server <-> Hub <-> Engine (a process of its own)``
+
+The server speaks to browsers on this machine only; the hub has the text and is the one that says
+what it is; the engine computes and may be lost at any time without loss of text.
+"""

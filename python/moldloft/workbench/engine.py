@@ -1,0 +1,132 @@
+"""The engine process from outside: started with a text, asked, stopped, ended."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import struct
+import sys
+from collections.abc import Sequence
+
+__all__ = ["Engine", "EngineLostError"]
+
+_CANCEL = b'{"kind":"cancel"}'
+_LARGEST_FRAME = 1 << 30
+
+
+class EngineLostError(Exception):
+    """The engine process ended, or was ended, before it answered."""
+
+
+class Engine:
+    """A child process that holds the document.
+
+    Parameters
+    ----------
+    name
+        The model's name; its ending says what it is.
+    folder
+        The folder that the model may read.
+    library
+        Further folders.
+    memory
+        The most bytes of address space.
+    budget
+        Seconds for one request; then the work is stopped, and a little later the process ended.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        folder: str | None,
+        library: Sequence[str] = (),
+        *,
+        memory: int = 8 << 30,
+        budget: float = 20.0,
+    ) -> None:
+        self._arguments = [str(memory), name, folder or "", *library]
+        self._budget = budget
+        self._process: asyncio.subprocess.Process | None = None
+
+    @property
+    def pid(self) -> int | None:
+        """The process, while there is one."""
+        return self._process.pid if self._process else None
+
+    async def start(self, text: str) -> None:
+        """A new process with that text; one that was there is ended."""
+        await self.end()
+        self._process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "moldloft._engine",
+            *self._arguments,
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.DEVNULL,
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        )
+        await self._send(text.encode())
+
+    async def end(self) -> None:
+        """Ends the process, if there is one."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        with contextlib.suppress(ProcessLookupError):
+            process.kill()
+        await process.wait()
+
+    async def ask(self, request: bytes) -> bytes:
+        """The frame that answers a request.
+
+        Raises
+        ------
+        EngineLostError
+            When there is none.
+        """
+        await self._send(request)
+        try:
+            return await asyncio.wait_for(asyncio.shield(reading := self._reading()), self._budget)
+        except asyncio.TimeoutError:
+            await self._send(_CANCEL)
+        try:
+            return await asyncio.wait_for(reading, 2.0)
+        except asyncio.TimeoutError:
+            await self.end()
+            raise EngineLostError(f"no answer within {self._budget:g} s") from None
+
+    def _reading(self) -> asyncio.Task[bytes]:
+        return asyncio.ensure_future(self._receive())
+
+    async def _send(self, message: bytes) -> None:
+        process = self._process
+        if process is None or process.stdin is None:
+            raise EngineLostError("the engine is not running")
+        try:
+            process.stdin.write(struct.pack("<I", len(message)) + message)
+            await process.stdin.drain()
+        except (BrokenPipeError, ConnectionResetError):
+            raise EngineLostError(await self._why()) from None
+
+    async def _receive(self) -> bytes:
+        process = self._process
+        if process is None or process.stdout is None:
+            raise EngineLostError("the engine is not running")
+        try:
+            (length,) = struct.unpack("<I", await process.stdout.readexactly(4))
+            if length > _LARGEST_FRAME:
+                raise EngineLostError("the engine sent nonsense")
+            return await process.stdout.readexactly(length)
+        except (asyncio.IncompleteReadError, ConnectionResetError):
+            raise EngineLostError(await self._why()) from None
+
+    async def _why(self) -> str:
+        process, self._process = self._process, None
+        if process is None:
+            return "the engine is not running"
+        status = await process.wait()
+        if status == -6:
+            return "the engine ended: most likely the model needs more memory than it may have"
+        return f"the engine ended with status {status}"

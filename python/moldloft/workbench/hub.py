@@ -1,0 +1,409 @@
+"""The hub: who has the text, what waits for the engine, what each tab is sent.
+
+The text is here, not in the engine and not in a page: a page's change counts once the hub has it,
+and it is on disk before the page hears so. The engine is asked one thing at a time; what has become
+out of date while it waited is left out.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import secrets
+import struct
+from collections.abc import Awaitable, Callable, Coroutine, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from moldloft.errors import Error, FileError
+from moldloft.workbench.draft import Draft
+from moldloft.workbench.engine import Engine, EngineLostError
+from moldloft.workbench.text import applied, change_set, encoded, read, write
+
+__all__ = ["Hub", "Tab"]
+
+Send = Callable[["str | bytes"], Awaitable[None]]
+
+#: Requests of which only the newest of a tab counts.
+NEWEST = {"set", "drag_to", "sync", "hover", "complete", "inspect", "section", "field", "combs"}
+
+#: What a page may ask of the engine.
+ASKED = NEWEST | {
+    "open", "commit", "reset", "write", "drag_begin", "drag_end", "watch", "evaluate", "show",
+    "mesh", "hydrostatics", "export", "formats", "definition", "locate", "rename", "format",
+    "words", "ping",
+}  # fmt: skip
+
+#: After these other tabs have something new, too.
+CHANGING = {"set", "drag_to", "commit", "reset", "write", "drag_end", "show"}
+
+MOST_TABS = 32
+MOST_WAITING = 256
+MOST_UPDATES = 20_000
+
+
+@dataclass
+class Tab:
+    """A page that is connected."""
+
+    number: int
+    send: Send
+
+
+@dataclass
+class _Job:
+    kind: str
+    tab: int
+    request: dict[str, Any]
+
+
+@dataclass
+class Hub:
+    """A model, its text and its tabs.
+
+    Parameters
+    ----------
+    path
+        The model's file.
+    library
+        Folders, besides the model's own, that it may read.
+    budget, memory
+        As for :class:`Engine`.
+    """
+
+    path: Path
+    library: Sequence[str] = ()
+    budget: float = 20.0
+    memory: int = 8 << 30
+    tabs: dict[int, Tab] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.stored = read(self.path)
+        self.draft = Draft(self.path)
+        self.text = self.stored.text
+        self.recovered = False
+        left = self.draft.left()
+        if left is not None and left["text"] != self.text:
+            self.text, self.recovered = left["text"], True
+        self.version = 0
+        self.instance = secrets.token_hex(8)
+        self._first = 0
+        self._updates: list[dict[str, Any]] = []
+        folder = str(self.path.resolve().parent)
+        self.engine = Engine(
+            self.path.name, folder, self.library, memory=self.memory, budget=self.budget
+        )
+        self._jobs: list[_Job] = []
+        self._wake = asyncio.Event()
+        self._count = 0
+        self._failed: tuple[int, int] = (-1, 0)
+        self._tasks: list[asyncio.Task[None]] = []
+        self._sending: set[asyncio.Task[None]] = set()
+        self._noted = self.stored.digest
+
+    @property
+    def dirty(self) -> bool:
+        """True when the text differs from the file's."""
+        return self.text != self.stored.text
+
+    def start(self) -> None:
+        """Begin to work."""
+        self._tasks = [asyncio.ensure_future(self._work()), asyncio.ensure_future(self._watch())]
+
+    async def stop(self) -> None:
+        """End the engine; the draft stays when something is unsaved."""
+        for task in [*self._tasks, *self._sending]:
+            task.cancel()
+        await asyncio.gather(*self._tasks, *self._sending, return_exceptions=True)
+        await self.engine.end()
+        self.draft.close(keep=self.dirty)
+
+    # Tabs.
+
+    def join(self, send: Send) -> Tab:
+        """A new tab."""
+        if len(self.tabs) >= MOST_TABS:
+            raise Error(f"{MOST_TABS} pages are open: close one first")
+        self._count += 1
+        tab = Tab(self._count, send)
+        self.tabs[tab.number] = tab
+        return tab
+
+    def leave(self, tab: Tab) -> None:
+        """A tab has gone."""
+        self.tabs.pop(tab.number, None)
+        self._jobs = [job for job in self._jobs if job.tab != tab.number]
+        self._queue(_Job("close", tab.number, {"kind": "close", "tab": tab.number}))
+
+    def hello(self, tab: Tab) -> dict[str, Any]:
+        """What a page needs first."""
+        return {
+            "kind": "hello",
+            "instance": self.instance,
+            "tab": tab.number,
+            "name": self.path.name,
+            "text": self.text,
+            "version": self.version,
+            "dirty": self.dirty,
+            "recovered": self.recovered,
+        }
+
+    async def tell(self, message: dict[str, Any], *, but: int | None = None) -> None:
+        """Send something to all tabs."""
+        text = json.dumps(message)
+        for tab in list(self.tabs.values()):
+            if tab.number != but:
+                await self._to(tab, text)
+
+    async def _to(self, tab: Tab | None, data: str | bytes) -> None:
+        if tab is not None:
+            # One that has gone is noticed by its own reader.
+            with contextlib.suppress(Exception):
+                await tab.send(data)
+
+    # What pages say.
+
+    async def hear(self, tab: Tab, message: dict[str, Any]) -> None:
+        """Take a message of a page."""
+        kind, number = message.get("kind"), message.get("id", 0)
+        if kind == "push":
+            await self._push(tab, message)
+        elif kind == "pull":
+            await self._pull(tab, message)
+        elif kind == "save":
+            await self._save(tab, message)
+        elif kind == "revert":
+            await self._revert(tab, number)
+        elif isinstance(kind, str) and kind in ASKED:
+            self._ask(tab, kind, message)
+        else:
+            await self._to(
+                tab, json.dumps({"kind": "refused", "id": number, "error": "no such request"})
+            )
+
+    async def _push(self, tab: Tab, message: dict[str, Any]) -> None:
+        """Changes of the text. They count when the page knew the newest version."""
+        number, updates = message.get("id", 0), message.get("updates")
+        reply = {"kind": "pushed", "id": number, "ok": False, "version": self.version}
+        try:
+            if message.get("version") == self.version and isinstance(updates, list):
+                text = self.text
+                for update in updates:
+                    text = applied(text, update["changes"])
+                await self._accept(text, [
+                    {"changes": u["changes"], "clientID": str(u["clientID"])[:40]} for u in updates
+                ])  # fmt: skip
+                reply = {**reply, "ok": True, "version": self.version}
+            elif isinstance(message.get("version"), int) and message["version"] < self._first:
+                # Too long away for the changes since: it takes the whole text.
+                reply["text"] = self.text
+        except (ValueError, KeyError, TypeError, IndexError) as error:
+            reply = {**reply, "error": str(error), "text": self.text}
+        except (OSError, Error) as error:
+            reply = {**reply, "error": f"the draft cannot be written: {error}"}
+        await self._to(tab, json.dumps(reply))
+
+    async def _accept(self, text: str, updates: list[dict[str, Any]]) -> None:
+        if text != self.stored.text:
+            self.draft.keep(text, self.stored.digest)
+        else:
+            self.draft.drop()
+        first = self.version
+        self.text = text
+        self.version += len(updates)
+        self._updates += updates
+        if len(self._updates) > MOST_UPDATES:
+            gone = len(self._updates) - MOST_UPDATES
+            self._first += gone
+            del self._updates[:gone]
+        message = {"kind": "updates", "from": first, "updates": updates, "dirty": self.dirty}
+        await self.tell(message)
+        self._queue(_Job("text", 0, {}))
+
+    async def _pull(self, tab: Tab, message: dict[str, Any]) -> None:
+        """The updates after the version of a page, or the whole text when they are not kept."""
+        version = message.get("version")
+        reply = {"kind": "pulled", "id": message.get("id", 0), "version": self.version}
+        if isinstance(version, int) and self._first <= version <= self.version:
+            reply.update({"from": version, "updates": self._updates[version - self._first :]})
+        else:
+            reply["text"] = self.text
+        await self._to(tab, json.dumps(reply))
+
+    async def _save(self, tab: Tab, message: dict[str, Any]) -> None:
+        """Write the text to the model's file, unless that has changed meanwhile."""
+        number = message.get("id", 0)
+        try:
+            now = read(self.path) if self.path.exists() else None
+            if now and now.digest != self.stored.digest and not message.get("force"):
+                self._noted = now.digest
+                await self._to(
+                    tab, json.dumps({"kind": "conflict", "id": number, "theirs": now.text})
+                )
+                return
+            write(self.path, encoded(self.text, self.stored))
+            self.stored = read(self.path)
+            self._noted = self.stored.digest
+            self.draft.drop()
+        except Error as error:
+            await self._to(tab, json.dumps({"kind": "refused", "id": number, "error": str(error)}))
+            return
+        self.recovered = False
+        await self._to(tab, json.dumps({"kind": "saved", "id": number, "version": self.version}))
+        await self.tell(
+            {"kind": "saved", "version": self.version, "dirty": self.dirty}, but=tab.number
+        )
+
+    async def _watch(self) -> None:
+        """Follow the file on disk."""
+        stamp = None
+        while True:
+            await asyncio.sleep(0.5)
+            try:
+                status = self.path.stat()
+                if (status.st_mtime_ns, status.st_size) == stamp:
+                    continue
+                stamp = (status.st_mtime_ns, status.st_size)
+                now = read(self.path)
+            except (OSError, FileError):
+                # It is being written, or has gone: the text is here.
+                continue
+            if now.digest == self._noted:
+                continue
+            self._noted = now.digest
+            if self.dirty and now.text != self.text:
+                await self.tell({"kind": "conflict", "theirs": now.text})
+            else:
+                self.stored = now
+                await self._outside(now.text)
+
+    async def _revert(self, tab: Tab, number: int) -> None:
+        """The file's text instead of what was typed; a step that the page can undo."""
+        try:
+            await self._outside(read(self.path).text)
+            reply = {"kind": "reverted", "id": number, "version": self.version}
+        except (OSError, Error) as error:
+            reply = {"kind": "refused", "id": number, "error": str(error)}
+        self.recovered = False
+        await self._to(tab, json.dumps(reply))
+
+    async def _outside(self, text: str) -> None:
+        """The file's text takes the place of ours."""
+        with contextlib.suppress(FileError):
+            self.stored = read(self.path)
+            self._noted = self.stored.digest
+        if text != self.text:
+            update = {"changes": change_set(self.text, text), "clientID": "disk"}
+            await self._accept(text, [update])
+        else:
+            self.draft.drop()
+            await self.tell({"kind": "saved", "version": self.version, "dirty": self.dirty})
+
+    # The engine.
+
+    def _ask(self, tab: Tab, kind: str, message: dict[str, Any]) -> None:
+        request = {**message, "tab": tab.number}
+        if kind in NEWEST:
+            for job in self._jobs:
+                if job.kind == kind and job.tab == tab.number:
+                    self._later(self._superseded(tab, job.request))
+                    if kind == "set":
+                        values = {**job.request.get("values", {}), **request.get("values", {})}
+                        request["values"] = values
+                    job.request = request
+                    return
+        self._queue(_Job(kind, tab.number, request))
+
+    def _later(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.ensure_future(work)
+        self._sending.add(task)
+        task.add_done_callback(self._sending.discard)
+
+    async def _superseded(self, tab: Tab, request: dict[str, Any]) -> None:
+        await self._to(tab, json.dumps({"kind": "superseded", "id": request.get("id", 0)}))
+
+    def _queue(self, job: _Job) -> None:
+        if job.kind in ("text", "sync") and any(
+            j.kind == job.kind and j.tab == job.tab for j in self._jobs
+        ):
+            return
+        if job.kind == "text":
+            self._jobs.insert(0, job)
+        elif len(self._jobs) < MOST_WAITING:
+            self._jobs.append(job)
+        else:
+            tab = self.tabs.get(job.tab)
+            if tab is not None:
+                error = {
+                    "kind": "refused",
+                    "id": job.request.get("id", 0),
+                    "error": "too many requests",
+                }
+                self._later(self._to(tab, json.dumps(error)))
+        self._wake.set()
+
+    async def _work(self) -> None:
+        while True:
+            while not self._jobs:
+                self._wake.clear()
+                await self._wake.wait()
+            job = self._jobs.pop(0)
+            try:
+                await self._carry_out(job)
+            except EngineLostError as lost:
+                await self._lost(job, str(lost))
+
+    async def _carry_out(self, job: _Job) -> None:
+        fresh = self.engine.pid is None
+        version = self.version
+        if fresh:
+            if self._failed[0] == version and self._failed[1] >= 2:
+                raise EngineLostError("this text made the engine fail twice: change it to go on")
+            await self.engine.start(self.text)
+        request = job.request
+        if job.kind == "text":
+            tab = next(iter(self.tabs), 0)
+            request = {"kind": "text", "tab": tab, "version": version, "text": self.text, "id": 0}
+            job = _Job("text", tab, request)
+        if fresh and job.kind not in ("open", "text", "close"):
+            # What a new engine needs first: the version it has, and the viewers it sends to.
+            await self.engine.ask(_data({"kind": "text", "version": version, "text": self.text}))
+        frame = await self.engine.ask(_data(request))
+        await self._to(self.tabs.get(job.tab), frame)
+        if self._failed[0] == version:
+            self._failed = (-1, 0)
+            await self.tell({"kind": "engine", "state": "back"})
+        if job.kind == "text" or job.kind in CHANGING:
+            for number in self.tabs:
+                if number != job.tab:
+                    self._queue(_Job("sync", number, {"kind": "sync", "tab": number, "id": 0}))
+
+    async def _lost(self, job: _Job, why: str) -> None:
+        """The engine has gone: a new one starts with the text, and every tab is sent all anew."""
+        await self.engine.end()
+        version, count = self._failed
+        count = count + 1 if version == self.version else 1
+        again = count < 2
+        if why.startswith("this text"):
+            count -= 1
+        self._failed = (self.version, count)
+        error = json.dumps({"kind": "refused", "id": job.request.get("id", 0), "error": why})
+        await self._to(self.tabs.get(job.tab), error)
+        await self.tell({"kind": "engine", "state": "lost", "reason": why})
+        if again:
+            for number in self.tabs:
+                request = {"kind": "open", "tab": number, "id": 0}
+                self._queue(_Job("open", number, request))
+
+
+def _data(request: dict[str, Any]) -> bytes:
+    return json.dumps(request).encode()
+
+
+def head_of(frame: bytes) -> dict[str, Any]:
+    """The facts of a frame, for tests and pages that are made once."""
+    (length,) = struct.unpack_from("<I", frame, 8)
+    head: dict[str, Any] = json.loads(frame[16 : 16 + length])
+    return head

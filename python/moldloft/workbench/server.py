@@ -1,0 +1,237 @@
+"""The server: this machine's browsers only, one page, one socket.
+
+Every request is checked for its Host and Origin, so that no page from elsewhere reaches it under
+another name; the model is behind a token that the page exchanges for a strict cookie.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import json
+import secrets
+import socket
+from collections.abc import Callable
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from moldloft.errors import Error
+from moldloft.workbench.hub import Hub
+from moldloft.workbench.page import page_files
+
+__all__ = ["Server"]
+
+LONGEST_MESSAGE = 16 << 20
+IDLE_PING = 30.0
+
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".wasm": "application/wasm",
+}
+
+_POLICY = (
+    "default-src 'self'; connect-src 'self' ws://{host}; img-src 'self' blob: data:; "
+    "style-src 'self' 'nonce-{nonce}'; object-src 'none'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'"
+)
+
+
+class Guard:
+    """Refuses what does not come from this server's own page.
+
+    Parameters
+    ----------
+    app
+        What is behind it.
+    port
+        The port that Host and Origin must name.
+    """
+
+    def __init__(self, app: Any, port: int) -> None:
+        self._app = app
+        self._hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
+        self._origins = {f"http://{host}" for host in self._hosts}
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        """ASGI."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        given: dict[str, list[str]] = {}
+        for name, value in scope["headers"]:
+            given.setdefault(name.decode("latin-1"), []).append(value.decode("latin-1"))
+        if self._allowed(scope, given):
+            await self._app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 4403})
+        else:
+            await Response("refused", status_code=403)(scope, receive, send)
+
+    def _allowed(self, scope: Any, given: dict[str, list[str]]) -> bool:
+        origins = given.get("origin", [])
+        reads = scope["type"] == "http" and scope["method"] in ("GET", "HEAD")
+        site = given.get("sec-fetch-site", ["none"])
+        return (
+            len(given.get("host", [])) == 1
+            and given["host"][0] in self._hosts
+            and all(origin in self._origins for origin in origins)
+            and (reads or len(origins) == 1)
+            and site[0] in ("same-origin", "none")
+        )
+
+
+class Server:
+    """The workbench of one model.
+
+    Parameters
+    ----------
+    hub
+        The model.
+    port
+        The port; any free one when 0.
+    """
+
+    def __init__(self, hub: Hub, port: int = 0) -> None:
+        self.hub = hub
+        self._files = page_files()
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            self._socket.bind(("127.0.0.1", port))
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise Error(f"cannot listen on port {port}: {reason}; choose another one") from None
+        self.port: int = self._socket.getsockname()[1]
+        self._token = secrets.token_urlsafe(32)
+        self._cookie = f"moldloft-{self.port}"
+        self._session = secrets.token_urlsafe(32)
+        self._assets_etag = secrets.token_hex(8)
+
+    @property
+    def url(self) -> str:
+        """Where the page is; the token is behind the #, which no log sees."""
+        return f"http://127.0.0.1:{self.port}/#t={self._token}"
+
+    def app(self) -> Any:
+        """The ASGI application."""
+        routes = [
+            Route("/", self._index),
+            Route("/assets/{name}", self._asset),
+            Route("/token", self._exchange, methods=["POST"]),
+            WebSocketRoute("/ws", self._talk),
+        ]
+        return Guard(Starlette(routes=routes), self.port)
+
+    async def run(self, ready: Callable[[], None] = lambda: None) -> None:
+        """Serve until cancelled."""
+        import uvicorn
+
+        config = uvicorn.Config(
+            self.app(),
+            log_level="critical",
+            access_log=False,
+            server_header=False,
+            date_header=False,
+            # Compressing takes a hundred times as long as sending.
+            ws_per_message_deflate=False,
+            ws_max_size=LONGEST_MESSAGE,
+            ws_max_queue=32,
+            ws_ping_interval=IDLE_PING,
+            limit_concurrency=96,
+            timeout_keep_alive=10,
+            timeout_graceful_shutdown=1,
+            lifespan="off",
+        )
+        server = uvicorn.Server(config)
+        self.hub.start()
+        serving = asyncio.ensure_future(server.serve(sockets=[self._socket]))
+        try:
+            while not server.started and not serving.done():
+                await asyncio.sleep(0.01)
+            ready()
+            await serving
+        finally:
+            server.should_exit = True
+            await self.hub.stop()
+
+    def _headers(self, **more: str) -> dict[str, str]:
+        return {
+            "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "no-referrer",
+            "Cross-Origin-Opener-Policy": "same-origin",
+            "Cross-Origin-Resource-Policy": "same-origin",
+            **{name.replace("_", "-"): value for name, value in more.items()},
+        }
+
+    async def _index(self, request: Request) -> Response:
+        nonce = secrets.token_urlsafe(16)
+        page = self._files["/index.html"].replace(b"__NONCE__", nonce.encode())
+        policy = _POLICY.format(host=request.headers["host"], nonce=nonce)
+        headers = self._headers(Content_Security_Policy=policy, Cache_Control="no-store")
+        return Response(page, media_type=_TYPES[".html"], headers=headers)
+
+    async def _asset(self, request: Request) -> Response:
+        name = request.path_params["name"]
+        data = self._files.get(f"/assets/{name}")
+        if data is None:
+            return Response("not found", status_code=404, headers=self._headers())
+        ending = name[name.rfind(".") :]
+        # Names have the hash of their content.
+        headers = self._headers(
+            Cache_Control="public, max-age=31536000, immutable",
+            Content_Security_Policy="default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; "
+            "connect-src 'self'",
+        )
+        kind = _TYPES.get(ending, "application/octet-stream")
+        return Response(data, media_type=kind, headers=headers)
+
+    async def _exchange(self, request: Request) -> Response:
+        body = b""
+        async for chunk in request.stream():
+            body += chunk
+            if len(body) > 200:
+                return Response("refused", status_code=403, headers=self._headers())
+        if not hmac.compare_digest(body, self._token.encode()):
+            return Response("refused", status_code=403, headers=self._headers())
+        response = Response(status_code=204, headers=self._headers())
+        response.set_cookie(self._cookie, self._session, httponly=True, samesite="strict", path="/")
+        return response
+
+    async def _talk(self, socket: WebSocket) -> None:
+        given = socket.cookies.get(self._cookie, "")
+        if not hmac.compare_digest(given.encode(), self._session.encode()):
+            await socket.close(4401)
+            return
+        await socket.accept()
+
+        async def send(data: str | bytes) -> None:
+            if isinstance(data, str):
+                await socket.send_text(data)
+            else:
+                await socket.send_bytes(data)
+
+        try:
+            tab = self.hub.join(send)
+        except Error as error:
+            await socket.send_text(json.dumps({"kind": "full", "error": str(error)}))
+            await socket.close(4429)
+            return
+        try:
+            await socket.send_text(json.dumps(self.hub.hello(tab)))
+            while True:
+                message = json.loads(await socket.receive_text())
+                if isinstance(message, dict):
+                    await self.hub.hear(tab, message)
+        except (WebSocketDisconnect, ValueError, KeyError):
+            pass
+        finally:
+            self.hub.leave(tab)

@@ -1,0 +1,140 @@
+"""Texts as editors see them: change sets in UTF-16 units, and files with their line ends kept."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from moldloft.errors import FileError
+
+__all__ = ["Stored", "applied", "change_set", "digest", "read", "write"]
+
+LARGEST = 16 << 20
+
+
+def applied(text: str, changes: Sequence[Any]) -> str:
+    r"""The text after a change set: lengths that are kept, and ``[removed, line, line ...]``.
+
+    >>> applied("one two", [4, [3, "x", "y"]])
+    'one x\ny'
+    """
+    data = text.encode("utf-16-le", "surrogatepass")
+    at, made = 0, []
+    for step in changes:
+        removed = step if isinstance(step, int) else step[0]
+        if not isinstance(removed, int) or removed < 0 or at + 2 * removed > len(data):
+            raise ValueError("the change set is of another text")
+        if isinstance(step, int):
+            made.append(data[at : at + 2 * step])
+        else:
+            if not all(isinstance(line, str) for line in step[1:]):
+                raise ValueError("a change set inserts lines of text")
+            made.append("\n".join(step[1:]).encode("utf-16-le", "surrogatepass"))
+        at += 2 * removed
+    if at != len(data):
+        raise ValueError("the change set is of another text")
+    new = b"".join(made).decode("utf-16-le", "surrogatepass")
+    if len(new) > LARGEST:
+        raise ValueError("the text is too long")
+    return new
+
+
+def change_set(old: str, new: str) -> list[Any]:
+    """The change set that makes one text of another: one replacement.
+
+    >>> change_set("ab1.25c", "ab1.5c")
+    [4, [1, ''], 2]
+    """
+
+    def units(part: str) -> int:
+        return len(part.encode("utf-16-le", "surrogatepass")) // 2
+
+    most = min(len(old), len(new))
+    start = next((k for k in range(most) if old[k] != new[k]), most)
+    end = next((k for k in range(most - start) if old[-1 - k] != new[-1 - k]), most - start)
+    removed, inserted = old[start : len(old) - end], new[start : len(new) - end]
+    steps: list[Any] = [units(old[:start])] if start else []
+    if removed or inserted:
+        steps.append([units(removed), *inserted.split("\n")] if inserted else [units(removed)])
+        if not inserted:
+            steps[-1] = [units(removed), ""]
+    if end:
+        steps.append(units(old[len(old) - end :]))
+    return steps
+
+
+def digest(data: bytes) -> str:
+    """The hash of a content."""
+    return hashlib.sha256(data).hexdigest()
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A file's text with what writing it back needs."""
+
+    text: str
+    """The text, its lines ended by line feeds."""
+    digest: str
+    """Of the bytes."""
+    crlf: bool
+    """True when lines end in carriage return and line feed."""
+    encoding: str
+    """How the bytes are read."""
+
+
+def read(path: Path) -> Stored:
+    """The text of a regular file.
+
+    Raises
+    ------
+    FileError
+        When there is none that can be read.
+    """
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)
+    try:
+        with os.fdopen(os.open(path, flags), "rb") as file:
+            data = file.read(LARGEST + 1)
+    except OSError as error:
+        raise FileError(f"cannot read `{path}`: {(error.strerror or str(error)).lower()}") from None
+    if len(data) > LARGEST:
+        raise FileError(f"cannot read `{path}`: it is longer than 16 MiB")
+    encoding = "utf-8-sig" if data.startswith(b"\xef\xbb\xbf") else "utf-8"
+    try:
+        text = data.decode(encoding)
+    except UnicodeDecodeError:
+        encoding = "latin-1"
+        text = data.decode(encoding)
+    crlf = "\r\n" in text
+    return Stored(text.replace("\r\n", "\n").replace("\r", "\n"), digest(data), crlf, encoding)
+
+
+def encoded(text: str, like: Stored) -> bytes:
+    """The bytes of a text in the manner of a file."""
+    text = text.replace("\n", "\r\n") if like.crlf else text
+    try:
+        return text.encode(like.encoding)
+    except UnicodeEncodeError:
+        return text.encode("utf-8")
+
+
+def write(path: Path, data: bytes) -> None:
+    """Write a file whole or not at all; its mode stays, and a link stays a link."""
+    target = path.resolve()
+    mode = target.stat().st_mode & 0o777 if target.exists() else 0o644
+    draft = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with os.fdopen(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        draft.chmod(mode)
+        draft.replace(target)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        raise FileError(
+            f"cannot write `{path}`: {(error.strerror or str(error)).lower()}"
+        ) from error

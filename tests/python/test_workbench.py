@@ -1,0 +1,480 @@
+"""The workbench without a browser: texts, the hub, the engine process, what the server refuses."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import random
+import signal
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import SAILBOAT
+from moldloft.errors import Error
+from moldloft.workbench.draft import Draft
+from moldloft.workbench.hub import Hub, Tab, head_of
+from moldloft.workbench.text import applied, change_set, encoded, read, write
+
+LINE = "param float w = 2 in [1, 3];\nAbsPoint A(0, 0, 0);\nAbsPoint B(w, 0, 0);\nLine l(A, B);\n"
+
+
+# Texts.
+
+
+def test_change_sets_make_one_text_of_another() -> None:
+    pool = ["a", "b", "\n", "é", "𝄞", " ", "7"]
+    rng = random.Random(5)
+    for _ in range(300):
+        old = "".join(rng.choices(pool, k=rng.randrange(12)))
+        new = "".join(rng.choices(pool, k=rng.randrange(12)))
+        assert applied(old, change_set(old, new)) == new, (old, new)
+
+
+@pytest.mark.parametrize("wrong", [[3], [99], [[1]], [-1, 5], ["x"], [[1, 2], 3], [4, [9, ""]]])
+def test_change_sets_of_other_texts_are_refused(wrong: list[Any]) -> None:
+    with pytest.raises((ValueError, TypeError)):
+        applied("abcd", wrong) if wrong != [[1]] else applied("abcd", [*wrong])
+
+
+def test_files_keep_their_line_ends_mode_and_link(tmp_path: Path) -> None:
+    path = tmp_path / "model.sdl"
+    path.write_bytes(b"\xef\xbb\xbfone\r\ntwo\r\n")
+    path.chmod(0o640)
+    link = tmp_path / "link.sdl"
+    link.symlink_to(path)
+    stored = read(link)
+    assert stored.text == "one\ntwo\n"
+    write(link, encoded("one\nzwei\n", stored))
+    assert path.read_bytes() == b"\xef\xbb\xbfone\r\nzwei\r\n"
+    assert link.is_symlink() and path.stat().st_mode & 0o777 == 0o640
+    assert not [p for p in tmp_path.iterdir() if p.name.endswith(".part")]
+
+
+def test_a_draft_has_one_owner(tmp_path: Path) -> None:
+    model = tmp_path / "model.sdl"
+    model.write_text(LINE)
+    first = Draft(model)
+    first.keep("text", "digest")
+    assert first.path.stat().st_mode & 0o777 == 0o600
+    with pytest.raises(Error, match="another workbench"):
+        Draft(model)
+    first.close(keep=True)
+    again = Draft(model)
+    assert again.left() == {"text": "text", "digest": "digest"}
+    again.close(keep=False)
+    assert not again.path.exists()
+
+
+# The hub and its engine.
+
+
+class Page:
+    """A page without a browser: it keeps what it was sent."""
+
+    def __init__(self, hub: Hub) -> None:
+        self.hub = hub
+        self.said: list[dict[str, Any]] = []
+        self.heads: list[dict[str, Any]] = []
+        self.objects: list[dict[str, Any]] = []
+        self.text = ""
+        self.version = 0
+        self.count = 0
+        self.news = asyncio.Event()
+        self.tab: Tab = hub.join(self.take)
+        hello = hub.hello(self.tab)
+        self.text, self.version = hello["text"], hello["version"]
+
+    async def take(self, data: str | bytes) -> None:
+        if isinstance(data, bytes):
+            head = head_of(data)
+            self.objects = head.get("objects", self.objects)
+            self.heads.append(head)
+        else:
+            message = json.loads(data)
+            self.said.append(message)
+            if message["kind"] == "updates":
+                for update in message["updates"]:
+                    self.text = applied(self.text, update["changes"])
+                self.version = message["from"] + len(message["updates"])
+        self.news.set()
+
+    async def until(self, true: Callable[[], Any], seconds: float = 30) -> Any:
+        async def wait() -> Any:
+            while not (found := true()):
+                self.news.clear()
+                await self.news.wait()
+            return found
+
+        return await asyncio.wait_for(wait(), seconds)
+
+    async def ask(self, kind: str, **fields: Any) -> dict[str, Any]:
+        self.count += 1
+        number = self.count
+        await self.hub.hear(self.tab, {"kind": kind, "id": number, **fields})
+
+        def answer() -> dict[str, Any] | None:
+            return next((m for m in [*self.heads, *self.said] if m.get("id") == number), None)
+
+        found: dict[str, Any] = await self.until(answer)
+        return found
+
+    async def type(self, new: str) -> dict[str, Any]:
+        update = {"changes": change_set(self.text, new), "clientID": "page"}
+        return await self.ask("push", version=self.version, updates=[update])
+
+
+def workbench(path: Path, play: Callable[[Hub], Awaitable[None]], **options: Any) -> None:
+    """Runs a play on the hub of a model."""
+
+    async def run() -> None:
+        hub = Hub(path, **options)
+        hub.start()
+        try:
+            await play(hub)
+        finally:
+            await hub.stop()
+
+    asyncio.run(run())
+
+
+def test_what_is_typed_is_on_disk_before_the_page_hears_so(model_file: Callable[..., Path]) -> None:
+    path = model_file(LINE)
+
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        assert (await page.ask("open"))["params"][0]["value"] == 2.0
+        reply = await page.type(LINE.replace("w = 2", "w = 2.5"))
+        assert reply["ok"] and page.version == 1
+        kept = json.loads(hub.draft.path.read_text())
+        assert "w = 2.5" in kept["text"]
+        await page.until(lambda: [h for h in page.heads if h.get("version") == 1])
+        # Old versions are refused, and the page brings itself up to date.
+        stale = await page.ask("push", version=0, updates=[{"changes": [1], "clientID": "p"}])
+        assert stale["ok"] is False and stale["version"] == 1
+        assert (await page.ask("pull", version=0))["updates"][0]["clientID"] == "page"
+        assert (await page.ask("save"))["kind"] == "saved"
+        assert "w = 2.5" in path.read_text() and not hub.dirty
+
+    workbench(path, play)
+    assert [p.name for p in path.parent.iterdir()] == [path.name]
+
+
+def test_two_tabs_see_the_same(model_file: Callable[..., Path]) -> None:
+    async def play(hub: Hub) -> None:
+        one, two = Page(hub), Page(hub)
+        await one.ask("open")
+        await two.ask("open")
+        await one.ask("set", values={"w": 3})
+        head = await two.until(
+            lambda: next(
+                (h for h in two.heads if h.get("params") and h["params"][0]["value"] == 3), None
+            )
+        )
+        # The point and the line, not the other point.
+        assert sorted(i["name"] for i in head["items"]) == ["B", "l"]
+        await one.type(LINE + "AbsPoint C(0, 1, 0);\n")
+        await two.until(lambda: any(o["name"] == "C" for o in two.objects))
+        assert one.text == two.text == hub.text
+
+    workbench(model_file(LINE), play)
+
+
+def test_a_file_that_changes_outside_is_followed_or_asked_about(
+    model_file: Callable[..., Path],
+) -> None:
+    path = model_file(LINE)
+
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        path.write_text(LINE + "# outside\n")
+        await page.until(lambda: page.text.endswith("# outside\n"))
+        assert not hub.dirty
+        await page.type("# mine\n" + page.text)
+        path.write_text(LINE + "# again\n")
+        conflict = await page.until(lambda: [m for m in page.said if m["kind"] == "conflict"])
+        assert conflict[0]["theirs"].endswith("# again\n")
+        assert page.text.startswith("# mine") and path.read_text().endswith("# again\n")
+        # Saving asks before it writes over the other's work.
+        assert (await page.ask("save"))["kind"] == "conflict"
+        assert path.read_text().endswith("# again\n")
+        assert (await page.ask("save", force=True))["kind"] == "saved"
+        assert path.read_text().startswith("# mine")
+
+    workbench(path, play)
+
+
+def test_an_engine_that_is_killed_loses_nothing(
+    model_file: Callable[..., Path], soak: bool
+) -> None:
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        await page.ask("open")
+        text = page.text
+        for k in range(100 if soak else 3):
+            os.kill(hub.engine.pid or 0, signal.SIGKILL)
+            text += f"AbsPoint P{k}(0, 0, {k});\n"
+            assert (await page.type(text))["ok"]
+            await page.until(lambda k=k: any(o["name"] == f"P{k}" for o in page.objects))
+            assert hub.text == text
+        assert not [h for h in page.heads if h.get("internal")]
+
+    workbench(model_file(LINE), play)
+
+
+def test_a_model_without_end_is_stopped_and_the_text_can_be_changed(
+    model_file: Callable[..., Path],
+) -> None:
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        await page.ask("open")
+        await page.type(LINE + "int k = 0;\nwhile (k < 1) { k = 0; }\n")
+        said = await page.until(
+            lambda: (
+                [
+                    h
+                    for h in page.heads
+                    if any(d["severity"] == "error" for d in h.get("diagnostics", []))
+                ]
+                or [m for m in page.said if m.get("state") == "lost"]
+            )
+        )
+        assert said
+        await page.type(LINE)
+        await page.until(
+            lambda: page.heads[-1].get("version") == hub.version and page.heads[-1].get("rev")
+        )
+        assert (await page.ask("evaluate", expressions=["l.length"]))["values"][0]["value"] == 2.0
+
+    workbench(model_file(LINE), play, budget=1.5)
+
+
+def test_a_server_that_is_killed_keeps_the_draft(model_file: Callable[..., Path]) -> None:
+    path = model_file(LINE)
+
+    async def first(hub: Hub) -> None:
+        page = Page(hub)
+        await page.type(LINE + "# unsaved\n")
+
+    workbench(path, first)
+    assert path.read_text() == LINE
+
+    async def second(hub: Hub) -> None:
+        page = Page(hub)
+        assert hub.recovered and page.text.endswith("# unsaved\n")
+        await page.ask("revert")
+        assert hub.text == LINE and not hub.dirty
+
+    workbench(path, second)
+
+
+def test_requests_that_are_none_are_refused(model_file: Callable[..., Path]) -> None:
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        for kind in ("text", "splice", "close", "nonsense", "__init__"):
+            assert (await page.ask(kind, text="gone"))["kind"] == "refused"
+        for updates in (
+            "x",
+            [{}],
+            [{"changes": "x", "clientID": 1}],
+            [{"changes": [9999], "clientID": "a"}],
+        ):
+            reply = await page.ask("push", version=0, updates=updates)
+            assert reply["ok"] is False
+        assert hub.text == LINE
+        files = await page.ask("export", format="stl", stem="../../etc/passwd")
+        assert "error" in files or all("/" not in f["name"] for f in files["files"])
+
+    workbench(model_file(LINE), play)
+
+
+def test_of_many_slider_moves_the_newest_counts(model_file: Callable[..., Path]) -> None:
+    async def play(hub: Hub) -> None:
+        page = Page(hub)
+        await page.ask("open")
+        for k in range(200):
+            await hub.hear(page.tab, {"kind": "set", "id": 1000 + k, "values": {"w": 1 + k / 100}})
+        last = await page.until(lambda: next((h for h in page.heads if h.get("id") == 1199), None))
+        assert last["params"][0]["value"] == 2.99
+        answered = [h for h in page.heads if 1000 <= h.get("id", 0) < 1200]
+        assert len(answered) < 100
+
+    workbench(model_file(LINE), play)
+
+
+# The server.
+
+
+def server_app(hub: Hub, port: int = 4321) -> Any:
+    pytest.importorskip("starlette", reason="the extra `view` is not installed")
+    from moldloft.workbench.server import Server
+
+    try:
+        server = Server(hub, 0)
+    except Error as error:
+        pytest.skip(str(error))
+    server.port = port
+    # Nothing listens: applications are called without a socket.
+    server._socket.close()
+    return server
+
+
+def request(
+    app: Any,
+    method: str = "GET",
+    path: str = "/",
+    body: bytes = b"",
+    kind: str = "http",
+    **headers: str,
+) -> tuple[int, dict[str, str], bytes]:
+    """What an ASGI application answers to a raw request."""
+    given = {"host": "127.0.0.1:4321", **{k.replace("_", "-"): v for k, v in headers.items()}}
+    scope = {
+        "type": kind,
+        "method": method,
+        "path": path,
+        "raw_path": path.encode(),
+        "query_string": b"",
+        "root_path": "",
+        "headers": [(k.encode(), v.encode()) for k, v in given.items() if v],
+        "scheme": "http" if kind == "http" else "ws",
+        "client": ("127.0.0.1", 1),
+        "server": ("127.0.0.1", 4321),
+        "http_version": "1.1",
+        "subprotocols": [],
+        "asgi": {"version": "3.0"},
+    }
+    sent: list[dict[str, Any]] = []
+
+    async def run() -> None:
+        first = (
+            {"type": "websocket.connect"}
+            if kind == "websocket"
+            else {"type": "http.request", "body": body, "more_body": False}
+        )
+        messages = [first, {"type": "websocket.disconnect", "code": 1000}]
+
+        async def receive() -> dict[str, Any]:
+            return messages.pop(0) if messages else {"type": "http.disconnect"}
+
+        async def send(message: dict[str, Any]) -> None:
+            sent.append(message)
+
+        await app(scope, receive, send)
+
+    asyncio.run(run())
+    if kind == "websocket":
+        accepted = any(m["type"] == "websocket.accept" for m in sent)
+        return (101 if accepted else sent[0].get("code", 0)), {}, b""
+    head = {k.decode().lower(): v.decode() for k, v in sent[0]["headers"]}
+    return sent[0]["status"], head, b"".join(m.get("body", b"") for m in sent[1:])
+
+
+HOME = "http://127.0.0.1:4321"
+
+
+def test_only_this_page_is_served(model_file: Callable[..., Path]) -> None:
+    async def play(hub: Hub) -> None:
+        pass
+
+    path = model_file(LINE)
+    hub = Hub(path)
+    try:
+        server = server_app(hub)
+        app = server.app()
+        assert request(app)[0] == 200
+        assert request(app, host="localhost:4321")[0] == 200
+        for host in ("evil.com", "127.0.0.1.evil.com", "127.0.0.1:9999", "[::1]:4321", ""):
+            assert request(app, host=host)[0] == 403, host
+        for origin in (
+            "http://evil.com",
+            "null",
+            "http://127.0.0.1:9999",
+            "https://127.0.0.1:4321",
+        ):
+            assert request(app, origin=origin)[0] == 403, origin
+            assert request(app, kind="websocket", path="/ws", origin=origin)[0] == 4403, origin
+        assert request(app, sec_fetch_site="cross-site")[0] == 403
+        # An upgrade and a post must say where they come from.
+        assert request(app, kind="websocket", path="/ws")[0] == 4403
+        assert request(app, "POST", "/token", server._token.encode())[0] == 403
+        # The token buys one strict cookie; without it there is no socket.
+        assert request(app, "POST", "/token", b"wrong", origin=HOME)[0] == 403
+        assert request(app, "POST", "/token", b"x" * 5000, origin=HOME)[0] == 403
+        status, head, _ = request(app, "POST", "/token", server._token.encode(), origin=HOME)
+        cookie = head["set-cookie"]
+        assert status == 204 and "HttpOnly" in cookie and "SameSite=strict" in cookie
+        assert "moldloft-" in cookie
+        assert request(app, kind="websocket", path="/ws", origin=HOME)[0] == 4401
+        value = cookie.split(";")[0]
+        assert request(app, kind="websocket", path="/ws", origin=HOME, cookie=value)[0] == 101
+    finally:
+        hub.draft.close(keep=False)
+
+
+def test_the_page_says_what_it_may_do(model_file: Callable[..., Path]) -> None:
+    hub = Hub(model_file(LINE))
+    try:
+        app = server_app(hub).app()
+        _, head, page = request(app)
+        policy = head["content-security-policy"]
+        for part in ("default-src 'self'", "frame-ancestors 'none'", "object-src 'none'"):
+            assert part in policy
+        assert "unsafe" not in policy and "access-control-allow-origin" not in head
+        assert head["x-content-type-options"] == "nosniff"
+        nonce = policy.split("'nonce-")[1].split("'")[0]
+        assert nonce.encode() in page and b"__NONCE__" not in page
+        # Nothing but the page's own files.
+        for path in (
+            "/assets/../server.py",
+            "/assets/.env",
+            "/model.sdl",
+            "/.git/config",
+            "/assets/",
+        ):
+            assert request(app, path=path)[0] == 404, path
+        script = page.split(b'src="')[1].split(b'"')[0].decode()
+        status, head, data = request(app, path=script)
+        assert status == 200 and "immutable" in head["cache-control"]
+        assert len(data) < 1_200_000
+    finally:
+        hub.draft.close(keep=False)
+
+
+HOSTILE = '<img src=x onerror="document.title=1">'
+
+
+def test_a_page_in_a_file_carries_names_as_data(
+    model_file: Callable[..., Path], tmp_path: Path
+) -> None:
+    from moldloft.workbench.still import still_page
+
+    text = (
+        LINE
+        + f"# {HOSTILE} </script><script>alert(1)</script> $& \u2028\n"
+        + f"print({json.dumps(HOSTILE)});\n"
+    )
+    try:
+        page = still_page(model_file(text), values={"w": 3}).decode()
+    except Error as error:
+        pytest.skip(str(error))
+    assert page.count("<script") == 2 and HOSTILE not in page and "alert(1)</script>" not in page
+    assert "http://" not in page.split("<script")[0] and "Content-Security-Policy" in page
+    data = json.loads(page.split('id="moldloft-model">')[1].split("</script>")[0])
+    assert data["hello"]["text"] == text
+
+
+def test_what_is_missing_is_said(cli: Any, tmp_path: Path) -> None:
+    done = cli("view", "nothing.sdl", "--no-browser", status=1)
+    assert "nothing.sdl" in done.stderr
+    done = cli("export", "--html", SAILBOAT / "hull.sdl", "--set", "nobody=3", status=1)
+    assert "nobody" in done.stderr or "make web" in done.stderr
+    cli("export", SAILBOAT / "hull.sdl", status=2)
+
+
+@pytest.fixture
+def soak() -> bool:
+    return os.environ.get("MOLDLOFT_SOAK") == "1"

@@ -1,0 +1,326 @@
+"""The page of the workbench in a browser: real pointers and keys, end to end."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conftest import ROOT, SAILBOAT
+
+playwright = pytest.importorskip(
+    "playwright.sync_api", reason="the package playwright is not installed"
+)
+
+CHROMIUM = next(
+    filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])), None
+)
+PAGE = ROOT / "python" / "moldloft" / "workbench" / "page" / "index.html"
+
+pytestmark = [
+    pytest.mark.skipif(
+        CHROMIUM is None, reason="no chromium here: `make setup` installs it as root on Debian"
+    ),
+    pytest.mark.skipif(not PAGE.exists(), reason="the page is not built: `make web` needs Node.js"),
+]
+
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+
+HULL = (SAILBOAT / "hull.sdl").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with playwright.sync_playwright() as p:
+        made = p.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield made
+        made.close()
+
+
+class Bench:
+    """A server and its page."""
+
+    def __init__(self, path: Path, browser: Any) -> None:
+        command = [sys.executable, "-m", "moldloft", "view", str(path), "--no-browser"]
+        self.path = path
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        assert self.process.stdout is not None
+        self.url = self.process.stdout.readline().strip()
+        assert self.url, self.process.stderr and self.process.stderr.read()
+        self.context = browser.new_context(viewport={"width": 1400, "height": 860})
+        self.page = self.context.new_page()
+        self.faults: list[str] = []
+        self.page.on("console", lambda m: self.faults.append(m.text) if m.type == "error" else None)
+        self.page.on("pageerror", lambda e: self.faults.append(str(e)))
+        self.requests: list[str] = []
+        self.page.on("request", lambda r: self.requests.append(r.url))
+        self.page.goto(self.url)
+        self.page.locator("body[data-state=alive]").wait_for(timeout=30_000)
+        self.until(lambda: self.hand("items()"))
+
+    def hand(self, call: str) -> Any:
+        return self.page.evaluate(f"() => window.moldloft.{call}")
+
+    def until(self, true: Callable[[], Any], seconds: float = 20) -> Any:
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if found := true():
+                return found
+            self.page.wait_for_timeout(30)
+        raise AssertionError("it did not come to that")
+
+    def text(self) -> str:
+        found: str = self.hand("text()")
+        return found
+
+    def param(self, name: str) -> float:
+        all_params = self.page.evaluate("() => window.moldloft.model.params")
+        return float(next(p["value"] for p in all_params if p["name"] == name))
+
+    def close(self) -> None:
+        self.context.close()
+        self.process.terminate()
+        self.process.wait(10)
+        for pipe in (self.process.stdout, self.process.stderr):
+            if pipe is not None:
+                pipe.close()
+
+
+@pytest.fixture
+def bench(tmp_path: Path, browser: Any) -> Iterator[Callable[..., Bench]]:
+    made: list[Bench] = []
+
+    def make(text: str = HULL, name: str = "hull.sdl") -> Bench:
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        made.append(Bench(path, browser))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+def test_a_slider_moves_the_model_and_then_the_text(bench: Callable[..., Bench]) -> None:
+    b = bench()
+    before = b.hand("positions('hull')")
+    slider = b.page.get_by_role("slider", name="beam", exact=True)
+    slider.focus()
+    b.page.keyboard.press("PageUp")
+    b.until(lambda: b.hand("positions('hull')") != before)
+    b.until(lambda: "beam = 10.0568" not in b.text())
+    value = float(re.search(r"beam = ([\d.]+) in", b.text())[1])
+    assert value == pytest.approx(10.0568 + 0.7, abs=0.01) and b.param("beam") == value
+    # One step of the history takes it back, in the text and in the model.
+    b.page.get_by_role("textbox", name="program").focus()
+    b.page.keyboard.press("Control+z")
+    b.until(lambda: b.hand("positions('hull')") == before)
+    assert b.text() == HULL
+    assert not b.faults
+    assert all("127.0.0.1" in url or url.startswith(("blob:", "data:")) for url in b.requests)
+
+
+def test_typing_is_followed_and_faults_are_listed(bench: Callable[..., Bench]) -> None:
+    b = bench()
+    shown = len(b.hand("items()"))
+    program = b.page.get_by_role("textbox", name="program")
+    program.focus()
+    b.page.keyboard.press("Control+End")
+    b.page.keyboard.type("AbsPoint Top(15, 0, 9);\n")
+    b.until(lambda: any(i["object"] == "Top" for i in b.hand("items()")))
+    b.page.keyboard.type("Line broken(Top, nothing);")
+    log = b.page.get_by_role("log", name="diagnostics")
+    log.get_by_text("nothing").first.wait_for()
+    # The rest of the model stays.
+    assert len(b.hand("items()")) >= shown
+    assert b.page.locator(".cm-lintRange-error").count() > 0
+    b.until(lambda: "broken" in (b.path.parent / ".hull.sdl.draft").read_text())
+    b.page.keyboard.press("Control+s")
+    b.until(lambda: "broken" in b.path.read_text())
+
+
+def test_a_dragged_point_changes_its_number_in_one_step(bench: Callable[..., Bench]) -> None:
+    b = bench("AbsPoint P(1, 2, 3);\nAbsPoint Q(9, 0, 0);\nAbsPoint R(0, 9, 9);\n", "points.sdl")
+    b.page.evaluate("() => window.moldloft.camera_set(-90, 90)")
+    b.page.wait_for_timeout(200)
+    x, y = b.hand("project('P')")
+    mouse = b.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    for k in range(1, 9):
+        mouse.move(x + 5 * k, y - 3 * k)
+        b.page.wait_for_timeout(20)
+    mouse.up()
+    b.until(lambda: "P(1, 2, 3)" not in b.text())
+    px, py, pz = (
+        float(v) for v in re.search(r"P\(([-\d.]+), ([-\d.]+), (\S+)\)", b.text()).groups()
+    )
+    # Seen from above: along x and y, and z stays as it was spelled.
+    assert px > 1 and py > 2 and pz == 3 and "3)" in b.text()
+    gone_x, gone_y = b.hand("project('P')")
+    assert abs(gone_x - (x + 40)) < 2 and abs(gone_y - (y - 24)) < 2
+    b.page.get_by_role("textbox", name="program").focus()
+    b.page.keyboard.press("Control+z")
+    b.until(lambda: "P(1, 2, 3)" in b.text())
+    # Along an axis only; and taken back by Esc.
+    b.until(lambda: b.hand("project('P')") == pytest.approx([x, y], abs=1e-6))
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 10, y - 10)
+    b.page.keyboard.press("x")
+    mouse.move(x + 30, y - 30)
+    mouse.move(x + 40, y - 40)
+    mouse.up()
+    b.until(lambda: re.search(r"P\([\d.]+, 2, 3\)", b.text()) and "P(1," not in b.text())
+    kept = b.text()
+    x, y = b.hand("project('P')")
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 20, y)
+    mouse.move(x + 40, y)
+    b.page.keyboard.press("Escape")
+    mouse.up()
+    b.page.wait_for_timeout(300)
+    assert b.text() == kept
+    b.until(lambda: b.hand("project('P')") == pytest.approx([x, y], abs=1e-6))
+
+
+def test_an_expression_is_dragged_by_its_parameter(bench: Callable[..., Bench]) -> None:
+    text = "param float w = 2 in [1, 9];\nAbsPoint P(w * w, 0 * w, 0 * w);\n"
+    text += "AbsPoint Q(0, 5, 0);\nAbsPoint R(30, -5, 0);\n"
+    b = bench(text, "wide.sdl")
+    b.page.evaluate("() => window.moldloft.camera_set(-90, 90)")
+    b.page.wait_for_timeout(200)
+    x, y = b.hand("project('P')")
+    b.page.mouse.move(x, y)
+    b.page.mouse.down()
+    for k in range(1, 11):
+        b.page.mouse.move(x + 8 * k, y)
+        b.page.wait_for_timeout(30)
+    assert b.page.get_by_role("group", name="what to move").get_by_text("w").count() == 1
+    b.page.mouse.up()
+    b.until(lambda: "w = 2 in" not in b.text())
+    assert b.param("w") > 2
+    gone = b.hand("project('P')")
+    assert abs(gone[0] - (x + 80)) < 3
+
+
+def test_every_part_has_its_role_and_keys(bench: Callable[..., Bench]) -> None:
+    b = bench()
+    page = b.page
+    assert page.get_by_role("slider", name="beam", exact=True).count() == 1
+    assert page.get_by_role("textbox", name="program").count() == 1
+    assert page.get_by_role("application", name="model").count() == 1
+    assert page.get_by_role("log", name="diagnostics").count() == 1
+    tree = page.get_by_role("tree", name="objects")
+    item = tree.get_by_role("treeitem", name=re.compile("^hull"))
+    item.click()
+    page.get_by_role("region", name="inspector").get_by_text("CLoftSurf").wait_for()
+    item.press(" ")
+    b.until(lambda: not next(i for i in b.hand("items()") if i["object"] == "hull")["seen"])
+    tree.locator("[role=treeitem][tabindex='0']").press(" ")
+    b.until(lambda: next(i for i in b.hand("items()") if i["object"] == "hull")["seen"])
+    # Commands by name, and by key from the model.
+    page.keyboard.press("Control+k")
+    page.get_by_role("combobox", name="command").fill("profile")
+    page.keyboard.press("Enter")
+    b.until(lambda: b.hand("camera()")["elevation"] == 0)
+    page.get_by_role("application", name="model").focus()
+    page.keyboard.press("3")
+    b.until(lambda: b.hand("camera()")["elevation"] == 90)
+    page.keyboard.press("ArrowDown")
+    b.until(lambda: b.hand("camera()")["elevation"] == 90)
+    page.keyboard.press("ArrowUp")
+    b.until(lambda: b.hand("camera()")["elevation"] == 75)
+    page.keyboard.press("F1")
+    page.get_by_role("dialog", name="help").wait_for()
+    page.keyboard.press("Escape")
+    assert not b.faults
+
+
+def test_sheets_follow_the_model(bench: Callable[..., Bench]) -> None:
+    b = bench()
+    page = b.page
+    for name, part in [
+        ("Hydrostatics", "displacement"),
+        ("Mesh", "panels"),
+        ("Dependencies", "MC1"),
+        ("Curvature", "Curvature of"),
+        ("Lines plan", "body plan"),
+    ]:
+        page.get_by_role("tab", name=name).click()
+        page.locator(".sheet").get_by_text(part).first.wait_for(timeout=20_000)
+    page.get_by_role("tab", name="Hydrostatics").click()
+    cell = page.locator(".sheet tbody tr").first.locator("td").first
+    cell.wait_for()
+    before = cell.inner_text()
+    slider = page.get_by_role("slider", name="beam", exact=True)
+    slider.focus()
+    page.keyboard.press("PageUp")
+    b.until(lambda: cell.inner_text() != before)
+    page.get_by_role("tab", name="Model").click()
+    for colour in ("zebra", "gaussian_curvature", "mean_curvature", "d:beam", "aspect", "patches"):
+        page.get_by_role("combobox", name="colour").select_option(colour)
+        page.wait_for_timeout(80)
+    assert not b.faults
+
+
+HOSTILE = "<img src=x onerror=alert(1)>"
+
+
+def test_names_are_texts(bench: Callable[..., Bench]) -> None:
+    b = bench(
+        f'print("{HOSTILE}");\nprint("</script><b>x</b> $& \u202e");\nAbsPoint P(0, 0, 0);\n'
+        f'assert(1 > 2, "{HOSTILE}");\n',
+        "hostile.sdl",
+    )
+    b.page.get_by_text(HOSTILE).first.wait_for()
+    assert b.page.locator("img").count() == 0 and b.page.locator(".log b").count() == 0
+
+
+def test_nothing_is_lost_when_engine_or_server_go(bench: Callable[..., Bench]) -> None:
+    b = bench("AbsPoint P(1, 2, 3);\n", "small.sdl")
+    b.page.get_by_role("textbox", name="program").focus()
+    b.page.keyboard.press("Control+End")
+    for child in _children(b.process.pid):
+        subprocess.run(["kill", "-9", str(child)], check=True)
+    b.page.keyboard.type("AbsPoint Q(4, 5, 6);\n")
+    b.until(lambda: any(i["object"] == "Q" for i in b.hand("items()")), 30)
+    b.process.kill()
+    b.process.wait(10)
+    b.page.get_by_text("The server does not answer").wait_for()
+    b.page.keyboard.type("# typed alone\n")
+    assert "Q(4" in (b.path.parent / ".small.sdl.draft").read_text()
+    assert b.text().endswith("# typed alone\n")
+
+
+def _children(pid: int) -> list[int]:
+    listed = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True
+    ).stdout
+    return [int(word) for word in listed.split()]
+
+
+def test_a_file_opens_without_a_server(browser: Any, cli: Any, tmp_path: Path) -> None:
+    cli("export", "--html", SAILBOAT / "hull.sdl", "-o", "hull.html")
+    context = browser.new_context()
+    page = context.new_page()
+    faults: list[str] = []
+    page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
+    requests: list[str] = []
+    page.on("request", lambda r: requests.append(r.url))
+    page.goto((tmp_path / "hull.html").as_uri())
+    page.locator("body[data-state=alive]").wait_for()
+    assert page.evaluate("() => window.moldloft.items().length") > 5
+    assert page.get_by_role("slider", name="beam", exact=True).is_disabled()
+    assert not faults and all(u.startswith(("file:", "blob:", "data:")) for u in requests)
+    context.close()

@@ -1,0 +1,358 @@
+// The program: CodeMirror, with what the engine knows of the text, and changes shared with the hub.
+
+import { acceptCompletion, autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete'
+import { collab, getSyncedVersion, receiveUpdates, sendableUpdates } from '@codemirror/collab'
+import { defaultKeymap, history, historyKeymap, indentLess, indentMore, isolateHistory, toggleComment } from '@codemirror/commands'
+import { bracketMatching, foldGutter, indentOnInput, StreamLanguage, syntaxHighlighting, type StreamParser } from '@codemirror/language'
+import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint'
+import { highlightSelectionMatches, searchKeymap, search } from '@codemirror/search'
+import { Annotation, ChangeSet, Compartment, EditorState, StateEffect, StateField, Transaction } from '@codemirror/state'
+import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type DecorationSet } from '@codemirror/view'
+import { classHighlighter } from '@lezer/highlight'
+import { h } from './dom'
+import type { Link } from './link'
+
+export interface Edit {
+  from: number
+  to: number
+  insert: string
+}
+
+const fromOutside = Annotation.define<boolean>()
+const mark = StateEffect.define<{ from: number; to: number } | null>()
+
+const marks = StateField.define<DecorationSet>({
+  create: () => Decoration.none,
+  update(set, tr) {
+    set = set.map(tr.changes)
+    for (const e of tr.effects)
+      if (e.is(mark))
+        set = e.value && e.value.to > e.value.from && e.value.to <= tr.newDoc.length
+          ? Decoration.set([Decoration.mark({ class: 'cm-object' }).range(e.value.from, e.value.to)])
+          : Decoration.none
+    return set
+  },
+  provide: (f) => EditorView.decorations.from(f),
+})
+
+type Words = Record<string, Set<string>>
+
+/** The language's words come from the engine's own tables. */
+function parser(words: Words): StreamParser<{ text: boolean }> {
+  return {
+    startState: () => ({ text: false }),
+    token(stream, state) {
+      if (state.text) {
+        while (!stream.eol()) {
+          const c = stream.next()
+          if (c === '\\') stream.next()
+          else if (c === '"') {
+            state.text = false
+            break
+          }
+        }
+        return 'string'
+      }
+      if (stream.eatSpace()) return null
+      if (stream.match('#')) {
+        stream.skipToEnd()
+        return 'comment'
+      }
+      if (stream.match('"')) {
+        state.text = true
+        return 'string'
+      }
+      if (stream.match(/^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?/)) return 'number'
+      const word = stream.match(/^[A-Za-z_]\w*/) as RegExpMatchArray | null
+      if (word) {
+        const name = word[0]
+        if (words.keyword?.has(name)) return 'keyword'
+        if (words.kind?.has(name)) return 'typeName'
+        if (words.function?.has(name)) return stream.match(/^\s*\(/, false) ? 'macroName' : 'variableName'
+        return 'variableName'
+      }
+      stream.next()
+      return null
+    },
+    languageData: { commentTokens: { line: '#' }, closeBrackets: { brackets: ['(', '[', '{', '"'] } },
+  }
+}
+
+export class Editor {
+  readonly view: EditorView
+  private readonly language = new Compartment()
+  private readonly shared = new Compartment()
+  private pushing = false
+  private timer = 0
+  private online = false
+  /** Called when what is typed is not yet with the hub, or is again. */
+  onPending: (pending: boolean) => void = () => {}
+  onCursor: (offset: number) => void = () => {}
+  onTrouble: (words: string) => void = () => {}
+
+  constructor(host: HTMLElement, private readonly link: Link, nonce: string, private readonly keys: { key: string; run: () => boolean }[]) {
+    this.view = new EditorView({ parent: host, state: this.state('', nonce) })
+  }
+
+  private state(text: string, nonce: string): EditorState {
+    return EditorState.create({
+      doc: text,
+      extensions: [
+        nonce ? EditorView.cspNonce.of(nonce) : [],
+        lineNumbers(), highlightActiveLineGutter(), foldGutter(), history(), drawSelection(), indentOnInput(), bracketMatching(), closeBrackets(),
+        autocompletion({ override: [(c) => this.complete(c)] }), highlightActiveLine(), highlightSelectionMatches(), search({ top: true }), lintGutter(), marks,
+        syntaxHighlighting(classHighlighter), EditorState.tabSize.of(4), EditorView.lineWrapping,
+        this.language.of(StreamLanguage.define(parser({}))), this.shared.of([]),
+        EditorState.readOnly.of(this.link.still),
+        EditorView.contentAttributes.of({ 'aria-label': 'program', spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off' }),
+        hoverTooltip((_, pos) => this.hover(pos), { hoverTime: 350 }),
+        keymap.of([
+          ...this.keys,
+          { key: 'Tab', run: (v) => acceptCompletion(v) || indentMore(v), shift: indentLess },
+          { key: 'F12', run: () => (void this.definition(), true) },
+          { key: 'F2', run: () => (void this.rename(), true) },
+          { key: 'Shift-Alt-f', run: () => (void this.format(), true) },
+          { key: 'Mod-/', run: toggleComment },
+          ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...completionKeymap,
+        ]),
+        EditorView.updateListener.of((update) => {
+          if (update.docChanged && !update.transactions.some((t) => t.annotation(fromOutside))) this.push()
+          if (update.selectionSet && !update.docChanged) this.onCursor(update.state.selection.main.head)
+        }),
+        EditorView.domEventHandlers({
+          mousedown: (event, view) => {
+            if (!(event.ctrlKey || event.metaKey)) return false
+            const pos = view.posAtCoords({ x: event.clientX, y: event.clientY })
+            if (pos !== null) void this.definition(pos)
+            return true
+          },
+        }),
+      ],
+    })
+  }
+
+  get text(): string {
+    return this.view.state.doc.toString()
+  }
+
+  words(words: Record<string, string[]>): void {
+    const sets: Words = {}
+    for (const [kind, list] of Object.entries(words)) sets[kind] = new Set(list)
+    this.view.dispatch({ effects: this.language.reconfigure(StreamLanguage.define(parser(sets))) })
+  }
+
+  // The text and the hub.
+
+  /** The hub's text, of that version; what was typed meanwhile and not taken is put on top. */
+  begin(text: string, version: number, keep: boolean): void {
+    const mine = this.text
+    const had = keep && mine !== text
+    this.view.dispatch({ effects: this.shared.reconfigure([]) })
+    this.replace(text, true)
+    this.view.dispatch({ effects: this.shared.reconfigure(collab({ startVersion: version })) })
+    this.online = true
+    if (had) {
+      this.replace(mine, false)
+      this.onTrouble('The server had another text; yours was kept. Undo brings back the other.')
+    }
+    this.push()
+  }
+
+  offline(): void {
+    this.online = false
+    this.pushing = false
+    this.onPending(this.pending)
+  }
+
+  get pending(): boolean {
+    try {
+      return sendableUpdates(this.view.state).length > 0
+    } catch {
+      return false
+    }
+  }
+
+  get version(): number {
+    try {
+      return getSyncedVersion(this.view.state)
+    } catch {
+      return -1
+    }
+  }
+
+  /** The least change that makes the text this one. */
+  replace(text: string, silently: boolean): void {
+    const old = this.text
+    if (old === text) return
+    let start = 0
+    const most = Math.min(old.length, text.length)
+    while (start < most && old.charCodeAt(start) === text.charCodeAt(start)) start++
+    let end = 0
+    while (end < most - start && old.charCodeAt(old.length - 1 - end) === text.charCodeAt(text.length - 1 - end)) end++
+    this.view.dispatch({
+      changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) },
+      annotations: silently ? [Transaction.addToHistory.of(false), fromOutside.of(true)] : [isolateHistory.of('full')],
+    })
+  }
+
+  received(updates: { changes: any; clientID: string }[], from: number): void {
+    const known = this.version
+    if (known < 0) return
+    if (from > known) return void this.catchUp()
+    const news = updates.slice(known - from)
+    if (news.length === 0) return
+    const made = news.map((u) => ({ changes: ChangeSet.fromJSON(u.changes), clientID: u.clientID }))
+    const tr = receiveUpdates(this.view.state, made)
+    this.view.dispatch(tr)
+    this.onPending(this.pending)
+  }
+
+  private async catchUp(): Promise<void> {
+    try {
+      const answer = await this.link.tell({ kind: 'pull', version: this.version })
+      if (typeof answer.text === 'string') this.begin(answer.text, answer.version, true)
+      else this.received(answer.updates, answer.from)
+    } catch {
+      // The next message finds it again.
+    }
+  }
+
+  /** Sends what was typed; one message under way, and what comes meanwhile with the next. */
+  private push(): void {
+    this.onPending(this.pending)
+    if (!this.online || this.pushing || this.timer || this.link.still) return
+    this.timer = window.setTimeout(() => {
+      this.timer = 0
+      void this.send()
+    }, 0)
+  }
+
+  private async send(): Promise<void> {
+    const updates = sendableUpdates(this.view.state)
+    if (!updates.length || this.pushing) return
+    this.pushing = true
+    try {
+      const sent = updates.map((u) => ({ changes: u.changes.toJSON(), clientID: u.clientID }))
+      const answer = await this.link.tell({ kind: 'push', version: this.version, updates: sent })
+      if (!answer.ok && typeof answer.text === 'string') this.begin(answer.text, answer.version, true)
+      else if (!answer.ok && answer.version > this.version) await this.catchUp()
+      if (answer.error) this.onTrouble(answer.error)
+    } catch {
+      // The connection is lost: what was typed is sent when it is back.
+    }
+    this.pushing = false
+    this.onPending(this.pending)
+    if (this.online && this.pending) setTimeout(() => this.push(), 20)
+  }
+
+  async synced(): Promise<void> {
+    while (this.pending && this.online) await new Promise((r) => setTimeout(r, 5))
+  }
+
+  /** Edits that the engine made, as one step of the history. */
+  apply(edits: Edit[]): void {
+    if (!edits.length) return
+    this.view.dispatch({ changes: edits, annotations: isolateHistory.of('full'), userEvent: 'input.hand' })
+  }
+
+  // What is known of the text.
+
+  diagnose(all: any[]): void {
+    const size = this.view.state.doc.length
+    const shown: Diagnostic[] = []
+    for (const d of all) {
+      if (!d.place) continue
+      const from = Math.min(d.place[0], size)
+      const to = Math.min(Math.max(d.place[1], from), size)
+      const found = d.found ? `\nfound ${d.found}` : ''
+      const expected = d.expected ? `\nexpected ${d.expected}` : ''
+      const help = (d.help ?? []).map((t: string) => `\n${t}`).join('')
+      const actions = d.edit
+        ? [{ name: d.edit.title, apply: (v: EditorView) => v.dispatch({ changes: { from: d.edit.place[0], to: d.edit.place[1], insert: d.edit.insert } }) }]
+        : []
+      shown.push({ from, to, severity: d.severity === 'note' ? 'info' : d.severity, message: d.message + expected + found + help, actions })
+    }
+    shown.sort((a, b) => a.from - b.from)
+    this.view.dispatch(setDiagnostics(this.view.state, shown))
+  }
+
+  show(place: [number, number] | null, focus = false): void {
+    const size = this.view.state.doc.length
+    if (!place || place[1] > size) {
+      this.view.dispatch({ effects: mark.of(null) })
+      return
+    }
+    const effects = [mark.of({ from: place[0], to: place[1] }), EditorView.scrollIntoView(place[0], { y: 'center' })]
+    this.view.dispatch(focus ? { effects, selection: { anchor: place[0] } } : { effects })
+    if (focus) this.view.focus()
+  }
+
+  private async complete(context: CompletionContext): Promise<CompletionResult | null> {
+    const word = context.matchBefore(/\w*/)
+    const dotted = context.matchBefore(/\.\w*/)
+    if (!context.explicit && !dotted && (!word || word.from === word.to)) return null
+    try {
+      await this.synced()
+      const { head } = await this.link.ask('complete', { offset: context.pos })
+      const types: Record<string, string> = { kind: 'class', member: 'property', object: 'constant' }
+      const options = (head.completions as [string, string, string][]).map(([label, type, detail]) => ({
+        label, type: types[type] ?? type, detail: detail.length > 60 ? `${detail.slice(0, 60)}…` : detail,
+      }))
+      return { from: word ? word.from : context.pos, options, validFor: /^\w*$/ }
+    } catch {
+      return null
+    }
+  }
+
+  private async hover(pos: number) {
+    try {
+      const { head } = await this.link.ask('hover', { offset: pos })
+      if (!head.markdown || !head.place) return null
+      return { pos: head.place[0], end: head.place[1], create: () => ({ dom: explained(head.markdown) }) }
+    } catch {
+      return null
+    }
+  }
+
+  async definition(at = this.view.state.selection.main.head): Promise<void> {
+    try {
+      const { head } = await this.link.ask('definition', { offset: at })
+      if (head.place) this.show(head.place, true)
+    } catch {
+      // Nothing there.
+    }
+  }
+
+  async rename(): Promise<void> {
+    const word = this.view.state.wordAt(this.view.state.selection.main.head)
+    if (!word) return
+    const old = this.view.state.sliceDoc(word.from, word.to)
+    const now = prompt(`New name of ${old}`, old)
+    if (!now || now === old) return
+    try {
+      const { head } = await this.link.ask('rename', { offset: word.from, new: now })
+      this.apply(head.edits)
+    } catch (error) {
+      this.onTrouble((error as Error).message)
+    }
+  }
+
+  async format(): Promise<void> {
+    try {
+      const { head } = await this.link.ask('format')
+      this.apply(head.edits)
+    } catch (error) {
+      this.onTrouble((error as Error).message)
+    }
+  }
+}
+
+/** Markdown of hovers: code blocks and plain lines, as texts. */
+function explained(markdown: string): HTMLElement {
+  const box = h('div', { class: 'hover-box' })
+  markdown.split('```').forEach((part, k) => {
+    if (k % 2) box.append(h('pre', {}, part.replace(/^\w*\n/, '').trimEnd()))
+    else for (const line of part.split(/\n\n+/)) if (line.trim()) box.append(h('p', {}, line.trim().replace(/`/g, '')))
+  })
+  return box
+}

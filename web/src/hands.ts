@@ -1,0 +1,376 @@
+// Hands on the picture: orbit, pan, zoom, pick, measure, drag.
+
+import { Vector3 } from 'three'
+import { h, shown } from './dom'
+import { Newest, Refused, type Link } from './link'
+import { model } from './state'
+import type { Drawn, View } from './view'
+
+export interface Handlers {
+  select(name: string): void
+  hover(name: string): void
+  say(words: string): void
+  apply(edits: any[]): void
+  synced(): Promise<void>
+  status(words: string): void
+  open(name: string): void
+}
+
+interface Handle {
+  name: string
+  own: boolean
+  direction: number[]
+  value: number
+  range: [number, number] | null
+}
+
+interface Drag {
+  item: Drawn
+  start: Vector3
+  target: Vector3
+  handles: Handle[]
+  own: string[]
+  names: string[]
+  axis: number | null
+  plane: number | null
+  moved: boolean
+  ready: boolean
+  last: [number, number]
+}
+
+const AXES = ['x', 'y', 'z']
+const unit = (k: number) => new Vector3().setComponent(k, 1)
+
+export class Hands {
+  measuring = false
+  private places: Vector3[] = []
+  private drag: Drag | null = null
+  private readonly pointers = new Map<number, [number, number]>()
+  private pressed: { x: number; y: number; button: number; shift: boolean; moved: boolean } | null = null
+  private readonly requests: Newest<() => Promise<unknown>>
+  private readonly tip = h('div', { class: 'tip', hidden: true })
+  private readonly chooser = h('div', { class: 'chooser', role: 'group', 'aria-label': 'what to move', hidden: true })
+  private readonly entry = h('input', { class: 'entry number', type: 'text', inputmode: 'decimal', 'aria-label': 'value', hidden: true })
+
+  constructor(private readonly view: View, private readonly link: Link, host: HTMLElement, private readonly act: Handlers) {
+    host.append(this.tip, this.chooser, this.entry)
+    this.requests = new Newest((run) => run())
+    const c = view.canvas
+    c.addEventListener('pointerdown', (e) => this.down(e))
+    c.addEventListener('pointermove', (e) => this.move(e))
+    c.addEventListener('pointerup', (e) => this.up(e))
+    c.addEventListener('pointercancel', () => this.cancel())
+    c.addEventListener('pointerleave', () => act.hover(''))
+    c.addEventListener('contextmenu', (e) => e.preventDefault())
+    c.addEventListener('wheel', (e) => this.wheel(e), { passive: false })
+    c.addEventListener('dblclick', (e) => {
+      const hit = view.pick(...this.at(e))
+      if (hit) act.open(hit.object)
+      else view.fit()
+    })
+    c.addEventListener('keydown', (e) => this.key(e))
+    this.entry.addEventListener('keydown', (e) => this.entered(e))
+  }
+
+  private at(e: MouseEvent): [number, number] {
+    const box = this.view.canvas.getBoundingClientRect()
+    return [e.clientX - box.left, e.clientY - box.top]
+  }
+
+  get busy(): boolean {
+    return this.drag !== null
+  }
+
+  private down(e: PointerEvent): void {
+    this.view.canvas.focus({ preventScroll: true })
+    this.view.canvas.setPointerCapture(e.pointerId)
+    const [x, y] = this.at(e)
+    this.pointers.set(e.pointerId, [x, y])
+    this.pressed = { x, y, button: e.button, shift: e.shiftKey, moved: false }
+    if (e.button !== 0 || e.shiftKey || this.measuring || this.pointers.size > 1 || this.link.still) return
+    const item = this.view.near(x, y, e.pointerType === 'touch' ? 18 : 10)
+    if (item) void this.grab(item, x, y)
+  }
+
+  private async grab(item: Drawn, x: number, y: number): Promise<void> {
+    this.act.select(item.object)
+    const start = this.view.place(item)
+    const drag: Drag = { item, start, target: start.clone(), handles: [], own: [], names: [], axis: null, plane: null, moved: false, ready: false, last: [x, y] }
+    this.drag = drag
+    try {
+      await this.act.synced()
+      const { head } = await this.link.ask('drag_begin', { object: item.object })
+      if (this.drag !== drag) return
+      Object.assign(drag, { handles: head.handles, own: head.own, ready: true })
+      drag.names = this.chosen(drag)
+      const said = drag.own.length ? `${item.object}: ${drag.own.join(', ')}` : `${item.object} follows from an expression: choose what moves it`
+      this.act.status(`${said} · X Y Z lock an axis, digits enter a value, Esc takes it back`)
+      if (drag.moved) this.aim(...drag.last, false)
+    } catch (error) {
+      if (this.drag === drag) this.drag = null
+      if (error instanceof Refused) this.act.status(error.message)
+    }
+  }
+
+  /** The object's own numbers; for an expression the parameter that moves it most within its range. */
+  private chosen(drag: Drag): string[] {
+    const own = drag.handles.filter((k) => drag.own.includes(k.name))
+    if (own.length) return []
+    const params = drag.handles.filter((k) => !k.own)
+    const reach = (k: Handle) => Math.hypot(...k.direction) * (k.range ? k.range[1] - k.range[0] : 1)
+    params.sort((a, b) => reach(b) - reach(a))
+    return params.length ? [params[0].name] : []
+  }
+
+  private offer(drag: Drag): void {
+    const params = drag.handles.filter((k) => !k.own)
+    if (!params.length) return
+    const [x, y] = this.view.project(this.view.place(drag.item))
+    const choose = (names: string[]) => {
+      drag.names = names
+      this.offer(drag)
+    }
+    const chip = (label: string, names: string[]) =>
+      h('button', { class: `chip ${names.join() === drag.names.join() ? 'on' : ''}`, onpointerdown: (e: Event) => e.stopPropagation(), onclick: () => choose(names) }, label)
+    this.chooser.replaceChildren(
+      ...(drag.own.length ? [chip(drag.own.map((n) => n.slice(drag.item.object.length + 1)).join(' '), [])] : []),
+      ...params.slice(0, 6).map((k) => chip(k.name, [k.name])),
+      ...(params.length > 1 ? [chip('all together', params.map((k) => k.name))] : []))
+    this.chooser.style.left = `${x + 16}px`
+    this.chooser.style.top = `${y + 16}px`
+    this.chooser.hidden = drag.own.length > 0
+  }
+
+  private move(e: PointerEvent): void {
+    const [x, y] = this.at(e)
+    const before = this.pointers.get(e.pointerId)
+    if (!this.pressed || !before) {
+      if (e.pointerType === 'mouse') this.hover(x, y)
+      return
+    }
+    const [dx, dy] = [x - before[0], y - before[1]]
+    if (this.pointers.size === 2) {
+      this.pinch(e.pointerId, before, [x, y])
+      return
+    }
+    this.pointers.set(e.pointerId, [x, y])
+    if (!this.pressed.moved && Math.hypot(x - this.pressed.x, y - this.pressed.y) < 4) return
+    this.pressed.moved = true
+    if (this.drag) {
+      this.drag.moved = true
+      this.drag.last = [x, y]
+      this.aim(x, y, e.altKey)
+      return
+    }
+    const { camera } = this.view
+    if (this.pressed.button === 0 && !this.pressed.shift) camera.orbit(dx * 0.4, dy * 0.4)
+    else camera.pan(dx, dy, this.view.height)
+    this.view.draw()
+  }
+
+  private pinch(id: number, before: [number, number], now: [number, number]): void {
+    const other = [...this.pointers].find(([k]) => k !== id)?.[1]
+    if (!other) return
+    const from = Math.hypot(before[0] - other[0], before[1] - other[1])
+    const to = Math.hypot(now[0] - other[0], now[1] - other[1])
+    const box = this.view.canvas.getBoundingClientRect()
+    const middle = [(now[0] + other[0]) / 2 - box.width / 2, (now[1] + other[1]) / 2 - box.height / 2]
+    this.view.camera.zoom(from / Math.max(1, to), middle[0], middle[1], this.view.height)
+    this.view.camera.pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2, this.view.height)
+    this.pointers.set(id, now)
+    this.view.draw()
+  }
+
+  private hover(x: number, y: number): void {
+    const point = this.view.near(x, y, 10)
+    this.view.canvas.style.cursor = point ? 'grab' : this.measuring ? 'crosshair' : ''
+    const hit = point ? { object: point.object, point: this.view.place(point), value: undefined } : this.view.items.size < 400 ? this.view.pick(x, y) : null
+    this.act.hover(hit?.object ?? '')
+    if (!hit) {
+      this.tip.hidden = true
+      return
+    }
+    const value = hit.value ? ` · ${shown(hit.value.length === 1 ? hit.value[0] : hit.value, 4)}` : ''
+    this.tip.textContent = `${hit.object}${value}`
+    this.tip.hidden = false
+    this.tip.style.left = `${x + 14}px`
+    this.tip.style.top = `${y + 14}px`
+  }
+
+  /** From the pointer to a place, and from that to numbers. */
+  private aim(x: number, y: number, free: boolean): void {
+    const drag = this.drag
+    if (!drag || !drag.ready) return
+    this.tip.hidden = true
+    const { camera } = this.view
+    const { ray } = this.view.ray(x, y)
+    let basis = [camera.right, camera.up]
+    let snapped = ''
+    if (drag.axis !== null) {
+      // The point of the axis that is nearest to the ray.
+      const a = unit(drag.axis)
+      const [w, b] = [drag.start.clone().sub(ray.origin), ray.direction.dot(a)]
+      if (1 - b * b > 1e-3) drag.target.copy(drag.start).addScaledVector(a, (b * ray.direction.dot(w) - a.dot(w)) / (1 - b * b))
+      basis = [a]
+    } else {
+      const n = drag.plane !== null ? unit(drag.plane) : camera.towards
+      const slope = n.dot(ray.direction)
+      if (Math.abs(slope) > 0.05) drag.target.copy(ray.origin).addScaledVector(ray.direction, n.dot(drag.start.clone().sub(ray.origin)) / slope)
+      if (drag.plane !== null) basis = [0, 1, 2].filter((k) => k !== drag.plane).map(unit)
+      const near = free ? null : this.view.near(x, y, 8, drag.item.object)
+      if (near) {
+        drag.target.copy(this.view.place(near))
+        basis = [unit(0), unit(1), unit(2)]
+        snapped = near.object
+      }
+    }
+    // What was moved before the lock goes back: the place itself is to be on the axis or in the plane.
+    const whole = drag.names.every((n) => drag.own.includes(n))
+    if (whole && (drag.axis !== null || drag.plane !== null)) basis = [unit(0), unit(1), unit(2)]
+    const { target } = drag
+    if (!drag.own.length) this.offer(drag)
+    this.requests.push(async () => {
+      try {
+        const { head } = await this.link.ask('drag_to', {
+          target: target.toArray(), basis: basis.map((b) => b.toArray()), names: drag.names, grain: camera.grain(this.view.height),
+        })
+        if (this.drag !== drag) return
+        const values = Object.entries(head.values as Record<string, number>).map(([n, v]) => `${n} = ${shown(v)}`)
+        const lock = drag.axis !== null ? ` · along ${AXES[drag.axis]}` : drag.plane !== null ? ` · in ${AXES.filter((_, k) => k !== drag.plane).join('')}` : ''
+        this.act.status(values.join('   ') + lock + (snapped ? ` · on ${snapped}` : ''))
+      } catch (error) {
+        if (error instanceof Refused && error.message !== 'superseded') this.act.status(error.message)
+      }
+    })
+  }
+
+  private up(e: PointerEvent): void {
+    this.pointers.delete(e.pointerId)
+    const pressed = this.pressed
+    if (this.pointers.size === 0) this.pressed = null
+    if (this.drag) {
+      void this.finish(this.drag.moved)
+      return
+    }
+    if (!pressed || pressed.moved || pressed.button !== 0) return
+    const [x, y] = this.at(e)
+    const hit = this.view.pick(x, y)
+    if (this.measuring) this.measure(hit?.point ?? null)
+    else this.act.select(hit?.object ?? '')
+  }
+
+  private async finish(commit: boolean): Promise<void> {
+    const drag = this.drag
+    if (!drag) return
+    await this.requests.settled()
+    this.chooser.hidden = true
+    this.entry.hidden = true
+    this.drag = null
+    try {
+      const { head } = await this.link.ask('drag_end', { commit })
+      if (commit) this.act.apply(head.edits ?? [])
+    } catch (error) {
+      this.act.status((error as Error).message)
+    }
+    if (!commit) this.act.status('')
+  }
+
+  cancel(): void {
+    this.pointers.clear()
+    this.pressed = null
+    if (this.drag) void this.finish(false)
+  }
+
+  private wheel(e: WheelEvent): void {
+    e.preventDefault()
+    const [x, y] = this.at(e)
+    const box = this.view.canvas.getBoundingClientRect()
+    const lines = e.deltaMode === 1 ? 16 : 1
+    const fine = e.deltaMode === 0 && Math.abs(e.deltaY) < 60 && !e.ctrlKey && (e.deltaX !== 0 || !Number.isInteger(e.deltaY))
+    if (fine) this.view.camera.pan(-e.deltaX, -e.deltaY, this.view.height)
+    else this.view.camera.zoom(Math.exp(e.deltaY * lines * (e.ctrlKey ? 0.01 : 0.0015)), x - box.width / 2, y - box.height / 2, this.view.height)
+    this.view.draw()
+  }
+
+  private key(e: KeyboardEvent): void {
+    const { camera } = this.view
+    const drag = this.drag
+    if (drag) {
+      const axis = AXES.indexOf(e.key.toLowerCase())
+      if (axis >= 0 && !e.shiftKey) drag.axis = drag.axis === axis ? null : axis
+      else if (axis >= 0) [drag.axis, drag.plane] = [null, drag.plane === axis ? null : axis]
+      else if (e.key === 'Escape') return this.cancel()
+      else if (/^[\d=.\-]$/.test(e.key)) return this.enter(drag, e)
+      else return
+      e.preventDefault()
+      e.stopPropagation()
+      drag.moved = true
+      this.aim(...drag.last, e.altKey)
+      return
+    }
+    const turn: Record<string, [number, number]> = { ArrowLeft: [-15, 0], ArrowRight: [15, 0], ArrowUp: [0, -15], ArrowDown: [0, 15] }
+    if (e.key in turn && !e.altKey && !e.metaKey) {
+      const [dx, dy] = turn[e.key]
+      if (e.ctrlKey || e.shiftKey) camera.pan(-dx * 3, -dy * 3, this.view.height)
+      else camera.orbit(dx, dy)
+    } else if (e.key === '+' || e.key === '=') camera.zoom(0.85, 0, 0, this.view.height)
+    else if (e.key === '-') camera.zoom(1 / 0.85, 0, 0, this.view.height)
+    else return
+    e.preventDefault()
+    this.view.draw()
+  }
+
+  /** A number typed while dragging. */
+  private enter(drag: Drag, e: KeyboardEvent): void {
+    e.preventDefault()
+    const names = drag.names.length ? drag.names : drag.own
+    const name = names.find((n) => drag.axis !== null && n.endsWith(`.${AXES[drag.axis]}`)) ?? names[0]
+    if (!name) return
+    this.entry.hidden = false
+    this.entry.dataset.names = names.join('\n')
+    this.entry.dataset.name = name
+    this.entry.placeholder = name
+    this.entry.value = e.key === '=' ? '' : e.key
+    this.entry.style.left = `${drag.last[0] + 12}px`
+    this.entry.style.top = `${drag.last[1] - 36}px`
+    this.entry.focus()
+  }
+
+  private entered(e: KeyboardEvent): void {
+    e.stopPropagation()
+    if (e.key === 'Escape') {
+      this.entry.hidden = true
+      this.view.canvas.focus()
+      return this.cancel()
+    }
+    if (e.key !== 'Enter' && e.key !== 'Tab') return
+    e.preventDefault()
+    const { name, names } = this.entry.dataset
+    const x = Number(this.entry.value.replace(',', '.'))
+    if (!name || !Number.isFinite(x) || this.entry.value.trim() === '') return
+    this.requests.push(() => this.link.ask('set', { values: { [name]: x } }).catch((error) => this.act.status(error.message)))
+    if (e.key === 'Tab') {
+      const all = (names ?? '').split('\n')
+      this.entry.dataset.name = this.entry.placeholder = all[(all.indexOf(name) + 1) % all.length]
+      this.entry.value = ''
+    } else {
+      this.view.canvas.focus()
+      void this.finish(true)
+    }
+  }
+
+  private measure(p: Vector3 | null): void {
+    if (!p) return
+    const near = this.places.length === 1 ? this.places : []
+    this.places = [...near, p.clone()]
+    if (this.places.length < 2) {
+      this.view.overlay('measure', null)
+      this.act.status(`from (${p.toArray().map((x) => shown(x)).join(', ')}): click a second place`)
+      return
+    }
+    const [a, b] = this.places
+    const d = b.clone().sub(a)
+    this.view.overlay('measure', [[...a.toArray(), ...b.toArray()]], 0xe8711a)
+    this.act.status(`distance ${shown(d.length())} ${model.unit}   Δx ${shown(d.x)}   Δy ${shown(d.y)}   Δz ${shown(d.z)}`)
+  }
+}

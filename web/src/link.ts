@@ -1,0 +1,162 @@
+// What answers the page: the server's engine through a socket, or the last scene of a file.
+
+import { Frame, type Facts } from './frame'
+
+export class Refused extends Error {
+  constructor(message: string, readonly facts: Facts = {}) {
+    super(message)
+  }
+}
+
+export interface Link {
+  /** True when nothing can be changed. */
+  readonly still: boolean
+  ask(kind: string, fields?: Facts): Promise<Frame>
+  tell(message: Facts): Promise<Facts>
+  onFrame: (frame: Frame) => void
+  onMessage: (message: Facts) => void
+  onState: (state: 'up' | 'down') => void
+}
+
+type Waiting = { resolve: (answer: any) => void; reject: (error: Error) => void }
+
+export class SocketLink implements Link {
+  readonly still = false
+  onFrame: (frame: Frame) => void = () => {}
+  onMessage: (message: Facts) => void = () => {}
+  onState: (state: 'up' | 'down') => void = () => {}
+  private socket: WebSocket | null = null
+  private waiting = new Map<number, Waiting>()
+  private count = 0
+  private retry = 250
+
+  async start(): Promise<void> {
+    const token = new URLSearchParams(location.hash.slice(1)).get('t')
+    if (token) {
+      history.replaceState(null, '', location.pathname)
+      const reply = await fetch('/token', { method: 'POST', body: token, credentials: 'same-origin' })
+      if (!reply.ok) throw new Refused('this address has been used up: take the one that `moldloft view` printed')
+    }
+    this.connect()
+  }
+
+  private connect(): void {
+    const socket = new WebSocket(`ws://${location.host}/ws`)
+    socket.binaryType = 'arraybuffer'
+    this.socket = socket
+    socket.onopen = () => {
+      this.retry = 250
+      this.onState('up')
+    }
+    socket.onmessage = (event) => this.receive(event.data)
+    socket.onclose = () => {
+      for (const w of this.waiting.values()) w.reject(new Refused('the connection is lost'))
+      this.waiting.clear()
+      this.onState('down')
+      setTimeout(() => this.connect(), this.retry)
+      this.retry = Math.min(4000, this.retry * 1.7)
+    }
+  }
+
+  private receive(data: string | ArrayBuffer): void {
+    if (typeof data === 'string') {
+      const message = JSON.parse(data)
+      const waiting = this.waiting.get(message.id)
+      if (waiting) {
+        this.waiting.delete(message.id)
+        if (message.kind === 'refused' || message.kind === 'superseded')
+          waiting.reject(new Refused(message.error ?? 'superseded', message))
+        else waiting.resolve(message)
+        if (message.kind === 'superseded' || message.kind === 'refused' || message.kind === 'pushed') return
+      }
+      this.onMessage(message)
+      return
+    }
+    const frame = new Frame(data)
+    this.onFrame(frame)
+    const waiting = this.waiting.get(frame.head.id)
+    if (!waiting) return
+    this.waiting.delete(frame.head.id)
+    if (frame.head.error) waiting.reject(new Refused(frame.head.error, frame.head))
+    else waiting.resolve(frame)
+  }
+
+  private send(message: Facts): Promise<any> {
+    const id = ++this.count
+    return new Promise((resolve, reject) => {
+      if (this.socket?.readyState !== WebSocket.OPEN) return reject(new Refused('the connection is lost'))
+      this.waiting.set(id, { resolve, reject })
+      this.socket.send(JSON.stringify({ ...message, id }))
+    })
+  }
+
+  ask(kind: string, fields: Facts = {}): Promise<Frame> {
+    return this.send({ kind, ...fields })
+  }
+
+  tell(message: Facts): Promise<Facts> {
+    return this.send(message)
+  }
+}
+
+/** The scene that a file carries. */
+export class StillLink implements Link {
+  readonly still = true
+  onFrame: (frame: Frame) => void = () => {}
+  onMessage: (message: Facts) => void = () => {}
+  onState: (state: 'up' | 'down') => void = () => {}
+
+  constructor(private readonly hello: Facts, private readonly frames: Record<string, ArrayBuffer>) {}
+
+  async start(): Promise<void> {
+    this.onState('up')
+    this.onMessage(this.hello)
+  }
+
+  async ask(kind: string): Promise<Frame> {
+    const data = this.frames[kind]
+    if (!data) throw new Refused('this page shows the model as it was: open it with `moldloft view` to change it')
+    const frame = new Frame(data.slice(0))
+    this.onFrame(frame)
+    return frame
+  }
+
+  async tell(): Promise<Facts> {
+    throw new Refused('this page shows the model as it was')
+  }
+}
+
+/** Keeps one request under way; of those that wait only the newest counts. */
+export class Newest<A> {
+  private waiting: A | null = null
+  private busy = false
+
+  constructor(private readonly carryOut: (a: A) => Promise<unknown>, private readonly merge = (_: A, b: A) => b) {}
+
+  push(a: A): void {
+    this.waiting = this.waiting === null ? a : this.merge(this.waiting, a)
+    void this.pump()
+  }
+
+  get idle(): boolean {
+    return !this.busy && this.waiting === null
+  }
+
+  async settled(): Promise<void> {
+    while (!this.idle) await new Promise((r) => setTimeout(r, 4))
+  }
+
+  private async pump(): Promise<void> {
+    if (this.busy) return
+    while (this.waiting !== null) {
+      const next = this.waiting
+      this.waiting = null
+      this.busy = true
+      try {
+        await this.carryOut(next)
+      } finally {
+        this.busy = false
+      }
+    }
+  }
+}

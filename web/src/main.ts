@@ -1,0 +1,768 @@
+// The workbench: one page in which a model lives.
+
+import './style.css'
+import { Editor } from './editor'
+import { ramp } from './colour'
+import { h, shown, store, stored } from './dom'
+import type { Frame } from './frame'
+import { Hands } from './hands'
+import { Newest, Refused, SocketLink, StillLink, type Link } from './link'
+import { inspectorPanel, messagesPanel, parametersPanel, strip, treePanel, type Actions } from './panels'
+import { Sheets, type SheetName } from './sheets'
+import { changed, model } from './state'
+import { View, type Paint, type Style } from './view'
+import type { Standard } from './camera'
+
+const nonce = document.querySelector<HTMLMetaElement>('meta[name=nonce]')?.content ?? ''
+
+/** The link: a file carries its last scene, a server has an engine. */
+function linked(): Link & { start(): Promise<void> } {
+  const carried = document.getElementById('moldloft-model')
+  if (!carried?.textContent) return new SocketLink()
+  const { hello, frames } = JSON.parse(carried.textContent)
+  const bytes = (text: string) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer as ArrayBuffer
+  return new StillLink(hello, Object.fromEntries(Object.entries(frames as Record<string, string>).map(([k, v]) => [k, bytes(v)])))
+}
+
+const link = linked()
+let selected = ''
+let dirty = false
+let online = false
+let fitted = false
+let theirs: string | null = null
+let contours = stored('contours', true)
+let field = ''
+let instance = ''
+/** For tests: when frames came, how long they took. */
+const stamps: { kind: string; from: number; to: number }[] = []
+
+// The frame of the page.
+
+const $ = <K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<string, unknown> = {}, ...children: any[]) => h(tag, attributes, ...children)
+const title = $('h1', {}, 'Moldloft')
+const file = $('span', { class: 'file' })
+const saved = $('span', { class: 'saved', role: 'status' })
+const saveButton = $('button', { class: 'primary', title: 'Write the text to the file (Ctrl+S)' }, 'Save')
+const paletteButton = $('button', { title: 'All commands (Ctrl+K)' }, 'Commands', $('kbd', {}, 'Ctrl K'))
+const themeButton = $('button', { class: 'icon', 'aria-label': 'light or dark', title: 'Light or dark' }, '◐')
+const helpButton = $('button', { class: 'icon', 'aria-label': 'help', title: 'Help (F1)' }, '?')
+const header = $('header', { class: 'top' }, title, file, saved, $('span', { class: 'grow' }), paletteButton, link.still ? '' : saveButton, themeButton, helpButton)
+const banner = $('div', { class: 'banner', hidden: true, role: 'alert' })
+const editorHost = $('div', { class: 'editor' })
+const messagesHost = $('section', { class: 'messages', 'aria-label': 'messages' })
+const viewHost = $('div', { class: 'view' })
+const sheetHost = $('div', { class: 'sheet', hidden: true, tabindex: 0 })
+const toolbar = $('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'view' })
+const tabs = $('div', { class: 'tabs', role: 'tablist', 'aria-label': 'what is shown' })
+const legend = $('div', { class: 'legend', hidden: true })
+const axes = $('canvas', { class: 'axes', width: 144, height: 144, 'aria-hidden': 'true' })
+const section = $('div', { class: 'section', hidden: true })
+const status = $('output', { class: 'status', 'aria-live': 'polite' })
+const params = $('section', { class: 'card', 'aria-label': 'parameters' })
+const tree = $('section', { class: 'card tall', 'aria-label': 'model objects' })
+const inspector = $('section', { class: 'card', 'aria-label': 'inspector' })
+const footer = $('footer', { class: 'strip' })
+const left = $('div', { class: 'left' }, editorHost, $('div', { class: 'grip row', 'data-size': 'messages', role: 'separator', 'aria-orientation': 'horizontal', tabindex: 0, 'aria-label': 'height of messages' }), messagesHost)
+const middle = $('main', { class: 'middle' }, tabs, $('div', { class: 'stage' }, viewHost, toolbar, legend, axes, section, sheetHost), status)
+const right = $('div', { class: 'right' }, $('h2', {}, 'Parameters'), params, $('h2', {}, 'Objects'), tree, $('h2', {}, 'Inspector'), inspector)
+const grip = (side: string) => $('div', { class: 'grip', 'data-size': side, role: 'separator', 'aria-orientation': 'vertical', tabindex: 0, 'aria-label': `width of ${side}` })
+const body = $('div', { class: 'body' }, left, grip('left'), middle, grip('right'), right)
+document.getElementById('app')!.append(header, banner, body, footer)
+
+function say(words: string): void {
+  status.textContent = words
+}
+
+function warn(words: string, ...buttons: HTMLElement[]): void {
+  banner.replaceChildren(words, ...buttons)
+  banner.hidden = !words
+}
+
+// Theme and sizes.
+
+const media = matchMedia('(prefers-color-scheme: dark)')
+let theme = stored<'light' | 'dark' | 'system'>('theme', 'system')
+const isDark = () => (theme === 'system' ? media.matches : theme === 'dark')
+const sizes = stored<Record<string, number>>('sizes', { left: 420, right: 300, messages: 130 })
+function resize(): void {
+  for (const [name, size] of Object.entries(sizes)) document.documentElement.style.setProperty(`--${name}`, `${size}px`)
+}
+resize()
+for (const g of document.querySelectorAll<HTMLElement>('.grip')) {
+  const name = g.dataset.size!
+  const limits = (x: number) => Math.max(name === 'messages' ? 60 : 180, Math.min(name === 'messages' ? 500 : 900, x))
+  const put = (x: number) => {
+    sizes[name] = limits(x)
+    resize()
+    store('sizes', sizes)
+  }
+  g.addEventListener('pointerdown', (e) => {
+    g.setPointerCapture(e.pointerId)
+    const [from, size] = [name === 'messages' ? e.clientY : e.clientX, sizes[name]]
+    const move = (m: PointerEvent) => put(size + (name === 'messages' ? from - m.clientY : (name === 'right' ? -1 : 1) * (m.clientX - from)))
+    g.addEventListener('pointermove', move)
+    g.addEventListener('pointerup', () => g.removeEventListener('pointermove', move), { once: true })
+  })
+  g.addEventListener('keydown', (e) => {
+    const by = { ArrowLeft: -20, ArrowUp: 20, ArrowRight: 20, ArrowDown: -20 }[e.key]
+    if (by) put(sizes[name] + (name === 'right' ? -by : by))
+  })
+}
+
+// The picture.
+
+const view = new View(viewHost)
+const canvas = view.canvas
+canvas.tabIndex = 0
+canvas.setAttribute('role', 'application')
+canvas.setAttribute('aria-label', 'model')
+canvas.setAttribute('aria-describedby', 'selection')
+const selection = $('span', { class: 'sr', id: 'selection' })
+viewHost.append(selection)
+
+function applyTheme(): void {
+  document.documentElement.dataset.theme = isDark() ? 'dark' : 'light'
+  view.theme(isDark())
+}
+media.addEventListener('change', applyTheme)
+themeButton.addEventListener('click', () => {
+  theme = isDark() ? 'light' : 'dark'
+  store('theme', theme)
+  applyTheme()
+})
+
+view.onFrame = () => {
+  const c = axes.getContext('2d')
+  if (!c) return
+  const { right: r, up: u } = view.camera
+  c.clearRect(0, 0, 144, 144)
+  c.lineWidth = 3.5
+  c.font = '600 21px system-ui'
+  c.textAlign = 'center'
+  c.textBaseline = 'middle'
+  const inks = ['#c0443c', '#35905a', '#4478c8']
+  const order = [0, 1, 2].sort((a, b) => view.camera.towards.getComponent(a) - view.camera.towards.getComponent(b))
+  for (const k of order) {
+    const [x, y] = [72 + 46 * r.getComponent(k), 72 - 46 * u.getComponent(k)]
+    c.strokeStyle = c.fillStyle = inks[k]
+    c.beginPath()
+    c.moveTo(72, 72)
+    c.lineTo(x, y)
+    c.stroke()
+    const reach = Math.hypot(x - 72, y - 72)
+    if (reach > 9) c.fillText('xyz'[k], 72 + ((x - 72) * (reach + 15)) / reach, 72 + ((y - 72) * (reach + 15)) / reach)
+  }
+}
+
+// What the page does.
+
+const setting = new Newest<Record<string, number>>(
+  async (values) => {
+    const from = performance.now()
+    try {
+      await link.ask('set', { values })
+      stamps.push({ kind: 'set', from, to: performance.now() })
+    } catch (error) {
+      if (error instanceof Refused && error.message !== 'superseded') say(error.message)
+    }
+  },
+  (a, b) => ({ ...a, ...b }),
+)
+
+async function edits(kind: string, fields: Record<string, unknown> = {}): Promise<void> {
+  try {
+    await editor.synced()
+    await setting.settled()
+    const { head } = await link.ask(kind, fields)
+    editor.apply(head.edits ?? [])
+    if (head.kept?.length) say(`${head.kept.join(', ')} follows from an expression: the value holds for this session and is not in the text`)
+  } catch (error) {
+    say((error as Error).message)
+  }
+}
+
+const hidden = new Set<string>(stored<string[]>('hidden', []))
+const inspecting = new Newest<() => Promise<void>>((run) => run())
+const actions: Actions & { hidden: Set<string>; selected: () => string } = {
+  still: link.still,
+  hidden,
+  selected: () => selected,
+  set: (name, value) => setting.push({ [name]: value }),
+  commit: () => edits('commit'),
+  write: (values) => edits('write', { values }),
+  reset: () => edits('reset'),
+  say,
+  hover(name) {
+    if (view.hovered === name) return
+    view.hovered = name
+    view.settle()
+  },
+  select(name, from) {
+    if (name !== selected) {
+      selected = view.selected = name
+      const o = model.objects.find((k) => k.name === name)
+      selection.textContent = o ? `${o.name}, ${o.kind}` : name
+      view.settle()
+      changed('selection')
+    }
+    if (from !== 'text') void locate(name, false)
+  },
+  locate: (name) => locate(name, true),
+  show: (place) => editor.show(place, true),
+  apply: (list) => editor.apply(list),
+  toggle(name) {
+    const o = model.objects.find((k) => k.name === name)
+    if (o && !o.shown) {
+      say(`${name} is hidden by the program (visible = 0)`)
+      return
+    }
+    if (!hidden.delete(name)) hidden.add(name)
+    hide()
+  },
+  isolate(name) {
+    hidden.clear()
+    if (name) for (const o of model.objects) if (o.name !== name) hidden.add(o.name)
+    hide()
+  },
+  async inspect(name, by) {
+    let found: any = null
+    inspecting.push(async () => {
+      const { head } = await link.ask('inspect', by ? { name, by } : { name })
+      found = head.object
+    })
+    await inspecting.settled().catch(() => undefined)
+    return found
+  },
+  watch(expressions) {
+    store(`watch.${model.name}`, expressions)
+    void link.ask('watch', { expressions }).catch((error) => say(error.message))
+  },
+}
+
+async function locate(name: string, focus: boolean): Promise<void> {
+  if (!name || link.still) return editor.show(null)
+  try {
+    const { head } = await link.ask('locate', { name })
+    editor.show(head.place ?? null, focus)
+  } catch {
+    editor.show(null)
+  }
+}
+
+function hide(): void {
+  view.hidden = hidden
+  store('hidden', [...hidden])
+  view.settle()
+  changed('objects')
+}
+view.hidden = hidden
+
+const editor = new Editor(editorHost, link, nonce.startsWith('__') ? '' : nonce, [
+  { key: 'Mod-s', run: () => (void save(), true) },
+  { key: 'Mod-k', run: () => (palette(), true) },
+])
+editor.onTrouble = (words) => say(words)
+editor.onPending = () => showSaved()
+let cursorTimer = 0
+editor.onCursor = (offset) => {
+  clearTimeout(cursorTimer)
+  cursorTimer = window.setTimeout(() => {
+    const word = editor.view.state.wordAt(offset)
+    const name = word ? editor.view.state.sliceDoc(word.from, word.to) : ''
+    if (name && name !== selected && model.objects.some((o) => o.name === name)) actions.select(name, 'text')
+  }, 120)
+}
+
+const hands = new Hands(view, link, viewHost, {
+  select: (name) => actions.select(name, 'view'),
+  hover: actions.hover,
+  say,
+  status: say,
+  apply: (list) => editor.apply(list),
+  synced: () => editor.synced(),
+  open: (name) => void locate(name, true),
+})
+const sheets = new Sheets(sheetHost, link, actions)
+parametersPanel(params, actions)
+treePanel(tree, actions)
+inspectorPanel(inspector, actions)
+messagesPanel(messagesHost, actions)
+strip(footer, actions)
+
+function showSaved(): void {
+  const waits = editor.pending
+  saved.textContent = link.still ? 'as it was' : !online ? (waits ? 'not connected: what you type is kept in this page' : 'not connected') : waits ? 'sending…' : dirty ? 'draft kept, not in the file' : 'saved'
+  saved.dataset.state = !online ? 'off' : dirty || waits ? 'dirty' : 'saved'
+}
+
+async function save(force = false): Promise<void> {
+  try {
+    await editor.synced()
+    const answer = await link.tell({ kind: 'save', force })
+    if (answer.kind === 'conflict') conflict(answer.theirs)
+    else {
+      dirty = false
+      say('Saved')
+    }
+  } catch (error) {
+    say((error as Error).message)
+  }
+  showSaved()
+}
+
+function conflict(text: string): void {
+  theirs = text
+  const lines = (t: string) => t.split('\n').length
+  warn(`The file was changed by another program (${lines(text)} lines there, ${lines(editor.text)} here), and there are changes here, too. `,
+    $('button', { onclick: () => void save(true).then(() => warn('')) }, 'Keep mine, write the file'),
+    $('button', { onclick: () => void link.tell({ kind: 'revert' }).then(() => warn('')).catch(() => warn('')) }, 'Take theirs'),
+    $('button', { onclick: () => compare() }, 'Show both'))
+}
+
+function compare(): void {
+  const dialog = $('dialog', { class: 'compare', 'aria-label': 'both texts' }, $('h3', {}, 'The file'), $('pre', {}, theirs ?? ''), $('h3', {}, 'Here'), $('pre', {}, editor.text), $('button', { onclick: () => dialog.close() }, 'Close'))
+  document.body.append(dialog)
+  dialog.addEventListener('close', () => dialog.remove())
+  dialog.showModal()
+}
+
+// What comes.
+
+function take(frame: Frame): void {
+  const { head } = frame
+  const facts: [string, keyof typeof model, Parameters<typeof changed>[0]][] = [
+    ['params', 'params', 'params'], ['objects', 'objects', 'objects'], ['diagnostics', 'faults', 'faults'], ['printed', 'printed', 'printed'], ['watched', 'watched', 'watched'],
+  ]
+  if (head.unit !== undefined) model.unit = head.unit
+  if (head.program !== undefined) model.program = head.program
+  const scene = view.take(frame)
+  for (const [key, name, topic] of facts) {
+    if (head[key] === undefined) continue
+    ;(model as any)[name] = head[key]
+    changed(topic)
+  }
+  if (head.diagnostics) editor.diagnose(model.faults)
+  if (scene && !fitted && !view.box.isEmpty()) {
+    fitted = true
+    view.fit()
+  }
+  if (scene && field) fields.push(undefined)
+  if (scene && combs.size) combing.push(undefined)
+  if (head.rev !== undefined && head.rev !== model.rev) {
+    model.rev = head.rev
+    changed('rev')
+  }
+  document.body.dataset.state = 'alive'
+}
+
+link.onFrame = take
+link.onState = (state) => {
+  online = state === 'up'
+  if (!online) {
+    editor.offline()
+    if (!link.still) warn('The server does not answer. What you type is kept here and sent when it is back.')
+  }
+  showSaved()
+}
+link.onMessage = (message) => {
+  switch (message.kind) {
+    case 'hello':
+      void begin(message)
+      break
+    case 'updates':
+      dirty = message.dirty
+      editor.received(message.updates, message.from)
+      showSaved()
+      break
+    case 'saved':
+      dirty = !!message.dirty
+      showSaved()
+      break
+    case 'conflict':
+      conflict(message.theirs)
+      break
+    case 'engine':
+      if (message.state === 'lost') warn(`The engine was stopped: ${message.reason}. Your text is safe.`)
+      else warn('')
+      break
+    case 'full':
+      warn(message.error)
+      break
+  }
+}
+
+async function begin(hello: any): Promise<void> {
+  warn('')
+  const again = instance !== ''
+  instance = hello.instance ?? 'still'
+  model.name = hello.name
+  file.textContent = hello.name
+  document.title = `${hello.name} · Moldloft`
+  dirty = hello.dirty
+  editor.begin(hello.text, hello.version, again)
+  if (hello.recovered) say('Unsaved changes of an earlier session are back. Save keeps them; “Take the file” in the commands drops them.')
+  showSaved()
+  try {
+    if (!link.still) await link.ask('show', { contours })
+    await link.ask('open')
+    const usual = view.items.size && [...view.items.values()].some((i) => i.kind === 'patch') ? ['mesh.area', 'hydrostatics.displacement', 'hydrostatics.lcb', 'hydrostatics.kmt'] : []
+    const watched = stored<string[]>(`watch.${model.name}`, usual)
+    if (!link.still && watched.length) await link.ask('watch', { expressions: watched })
+    if (!again && !link.still) editor.words((await link.ask('words')).head.words)
+  } catch (error) {
+    if (error instanceof Refused) say(error.message)
+  }
+}
+
+// Colours by numbers, combs, sections.
+
+const SIGNED = new Set(['gaussian_curvature', 'mean_curvature', 'largest_curvature', 'smallest_curvature'])
+let by = ''
+const fields = new Newest<void>(async () => {
+  if (!field) return
+  try {
+    const frame = await link.ask('field', by ? { field, by } : { field })
+    view.field(frame, SIGNED.has(field))
+    showLegend()
+  } catch (error) {
+    say((error as Error).message)
+  }
+})
+
+function showLegend(): void {
+  const s = view.fieldScale
+  legend.hidden = view.paint !== 'field' || !s
+  if (!s) return
+  const bar = $('div', { class: 'ramp' })
+  bar.style.background = ramp(s.signed)
+  const name = field === 'derivative' ? `motion by ${by}` : field.replace('_', ' ')
+  legend.replaceChildren($('span', { class: 'key' }, name), bar, $('span', { class: 'mono low' }, shown(s.low, 3)), $('span', { class: 'mono high' }, shown(s.high, 3)))
+}
+
+function paint(p: Paint, name = '', parameter = ''): void {
+  ;[view.paint, field, by] = [p, name, parameter]
+  legend.hidden = p !== 'field'
+  if (p === 'field') fields.push(undefined)
+  view.settle()
+  buildToolbar()
+}
+
+const combs = new Set<string>()
+const combing = new Newest<void>(async () => {
+  const frame = await link.ask('combs', { names: [...combs] })
+  const runs: number[][] = []
+  const size = view.box.isEmpty() ? 1 : view.box.min.distanceTo(view.box.max)
+  for (const comb of frame.head.combs ?? []) {
+    const [p, b, k] = [frame.floats(comb.position), frame.floats(comb.bend), frame.floats(comb.curvature)]
+    // One sharp place does not flatten all others.
+    const most = [...k].sort((x, y) => x - y)[Math.floor(0.95 * (k.length - 1))] || 1
+    const factor = (0.12 * size) / most
+    const tips: number[] = []
+    for (let j = 0; j < p.length; j += 3) {
+      const share = Math.min(1, (2.5 * most) / Math.max(k[j / 3], 1e-30))
+      const tip = [0, 1, 2].map((c) => p[j + c] - factor * share * b[j + c])
+      tips.push(...tip)
+      runs.push([p[j], p[j + 1], p[j + 2], ...tip])
+    }
+    runs.push(tips)
+  }
+  view.overlay('combs', runs, 0x2f8f7f)
+})
+function comb(): void {
+  const o = model.objects.find((k) => k.name === selected)
+  if (!o || !['curve', 'snake'].includes(o.class)) return say('Select a curve first')
+  if (!combs.delete(o.name)) combs.add(o.name)
+  if (combs.size) combing.push(undefined)
+  else view.overlay('combs', null)
+}
+
+const sectioning = new Newest<void>(async () => {
+  if (!view.clip) return view.overlay('section', null)
+  const frame = await link.ask('section', { axis: view.clip.axis, value: view.clip.value })
+  view.overlay('section', (frame.head.lines as any[]).map((part) => Array.from(frame.floats(part))), 0xc2412d)
+})
+function cut(axis: number | null): void {
+  if (axis === null || view.box.isEmpty()) {
+    view.clip = null
+    section.hidden = true
+    sectioning.push(undefined)
+    view.draw()
+    return
+  }
+  const [low, high] = [view.box.min.getComponent(axis), view.box.max.getComponent(axis)]
+  view.clip = { axis, value: (low + high) / 2, flip: false }
+  const slider = $('input', { type: 'range', min: low, max: high, step: 'any', 'aria-label': `section at ${'xyz'[axis]}` })
+  slider.value = String(view.clip.value)
+  const out = $('span', { class: 'mono' }, shown(view.clip.value, 5))
+  const move = () => {
+    view.clip!.value = slider.valueAsNumber
+    out.textContent = shown(slider.valueAsNumber, 5)
+    view.draw()
+    sectioning.push(undefined)
+  }
+  slider.addEventListener('input', move)
+  section.replaceChildren(`section ${'xyz'[axis]} =`, slider, out, $('button', { onclick: () => ((view.clip!.flip = !view.clip!.flip), view.draw()) }, 'Flip'), $('button', { class: 'icon', 'aria-label': 'no section', onclick: () => cut(null) }, '×'))
+  section.hidden = false
+  move()
+}
+
+// Commands: one table for buttons, keys and the palette.
+
+interface Command {
+  name: string
+  keys?: string
+  run: () => void
+}
+
+const looks: [Standard, string, string][] = [
+  ['iso', 'Isometric', '1'], ['profile', 'Profile', '2'], ['plan', 'Plan', '3'], ['body', 'Body plan from the bow', '4'], ['stern', 'From the stern', '5'], ['starboard', 'Profile from the other side', '6'], ['bottom', 'From below', '7'],
+]
+const styles: [Style, string, string][] = [['shaded', 'Shaded with panels', 'S'], ['panels', 'Panels', 'P'], ['smooth', 'Smooth', 'A'], ['wire', 'Wireframe', 'W'], ['xray', 'X-ray', 'R']]
+const look = (name: Standard) => {
+  view.camera.look(name)
+  view.fit()
+}
+const setStyle = (s: Style) => {
+  view.style = s
+  view.settle()
+  buildToolbar()
+}
+const layer = (kind: string) => {
+  view.layers[kind] = !view.layers[kind]
+  view.settle()
+  buildToolbar()
+}
+
+async function download(kind: string): Promise<void> {
+  try {
+    const stem = model.name.replace(/\.\w+$/, '')
+    if (kind === 'png') {
+      const blob = await view.picture()
+      if (blob) give(blob, `${stem}.png`)
+      return
+    }
+    const frame = await link.ask('export', { format: kind, stem })
+    for (const part of frame.head.files) give(new Blob([frame.bytes(part).slice()]), String(part.name).split(/[/\\]/).pop() ?? 'model')
+  } catch (error) {
+    say((error as Error).message)
+  }
+}
+function give(blob: Blob, name: string): void {
+  const a = $('a', { download: name })
+  a.href = URL.createObjectURL(blob)
+  a.click()
+  setTimeout(() => URL.revokeObjectURL(a.href), 10_000)
+}
+
+const SHEETS: [SheetName, string][] = [['model', 'Model'], ['lines', 'Lines plan'], ['hydrostatics', 'Hydrostatics'], ['mesh', 'Mesh'], ['graph', 'Dependencies'], ['curvature', 'Curvature']]
+function sheet(name: SheetName): void {
+  sheets.show(name)
+  toolbar.hidden = name !== 'model'
+  for (const t of tabs.querySelectorAll('[role=tab]')) t.setAttribute('aria-selected', String((t as HTMLElement).dataset.sheet === name))
+}
+
+function commands(): Command[] {
+  return [
+    { name: 'Save', keys: 'Ctrl+S', run: () => void save() },
+    { name: 'Take the file: drop unsaved changes', run: () => void link.tell({ kind: 'revert' }).catch((e) => say(e.message)) },
+    { name: 'Fit the model', keys: 'F', run: () => view.fit() },
+    ...looks.map(([n, words, key]) => ({ name: `View: ${words}`, keys: key, run: () => look(n) })),
+    { name: 'Perspective or orthographic', keys: 'O', run: () => ((view.camera.perspective = !view.camera.perspective), view.fit()) },
+    ...styles.map(([n, words, key]) => ({ name: `Style: ${words}`, keys: key, run: () => setStyle(n) })),
+    { name: 'Colour: patches apart', run: () => paint('patches') },
+    { name: 'Colour: of the model', run: () => paint('model') },
+    { name: 'Colour: zebra stripes', keys: 'Z', run: () => paint(view.paint === 'zebra' ? 'patches' : 'zebra') },
+    { name: 'Colour: isophotes', run: () => paint('isophotes') },
+    { name: 'Colour: highlight lines', run: () => paint('highlight') },
+    { name: 'Colour: Gaussian curvature', run: () => paint('field', 'gaussian_curvature') },
+    { name: 'Colour: mean curvature', run: () => paint('field', 'mean_curvature') },
+    { name: 'Colour: largest curvature', run: () => paint('field', 'largest_curvature') },
+    { name: 'Colour: smallest curvature', run: () => paint('field', 'smallest_curvature') },
+    ...['aspect', 'skew', 'warp', 'jump'].map((m) => ({ name: `Colour: panel ${m}`, run: () => paint('field', m) })),
+    ...model.params.map((p) => ({ name: `Colour: motion by ${p.name}`, run: () => paint('field', 'derivative', p.name) })),
+    ...[['point', 'points', '.'], ['curve', 'curves', ','], ['contour', 'contours', 'C'], ['patch', 'surfaces', ''], ['grid', 'grids', '']].map(([k, w, key]) => ({ name: `Show or hide ${w}`, keys: key, run: () => layer(k) })),
+    { name: 'Show or hide the mirror image', keys: 'M', run: () => ((view.mirror = !view.mirror), view.settle()) },
+    { name: 'Hide or show the selected object', keys: 'H', run: () => selected && actions.toggle(selected) },
+    { name: 'Isolate the selected object', keys: 'I', run: () => selected && actions.isolate(selected) },
+    { name: 'Show all', keys: 'Shift+H', run: () => actions.isolate(null) },
+    { name: 'Measure between two places', keys: 'D', run: () => {
+      hands.measuring = !hands.measuring
+      say(hands.measuring ? 'Measure: click two places; D or Esc ends' : '')
+      if (!hands.measuring) view.overlay('measure', null)
+      buildToolbar()
+    } },
+    { name: 'Curvature comb of the selected curve', keys: 'K', run: comb },
+    ...[0, 1, 2].map((k) => ({ name: `Section across ${'xyz'[k]}`, keys: `Shift+${'XYZ'[k]}`, run: () => cut(view.clip?.axis === k ? null : k) })),
+    ...SHEETS.map(([n, words], k) => ({ name: `Sheet: ${words}`, keys: `Alt+${k + 1}`, run: () => sheet(n) })),
+    { name: 'Go to the program', keys: 'Ctrl+1', run: () => editor.view.focus() },
+    { name: 'Go to the model', keys: 'Ctrl+2', run: () => canvas.focus() },
+    { name: 'Go to parameters', keys: 'Ctrl+3', run: () => params.querySelector('input')?.focus() },
+    { name: 'Go to objects', keys: 'Ctrl+4', run: () => tree.querySelector<HTMLElement>('[role=treeitem][tabindex="0"]')?.focus() },
+    { name: 'Format the program', keys: 'Shift+Alt+F', run: () => void editor.format() },
+    { name: 'Rename the name at the cursor', keys: 'F2', run: () => void editor.rename() },
+    { name: 'Picture as PNG', run: () => void download('png') },
+    ...[['svg', 'Lines plan as SVG'], ['stl', 'Mesh as STL'], ['obj', 'Mesh as OBJ'], ['gltf', 'Mesh as glTF'], ['gdf', 'Panels for WAMIT'], ['vtp', 'Mesh for ParaView']].map(([f, w]) => ({ name: `Download: ${w}`, run: () => void download(f) })),
+    { name: 'Light or dark', run: () => themeButton.click() },
+    { name: 'Help', keys: 'F1', run: help },
+  ]
+}
+
+function buildToolbar(): void {
+  const focus = (document.activeElement as HTMLElement | null)?.getAttribute('aria-label')
+  const button = (label: string, words: string, run: () => void, on = false) => $('button', { 'aria-label': words, 'aria-pressed': on, title: words, class: on ? 'on' : '', onclick: run }, label)
+  const choice = (name: string, value: string, options: [string, string][], run: (v: string) => void) => {
+    const s = $('select', { 'aria-label': name, title: name }, ...options.map(([v, words]) => $('option', { value: v, selected: v === value }, words)))
+    s.addEventListener('change', () => run(s.value))
+    return s
+  }
+  const value = view.paint === 'field' ? (field === 'derivative' ? `d:${by}` : field) : view.paint
+  toolbar.replaceChildren(
+    button('⤢', 'Fit the model (F)', () => view.fit()),
+    choice('view', '', [['', 'View'], ...looks.map(([n, w, k]) => [n, `${w}  ${k}`] as [string, string])], (v) => {
+      if (v) look(v as Standard)
+      buildToolbar()
+    }),
+    button(view.camera.perspective ? '◭' : '▱', 'Perspective or orthographic (O)', () => {
+      view.camera.perspective = !view.camera.perspective
+      view.fit()
+      buildToolbar()
+    }, view.camera.perspective),
+    choice('style', view.style, styles.map(([n, w]) => [n, w]), (v) => setStyle(v as Style)),
+    choice('colour', value, [
+      ['patches', 'Patches apart'], ['model', 'Colours of the model'], ['zebra', 'Zebra'], ['isophotes', 'Isophotes'], ['highlight', 'Highlight lines'],
+      ...(link.still ? [] : ([['gaussian_curvature', 'Gaussian curvature'], ['mean_curvature', 'Mean curvature'], ['largest_curvature', 'Largest curvature'], ['smallest_curvature', 'Smallest curvature'], ['aspect', 'Panel aspect'], ['skew', 'Panel skewness'], ['warp', 'Panel warp'], ['jump', 'Jump of panel area'], ...model.params.map((p) => [`d:${p.name}`, `Motion by ${p.name}`])] as [string, string][])),
+    ], (v) => (['patches', 'model', 'zebra', 'isophotes', 'highlight'].includes(v) ? paint(v as Paint) : v.startsWith('d:') ? paint('field', 'derivative', v.slice(2)) : paint('field', v))),
+    button('•', 'Points (.)', () => layer('point'), view.layers.point),
+    button('∿', 'Curves (,)', () => layer('curve'), view.layers.curve),
+    button('≋', 'Contours (C)', () => layer('contour'), view.layers.contour),
+    button('⇔', 'Measure (D)', () => commands().find((c) => c.keys === 'D')!.run(), hands.measuring),
+  )
+  if (focus) toolbar.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focus)}"]`)?.focus()
+}
+for (const [name, words] of SHEETS) tabs.append($('button', { role: 'tab', 'aria-selected': name === 'model', 'data-sheet': name, onclick: () => sheet(name), disabled: link.still && name !== 'model' && name !== 'graph' }, words))
+
+function palette(): void {
+  const all = [...commands(), ...model.objects.slice(0, 2000).map((o) => ({ name: `Select ${o.name}`, keys: o.kind, run: () => actions.select(o.name, 'tree') }))]
+  const input = $('input', { type: 'text', placeholder: 'Type a command or the name of an object', 'aria-label': 'command', role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'commands' })
+  const list = $('ul', { role: 'listbox', id: 'commands', 'aria-label': 'commands' })
+  const dialog = $('dialog', { class: 'palette', 'aria-label': 'commands' }, input, list)
+  let found: Command[] = []
+  let at = 0
+  const run = (c: Command | undefined) => {
+    dialog.close()
+    c?.run()
+  }
+  const build = () => {
+    const words = input.value.toLowerCase().split(/\s+/).filter(Boolean)
+    found = all.filter((c) => words.every((w) => c.name.toLowerCase().includes(w))).slice(0, 60)
+    at = Math.max(0, Math.min(at, found.length - 1))
+    list.replaceChildren(...found.map((c, k) => $('li', { role: 'option', 'aria-selected': k === at, id: `command-${k}`, onclick: () => run(c) }, c.name, c.keys ? $('kbd', {}, c.keys) : '')))
+    list.children[at]?.scrollIntoView({ block: 'nearest' })
+    input.setAttribute('aria-activedescendant', found.length ? `command-${at}` : '')
+  }
+  input.addEventListener('input', () => ((at = 0), build()))
+  input.addEventListener('keydown', (e) => {
+    if (e.key === 'ArrowDown') at++
+    else if (e.key === 'ArrowUp') at--
+    else if (e.key === 'Enter') return run(found[at])
+    else return
+    e.preventDefault()
+    at = (at + found.length) % Math.max(1, found.length)
+    build()
+  })
+  dialog.addEventListener('close', () => dialog.remove())
+  dialog.addEventListener('click', (e) => e.target === dialog && dialog.close())
+  document.body.append(dialog)
+  dialog.showModal()
+  build()
+  input.focus()
+}
+
+function help(): void {
+  const rows = commands().filter((c) => c.keys).map((c) => $('tr', {}, $('td', {}, $('kbd', {}, c.keys!)), $('td', {}, c.name)))
+  const hand = [['drag', 'orbit'], ['right or middle drag, Shift+drag', 'pan'], ['wheel, pinch', 'zoom to the pointer'], ['click', 'select'], ['double click', 'go to the declaration'], ['drag a point', 'move it: the number in the text follows'], ['X Y Z while dragging', 'along an axis; with Shift across it'], ['digits while dragging', 'enter the value'], ['Alt while dragging', 'no snapping'], ['Esc', 'take it back']]
+  const dialog = $('dialog', { class: 'help', 'aria-label': 'help' }, $('h2', {}, 'Keys and gestures'),
+    $('div', { class: 'columns' }, $('table', {}, $('tbody', {}, ...hand.map(([k, w]) => $('tr', {}, $('td', {}, k), $('td', {}, w))))), $('table', {}, $('tbody', {}, ...rows))),
+    $('button', { class: 'primary', onclick: () => dialog.close() }, 'Close'))
+  dialog.addEventListener('close', () => dialog.remove())
+  document.body.append(dialog)
+  dialog.showModal()
+}
+
+paletteButton.addEventListener('click', palette)
+helpButton.addEventListener('click', help)
+saveButton.addEventListener('click', () => void save())
+
+addEventListener('keydown', (e) => {
+  const target = e.target as HTMLElement
+  const typing = target.closest('input, select, textarea, .cm-editor, dialog') !== null
+  const name = `${e.ctrlKey || e.metaKey ? 'Ctrl+' : ''}${e.altKey ? 'Alt+' : ''}${e.shiftKey && e.key.length === 1 && /[a-z]/i.test(e.key) ? 'Shift+' : ''}${e.key.length === 1 ? e.key.toUpperCase() : e.key}`
+  if (name === 'Ctrl+K') {
+    e.preventDefault()
+    return palette()
+  }
+  if (name === 'Ctrl+Z' && !typing) {
+    e.preventDefault()
+    editor.view.focus()
+    return
+  }
+  const command = commands().find((c) => c.keys === name)
+  if (e.key === 'Escape' && !typing) {
+    if (hands.busy) hands.cancel()
+    else if (hands.measuring) commands().find((c) => c.keys === 'D')!.run()
+    else if (view.clip) cut(null)
+    else actions.select('', 'view')
+    return
+  }
+  if (!command || e.defaultPrevented || hands.busy) return
+  const plain = !e.ctrlKey && !e.metaKey && !e.altKey && !/^F\d/.test(e.key)
+  if (plain && (typing || target.closest('[role=tree]'))) return
+  if (typing && target.closest('dialog')) return
+  e.preventDefault()
+  command.run()
+})
+addEventListener('beforeunload', (e) => {
+  if (editor.pending) e.preventDefault()
+})
+
+applyTheme()
+buildToolbar()
+showSaved()
+// The engine's words for parameters come with the first scene.
+let known = ''
+setInterval(() => {
+  const now = model.params.map((p) => p.name).join()
+  if (now !== known) {
+    known = now
+    buildToolbar()
+  }
+}, 500)
+
+/** For tests: numbers of the picture, never a way to change it. */
+Object.assign(window, {
+  moldloft: {
+    stamps,
+    model,
+    project: (name: string) => {
+      const item = [...view.items.values()].find((i) => i.object === name && i.kind === 'point')
+      if (!item) return null
+      const box = canvas.getBoundingClientRect()
+      const [x, y] = view.project(view.place(item))
+      return [box.left + x, box.top + y]
+    },
+    items: () => [...view.items.values()].map((i) => ({ name: i.name, object: i.object, kind: i.kind, stale: i.stale, vertices: i.position.length / 3, seen: view.seen(i) })),
+    positions: (object: string) => [...view.items.values()].filter((i) => i.object === object).flatMap((i) => Array.from(i.position)),
+    text: () => editor.text,
+    settled: async () => {
+      await editor.synced()
+      await setting.settled()
+    },
+    camera: () => ({ azimuth: view.camera.azimuth, elevation: view.camera.elevation, reach: view.camera.reach }),
+    camera_set: (azimuth: number, elevation: number) => {
+      Object.assign(view.camera, { azimuth, elevation })
+      view.fit()
+    },
+  },
+})
+
+void link.start().catch((error) => warn(error.message))

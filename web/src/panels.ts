@@ -1,0 +1,380 @@
+// Parameters, objects, the inspector, messages and the strip of numbers.
+
+import { h, shown, store, stored } from './dom'
+import { changed, model, on, type Fault, type Obj, type Param } from './state'
+
+export interface Actions {
+  set(name: string, value: number): void
+  commit(): Promise<void>
+  write(values: Record<string, number>): Promise<void>
+  reset(): Promise<void>
+  select(name: string, from: 'tree' | 'view' | 'text' | 'message' | 'graph'): void
+  hover(name: string): void
+  locate(name: string): Promise<void>
+  show(place: [number, number]): void
+  apply(edits: { from: number; to: number; insert: string }[]): void
+  toggle(name: string): void
+  isolate(name: string | null): void
+  inspect(name: string, by: string | null): Promise<any>
+  watch(expressions: string[]): void
+  say(words: string): void
+  still: boolean
+}
+
+/** A range for a slider: the declared one, or one around the value. */
+export function rangeOf(p: Param): { low: number; high: number; stated: boolean } {
+  if (p.range) return { low: p.range[0], high: p.range[1], stated: true }
+  if (p.default === 0) return { low: -1, high: 1, stated: false }
+  const ends = [p.default / 2, p.default * 2].sort((a, b) => a - b)
+  return { low: ends[0], high: ends[1], stated: false }
+}
+
+/** A value with the digits that a slider's step is worth. */
+export function stepped(value: number, low: number, high: number, whole: boolean): number {
+  if (whole) return Math.round(value)
+  const step = (high - low) / 1000
+  const decimals = Math.max(0, Math.min(12, Math.ceil(-Math.log10(step || 1))))
+  return Number(value.toFixed(decimals))
+}
+
+export function parametersPanel(host: HTMLElement, act: Actions): void {
+  const rows = new Map<string, { row: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; reset: HTMLButtonElement; p: Param }>()
+  let built = ''
+  const empty = h('p', { class: 'quiet' }, 'No parameters. Declare one: param float beam = 4 in [3, 5];')
+  const box = h('div', { class: 'params' })
+  host.append(box, empty)
+  const text = (p: Param) => (p.whole ? String(Math.round(p.value)) : shown(p.value, 7))
+
+  function build(): void {
+    box.textContent = ''
+    rows.clear()
+    for (const p of model.params) {
+      const { low, high, stated } = rangeOf(p)
+      const slider = h('input', {
+        type: 'range', min: low, max: high, step: p.whole ? 1 : 'any', 'aria-label': p.name, class: stated ? '' : 'guess', disabled: act.still,
+        title: stated ? `${p.name}: ${low} to ${high}` : `${p.name}: no range is declared`,
+      })
+      const field = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': `${p.name}, value`, disabled: act.still })
+      const reset = h('button', { class: 'icon', title: `${p.name} as before`, 'aria-label': `reset ${p.name}` }, '↺')
+      const name = h('button', { class: 'link name', title: 'Show in the program' }, p.name)
+      const row = h('div', { class: 'param' }, name, field, reset, slider)
+      const entry = { row, slider, field, reset, p }
+      rows.set(p.name, entry)
+      const step = (value: number) => {
+        const v = stepped(Math.min(high, Math.max(low, value)), low, high, p.whole)
+        slider.value = String(v)
+        field.value = p.whole ? String(v) : shown(v, 7)
+        slider.setAttribute('aria-valuetext', `${field.value} ${model.unit}`)
+        act.set(p.name, v)
+      }
+      slider.addEventListener('input', () => step(slider.valueAsNumber))
+      slider.addEventListener('change', () => void act.commit())
+      slider.addEventListener('keydown', (event) => {
+        const by = (high - low) / 100
+        const moves: Record<string, number> = {
+          ArrowRight: by / 10, ArrowUp: by / 10, ArrowLeft: -by / 10, ArrowDown: -by / 10, PageUp: by * 10, PageDown: -by * 10,
+        }
+        if (!(event.key in moves) || p.whole) return
+        event.preventDefault()
+        step(slider.valueAsNumber + moves[event.key])
+        void act.commit()
+      })
+      const enter = () => {
+        const x = Number(field.value.replace('−', '-').replace(',', '.'))
+        if (field.value.trim() === '' || !Number.isFinite(x)) field.value = text(entry.p)
+        else if (x !== entry.p.value) void act.write({ [p.name]: x })
+      }
+      field.addEventListener('keydown', (event) => {
+        if (event.key === 'Enter') enter()
+        if (event.key === 'Escape') {
+          field.value = text(entry.p)
+          field.blur()
+        }
+      })
+      field.addEventListener('blur', enter)
+      reset.addEventListener('click', () => void act.write({ [p.name]: begin.get(p.name) ?? p.default }))
+      name.addEventListener('click', () => p.place && act.show(p.place))
+      box.append(row)
+    }
+  }
+
+  /** Values when the page was opened, for reset. */
+  const begin = new Map<string, number>()
+  on('params', () => {
+    const key = JSON.stringify(model.params.map((p) => [p.name, p.range, p.whole]))
+    for (const p of model.params) if (!begin.has(p.name)) begin.set(p.name, p.value)
+    if (key !== built) {
+      built = key
+      build()
+    }
+    empty.hidden = model.params.length > 0
+    for (const p of model.params) {
+      const entry = rows.get(p.name)
+      if (!entry) continue
+      entry.p = p
+      if (document.activeElement !== entry.slider || !dragging(entry.slider)) entry.slider.value = String(p.value)
+      if (document.activeElement !== entry.field) entry.field.value = text(p)
+      entry.slider.setAttribute('aria-valuetext', `${text(p)} ${model.unit}`.trim())
+      const moved = p.value !== begin.get(p.name)
+      entry.row.classList.toggle('moved', moved)
+      entry.reset.disabled = !moved || act.still
+    }
+  })
+  let held: HTMLInputElement | null = null
+  box.addEventListener('pointerdown', (e) => (held = e.target as HTMLInputElement))
+  addEventListener('pointerup', () => (held = null))
+  const dragging = (slider: HTMLInputElement) => held === slider
+}
+
+const GROUPS: [string, string[]][] = [
+  ['Surfaces', ['surface']], ['Bodies', ['mesh', 'solid', 'set']], ['Curves', ['curve', 'snake']], ['Points', ['point', 'bead', 'magnet', 'ring']],
+  ['Planes and frames', ['plane', 'frame']], ['Contours', ['contours']], ['Others', []],
+]
+const MOST_ROWS = 300
+
+export function treePanel(host: HTMLElement, act: Actions & { hidden: Set<string>; selected: () => string }): void {
+  const search = h('input', { type: 'search', placeholder: 'Search objects', 'aria-label': 'search objects' })
+  const tree = h('div', { role: 'tree', 'aria-label': 'objects', class: 'tree' })
+  const folded = new Set<string>(stored<string[]>('folded', ['Points']))
+  host.append(h('div', { class: 'search' }, search), tree)
+  search.addEventListener('input', () => build())
+  search.addEventListener('keydown', (event) => {
+    if (event.key === 'ArrowDown') {
+      event.preventDefault()
+      ;(tree.querySelector('[role=treeitem]') as HTMLElement | null)?.focus()
+    }
+  })
+
+  function groups(): [string, Obj[]][] {
+    const word = search.value.trim().toLowerCase()
+    const found = model.objects.filter((o) => !word || o.name.toLowerCase().includes(word) || o.kind.toLowerCase().includes(word))
+    const known = new Set(GROUPS.flatMap(([, c]) => c))
+    return GROUPS.map(([title, classes]) => [title, found.filter((o) => (classes.length ? classes.includes(o.class) : !known.has(o.class)))] as [string, Obj[]]).filter(([, all]) => all.length)
+  }
+
+  function build(): void {
+    const focused = (document.activeElement as HTMLElement | null)?.dataset?.key
+    tree.textContent = ''
+    const all = groups()
+    for (const [title, objects] of all) {
+      const open = !folded.has(title) || search.value.trim() !== ''
+      const head = h('div', { role: 'treeitem', 'aria-level': 1, 'aria-expanded': open, 'aria-setsize': all.length, tabindex: -1, class: 'group', 'data-key': `:${title}` },
+        h('span', { class: 'twist' }, open ? '▾' : '▸'), title, h('span', { class: 'count' }, objects.length))
+      head.addEventListener('click', () => fold(title))
+      tree.append(head)
+      if (!open) continue
+      const shownRows = objects.slice(0, MOST_ROWS)
+      shownRows.forEach((o, k) => tree.append(row(o, k, objects.length)))
+      if (objects.length > MOST_ROWS) tree.append(h('div', { class: 'quiet more' }, `${objects.length - MOST_ROWS} more: search`))
+    }
+    if (!all.length) tree.append(h('div', { class: 'quiet more' }, model.objects.length ? 'Nothing of that name.' : 'The program declares no objects yet.'))
+    const rows = items()
+    const again = rows.find((r) => r.dataset.key === focused) ?? rows.find((r) => r.getAttribute('aria-selected') === 'true') ?? rows[0]
+    if (again) {
+      again.tabIndex = 0
+      if (focused) again.focus()
+    }
+  }
+
+  function row(o: Obj, k: number, count: number): HTMLElement {
+    const hidden = act.hidden.has(o.name) || !o.shown
+    const eye = h('button', { class: 'icon eye', tabindex: -1, 'aria-label': `${hidden ? 'show' : 'hide'} ${o.name}`, title: hidden ? 'Show' : 'Hide' }, hidden ? '○' : '●')
+    const item = h('div', {
+      role: 'treeitem', 'aria-level': 2, 'aria-posinset': k + 1, 'aria-setsize': count, 'aria-selected': o.name === act.selected(), tabindex: -1,
+      class: `object ${o.state} ${hidden ? 'hidden' : ''}`, 'data-key': o.name,
+      title: o.state === 'ok' ? o.kind : `${o.kind}: ${o.state}`,
+    }, h('span', { class: 'label' }, o.name), h('span', { class: 'kind' }, o.state === 'ok' ? o.kind : o.state), eye)
+    eye.addEventListener('click', (event) => {
+      event.stopPropagation()
+      act.toggle(o.name)
+    })
+    item.addEventListener('click', () => act.select(o.name, 'tree'))
+    item.addEventListener('dblclick', () => void act.locate(o.name))
+    item.addEventListener('pointerenter', () => act.hover(o.name))
+    item.addEventListener('pointerleave', () => act.hover(''))
+    return item
+  }
+
+  const items = () => [...tree.querySelectorAll<HTMLElement>('[role=treeitem]')]
+  function fold(title: string): void {
+    if (!folded.delete(title)) folded.add(title)
+    store('folded', [...folded])
+    build()
+  }
+
+  let typed = ''
+  let typedAt = 0
+  tree.addEventListener('keydown', (event) => {
+    const rows = items()
+    const at = rows.indexOf(document.activeElement as HTMLElement)
+    if (at < 0) return
+    const key = rows[at].dataset.key ?? ''
+    const go = (k: number) => {
+      const to = rows[Math.max(0, Math.min(rows.length - 1, k))]
+      rows[at].tabIndex = -1
+      to.tabIndex = 0
+      to.focus()
+    }
+    const group = key.startsWith(':') ? key.slice(1) : ''
+    if (event.key === 'ArrowDown') go(at + 1)
+    else if (event.key === 'ArrowUp') go(at - 1)
+    else if (event.key === 'Home') go(0)
+    else if (event.key === 'End') go(rows.length - 1)
+    else if (event.key === 'ArrowRight' && group && folded.has(group)) fold(group)
+    else if (event.key === 'ArrowLeft' && group && !folded.has(group)) fold(group)
+    else if (event.key === 'ArrowLeft' && !group) go(rows.findLastIndex((r, k) => k < at && r.classList.contains('group')))
+    else if (event.key === 'Enter') group ? fold(group) : act.select(key, 'tree')
+    else if (event.key === ' ' && !group) act.toggle(key)
+    else if (event.key === 'i' && event.altKey && !group) act.isolate(key)
+    else if (event.key.length === 1 && !event.ctrlKey && !event.metaKey && !event.altKey && event.key !== ' ') {
+      const now = performance.now()
+      typed = now - typedAt < 600 ? typed + event.key.toLowerCase() : event.key.toLowerCase()
+      typedAt = now
+      const to = rows.findIndex((r, k) => k >= at && (r.dataset.key ?? '').toLowerCase().startsWith(typed))
+      if (to >= 0) go(to)
+    } else return
+    event.preventDefault()
+    event.stopPropagation()
+  })
+  on(['objects', 'selection'], build)
+}
+
+export function inspectorPanel(host: HTMLElement, act: Actions & { selected: () => string }): void {
+  let by: string | null = stored<string | null>('by', null)
+  let serial = 0
+  async function build(): Promise<void> {
+    const name = act.selected()
+    const now = ++serial
+    if (!name) {
+      host.replaceChildren(h('p', { class: 'quiet' }, 'Select an object in the view, the tree or the program.'))
+      return
+    }
+    if (by && !model.params.some((p) => p.name === by)) by = null
+    let o: any
+    try {
+      o = await act.inspect(name, by)
+    } catch {
+      return
+    }
+    if (now !== serial || !o) return
+    if (host.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement) return
+    const link = (n: string) => h('button', { class: 'chip', onclick: () => act.select(n, 'tree'), onpointerenter: () => act.hover(n), onpointerleave: () => act.hover('') }, n)
+    const chips = (names: string[]) => {
+      const box = h('span', { class: 'chips' }, ...names.slice(0, 40).map(link))
+      if (names.length > 40) box.append(h('span', { class: 'quiet' }, ` and ${names.length - 40} more`))
+      return box
+    }
+    const rows: HTMLElement[] = []
+    const line = (title: string, help: string, ...value: (Node | string)[]) => rows.push(h('div', { class: 'fact' }, h('span', { class: 'key', title: help }, title), h('span', { class: 'value' }, ...value)))
+    for (const f of o.fields) {
+      if (f.numbers.length) {
+        const inputs = f.numbers.map((n: any) => {
+          const input = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': n.path, title: n.path, disabled: act.still })
+          input.value = shown(n.value, 9)
+          const enter = () => {
+            const x = Number(input.value.replace('−', '-'))
+            if (input.value.trim() && Number.isFinite(x) && shown(x, 9) !== shown(n.value, 9)) void act.write({ [n.path]: x })
+            else input.value = shown(n.value, 9)
+          }
+          input.addEventListener('keydown', (e) => e.key === 'Enter' && (input.blur(), undefined))
+          input.addEventListener('blur', enter)
+          return input
+        })
+        line(f.name, f.help, ...inputs, f.unit ? h('span', { class: 'unit' }, f.unit) : '')
+      } else if (f.objects.length) line(f.name, f.help, chips(f.objects))
+      else line(f.name, f.help, shown(f.value), f.unit ? h('span', { class: 'unit' }, ` ${f.unit}`) : '')
+    }
+    const values = o.values as any[]
+    const derivative = h('select', { 'aria-label': 'derivative by' }, h('option', { value: '' }, 'd/d …'), ...model.params.map((p) => h('option', { value: p.name, selected: p.name === by }, `d/d ${p.name}`)))
+    derivative.addEventListener('change', () => {
+      by = derivative.value || null
+      store('by', by)
+      void build()
+    })
+    host.replaceChildren(
+      h('header', { class: 'inspected' }, h('strong', {}, o.name), h('span', { class: 'kind' }, o.kind), h('button', { class: 'link', onclick: () => void act.locate(o.name) }, 'in the program')),
+      h('p', { class: 'quiet' }, o.about),
+      ...(o.failure ? [h('p', { class: 'bad' }, o.failure)] : []),
+      ...(o.waits ? [h('p', { class: 'bad' }, 'Waits for ', link(o.waits))] : []),
+      ...rows,
+      ...(values.length
+        ? [h('h4', {}, 'Values', values.length && model.params.length ? derivative : ''),
+          ...values.map((v) => h('div', { class: 'fact' }, h('span', { class: 'key' }, v.expression), h('span', { class: 'value mono' }, shown(v.value), by && v.derivative !== undefined ? h('span', { class: 'd' }, ` d/d ${by} = ${shown(v.derivative)}`) : '')))]
+        : []),
+      h('h4', {}, 'Parents'), o.parents.length ? chips(o.parents) : h('span', { class: 'quiet' }, 'none'),
+      h('h4', {}, 'Children'), o.children.length ? chips(o.children) : h('span', { class: 'quiet' }, 'none'),
+      h('div', { class: 'buttons' },
+        h('button', { onclick: () => act.toggle(o.name) }, 'Hide or show'),
+        h('button', { onclick: () => act.isolate(o.name) }, 'Isolate'),
+        h('button', { onclick: () => void navigator.clipboard?.writeText(o.name).then(() => act.say(`${o.name} copied`)) }, 'Copy name')),
+    )
+  }
+  on(['selection', 'rev', 'params'], () => void build())
+}
+
+export function messagesPanel(host: HTMLElement, act: Actions): void {
+  const log = h('div', { role: 'log', 'aria-live': 'polite', 'aria-label': 'diagnostics', class: 'log' })
+  host.append(log)
+  let timer = 0
+  function one(f: Fault): HTMLElement {
+    const where = f.file ? `${f.file}:${f.line}` : f.line ? `line ${f.line}` : ''
+    const item = h('div', { class: `message ${f.severity}` },
+      h('button', { class: 'text' }, h('span', { class: 'sign', 'aria-hidden': 'true' }, f.severity === 'error' ? '✕' : f.severity === 'warning' ? '!' : 'i'), h('span', { class: 'sr' }, `${f.severity}: `), f.message, where ? h('span', { class: 'where' }, where) : ''))
+    item.querySelector('button')!.addEventListener('click', () => {
+      if (f.place) act.show(f.place)
+      if (f.object) act.select(f.object, 'message')
+    })
+    const more = [f.expected ? `expected ${f.expected}` : '', f.found ? `found ${f.found}` : '', ...f.notes, ...f.help].filter(Boolean)
+    for (const words of more) item.append(h('div', { class: 'more' }, words))
+    if (f.edit) item.append(h('button', { class: 'fix', onclick: () => act.apply([{ from: f.edit!.place[0], to: f.edit!.place[1], insert: f.edit!.insert }]) }, `Fix: ${f.edit.title}`))
+    return item
+  }
+  function build(): void {
+    const all = model.faults.slice(0, 200)
+    log.replaceChildren(...all.map(one), ...model.printed.slice(0, 200).map((line) => h('div', { class: 'message printed' }, line)))
+    if (!log.childElementCount) log.append(h('div', { class: 'message quiet' }, 'No messages: the model is in order.'))
+  }
+  on(['faults', 'printed'], () => {
+    // Half-typed texts are red in the editor at once, and here after a rest.
+    clearTimeout(timer)
+    const worse = model.faults.some((f) => f.severity === 'error')
+    timer = window.setTimeout(build, worse ? 400 : 0)
+  })
+}
+
+export function strip(host: HTMLElement, act: Actions): void {
+  const box = h('div', { class: 'numbers', role: 'group', 'aria-label': 'watched numbers' })
+  const add = h('input', { type: 'text', placeholder: '+ number to watch', 'aria-label': 'watch an expression', class: 'add', list: 'watchable', disabled: act.still })
+  const list = h('datalist', { id: 'watchable' })
+  for (const word of ['mesh.area', 'mesh.volume', 'hydrostatics.displacement', 'hydrostatics.volume', 'hydrostatics.lcb', 'hydrostatics.vcb', 'hydrostatics.wetted_area', 'hydrostatics.waterplane_area', 'hydrostatics.draft', 'hydrostatics.kmt', 'hydrostatics.kb', 'hydrostatics.cb', 'hydrostatics.cp'])
+    list.append(h('option', { value: word }))
+  const setMark = h('button', { class: 'link', title: 'Changes are shown since this moment' }, 'Mark')
+  host.append(box, add, list, setMark)
+  let marked = new Map<string, number>()
+  setMark.addEventListener('click', () => {
+    marked = new Map(model.watched.filter((w) => typeof w.value === 'number').map((w) => [w.expression, w.value as number]))
+    act.say('Changes are shown since now')
+    build()
+  })
+  add.addEventListener('keydown', (event) => {
+    if (event.key !== 'Enter' || !add.value.trim()) return
+    act.watch([...model.watched.map((w) => w.expression), add.value.trim()])
+    add.value = ''
+  })
+  function build(): void {
+    box.replaceChildren(...model.watched.map((w) => {
+      const was = marked.get(w.expression)
+      const value = typeof w.value === 'number' ? w.value : null
+      if (value !== null && was === undefined) marked.set(w.expression, value)
+      const delta = value !== null && was !== undefined && value !== was ? value - was : 0
+      const percent = was ? ` (${delta > 0 ? '+' : '−'}${shown(Math.abs((100 * delta) / was), 3)} %)` : ''
+      return h('span', { class: `number-box ${w.error ? 'bad' : ''}`, title: w.error ?? w.expression },
+        h('span', { class: 'key' }, w.expression.replace(/^(hydrostatics|mesh)\./, '')), h('span', { class: 'value mono' }, w.error ? '–' : shown(w.value)),
+        delta ? h('span', { class: `delta ${delta > 0 ? 'up' : 'down'}` }, `${delta > 0 ? '+' : '−'}${shown(Math.abs(delta), 3)}${percent}`) : '',
+        act.still ? '' : h('button', { class: 'icon', 'aria-label': `stop watching ${w.expression}`, onclick: () => act.watch(model.watched.map((o) => o.expression).filter((e) => e !== w.expression)) }, '×'))
+    }))
+  }
+  on('watched', build)
+}
+
+export { changed }

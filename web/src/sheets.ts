@@ -1,0 +1,184 @@
+// What is shown beside the picture: lines plan, hydrostatics, mesh, digraph, curvature; all follow the model.
+
+import { h, s, shown } from './dom'
+import { Newest, type Link } from './link'
+import { model, on } from './state'
+import type { Actions } from './panels'
+
+export type SheetName = 'model' | 'lines' | 'hydrostatics' | 'mesh' | 'graph' | 'curvature'
+
+export class Sheets {
+  current: SheetName = 'model'
+  private readonly requests = new Newest<void>(() => this.build())
+  private urls: string[] = []
+  private marked: Record<string, number> | null = null
+
+  constructor(private readonly host: HTMLElement, private readonly link: Link, private readonly act: Actions & { selected: () => string }) {
+    on(['rev'], () => this.refresh())
+    on('selection', () => (this.current === 'graph' || this.current === 'curvature') && this.refresh())
+  }
+
+  show(name: SheetName): void {
+    this.current = name
+    this.host.hidden = name === 'model'
+    this.host.replaceChildren()
+    if (name !== 'model') this.refresh()
+  }
+
+  refresh(): void {
+    if (this.current !== 'model') this.requests.push(undefined)
+  }
+
+  private async build(): Promise<void> {
+    const name = this.current
+    try {
+      const made = await (name === 'lines' ? this.lines() : name === 'hydrostatics' ? this.hydrostatics() : name === 'mesh' ? this.mesh() : name === 'graph' ? this.graph() : name === 'curvature' ? this.curvature() : [])
+      if (this.current === name && name !== 'model') this.host.replaceChildren(...made)
+    } catch (error) {
+      if (this.current === name && (error as Error).message !== 'superseded') this.host.replaceChildren(h('p', { class: 'quiet pad' }, (error as Error).message))
+    }
+  }
+
+  private async lines(): Promise<HTMLElement[]> {
+    const frame = await this.link.ask('export', { format: 'svg', stem: 'lines' })
+    for (const url of this.urls) URL.revokeObjectURL(url)
+    this.urls = []
+    return (frame.head.files as any[]).map((part) => {
+      const url = URL.createObjectURL(new Blob([frame.bytes(part).slice()], { type: 'image/svg+xml' }))
+      this.urls.push(url)
+      const title = String(part.name).replace(/^lines\./, '').replace(/\.svg$/, '').replace('-', ' ')
+      return h('figure', { class: 'plan' }, h('figcaption', {}, title), h('img', { src: url, alt: `${title} of the model` }))
+    })
+  }
+
+  private async hydrostatics(): Promise<HTMLElement[]> {
+    const { head } = await this.link.ask('hydrostatics')
+    const figures = head.figures as [string, number | string][]
+    const now = Object.fromEntries(figures.filter(([, x]) => typeof x === 'number')) as Record<string, number>
+    this.marked ??= now
+    const marked = this.marked
+    const rows = figures.map(([name, x]) => {
+      const d = typeof x === 'number' && name in marked ? x - marked[name] : 0
+      return h('tr', {}, h('th', { scope: 'row' }, name.replace(/_/g, ' ')), h('td', { class: 'mono' }, shown(x)), h('td', { class: `mono delta ${d > 0 ? 'up' : d < 0 ? 'down' : ''}` }, d ? `${d > 0 ? '+' : '−'}${shown(Math.abs(d), 4)}` : ''))
+    })
+    const again = h('button', { onclick: () => ((this.marked = null), this.refresh()) }, 'Mark now')
+    return [h('div', { class: 'pad' }, h('h3', {}, 'Hydrostatics of the panels'), h('p', { class: 'quiet' }, `At the waterplane z = 0; lengths in ${model.unit}. The third column is the change since the mark.`), again,
+      h('table', {}, h('thead', {}, h('tr', {}, h('th', {}, 'figure'), h('th', {}, 'value'), h('th', {}, 'change'))), h('tbody', {}, ...rows)))]
+  }
+
+  private async mesh(): Promise<HTMLElement[]> {
+    const { head } = await this.link.ask('mesh')
+    const state = head.closed ? 'closed' : head.closed_with_lids_and_mirror ? 'closed with its mirror image and lids' : 'open'
+    const rows = (head.patches as any[]).map((p) =>
+      h('tr', {}, h('th', { scope: 'row' }, h('button', { class: 'link', onclick: () => this.act.select(p.name, 'graph') }, p.name)), ...[p.panels, p.aspect, p.skew, p.warp, p.jump].map((x) => h('td', { class: 'mono' }, shown(x, 3)))))
+    const leaks = (head.leaks as any[]).map((l) => h('li', {}, h('button', { class: 'link', onclick: () => this.act.select(l.patch, 'graph') }, l.patch), ` at ${l.edge}: ${l.panels} panels, ${shown(l.length, 4)} ${model.unit}`))
+    return [h('div', { class: 'pad' }, h('h3', {}, `${head.panels} panels, ${head.vertices} vertices, ${state}`),
+      h('p', {}, `Area of the panels ${shown(head.area)}, volume ${shown(head.volume)}.`),
+      leaks.length ? h('h4', {}, 'Open edges that nothing closes') : '', leaks.length ? h('ul', {}, ...leaks) : '',
+      h('table', {}, h('thead', {}, h('tr', {}, ...['patch', 'panels', 'aspect', 'skewness', 'warp', 'jump of area'].map((t) => h('th', {}, t)))), h('tbody', {}, ...rows)),
+      h('p', { class: 'quiet' }, 'The greatest of each patch.'))]
+  }
+
+  private async graph(): Promise<(HTMLElement | SVGElement)[]> {
+    const selected = this.act.selected()
+    const known = new Map(model.objects.map((o) => [o.name, o]))
+    let all = model.objects
+    const most = 260
+    let note = ''
+    if (all.length > most) {
+      const keep = new Set<string>()
+      const grow = (name: string, next: (n: string) => string[]) => {
+        for (const n of next(name)) if (!keep.has(n) && keep.size < most) {
+          keep.add(n)
+          grow(n, next)
+        }
+      }
+      if (known.has(selected)) {
+        keep.add(selected)
+        grow(selected, (n) => known.get(n)?.parents ?? [])
+        grow(selected, (n) => all.filter((o) => o.parents.includes(n)).map((o) => o.name))
+      }
+      note = keep.size ? `What ${selected} depends on, and what depends on it.` : `${all.length} objects are too many for one picture: select one to see what it depends on.`
+      all = all.filter((o) => keep.has(o.name))
+    }
+    const names = new Set(all.map((o) => o.name))
+    const depth = new Map<string, number>()
+    for (const o of all) depth.set(o.name, 1 + Math.max(-1, ...o.parents.filter((p) => names.has(p)).map((p) => depth.get(p) ?? -1)))
+    const children = new Map<string, string[]>()
+    for (const o of all) for (const p of o.parents) if (names.has(p)) children.set(p, [...(children.get(p) ?? []), o.name])
+    for (const o of all) if (!o.parents.length && children.get(o.name)) depth.set(o.name, Math.min(...children.get(o.name)!.map((c) => depth.get(c)!)) - 1)
+    const rows: string[][] = []
+    for (const o of all) (rows[depth.get(o.name)!] ??= []).push(o.name)
+    const place = new Map<string, number>()
+    const spread = () => rows.forEach((r) => r?.forEach((n, k) => place.set(n, (k + 0.5) / r.length)))
+    spread()
+    for (let sweep = 0; sweep < 8; sweep++) {
+      const down = sweep % 2 === 0
+      for (const row of down ? rows : [...rows].reverse()) {
+        if (!row) continue
+        const near = (n: string) => (down ? known.get(n)!.parents.filter((p) => names.has(p)) : children.get(n) ?? [])
+        const mean = new Map(row.map((n) => [n, near(n).length ? near(n).reduce((t, p) => t + place.get(p)!, 0) / near(n).length : place.get(n)!]))
+        row.sort((a, b) => mean.get(a)! - mean.get(b)!)
+        row.forEach((n, k) => place.set(n, (k + 0.5) / row.length))
+      }
+    }
+    const width = (n: string) => Math.max(n.length, known.get(n)!.kind.length) * 6.8 + 18
+    const spans = rows.map((r) => (r ?? []).reduce((t, n) => t + width(n) + 12, 0))
+    const total = Math.max(200, ...spans) + 24
+    const at = new Map<string, [number, number]>()
+    rows.forEach((row, k) => {
+      let x = (total - spans[k]) / 2
+      for (const n of row ?? []) {
+        at.set(n, [x + width(n) / 2, 16 + k * 78])
+        x += width(n) + 12
+      }
+    })
+    const height = rows.length * 78 + 16
+    const picture = s('svg', { width: total, height, viewBox: `0 0 ${total} ${height}`, class: 'digraph', role: 'group', 'aria-label': 'dependencies' })
+    for (const o of all) for (const p of o.parents) {
+      const [a, b] = [at.get(p), at.get(o.name)]
+      if (!a || !b) continue
+      const lit = o.name === selected || p === selected
+      picture.append(s('path', { d: `M${a[0]} ${a[1] + 36}C${a[0]} ${(a[1] + 36 + b[1]) / 2} ${b[0]} ${(a[1] + 36 + b[1]) / 2} ${b[0]} ${b[1]}`, class: lit ? 'edge lit' : 'edge' }))
+    }
+    for (const o of all) {
+      const [x, y] = at.get(o.name)!
+      const node = s('g', { class: `node ${o.class} ${o.state} ${o.name === selected ? 'selected' : ''}`, tabindex: 0, role: 'button', 'aria-label': `${o.name}, ${o.kind}` },
+        s('rect', { x: x - width(o.name) / 2, y, width: width(o.name), height: 36, rx: 6 }), s('text', { x, y: y + 15, class: 'name' }, o.name), s('text', { x, y: y + 29, class: 'kind' }, o.kind))
+      node.addEventListener('click', () => this.act.select(o.name, 'graph'))
+      node.addEventListener('keydown', (e) => (e as KeyboardEvent).key === 'Enter' && this.act.select(o.name, 'graph'))
+      node.addEventListener('pointerenter', () => this.act.hover(o.name))
+      picture.append(node)
+    }
+    return [...(note ? [h('p', { class: 'quiet pad' }, note)] : []), picture]
+  }
+
+  private async curvature(): Promise<(HTMLElement | SVGElement)[]> {
+    const selected = this.act.selected()
+    const curves = model.objects.filter((o) => ['curve', 'snake'].includes(o.class) && o.state === 'ok')
+    const parents = model.objects.find((o) => o.name === selected)?.parents ?? []
+    const names = curves.some((o) => o.name === selected) ? [selected] : curves.map((o) => o.name).filter((n) => parents.includes(n))
+    const wanted = names.length ? names : curves.slice(0, 6).map((o) => o.name)
+    if (!wanted.length) return [h('p', { class: 'quiet pad' }, 'The model has no curves.')]
+    const frame = await this.link.ask('combs', { names: wanted })
+    return (frame.head.combs as any[]).map((comb) => {
+      const [x, y] = [frame.floats(comb.length), frame.floats(comb.curvature)]
+      return h('figure', { class: 'plan' }, h('figcaption', {}, `Curvature of ${comb.name} over its length`), plot(x, y, model.unit))
+    })
+  }
+}
+
+/** A line over axes with round numbers. */
+function plot(xs: Float32Array, ys: Float32Array, unit: string): HTMLElement {
+  const [w, height, left, bottom] = [640, 220, 62, 30]
+  const most = Math.max(...ys, 1e-12)
+  const end = xs[xs.length - 1] || 1
+  const X = (x: number) => left + ((w - left - 12) * x) / end
+  const Y = (y: number) => height - bottom - ((height - bottom - 12) * y) / most
+  const path = Array.from(xs, (x, k) => `${k ? 'L' : 'M'}${X(x).toFixed(1)} ${Y(ys[k]).toFixed(1)}`).join('')
+  const picture = s('svg', { viewBox: `0 0 ${w} ${height}`, class: 'plot', role: 'img', 'aria-label': `curvature from 0 to ${shown(most, 3)}` },
+    s('path', { d: `M${left} 12V${height - bottom}H${w - 12}`, class: 'axis' }), s('path', { d: path, class: 'curve' }),
+    s('text', { x: left - 6, y: 18, class: 'end' }, shown(most, 3)), s('text', { x: left - 6, y: height - bottom, class: 'end' }, '0'),
+    s('text', { x: w - 12, y: height - 10, class: 'end' }, `${shown(end, 4)} ${unit}`), s('text', { x: left, y: height - 10 }, '0'))
+  return h('div', {}, picture)
+}

@@ -1,0 +1,587 @@
+// The picture of the model: what the engine sends, and nothing computed from it but colours.
+
+import {
+  BufferAttribute, BufferGeometry, Box3, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, Plane, Points,
+  Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
+} from 'three'
+import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js'
+import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
+import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js'
+import { Camera } from './camera'
+import { coloured, hex, HUES, scale, type Scale } from './colour'
+import type { Frame, Part } from './frame'
+
+export type Style = 'shaded' | 'panels' | 'smooth' | 'wire' | 'xray'
+export type Paint = 'patches' | 'model' | 'zebra' | 'isophotes' | 'highlight' | 'field'
+
+/** Whose a mesh is, be it the original or its mirror image. */
+const owners = new WeakMap<object, Drawn>()
+
+const MODES: Record<string, number> = { zebra: 1, isophotes: 2, highlight: 3 }
+
+const VERTEX = `
+#include <clipping_planes_pars_vertex>
+attribute vec3 tint;
+varying vec3 vNormal; varying vec3 vWorld; varying vec3 vTint;
+void main() {
+  vec4 world = modelMatrix * vec4(position, 1.0);
+  vec4 mvPosition = viewMatrix * world;
+  vWorld = world.xyz; vTint = tint;
+  vNormal = mat3(modelMatrix) * normal;
+  gl_Position = projectionMatrix * mvPosition;
+  #include <clipping_planes_vertex>
+}`
+
+const FRAGMENT = `
+#include <clipping_planes_pars_fragment>
+uniform vec3 colour; uniform float tinted; uniform int mode; uniform vec3 towards; uniform vec3 upward; uniform vec3 right;
+uniform float opacity; uniform float grey; uniform float lit; uniform vec3 centre; uniform float size; uniform float stripes;
+varying vec3 vNormal; varying vec3 vWorld; varying vec3 vTint;
+float stripe(float x) { float w = max(fwidth(x), 1e-6); float d = abs(fract(x) - 0.5) - 0.25; return smoothstep(-w, w, d); }
+void main() {
+  #include <clipping_planes_fragment>
+  vec3 n = normalize(vNormal);
+  vec3 eye = isOrthographic ? towards : normalize(cameraPosition - vWorld);
+  bool inside = dot(n, eye) < 0.0;
+  if (inside) n = -n;
+  vec3 base = mix(colour, vTint, tinted);
+  if (mode == 1) { vec3 r = 2.0 * dot(n, eye) * n - eye; base = mix(vec3(0.13, 0.15, 0.18), vec3(0.96), stripe(stripes * atan(dot(r, upward), dot(r, right)) / 6.2831853)); }
+  if (mode == 2) base = mix(vec3(0.16, 0.3, 0.52), vec3(0.95, 0.94, 0.9), stripe(stripes * acos(clamp(n.z, -1.0, 1.0)) / 3.14159265));
+  if (mode == 3) { vec3 s = vec3(1.0, 0.0, 0.0); vec3 c = cross(s, n); float d = dot(c, centre + vec3(0.0, 0.0, size) - vWorld) / max(length(c), 1e-6); base = mix(vec3(0.2, 0.24, 0.3), vec3(0.97), stripe(0.5 * stripes * d / size)); }
+  vec3 key = normalize(-0.45 * right + 0.7 * upward + 0.55 * towards);
+  float diffuse = 0.52 + 0.16 * (0.5 + 0.5 * n.z) + 0.24 * max(dot(n, eye), 0.0) + 0.30 * max(dot(n, key), 0.0);
+  float gloss = 0.09 * pow(max(dot(n, normalize(key + eye)), 0.0), 40.0);
+  float shade = mix(1.0, diffuse, lit);
+  vec3 c = base * shade * (inside ? 0.86 : 1.0) + (inside ? 0.0 : gloss * lit);
+  float g = dot(c, vec3(0.3, 0.59, 0.11));
+  c = mix(c, vec3(g) * 0.6 + 0.3, grey);
+  float a = opacity < 1.0 ? opacity + (1.0 - opacity) * pow(1.0 - abs(dot(n, eye)), 3.0) : 1.0;
+  gl_FragColor = vec4(c, a);
+}`
+
+export interface Drawn {
+  key: string
+  name: string
+  object: string
+  kind: string
+  stale: string
+  colour: number[]
+  hue: number
+  origin: Vector3
+  position: Float32Array
+  normal: Float32Array | null
+  triangle: Uint32Array
+  edge: Uint32Array
+  rim: Uint32Array
+  field: Float32Array | null
+  components: number
+  group: Group
+  geometry: BufferGeometry
+  mesh: Mesh | null
+  lines: { edge: LineSegments | null; rim: LineSegments2 | null; curve: LineSegments2 | null }
+  box: Box3
+}
+
+export interface Picked {
+  object: string
+  kind: string
+  point: Vector3
+  value?: number[]
+}
+
+export class View {
+  readonly camera = new Camera()
+  readonly items = new Map<string, Drawn>()
+  readonly canvas: HTMLCanvasElement
+  style: Style = 'shaded'
+  paint: Paint = 'patches'
+  fieldScale: Scale | null = null
+  mirror = true
+  layers: Record<string, boolean> = { patch: true, curve: true, point: true, wire: true, contour: true, grid: true, frame: true }
+  hidden = new Set<string>()
+  selected = ''
+  hovered = ''
+  onFrame: () => void = () => {}
+  private symmetry = ''
+  private readonly renderer: WebGLRenderer
+  private readonly scene = new Scene()
+  private readonly model = new Group()
+  private readonly image = new Group()
+  private readonly extras = new Group()
+  private readonly dots: Points
+  private dotItems: Drawn[] = []
+  private readonly resolution = new Vector2(1, 1)
+  private readonly uniforms = {
+    mode: { value: 0 }, towards: { value: new Vector3() }, upward: { value: new Vector3() }, right: { value: new Vector3() },
+    lit: { value: 1 }, centre: { value: new Vector3() }, size: { value: 1 }, stripes: { value: 16 },
+  }
+  private readonly materials = new Map<string, ShaderMaterial>()
+  private readonly lineMaterials = new Map<string, LineMaterial | LineBasicMaterial>()
+  private dark = false
+  private queued = false
+  private bounds = new Box3()
+  clip: { axis: number; value: number; flip: boolean } | null = null
+  readonly silent = new URLSearchParams(location.search).has('norender')
+
+  constructor(host: HTMLElement) {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true })
+    this.canvas = this.renderer.domElement
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio))
+    host.append(this.canvas)
+    this.scene.add(this.model, this.image, this.extras)
+    const material = new ShaderMaterial({
+      uniforms: { pixels: { value: 7 * this.renderer.getPixelRatio() } },
+      vertexShader: `attribute vec3 tint; varying vec3 vTint; uniform float pixels; attribute float big;
+        void main() { vTint = tint; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); gl_Position.z -= 2e-3 * gl_Position.w; gl_PointSize = pixels * big; }`,
+      fragmentShader: `varying vec3 vTint; void main() { float r = length(gl_PointCoord - 0.5); if (r > 0.5) discard;
+        gl_FragColor = vec4(r > 0.34 ? vec3(1.0) : vTint, 1.0); }`,
+    })
+    this.dots = new Points(new BufferGeometry(), material)
+    this.dots.frustumCulled = false
+    this.scene.add(this.dots)
+    new ResizeObserver(() => this.resize(host)).observe(host)
+    this.resize(host)
+    this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault())
+    this.canvas.addEventListener('webglcontextrestored', () => this.draw())
+  }
+
+  private resize(host: HTMLElement): void {
+    const [w, h] = [Math.max(1, host.clientWidth), Math.max(1, host.clientHeight)]
+    this.renderer.setSize(w, h, false)
+    this.resolution.set(w, h)
+    for (const m of this.lineMaterials.values()) if (m instanceof LineMaterial) m.resolution.copy(this.resolution)
+    this.draw()
+  }
+
+  get height(): number {
+    return this.resolution.y
+  }
+
+  /** Takes what is new in a frame; true when there was something. */
+  take(frame: Frame): boolean {
+    const { head } = frame
+    if (head.mirror !== undefined) this.symmetry = head.mirror
+    for (const key of head.removed ?? []) this.remove(JSON.stringify(key))
+    for (const item of head.items ?? []) this.put(frame, item)
+    if (!head.items && head.mirror === undefined) return false
+    this.settle()
+    return true
+  }
+
+  private put(frame: Frame, head: any): void {
+    const key = JSON.stringify(head.key)
+    let item = this.items.get(key)
+    if (!item) {
+      item = {
+        key, name: head.name, object: head.object, kind: head.kind, stale: '', colour: [], hue: 0, origin: new Vector3(),
+        position: new Float32Array(), normal: null, triangle: new Uint32Array(), edge: new Uint32Array(), rim: new Uint32Array(),
+        field: null, components: 1, group: new Group(), geometry: new BufferGeometry(), mesh: null, lines: { edge: null, rim: null, curve: null }, box: new Box3(),
+      }
+      this.items.set(key, item)
+    }
+    Object.assign(item, { object: head.object, stale: head.stale, colour: head.colour, hue: head.hue })
+    item.origin.fromArray(head.origin)
+    const parts: Record<string, Part> = {}
+    for (const part of head.parts as Part[]) parts[part.role] = part
+    const moved = !!parts.position
+    const turned = !!parts.triangle
+    if (moved) {
+      item.position = frame.floats(parts.position)
+      item.normal = parts.normal ? frame.floats(parts.normal) : null
+    }
+    if (turned) {
+      item.triangle = frame.numbers(parts.triangle)
+      item.edge = frame.numbers(parts.edge)
+      item.rim = frame.numbers(parts.rim)
+      item.field = null
+    }
+    if (moved || turned) this.shape(item, turned)
+  }
+
+  private shape(item: Drawn, turned: boolean): void {
+    item.group.position.copy(item.origin)
+    item.box.setFromArray(item.position as unknown as number[]).translate(item.origin)
+    if (item.kind === 'point') return
+    const g = item.geometry
+    const old = g.getAttribute('position') as BufferAttribute | undefined
+    const set = (name: string, data: Float32Array) => {
+      const attribute = g.getAttribute(name) as BufferAttribute | undefined
+      if (attribute && attribute.count * 3 === data.length) {
+        ;(attribute.array as Float32Array).set(data)
+        attribute.needsUpdate = true
+      } else g.setAttribute(name, new BufferAttribute(new Float32Array(data), 3))
+    }
+    const resized = turned || !old || old.count * 3 !== item.position.length
+    if (resized) {
+      g.dispose()
+      g.deleteAttribute('tint')
+    }
+    set('position', item.position)
+    if (item.normal) set('normal', item.normal)
+    g.boundingSphere = null
+    g.boundingBox = null
+    if (item.kind === 'patch') {
+      if (resized) {
+        g.setIndex(new BufferAttribute(item.triangle, 1))
+        for (const o of [item.mesh, item.lines.edge, item.lines.rim]) if (o) item.group.remove(o)
+        item.mesh = new Mesh(g, this.material('', 0, 1))
+        owners.set(item.mesh, item)
+        const edges = new BufferGeometry()
+        edges.setAttribute('position', g.getAttribute('position'))
+        edges.setIndex(new BufferAttribute(item.edge, 1))
+        item.lines.edge = new LineSegments(edges, this.line('edge') as LineBasicMaterial)
+        item.lines.rim = this.fat(item.rim, item.position, 'rim')
+        item.group.add(item.mesh, item.lines.edge, item.lines.rim)
+      } else {
+        if (item.lines.edge) item.lines.edge.geometry.boundingSphere = null
+        this.refat(item.lines.rim!, item.rim, item.position)
+      }
+    } else if (resized || !item.lines.curve) {
+      if (item.lines.curve) item.group.remove(item.lines.curve)
+      item.lines.curve = this.fat(item.edge, item.position, item.kind)
+      item.group.add(item.lines.curve)
+    } else this.refat(item.lines.curve, item.edge, item.position)
+    if (!item.group.parent) this.model.add(item.group)
+  }
+
+  private segments(index: Uint32Array, position: Float32Array): Float32Array {
+    const flat = new Float32Array(3 * index.length)
+    for (let k = 0; k < index.length; k++) flat.set(position.subarray(3 * index[k], 3 * index[k] + 3), 3 * k)
+    return flat
+  }
+
+  private fat(index: Uint32Array, position: Float32Array, kind: string): LineSegments2 {
+    const geometry = new LineSegmentsGeometry()
+    geometry.setPositions(this.segments(index, position))
+    const lines = new LineSegments2(geometry, this.line(kind) as LineMaterial)
+    lines.frustumCulled = false
+    return lines
+  }
+
+  private refat(lines: LineSegments2, index: Uint32Array, position: Float32Array): void {
+    const at = lines.geometry.getAttribute('instanceStart') as any
+    const flat = this.segments(index, position)
+    if (at && at.data.array.length === flat.length) {
+      at.data.array.set(flat)
+      at.data.needsUpdate = true
+    } else lines.geometry.setPositions(flat)
+  }
+
+  private remove(key: string): void {
+    const item = this.items.get(key)
+    if (!item) return
+    item.group.removeFromParent()
+    item.geometry.dispose()
+    this.items.delete(key)
+  }
+
+  private material(name: string, grey: number, opacity: number, tint = 0, colour = 0x8fb3d9): ShaderMaterial {
+    const key = `${name}|${grey}|${opacity}|${tint}|${colour}`
+    let found = this.materials.get(key)
+    if (!found) {
+      found = new ShaderMaterial({
+        uniforms: { ...this.uniforms, colour: { value: new Color(...hex(colour)) }, tinted: { value: tint }, grey: { value: grey }, opacity: { value: opacity } },
+        vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, clipping: true,
+        transparent: opacity < 1, depthWrite: opacity >= 1, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      })
+      this.materials.set(key, found)
+    }
+    return found
+  }
+
+  private line(kind: string): LineMaterial | LineBasicMaterial {
+    let found = this.lineMaterials.get(kind)
+    if (!found) {
+      const widths: Record<string, number> = { rim: 1.4, curve: 1.6, wire: 2.4, contour: 1.4, grid: 1, frame: 1.6, chosen: 3, hover: 2.6, extra: 1.4, stale: 1.2 }
+      if (kind === 'edge') found = new LineBasicMaterial({ transparent: true, opacity: 0.22 })
+      else found = new LineMaterial({ linewidth: widths[kind] ?? 1.4 })
+      if (found instanceof LineMaterial) found.resolution.copy(this.resolution)
+      this.lineMaterials.set(kind, found)
+      this.ink()
+    }
+    return found
+  }
+
+  /** Colours of lines for the theme. */
+  private ink(): void {
+    const d = this.dark
+    const inks: Record<string, number> = {
+      edge: d ? 0xdfe6ee : 0x1b2530, rim: d ? 0xc9d3de : 0x2b3541, curve: d ? 0x7fb0e6 : 0x2a5d9c, wire: d ? 0xe6edf5 : 0x1b2533, contour: d ? 0xe2b66b : 0x8a5a12,
+      grid: d ? 0x8a97a5 : 0x7a8794, frame: d ? 0xa0acb8 : 0x5c6875, chosen: 0xe8711a, hover: 0xf09a52, extra: 0xc2412d, stale: d ? 0x727d89 : 0xa3acb6,
+    }
+    for (const [kind, m] of this.lineMaterials) m.color.set(inks[kind] ?? 0x556270)
+  }
+
+  theme(dark: boolean): void {
+    this.dark = dark
+    this.ink()
+    this.settle()
+  }
+
+  /** Materials, sight and images follow from the state. */
+  settle(): void {
+    this.uniforms.mode.value = MODES[this.paint] ?? 0
+    this.uniforms.lit.value = this.paint === 'field' ? 0.55 : this.paint in MODES ? 0.25 : 1
+    this.bounds.makeEmpty()
+    this.dotItems = []
+    const opacity = this.style === 'xray' ? 0.18 : 1
+    for (const item of this.items.values()) {
+      const seen = this.seen(item)
+      item.group.visible = seen
+      if (seen) this.bounds.union(item.box)
+      if (item.kind === 'point') {
+        if (seen) this.dotItems.push(item)
+        continue
+      }
+      const marked = item.object === this.selected ? 'chosen' : item.object === this.hovered ? 'hover' : ''
+      const grey = item.stale ? 0.85 : 0
+      if (item.mesh) {
+        const tinted = this.paint === 'field' && item.field ? 1 : 0
+        const own = (item.colour[0] << 16) | (item.colour[1] << 8) | item.colour[2]
+        const colour = this.paint === 'field' ? 0xb9bfc6 : this.paint === 'model' ? own : HUES[item.hue % HUES.length]
+        if (!item.geometry.getAttribute('tint')) item.geometry.setAttribute('tint', new BufferAttribute(new Float32Array(item.position.length), 3))
+        item.mesh.material = this.material('', grey, opacity, tinted, colour)
+        item.mesh.visible = this.style !== 'wire'
+        item.lines.edge!.visible = this.style !== 'smooth'
+        item.lines.edge!.material = this.line('edge') as LineBasicMaterial
+        item.lines.rim!.visible = this.style !== 'smooth' || !!marked
+        item.lines.rim!.material = this.line(marked || 'rim') as LineMaterial
+      } else if (item.lines.curve) item.lines.curve.material = this.line(marked || (item.stale ? 'stale' : item.kind)) as LineMaterial
+    }
+    ;(this.line('edge') as LineBasicMaterial).opacity = this.style === 'panels' || this.style === 'wire' ? 0.6 : 0.2
+    this.placeDots()
+    this.reflect()
+    this.draw()
+  }
+
+  seen(item: Drawn): boolean {
+    return (this.layers[item.kind] ?? true) && !this.hidden.has(item.object)
+  }
+
+  private placeDots(): void {
+    const n = this.dotItems.length
+    const [position, tint, big] = [new Float32Array(3 * n), new Float32Array(3 * n), new Float32Array(n)]
+    this.dotItems.forEach((item, k) => {
+      for (let c = 0; c < 3; c++) position[3 * k + c] = item.position[c] + item.origin.getComponent(c)
+      const marked = item.object === this.selected || item.object === this.hovered
+      tint.set(marked ? hex(0xe8711a) : item.stale ? hex(0x9aa3ad) : hex(this.dark ? 0xf0c46a : 0x7a4d0b), 3 * k)
+      big[k] = marked ? 1.6 : 1
+    })
+    const g = this.dots.geometry
+    g.dispose()
+    g.setAttribute('position', new BufferAttribute(position, 3))
+    g.setAttribute('tint', new BufferAttribute(tint, 3))
+    g.setAttribute('big', new BufferAttribute(big, 1))
+  }
+
+  /** The halves, or three quarters, that are not in the model. */
+  private reflect(): void {
+    this.image.clear()
+    const planes = [0, 1, 2].filter((k) => this.symmetry.includes('xyz'[k]))
+    this.image.visible = this.mirror && planes.length > 0
+    if (!this.image.visible) return
+    const own = this.bounds.clone()
+    for (let which = 1; which < 1 << planes.length; which++) {
+      const image = new Group()
+      const box = own.clone()
+      planes.forEach((axis, k) => {
+        if (!((which >> k) & 1)) return
+        image.scale.setComponent(axis, -1)
+        const [low, high] = [box.min.getComponent(axis), box.max.getComponent(axis)]
+        box.min.setComponent(axis, -high)
+        box.max.setComponent(axis, -low)
+      })
+      this.twins(image)
+      this.image.add(image)
+      this.bounds.union(box)
+    }
+  }
+
+  private twins(image: Group): void {
+    for (const item of this.items.values()) {
+      if (!item.group.visible || item.kind === 'point' || item.kind === 'frame') continue
+      const twin = new Group()
+      twin.position.copy(item.group.position)
+      for (const child of item.group.children) {
+        if (!child.visible || (child as any).isLineSegments2 && item.kind === 'patch') continue
+        const copy = child.clone() as any
+        owners.set(copy, item)
+        twin.add(copy)
+      }
+      image.add(twin)
+    }
+  }
+
+  /** Numbers at the vertices of patches, as colours. */
+  field(frame: Frame, signed: boolean): void {
+    const all: Float32Array[] = []
+    for (const item of this.items.values()) item.field = null
+    const sized: { item: Drawn; sizes: Float32Array }[] = []
+    for (const part of (frame.head.field ?? []) as Part[]) {
+      const item = this.items.get(JSON.stringify(part.key))
+      if (!item) continue
+      const values = frame.floats(part)
+      if (values.length !== (item.position.length / 3) * part.components) continue
+      item.field = new Float32Array(values)
+      item.components = part.components
+      const sizes = new Float32Array(values.length / part.components)
+      for (let k = 0; k < sizes.length; k++) {
+        if (part.components === 1) sizes[k] = values[k]
+        else sizes[k] = Math.hypot(...Array.from({ length: part.components }, (_, c) => values[k * part.components + c]))
+      }
+      sized.push({ item, sizes })
+      all.push(sizes)
+    }
+    this.fieldScale = scale(all, signed)
+    for (const { item, sizes } of sized) {
+      const tint = new Float32Array(3 * sizes.length)
+      for (let k = 0; k < sizes.length; k++) tint.set(coloured(sizes[k], this.fieldScale), 3 * k)
+      item.geometry.setAttribute('tint', new BufferAttribute(tint, 3))
+    }
+    this.settle()
+  }
+
+  /** Lines that are drawn besides: combs, sections, measures, arrows. */
+  overlay(name: string, runs: number[][] | null, colour = 0xc2412d): void {
+    const old = this.extras.children.find((c) => c.name === name)
+    if (old) this.extras.remove(old)
+    if (runs && runs.length) {
+      const flat: number[] = []
+      for (const run of runs) for (let k = 0; k + 5 < run.length; k += 3) flat.push(...run.slice(k, k + 6))
+      if (flat.length) {
+        const geometry = new LineSegmentsGeometry()
+        geometry.setPositions(flat)
+        const material = new LineMaterial({ linewidth: 1.5, color: colour, depthTest: false, transparent: true })
+        material.resolution.copy(this.resolution)
+        const lines = new LineSegments2(geometry, material)
+        lines.name = name
+        lines.frustumCulled = false
+        this.extras.add(lines)
+      }
+    }
+    this.draw()
+  }
+
+  get box(): Box3 {
+    return this.bounds
+  }
+
+  fit(): void {
+    this.camera.fit(this.bounds, this.resolution.x / this.resolution.y)
+    this.draw()
+  }
+
+  draw(): void {
+    if (this.queued || this.silent) return
+    this.queued = true
+    requestAnimationFrame(() => {
+      this.queued = false
+      this.render()
+    })
+  }
+
+  render(): void {
+    const aspect = this.resolution.x / this.resolution.y
+    this.camera.aim(aspect, this.bounds)
+    this.uniforms.towards.value.copy(this.camera.towards)
+    this.uniforms.upward.value.copy(this.camera.up)
+    this.uniforms.right.value.copy(this.camera.right)
+    if (!this.bounds.isEmpty()) {
+      this.bounds.getCenter(this.uniforms.centre.value)
+      this.uniforms.size.value = 0.25 * this.bounds.getSize(new Vector3()).length()
+    }
+    this.renderer.clippingPlanes = []
+    if (this.clip) {
+      const sign = this.clip.flip ? 1 : -1
+      const normal = new Vector3().setComponent(this.clip.axis, sign)
+      this.renderer.clippingPlanes = [new Plane(normal, -sign * this.clip.value)]
+    }
+    this.renderer.render(this.scene, this.camera.three)
+    this.onFrame()
+  }
+
+  /** Where a place is in the picture, in CSS pixels. */
+  project(p: Vector3): [number, number] {
+    this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
+    return this.projected(p)
+  }
+
+  /** The same while the camera stays. */
+  private projected(p: Vector3): [number, number] {
+    const v = p.clone().project(this.camera.three)
+    return [(v.x * 0.5 + 0.5) * this.resolution.x, (-v.y * 0.5 + 0.5) * this.resolution.y]
+  }
+
+  ray(x: number, y: number): Raycaster {
+    this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
+    const caster = new Raycaster()
+    caster.setFromCamera(new Vector2((x / this.resolution.x) * 2 - 1, 1 - (y / this.resolution.y) * 2), this.camera.three)
+    return caster
+  }
+
+  place(item: Drawn): Vector3 {
+    return new Vector3(item.position[0], item.position[1], item.position[2]).add(item.origin)
+  }
+
+  /** The point item nearest to a place of the picture, within a distance. */
+  near(x: number, y: number, within: number, but = ''): Drawn | null {
+    let best: Drawn | null = null
+    let least = within
+    this.camera.aim(this.resolution.x / this.resolution.y, this.bounds)
+    for (const item of this.dotItems) {
+      if (item.object === but) continue
+      const [px, py] = this.projected(this.place(item))
+      const d = Math.hypot(px - x, py - y)
+      if (d < least) [best, least] = [item, d]
+    }
+    return best
+  }
+
+  /** What is seen at a place of the picture: points before lines before patches. */
+  pick(x: number, y: number): Picked | null {
+    const point = this.near(x, y, 9)
+    if (point) return { object: point.object, kind: point.kind, point: this.place(point) }
+    const line = this.nearLine(x, y, 6)
+    const caster = this.ray(x, y)
+    const hits = this.style === 'wire' ? [] : caster.intersectObjects([this.model, ...(this.image.visible ? [this.image] : [])], true)
+    const kept = (p: Vector3) => !this.clip || (this.clip.flip ? 1 : -1) * (p.getComponent(this.clip.axis) - this.clip.value) >= 0
+    const hit = hits.find((k) => k.object instanceof Mesh && !(k.object as any).isLineSegments2 && k.object.visible && kept(k.point))
+    if (line && (!hit || line.depth <= caster.ray.origin.distanceTo(hit.point) * (1 + 1e-3) + 1e-9)) return line
+    if (!hit) return null
+    const item = owners.get(hit.object)!
+    let value: number[] | undefined
+    if (item.field && this.paint === 'field' && hit.face) {
+      const at = hit.face.a * item.components
+      value = Array.from(item.field.slice(at, at + item.components))
+    }
+    return { object: item.object, kind: item.kind, point: hit.point, value }
+  }
+
+  private nearLine(x: number, y: number, within: number): (Picked & { depth: number }) | null {
+    let best: (Picked & { depth: number }) | null = null
+    let least = within
+    const eye = this.ray(x, y).ray
+    for (const item of this.items.values()) {
+      if (item.kind === 'patch' || item.kind === 'point' || item.kind === 'grid' || !item.group.visible) continue
+      const at = (k: number) => new Vector3().fromArray(item.position, 3 * k).add(item.origin)
+      for (let k = 0; k < item.edge.length; k += 2) {
+        const [p, q] = [at(item.edge[k]), at(item.edge[k + 1])]
+        const [a, b] = [this.projected(p), this.projected(q)]
+        const [dx, dy] = [b[0] - a[0], b[1] - a[1]]
+        const t = Math.max(0, Math.min(1, ((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy || 1)))
+        const d = Math.hypot(a[0] + t * dx - x, a[1] + t * dy - y)
+        if (d < least) {
+          least = d
+          const point = p.lerp(q, t)
+          best = { object: item.object, kind: item.kind, point, depth: eye.origin.distanceTo(point) }
+        }
+      }
+    }
+    return best
+  }
+
+  picture(): Promise<Blob | null> {
+    this.render()
+    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'))
+  }
+}
