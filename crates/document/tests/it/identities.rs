@@ -357,9 +357,9 @@ fn maker(
             let hidden =
                 named(&(law.loft)(&list), &format!("{name}h")).replace(");", ", visible = 0);");
             curve(&mut text, &row(far, n, backwards), &format!("{name}d"));
-            let _ = write!(
+            let _ = writeln!(
                 text,
-                "{hidden}EdgeSnake {name}e(4, {name}h); RuledSurf {name}({name}e, {name}d);\n"
+                "{hidden}EdgeSnake {name}e(4, {name}h); RuledSurf {name}({name}e, {name}d);"
             );
         }
         // A part of a surface up to the edge.
@@ -367,23 +367,23 @@ fn maker(
             let list = masters(&mut text, "P", far, backwards);
             let hidden =
                 named(&(law.loft)(&list), &format!("{name}h")).replace(");", ", visible = 0);");
-            let _ = write!(
+            let _ = writeln!(
                 text,
                 "{hidden}EdgeSnake {name}e(4, {name}h); UVSnake {name}w({name}h, \"u\", 0.6);
-                 SubSurf {name}({{{name}e, {name}w}});\n"
+                 SubSurf {name}({{{name}e, {name}w}});"
             );
         }
         9 => {
             let list = masters(&mut text, "P", far, backwards);
             let hidden =
                 named(&(law.loft)(&list), &format!("{name}h")).replace(");", ", visible = 0);");
-            let _ = write!(
+            let _ = writeln!(
                 text,
                 "{hidden}UVSnake {name}a({name}h, \"v\", 0); UVSnake {name}b({name}h, \"v\", 1);
                  AbsRing {name}p({name}a, 0.7); AbsRing {name}q({name}b, 0.7);
                  AbsRing {name}r({name}a, 0); AbsRing {name}s({name}b, 0);
                  SubSnake {name}c({name}r, {name}p); SubSnake {name}d({name}s, {name}q);
-                 SubSurf {name}({{{name}c, {name}d}});\n"
+                 SubSurf {name}({{{name}c, {name}d}});"
             );
         }
         // The image of an image.
@@ -391,9 +391,9 @@ fn maker(
             let list = masters(&mut text, "P", far, backwards);
             let hidden =
                 named(&(law.loft)(&list), &format!("{name}h")).replace(");", ", visible = 0);");
-            let _ = write!(
+            let _ = writeln!(
                 text,
-                "{hidden}MirrSurf {name}i({name}h, \"y=0\", visible = 0); MirrSurf {name}({name}i, \"y=0\");\n"
+                "{hidden}MirrSurf {name}i({name}h, \"y=0\", visible = 0); MirrSurf {name}({name}i, \"y=0\");"
             );
         }
         // Through the images of images of the points.
@@ -413,11 +413,11 @@ fn maker(
             let hidden =
                 named(&(law.loft)(&list), &format!("{name}h")).replace(");", ", visible = 0);");
             let angle = random.decimal(0.2, 3.0);
-            let _ = write!(
+            let _ = writeln!(
                 text,
                 "AbsPoint {name}o(-9, 0, 3); AbsPoint {name}x(9, 0, 4); Line {name}a({name}o, {name}x);
                  {hidden}RotatSurf {name}t({name}h, {name}a, {angle}, visible = 0);
-                 RotatSurf {name}({name}t, {name}a, -{angle});\n"
+                 RotatSurf {name}({name}t, {name}a, -{angle});"
             );
         }
         13 => {

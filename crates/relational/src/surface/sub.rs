@@ -340,7 +340,7 @@ impl<T: Real> Surface<T> for Patch<T> {
     /// A side that is not given: the surface and the points that it lies straight between.
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
         let Layout::Between([first, last]) = &self.layout else { return Vec::new() };
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             return Vec::new();
         }
         let end = usize::from(k == 1);

@@ -378,7 +378,7 @@ impl<T: Real> Surface<T> for Sweep<T> {
 
     /// The profile, moved; or the way of one of its ends along the path.
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             return self.profile.made_of();
         }
         let mut made = self.moving.path.made_of();

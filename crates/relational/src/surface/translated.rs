@@ -34,7 +34,7 @@ impl<T: Real> SurfaceFormula for TranSurf<T> {
 
     /// One of the curves, moved.
     fn edge_made_of(&self, k: usize) -> Vec<Key> {
-        if k % 2 == 0 { self.c1.made_of() } else { self.c2.made_of() }
+        if k.is_multiple_of(2) { self.c1.made_of() } else { self.c2.made_of() }
     }
 
     fn joints(&self) -> [Vec<f64>; 2] {

@@ -186,7 +186,7 @@ fn check(seed: u64) -> Option<Tally> {
         let mut k = seed as usize;
         inputs.retain(|(name, _)| {
             k += 1;
-            name == "w" || k % 4 == 0
+            name == "w" || k.is_multiple_of(4)
         });
     }
     let names: Vec<String> = inputs.iter().map(|(name, _)| name.clone()).collect();
